@@ -1,0 +1,79 @@
+"""Kernel files: named by the hash of their source, written whole or not at all, compiled code kept beside them.
+
+numba keeps compiled code only for functions that live in a file, so a kernel is written to a folder and imported from there. The folder
+is `$VEHGEN_CACHE`, else the user's cache folder; nothing but vehgen's own generated source is ever imported from it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import os
+import sys
+import tempfile
+from pathlib import Path
+from types import ModuleType
+
+import numba
+
+from vehgen.errors import InputError
+
+
+def cache_folder() -> Path:
+    """Return the folder of generated kernels (it need not exist yet)."""
+    if chosen := os.environ.get("VEHGEN_CACHE"):
+        return Path(chosen)
+    if sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local"))
+    elif sys.platform == "darwin":
+        base = Path.home() / "Library" / "Caches"
+    else:
+        base = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
+    return base / "vehgen"
+
+
+def kernel_name(text: str) -> str:
+    """Return the module name of a kernel: the hash of its source and of numba's version."""
+    digest = hashlib.sha256(f"{numba.__version__}\n{text}".encode()).hexdigest()
+    return f"kernel_{digest[:20]}"
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file under a temporary name and rename it, so that no half-written file stays behind.
+
+    Raises
+    ------
+    InputError
+        When the folder cannot be written to.
+
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror}") from error
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as stream:
+            stream.write(text)
+        Path(temporary).replace(path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+
+
+def import_kernel(text: str, folder: Path | None = None) -> ModuleType:
+    """Write a kernel's source into the cache (unless it is there) and import it; importing compiles it or loads what was compiled."""
+    name = kernel_name(text)
+    module_name = f"vehgen_generated.{name}"
+    if module_name in sys.modules:
+        return sys.modules[module_name]
+    path = (folder or cache_folder()) / f"{name}.py"
+    if not path.is_file() or path.read_text(encoding="utf-8") != text:
+        write_text(path, text)
+    specification = importlib.util.spec_from_file_location(module_name, path)
+    if specification is None or specification.loader is None:
+        raise InputError(f"cannot import the generated kernel {path}")
+    module = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(module)
+    sys.modules[module_name] = module
+    return module

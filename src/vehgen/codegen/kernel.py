@@ -1,0 +1,146 @@
+"""A compiled kernel that runs populations."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.codegen.cache import import_kernel, kernel_name
+from vehgen.codegen.kernel_source import KernelSource, write_kernel
+from vehgen.errors import InputError
+from vehgen.mechanics.linear_model import LinearModel
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Drive:
+    """What moves a vehicle, at the ends of every step of `dt` [s].
+
+    `inputs`, `rates` `shape (n_steps + 1, n_inputs)`: displacement inputs [m] and their rates [m/s]; `forces` `shape (n_steps + 1,
+    n_forces)` [N].
+    """
+
+    dt: float
+    inputs: Array
+    rates: Array
+    forces: Array
+
+    @property
+    def n_steps(self) -> int:
+        """Number of time steps."""
+        return int(self.inputs.shape[0]) - 1
+
+    @property
+    def time(self) -> Array:
+        """Times of the inputs [s]."""
+        return np.arange(self.inputs.shape[0], dtype=np.float64) * self.dt
+
+
+class Kernel:
+    """The compiled Newmark kernel of a model.
+
+    Parameters
+    ----------
+    model
+        A derived model; its channels are what comes out.
+    folder
+        Where the source and the compiled code are kept (default: the user's cache folder).
+
+    """
+
+    def __init__(self, model: LinearModel, folder: Path | None = None) -> None:
+        self.model = model
+        self.source: KernelSource = write_kernel(model)
+        self._folder = folder
+
+    @property
+    def name(self) -> str:
+        """The name of its file: the hash of its source."""
+        return kernel_name(self.source.text)
+
+    @cached_property
+    def _advance(self) -> Callable[..., None]:
+        advance: Callable[..., None] = import_kernel(self.source.text, self._folder).advance
+        return advance
+
+    def compile(self) -> None:
+        """Compile now, or load what an earlier process compiled."""
+        _ = self._advance
+
+    def run(self, parameters: Array, drive: Drive, keep: int = 10, initial: Array | None = None, threads: int | None = None) -> Array:
+        """Simulate a population.
+
+        Parameters
+        ----------
+        parameters
+            `shape (n_individuals, n_parameters)` in the order of `model.parameters`, SI units.
+        drive
+            Inputs and step, the same for all individuals.
+        keep
+            Every how many steps a sample is kept.
+        initial
+            `shape (n_individuals, 2 n_dof)`: displacements then velocities at the start (default: at rest in equilibrium).
+        threads
+            How many cores to use (default: all).
+
+        Returns
+        -------
+        responses
+            `shape (n_individuals, n_steps // keep + 1, n_channels)`; NaN where an individual has no finite response.
+
+        """
+        parameters = np.ascontiguousarray(np.atleast_2d(parameters), dtype=np.float64)
+        self._check(parameters, drive, keep)
+        n_individuals, lanes = parameters.shape[0], self.source.lanes
+        n_samples, n_channels = drive.n_steps // keep + 1, len(self.model.channels)
+        responses = np.empty((n_individuals, n_samples, n_channels))
+        advance = self._advance
+        n_dof = self.model.n_dof
+        arrays = tuple(np.ascontiguousarray(item, dtype=np.float64) for item in (drive.inputs, drive.rates, drive.forces))
+
+        def block(first: int) -> None:
+            last = min(first + lanes, n_individuals)
+            rows = np.minimum(np.arange(first, first + lanes), last - 1)
+            state = np.zeros(2 * n_dof * lanes)
+            if initial is not None:
+                state[:] = np.ascontiguousarray(initial[rows].T).ravel()
+            full = last - first == lanes
+            target = responses[first:last] if full else np.empty((lanes, n_samples, n_channels))
+            constants = np.empty(self.source.n_constants * lanes)
+            kept = np.empty(max(n_channels, 1) * lanes)
+            lanewise = np.ascontiguousarray(parameters[rows].T).ravel()
+            advance(lanewise, *arrays, drive.dt, keep, constants, state, kept, target)
+            if not full:
+                responses[first:last] = target[: last - first]
+
+        starts = range(0, n_individuals, lanes)
+        workers = min(threads or os.cpu_count() or 1, len(starts))
+        if workers > 1:
+            with ThreadPoolExecutor(workers) as pool:
+                list(pool.map(block, starts))
+        else:
+            for first in starts:
+                block(first)
+        return responses
+
+    def _check(self, parameters: Array, drive: Drive, keep: int) -> None:
+        expected = len(self.model.parameters)
+        if parameters.ndim != 2 or parameters.shape[1] != expected:
+            raise InputError(
+                f"parameters have shape {parameters.shape}; (n_individuals, {expected}) was expected: {', '.join(self.model.parameters)}"
+            )
+        shapes = {"inputs": len(self.model.inputs), "rates": len(self.model.inputs), "forces": len(self.model.forces)}
+        for key, width in shapes.items():
+            found = getattr(drive, key).shape
+            if found != (drive.n_steps + 1, width):
+                raise InputError(f"the drive's {key} have shape {found}; ({drive.n_steps + 1}, {width}) was expected")
+        if not (drive.dt > 0 and keep >= 1):
+            raise InputError(f"the step must be positive and keep at least 1, found dt = {drive.dt} and keep = {keep}")

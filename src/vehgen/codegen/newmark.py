@@ -1,0 +1,153 @@
+"""One time step of average-acceleration Newmark, written out for a vehicle.
+
+With beta = 1/4 and gamma = 1/2, and the acceleration consistent with equilibrium at the start of a step, Newmark's method (J. Eng. Mech.
+Div. 85(3), 1959) is the implicit midpoint rule on displacement u and velocity v:
+    (2/h M + C + h/2 K) v_mid = 2/h M v_n - K u_n + (F_n + F_{n+1})/2,
+    v_{n+1} = 2 v_mid - v_n,    u_{n+1} = u_n + h v_mid.
+No acceleration is carried; at kept samples it follows from equilibrium, M a = F - C v - K u. The two forms give the same numbers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from vehgen.codegen.factorisation import Matrix, factorise
+from vehgen.codegen.program import SAMPLE, SETUP, STEP, Node, Program
+from vehgen.mechanics.linear_model import LinearModel
+from vehgen.mechanics.rows import Entries, Row
+
+
+@dataclass(frozen=True)
+class StepProgram:
+    """The program of a step: where its leaves are read from, the next state, the channels at a sample."""
+
+    program: Program
+    parameters: dict[str, Node]
+    time_step: Node
+    displacement: list[Node]
+    velocity: list[Node]
+    drives: list[Node]
+    sample_drives: list[Node]
+    next_displacement: list[Node]
+    next_velocity: list[Node]
+    channels: list[Node]
+
+
+def write_step(model: LinearModel) -> StepProgram:
+    """Write one Newmark step of a linear model as a program.
+
+    The drives are, in order: the displacement inputs w, their rates w', the applied forces f; in a step they stand for the mean over
+    the step, at a sample for the value at that time.
+    """
+    program = Program()
+    symbols: dict[sp.Symbol, Node] = {}
+    parameters = {}
+    for name in model.parameters:
+        parameters[name] = program.leaf(identifier(name), SETUP)
+        symbols[sp.Symbol(name, real=True)] = parameters[name]
+    memo: dict[sp.Expr, Node] = {}
+    for symbol, expression in model.definitions:
+        node = program.convert(expression, symbols, memo)
+        symbols[symbol] = program.label(node, identifier(symbol.name))
+
+    def matrix(entries: Entries, name: str) -> Matrix:
+        converted = {place: program.convert(value, symbols, memo) for place, value in entries.items()}
+        return {(i, j): program.label(node, f"{name}{i}_{j}") for (i, j), node in converted.items() if program.value(node) != 0.0}
+
+    h = program.leaf("dt", SETUP)
+    two_h, half_h = program.divide(program.number(2.0), h), program.multiply(program.number(0.5), h)
+    M, C, K = matrix(model.mass_entries, "M"), matrix(model.damping_entries, "C"), matrix(model.stiffness_entries, "K")
+    P, Q = matrix(model.input_entries, "P"), matrix(model.input_rate_entries, "Q")
+    F = matrix(model.force_entries, "F")
+    n = model.n_dof
+    u = [program.leaf(f"u{i}", STEP) for i in range(n)]
+    v = [program.leaf(f"v{i}", STEP) for i in range(n)]
+    names = _drive_names(model)
+    drives = [program.leaf(name, STEP) for name in names]
+    loads = _load_matrix(model, P, Q, F)
+
+    effective: Matrix = {}
+    zero = program.number(0.0)
+    for place in {*M, *C, *K}:
+        parts = [
+            program.multiply(two_h, M.get(place, zero)),
+            C.get(place, zero),
+            program.multiply(half_h, K.get(place, zero)),
+        ]
+        effective[place] = program.total(parts)
+    factor = factorise(program, n, effective, "A")
+    momentum = {place: program.multiply(two_h, node) for place, node in M.items()}
+    right = []
+    for i in range(n):
+        terms = [program.multiply(node, v[j]) for (row, j), node in sorted(momentum.items()) if row == i]
+        terms += [program.negate(program.multiply(node, u[j])) for (row, j), node in sorted(K.items()) if row == i]
+        terms += [program.multiply(node, drives[j]) for (row, j), node in sorted(loads.items()) if row == i]
+        right.append(program.label(program.total(terms), f"r{i}"))
+    middle = [program.label(node, f"vm{i}") for i, node in enumerate(factor.solve(program, right))]
+    next_v = [program.subtract(program.add(middle[i], middle[i]), v[i]) for i in range(n)]
+    next_u = [program.add(u[i], program.multiply(h, middle[i])) for i in range(n)]
+
+    su = [program.leaf(f"u{i}", SAMPLE) for i in range(n)]
+    sv = [program.leaf(f"v{i}", SAMPLE) for i in range(n)]
+    sample_drives = [program.leaf(name, SAMPLE) for name in names]
+    channels = _channels(model, program, symbols, memo, (M, C, K, loads), (su, sv, sample_drives))
+    return StepProgram(program, parameters, h, u, v, drives, sample_drives, next_u, next_v, channels)
+
+
+def identifier(name: str) -> str:
+    """Return a parameter's name as it stands in the source."""
+    return "p_" + name.replace(".", "_")
+
+
+def _drive_names(model: LinearModel) -> list[str]:
+    inputs = [name.replace(".", "_") for name in model.inputs]
+    return [
+        *(f"w_{name}" for name in inputs),
+        *(f"dw_{name}" for name in inputs),
+        *(f"f_{name}" for name in model.forces),
+    ]
+
+
+def _load_matrix(model: LinearModel, P: Matrix, Q: Matrix, F: Matrix) -> Matrix:
+    """Join the columns of displacement inputs, their rates and forces."""
+    width = len(model.inputs)
+    joined = dict(P)
+    joined.update({(i, j + width): node for (i, j), node in Q.items()})
+    joined.update({(i, j + 2 * width): node for (i, j), node in F.items()})
+    return joined
+
+
+def _channels(
+    model: LinearModel,
+    program: Program,
+    symbols: dict[sp.Symbol, Node],
+    memo: dict[sp.Expr, Node],
+    matrices: tuple[Matrix, Matrix, Matrix, Matrix],
+    state: tuple[list[Node], list[Node], list[Node]],
+) -> list[Node]:
+    """Write each channel; accelerations follow from equilibrium, and only those that a channel uses are computed."""
+    M, C, K, loads = matrices
+    u, v, drives = state
+    width = len(model.inputs)
+    acceleration: list[Node] = []
+    if any(channel.acceleration for channel in model.channels):
+        factor = factorise(program, model.n_dof, M, "M")
+        forces = []
+        for i in range(model.n_dof):
+            terms = [program.multiply(node, drives[j]) for (row, j), node in sorted(loads.items()) if row == i]
+            terms += [program.negate(program.multiply(node, v[j])) for (row, j), node in sorted(C.items()) if row == i]
+            terms += [program.negate(program.multiply(node, u[j])) for (row, j), node in sorted(K.items()) if row == i]
+            forces.append(program.total(terms))
+        acceleration = [program.label(node, f"a{i}") for i, node in enumerate(factor.solve(program, forces))]
+
+    def times(row: Row, vector: list[Node]) -> list[Node]:
+        return [program.multiply(program.convert(value, symbols, memo), vector[j]) for j, value in sorted(row.items())]
+
+    found = []
+    for channel in model.channels:
+        terms = times(channel.acceleration, acceleration) + times(channel.velocity, v) + times(channel.displacement, u)
+        terms += times(channel.input, drives[:width]) + times(channel.input_rate, drives[width : 2 * width])
+        found.append(program.total(terms))
+    return found

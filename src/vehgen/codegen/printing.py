@@ -1,0 +1,153 @@
+"""Programs printed as Python statements inside a loop over lanes, split by phase."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable
+
+from vehgen.codegen.program import SAMPLE, SETUP, STEP, Node, Program
+
+_BINARY = {"+": 1, "-": 1, "*": 2, "/": 2, "**": 3}
+_MAX_INLINE = 90
+
+
+class Printer:
+    """Prints what given results need of a program, phase by phase.
+
+    Parameters
+    ----------
+    program
+        The graph.
+    results
+        The nodes wanted, by phase (STEP: the new state; SAMPLE: the channels).
+    scalar
+        A leaf that is the same for all lanes and stays a plain variable: the time step.
+
+    """
+
+    def __init__(self, program: Program, results: dict[int, list[Node]], scalar: Node) -> None:
+        self.scalar = scalar
+        self.program = program
+        self.results = results
+        self.needed = {phase: self._reach(phase) for phase in (STEP, SAMPLE)}
+        self.constants = self._constants()
+        self.setup = self._reach_setup()
+        self.operation_counts = {
+            "setup": self._count(self.setup),
+            "step": self._count(self.needed[STEP]),
+            "sample": self._count(self.needed[SAMPLE]),
+        }
+
+    def _reach(self, phase: int) -> list[Node]:
+        """Nodes computed in the loop of a phase: all that its results need and SETUP does not know."""
+        found: set[Node] = set()
+        stack = list(self.results.get(phase, ()))
+        while stack:
+            node = stack.pop()
+            if node in found or self.program.phases[node] == SETUP:
+                continue
+            found.add(node)
+            stack.extend(self.program.arguments[node])
+        return sorted(found)
+
+    def _constants(self) -> dict[Node, int]:
+        """SETUP nodes that the loops use, with their place in the array of constants."""
+        used: set[Node] = set()
+        for phase in (STEP, SAMPLE):
+            for node in (*self.needed[phase], *self.results.get(phase, ())):
+                for item in (*self.program.arguments[node], node):
+                    if self.program.phases[item] == SETUP and self.program.operations[item] != "number" and item != self.scalar:
+                        used.add(item)
+        return {node: place for place, node in enumerate(sorted(used))}
+
+    def _reach_setup(self) -> list[Node]:
+        found: set[Node] = set()
+        stack = list(self.constants)
+        while stack:
+            node = stack.pop()
+            if node not in found:
+                found.add(node)
+                stack.extend(self.program.arguments[node])
+        return sorted(found)
+
+    def _count(self, nodes: Iterable[Node]) -> int:
+        return sum(self.program.operations[node] not in ("leaf", "number") for node in nodes)
+
+    def name(self, node: Node) -> str:
+        """Return a node's name in the source."""
+        return self.program.labels.get(node, f"x{node}")
+
+    def statements(self, nodes: list[Node], targets: Iterable[Node], load: Callable[[Node], str | None]) -> list[str]:
+        """Return assignments for the nodes in order; values used once are written where they are used.
+
+        Parameters
+        ----------
+        nodes
+            What to compute, ascending.
+        targets
+            Nodes that must end up in a variable.
+        load
+            How a leaf (or a constant from SETUP) is read; None for what is already a variable.
+
+        """
+        own = set(nodes)
+        uses = Counter(
+            argument
+            for node in nodes
+            for argument in set(self.program.arguments[node])
+            for _ in range(self.program.arguments[node].count(argument))
+        )
+        keep = set(targets)
+        texts: dict[Node, tuple[str, int]] = {}
+        lines: list[str] = []
+
+        def read(node: Node) -> tuple[str, int]:
+            if node in texts:
+                return texts[node]
+            value = self.program.value(node)
+            if value is not None:
+                texts[node] = (repr(value), 9) if value >= 0 else (f"({value!r})", 9)
+                return texts[node]
+            source = load(node)
+            if source is not None and uses[node] > 1:
+                lines.append(f"{self.name(node)} = {source}")
+                source = None
+            texts[node] = (source or self.name(node), 9)
+            return texts[node]
+
+        for node in nodes:
+            if self.program.operations[node] in ("leaf", "number"):
+                continue
+            text, strength = self._expression(node, [read(argument) for argument in self.program.arguments[node]])
+            inline = uses[node] == 1 and node not in keep and node not in self.program.labels and len(text) < _MAX_INLINE
+            if inline and node in own:
+                texts[node] = (text, strength)
+            else:
+                lines.append(f"{self.name(node)} = {text}")
+                texts[node] = (self.name(node), 9)
+        for node in keep:
+            if node not in texts and self.program.operations[node] in ("leaf", "number"):
+                texts[node] = read(node)
+        self.texts = {node: text for node, (text, _) in texts.items()}
+        return lines
+
+    def _expression(self, node: Node, arguments: list[tuple[str, int]]) -> tuple[str, int]:
+        operation = self.program.operations[node]
+        if operation in _BINARY:
+            strength = _BINARY[operation]
+            (left, left_strength), (right, right_strength) = arguments
+            left = f"({left})" if left_strength < strength else left
+            tight = right_strength < strength or (right_strength == strength and operation in "-/")
+            right = f"({right})" if tight else right
+            blank = "" if strength > 1 else " "
+            return f"{left}{blank}{operation}{blank}{right}", strength
+        texts = [text for text, _ in arguments]
+        if operation == "neg":
+            return f"-{texts[0]}" if arguments[0][1] >= 2 else f"-({texts[0]})", 1
+        if operation == "select":
+            return f"({texts[1]} if {texts[0]} > 0.0 else {texts[2]})", 9
+        if operation == "sqrt":
+            return f"math.sqrt({texts[0]})", 9
+        if operation == "sign":
+            return f"((1.0 if {texts[0]} > 0.0 else 0.0) - (1.0 if {texts[0]} < 0.0 else 0.0))", 9
+        return f"{operation}({', '.join(texts)})", 9

@@ -1,0 +1,35 @@
+"""Print the natural modes: frequencies, damping, and where their energy is."""
+
+from __future__ import annotations
+
+import argparse
+
+from vehgen.commands.terminal import add_vehicle, load, print_json, print_table
+
+EXAMPLE = "python -m vehgen modes tractor5.yaml --set SHCM-1"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    add_vehicle(parser)
+
+
+def run(options: argparse.Namespace) -> None:
+    """Print the modes of a vehicle."""
+    vehicle, values = load(options)
+    from vehgen.mechanics import derive
+    from vehgen.simulate import natural_modes
+
+    model = derive(vehicle)
+    modes = natural_modes(model, values)
+    if options.json:
+        keys = ("name", "undamped_hz", "damped_hz", "damping_ratio")
+        print_json({"n_dof": model.n_dof, "modes": [{key: getattr(mode, key) for key in keys} for mode in modes]})
+        return
+    rows = [(mode.name, f"{mode.undamped_hz:.4f}", f"{mode.damped_hz:.4f}", f"{mode.damping_ratio:.4f}") for mode in modes]
+    print_table(
+        f"{vehicle.title or vehicle.name}: natural modes",
+        ("mode", "undamped, Hz", "damped, Hz", "damping ratio"),
+        rows,
+        right=(1, 2, 3),
+    )

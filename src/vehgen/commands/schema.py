@@ -1,0 +1,27 @@
+"""Print the JSON Schema of the vehicle file (or, with --run, of the run file) for editors."""
+
+from __future__ import annotations
+
+import argparse
+
+from vehgen.commands.terminal import print_json
+
+EXAMPLE = "python -m vehgen schema > vehicle.schema.json"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.add_argument("--run", action="store_true", dest="run_file", help="the schema of the run file")
+    parser.add_argument("--json", action="store_true", help="accepted for uniformity: the output is JSON always")
+
+
+def run(options: argparse.Namespace) -> None:
+    """Print the schema."""
+    if options.run_file:
+        from vehgen.simulate.runfile import RunFile
+
+        print_json({"$schema": "https://json-schema.org/draft/2020-12/schema", **RunFile.model_json_schema()})
+        return
+    from vehgen.vehicle.schema import vehicle_schema
+
+    print_json(vehicle_schema())

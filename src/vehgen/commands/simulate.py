@@ -1,0 +1,52 @@
+"""Simulate a run: the response of its vehicle over its road."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from vehgen.commands.terminal import add_json, console, print_json, print_table, warn
+
+EXAMPLE = "python -m vehgen simulate run.yaml --out response.csv --plot"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.add_argument("run_file", metavar="RUN", help="a run file")
+    parser.add_argument("--out", metavar="CSV", type=Path, help="where to write the response (default: RUN with .csv)")
+    parser.add_argument("--plot", action="store_true", help="draw the response too, beside the CSV file")
+    add_json(parser)
+
+
+def run(options: argparse.Namespace) -> None:
+    """Simulate a run and write its response."""
+    from vehgen.simulate import load_run, simulate, write_csv
+
+    run_ = load_run(options.run_file)
+    response = simulate(run_)
+    path = options.out or Path(options.run_file).with_name(Path(options.run_file).stem + "_response.csv")
+    write_csv(path, response)
+    written = [path]
+    if options.plot:
+        from vehgen.report import save_figure
+        from vehgen.report.response_plot import plot_response
+
+        channels = [(item.name, item.quantity, item.unit) for item in response.channels]
+        figure = plot_response(response.time, channels, response.values[0])
+        written.append(path.with_suffix(".png"))
+        save_figure(figure, written[-1])
+    peaks = [(item.name, item.unit, float(abs(response.values[0, :, i]).max())) for i, item in enumerate(response.channels)]
+    if options.json:
+        data = {"channels": [{"name": name, "unit": unit, "peak": peak} for name, unit, peak in peaks]}
+        print_json({**data, "warnings": list(response.warnings), "files": [str(item) for item in written]})
+        return
+    title = run_.file.title or f"{run_.vehicle.title or run_.vehicle.name}, {response.time[-1]:.2f} s"
+    print_table(
+        title,
+        ("channel", "unit", "largest magnitude"),
+        [(name, unit, f"{peak:.5g}") for name, unit, peak in peaks],
+        right=(2,),
+    )
+    warn(response.warnings)
+    for item in written:
+        console().print(f"wrote {item}", highlight=False)

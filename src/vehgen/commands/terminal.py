@@ -1,0 +1,68 @@
+"""What the commands share: the vehicle argument, tables for people, JSON for programs."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from vehgen.vehicle import Vehicle
+
+
+def add_vehicle(parser: argparse.ArgumentParser) -> None:
+    """Add FILE, --set and --json."""
+    parser.add_argument("file", metavar="FILE", help="a vehicle file, or the name of a bundled model (see `models`)")
+    parser.add_argument("--set", metavar="NAME", dest="parameter_set", help="use a named parameter set of the file")
+    add_json(parser)
+
+
+def add_json(parser: argparse.ArgumentParser) -> None:
+    """Add --json."""
+    parser.add_argument("--json", action="store_true", help="print JSON for programs instead of tables")
+
+
+def load(options: argparse.Namespace) -> tuple[Vehicle, dict[str, float]]:
+    """Return the vehicle of the options, and the values of its free parameters."""
+    from vehgen.vehicle import load_vehicle
+
+    vehicle = load_vehicle(options.file)
+    return vehicle, vehicle.values(options.parameter_set)
+
+
+def print_json(data: Any) -> None:
+    """Print JSON."""
+    print(json.dumps(data, indent=2, allow_nan=False))
+
+
+def console() -> Console:
+    """Return a console that is as wide as its tables need where it is not a terminal."""
+    from rich.console import Console
+
+    found = Console()
+    return found if found.is_terminal else Console(width=120)
+
+
+def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], right: Sequence[int] = ()) -> None:
+    """Print a table; `right` lists the columns that hold numbers."""
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
+    for index, column in enumerate(columns):
+        table.add_column(column, justify="right" if index in right else "left")
+    for row in rows:
+        table.add_row(*(Text(cell) for cell in row))
+    console().print(table)
+
+
+def warn(messages: Iterable[str]) -> None:
+    """Print warnings beneath the tables."""
+    from rich.text import Text
+
+    for message in messages:
+        console().print(Text.assemble(("warning: ", "bold yellow"), message))

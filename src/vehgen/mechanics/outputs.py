@@ -1,0 +1,113 @@
+"""What is measured or applied where: sensors, outputs and force inputs of a run, and their rows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from vehgen.errors import InputError, did_you_mean
+from vehgen.mechanics.energies import Element
+from vehgen.mechanics.kinematics import Kinematics
+from vehgen.mechanics.layout import Layout
+from vehgen.mechanics.linear_model import Channel
+from vehgen.mechanics.rows import Row, combine
+from vehgen.mechanics.symbols import number, parameter, to_sympy
+from vehgen.vehicle.expressions import Expression
+from vehgen.vehicle.model import Vehicle
+
+POINT_QUANTITIES = {
+    "acceleration": "m/s^2",
+    "velocity": "m/s",
+    "displacement": "m",
+    "pitch": "rad",
+    "pitch_rate": "rad/s",
+    "pitch_acceleration": "rad/s^2",
+}
+AXLE_QUANTITIES = {"suspension_travel": "m", "suspension_force": "N", "tyre_force": "N", "tyre_load": "N"}
+LINK_QUANTITIES = {"link_travel": "m", "link_force": "N"}
+
+
+@dataclass(frozen=True)
+class Place:
+    """A place on a body: `x` ahead of its COG, or `distance` [m] behind an axle, hinge or body named `behind`.
+
+    Each place has a parameter `NAME.shift` [m], which moves it forward; it is 0 unless a population or a fit says otherwise.
+    """
+
+    name: str
+    body: str
+    x: Expression | None = None
+    behind: str | None = None
+    distance: float = 0.0
+
+    @property
+    def shift(self) -> str:
+        """Name of the parameter that moves it forward [m]."""
+        return f"{self.name}.shift"
+
+    def locate(self, vehicle: Vehicle, layout: Layout) -> sp.Expr:
+        """Return its position ahead of its body's COG [m]; raises InputError for names the vehicle lacks."""
+        if self.body not in vehicle.bodies:
+            raise InputError(f"{self.name}: no body {self.body!r}; {did_you_mean(self.body, vehicle.bodies)}")
+        shift = parameter(self.shift)
+        if self.behind is None:
+            return (to_sympy(self.x) if self.x is not None else sp.S.Zero) + shift
+        known = {**vehicle.axles, **vehicle.hinges, **vehicle.bodies}
+        if self.behind not in known:
+            raise InputError(f"{self.name}: nothing named {self.behind!r} to be behind of; {did_you_mean(self.behind, known)}")
+        return layout.place(vehicle, self.behind) - layout.bodies[self.body][0] - number(self.distance) + shift
+
+
+@dataclass(frozen=True)
+class PointOutput:
+    """A quantity of POINT_QUANTITIES at a place, written to the channel `name`."""
+
+    name: str
+    place: Place
+    quantity: str
+
+
+@dataclass(frozen=True)
+class ElementOutput:
+    """A quantity of AXLE_QUANTITIES or LINK_QUANTITIES of an axle or link, written to the channel `name`."""
+
+    name: str
+    owner: str
+    quantity: str
+
+
+Output = PointOutput | ElementOutput
+
+
+def point_channel(output: PointOutput, vehicle: Vehicle, layout: Layout, motion: Kinematics) -> Channel:
+    """Return the row of a quantity at a point of a body."""
+    quantity = output.quantity
+    if quantity not in POINT_QUANTITIES:
+        raise InputError(f"{output.name}: unknown quantity {quantity!r} of a sensor; {did_you_mean(quantity, POINT_QUANTITIES)}")
+    x = output.place.locate(vehicle, layout)
+    row = motion.pitch[output.place.body] if quantity.startswith("pitch") else motion.rise(output.place.body, x)
+    part = {"pitch": "displacement", "pitch_rate": "velocity", "pitch_acceleration": "acceleration"}.get(quantity, quantity)
+    return Channel(output.name, quantity, POINT_QUANTITIES[quantity], output.place.body, **{part: row})
+
+
+def element_channel(output: ElementOutput, elements: tuple[Element, ...]) -> Channel:
+    """Return the row of a travel or force of a suspension, tyre or link (compression positive)."""
+    quantity = output.quantity
+    known = {**AXLE_QUANTITIES, **LINK_QUANTITIES}
+    if quantity not in known:
+        raise InputError(f"{output.name}: unknown quantity {quantity!r} of an axle or link; {did_you_mean(quantity, known)}")
+    kind = quantity.rpartition("_")[0]
+    owners = {element.name: element for element in elements if element.kind == kind}
+    if output.owner not in owners:
+        raise InputError(f"{output.name}: {output.owner!r} has no {kind}; {did_you_mean(output.owner, owners)}")
+    element = owners[output.owner]
+    if quantity.endswith("travel"):
+        return Channel(output.name, quantity, known[quantity], output.owner, displacement=element.row, input=element.input_row)
+    scaled: dict[str, Row] = {
+        "displacement": combine((element.k, element.row)),
+        "input": combine((element.k, element.input_row)),
+        "velocity": combine((element.c, element.row)),
+        "input_rate": combine((element.c, element.input_row)),
+    }
+    return Channel(output.name, quantity, known[quantity], output.owner, **scaled)

@@ -1,0 +1,91 @@
+"""Static axle loads, hinge and link forces under gravity."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from vehgen.errors import InputError
+from vehgen.mechanics.linear_model import GRAVITY, LinearModel
+from vehgen.vehicle.model import GROUND
+
+
+@dataclass(frozen=True)
+class StaticLoads:
+    """Forces in static equilibrium [N], compression positive.
+
+    `axles` is what each wheel presses on the road; `hinges` the vertical force that the first-named body exerts upwards on the
+    second; `elements` the force in every suspension, tyre and link by (kind, name); `displacement shape (n_dof,)` [m, rad].
+    """
+
+    axles: dict[str, float]
+    hinges: dict[str, float]
+    elements: dict[tuple[str, str], float]
+    displacement: NDArray[np.float64]
+
+
+def static_loads(model: LinearModel, values: Mapping[str, float] | None = None) -> StaticLoads:
+    """Solve K q = weight at the given parameter values (default: the file's).
+
+    Raises
+    ------
+    InputError
+        When K is singular: part of the vehicle rests on nothing.
+
+    """
+    values = values or model.values()
+    numeric = model.numeric(values)
+    displacement = _solve(model, numeric.K, numeric.weight)
+    rows, stiffness = element_rows(model, values)
+    forces = stiffness * (rows @ displacement)
+    elements = {(element.kind, element.name): float(force) for element, force in zip(model.elements, forces, strict=True)}
+    axles = {name: elements["tyre", name] for name in model.vehicle.axles}
+    hinges = {name: _hinge_force(model, name, elements, values) for name in model.vehicle.hinges}
+    return StaticLoads(axles, hinges, elements, displacement)
+
+
+def element_rows(model: LinearModel, values: Mapping[str, float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the travel rows `shape (n_elements, n_dof)` and stiffnesses `shape (n_elements,)` of all springs."""
+    entries = {(i, j): value for i, element in enumerate(model.elements) for j, value in element.row.items()}
+    stiffness = {(i, 0): element.k for i, element in enumerate(model.elements)}
+    rows = np.zeros((len(model.elements), model.n_dof))
+    for place, value in model.evaluate(entries, values).items():
+        rows[place] = value
+    found = model.evaluate(stiffness, values)
+    return rows, np.array([found[i, 0] for i in range(len(model.elements))])
+
+
+def _solve(model: LinearModel, K: NDArray[np.float64], weight: NDArray[np.float64]) -> NDArray[np.float64]:
+    scale = np.sqrt(np.maximum(np.diag(K), np.finfo(float).tiny))
+    scaled = K / np.outer(scale, scale)
+    eigenvalues, vectors = scipy.linalg.eigh(scaled)
+    if eigenvalues[0] < 1e-12 * max(eigenvalues[-1], 1.0):
+        free = model.coordinates[int(np.argmax(np.abs(vectors[:, 0])))].name
+        raise InputError(f"singular stiffness: nothing holds {free} against gravity; give it a spring, a tyre or a link")
+    return np.asarray(scipy.linalg.solve(scaled, weight / scale, assume_a="pos") / scale, dtype=np.float64)
+
+
+def _hinge_force(model: LinearModel, name: str, elements: Mapping[tuple[str, str], float], values: Mapping[str, float]) -> float:
+    """Balance the bodies on the far side of a hinge: weight = suspensions, tyres and links on them + hinge force."""
+    vehicle = model.vehicle
+    _first, second = vehicle.hinges[name].points
+    side = {second}
+    grown = True
+    while grown:
+        joined = [set(hinge.points) for other, hinge in vehicle.hinges.items() if other != name]
+        joined += [{body, item.carried_by.body} for body, item in vehicle.bodies.items() if item.carried_by and "heave" not in item.motions]
+        wider = side.union(*(pair for pair in joined if pair & side))
+        grown, side = wider != side, wider
+    parameters = vehicle.all_values({key: values[key] for key in vehicle.free_parameters})
+    load = sum(vehicle.bodies[body].mass.evaluate(parameters) for body in side) * GRAVITY
+    for axle_name, axle in vehicle.axles.items():
+        if axle.body in side:
+            load -= elements["suspension" if axle.suspension is not None else "tyre", axle_name]
+    for link_name, link in vehicle.links.items():
+        (low, _), (high, _) = link.ends if link.ends[1][0] != GROUND else link.ends[::-1]
+        load -= elements["link", link_name] * ((high in side) - (low in side))
+    return float(load)

@@ -1,0 +1,46 @@
+"""Expressions of a vehicle file as sympy expressions, rebuilt node by node (no text is ever evaluated)."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import sympy as sp
+
+from vehgen.vehicle.expressions import Expression
+
+_FUNCTIONS = {"sqrt": sp.sqrt, "abs": sp.Abs, "sign": sp.sign, "min": sp.Min, "max": sp.Max}
+
+
+@cache
+def parameter(name: str) -> sp.Symbol:
+    """Return the symbol of a parameter; all are real numbers."""
+    return sp.Symbol(name, real=True)
+
+
+def number(value: float) -> sp.Expr:
+    """Return a number as sympy keeps it best: whole numbers exactly, others as floats."""
+    return sp.Integer(int(value)) if float(value).is_integer() and abs(value) < 1e15 else sp.Float(repr(value), 17)
+
+
+def to_sympy(expression: Expression) -> sp.Expr:
+    """Return an expression of a vehicle or run file in SI units as a sympy expression."""
+    return expression.fold(lambda item: number(item.value), lambda item: parameter(item.name), _apply)
+
+
+def _apply(operator: str, arguments: list[sp.Expr]) -> sp.Expr:
+    first = arguments[0]
+    match operator:
+        case "neg":
+            return -first
+        case "+":
+            return first + arguments[1]
+        case "-":
+            return first - arguments[1]
+        case "*":
+            return first * arguments[1]
+        case "/":
+            return first / arguments[1]
+        case "**":
+            return first ** sp.nsimplify(arguments[1])
+        case _:
+            return _FUNCTIONS[operator](*arguments)

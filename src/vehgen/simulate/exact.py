@@ -1,0 +1,95 @@
+"""References for linear models that share no code with the kernels.
+
+`exact_response` is exact for inputs that are linear within each step (first-order hold): with x = (q, q') and x' = A x + B u,
+    expm([[A dt, B dt, 0], [0, 0, I], [0, 0, 0]]) = [[Ad, G1, G2], ...],   x+ = Ad x + (G1 - G2) u_k + G2 u_{k+1}
+(Van Loan, IEEE Trans. Autom. Control 23(3), 1978, doi:10.1109/TAC.1978.1101743). `newmark_response` is the textbook
+average-acceleration method with the acceleration as a state, in plain numpy: the oracle of the generated kernels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from vehgen.codegen.kernel import Drive
+from vehgen.mechanics.linear_model import LinearModel, NumericModel
+
+Array = NDArray[np.float64]
+
+
+def exact_response(
+    model: LinearModel,
+    drive: Drive,
+    keep: int = 1,
+    values: Mapping[str, float] | None = None,
+    initial: Array | None = None,
+) -> Array:
+    """Return the response exact to first-order-hold inputs, `shape (n_steps // keep + 1, n_channels)`.
+
+    The rates of the displacement inputs are taken as the slopes of that hold (the mean of both sides at a sample).
+    """
+    numeric = model.numeric(values)
+    n, width = model.n_dof, len(model.inputs)
+    inverse = np.linalg.inv(numeric.M)
+    A = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ numeric.K, -inverse @ numeric.C]])
+    loads = np.hstack([numeric.P, numeric.Q, numeric.F])
+    B = np.vstack([np.zeros((n, loads.shape[1])), inverse @ loads])
+    m = B.shape[1]
+    big = np.zeros((2 * n + 2 * m, 2 * n + 2 * m))
+    big[: 2 * n, : 2 * n], big[: 2 * n, 2 * n : 2 * n + m] = A * drive.dt, B * drive.dt
+    big[2 * n : 2 * n + m, 2 * n + m :] = np.eye(m)
+    transition = scipy.linalg.expm(big)
+    Ad, G1, G2 = transition[: 2 * n, : 2 * n], transition[: 2 * n, 2 * n : 2 * n + m], transition[: 2 * n, 2 * n + m :]
+    slope = np.diff(drive.inputs, axis=0) / drive.dt
+    start = np.hstack([drive.inputs[:-1], slope, drive.forces[:-1]])
+    end = np.hstack([drive.inputs[1:], slope, drive.forces[1:]])
+    x = np.zeros((drive.n_steps + 1, 2 * n))
+    if initial is not None:
+        x[0] = initial
+    push = start @ (G1 - G2).T + end @ G2.T
+    for k in range(drive.n_steps):
+        x[k + 1] = Ad @ x[k] + push[k]
+    rates = np.vstack([slope[:1], (slope[1:] + slope[:-1]) / 2, slope[-1:]]) if drive.n_steps else np.zeros((1, width))
+    q, v = x[:, :n], x[:, n:]
+    forces = drive.inputs @ numeric.P.T + rates @ numeric.Q.T + drive.forces @ numeric.F.T
+    a = (forces - v @ numeric.C.T - q @ numeric.K.T) @ inverse.T
+    return _channels(numeric, a, v, q, drive.inputs, rates)[::keep]
+
+
+def newmark_response(
+    model: LinearModel,
+    drive: Drive,
+    keep: int = 1,
+    values: Mapping[str, float] | None = None,
+    initial: Array | None = None,
+) -> Array:
+    """Return the response by textbook Newmark (beta 1/4, gamma 1/2), `shape (n_steps // keep + 1, n_channels)`."""
+    numeric = model.numeric(values)
+    h, n = drive.dt, model.n_dof
+    forces = drive.inputs @ numeric.P.T + drive.rates @ numeric.Q.T + drive.forces @ numeric.F.T
+    effective = scipy.linalg.lu_factor(numeric.M + h / 2 * numeric.C + h * h / 4 * numeric.K)
+    q, v, a = (np.zeros((drive.n_steps + 1, n)) for _ in range(3))
+    if initial is not None:
+        q[0], v[0] = initial[:n], initial[n:]
+    a[0] = np.linalg.solve(numeric.M, forces[0] - numeric.C @ v[0] - numeric.K @ q[0])
+    for k in range(drive.n_steps):
+        q_free = q[k] + h * v[k] + h * h / 4 * a[k]
+        v_free = v[k] + h / 2 * a[k]
+        a[k + 1] = scipy.linalg.lu_solve(effective, forces[k + 1] - numeric.C @ v_free - numeric.K @ q_free)
+        v[k + 1] = v_free + h / 2 * a[k + 1]
+        q[k + 1] = q_free + h * h / 4 * a[k + 1]
+    return _channels(numeric, a, v, q, drive.inputs, drive.rates)[::keep]
+
+
+def _channels(numeric: NumericModel, a: Array, v: Array, q: Array, inputs: Array, rates: Array) -> Array:
+    rows = numeric.outputs
+    return np.asarray(
+        a @ rows["acceleration"].T
+        + v @ rows["velocity"].T
+        + q @ rows["displacement"].T
+        + inputs @ rows["input"].T
+        + rates @ rows["input_rate"].T
+    )

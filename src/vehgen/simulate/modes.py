@@ -1,0 +1,125 @@
+"""Natural modes: frequencies from K and M, damped ones from the state matrix, names from where their energy is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+import scipy.optimize
+from numpy.typing import NDArray
+
+from vehgen.errors import InputError
+from vehgen.mechanics.linear_model import LinearModel, NumericModel
+
+Array = NDArray[np.float64]
+_SHARED = 0.6
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A natural mode.
+
+    `undamped_hz` solves det(K - (2 pi f)^2 M) = 0; `damped_hz` = |eigenvalue|/2 pi and `damping_ratio` = -Re/|eigenvalue| belong to the
+    damped eigenvalue whose shape is nearest; `shape shape (n_dof,)` has unit largest entry; `energy` is each coordinate's share of the
+    kinetic energy.
+    """
+
+    name: str
+    undamped_hz: float
+    damped_hz: float
+    damping_ratio: float
+    shape: Array
+    energy: Array
+
+
+def natural_modes(model: LinearModel, values: Mapping[str, float] | None = None) -> list[Mode]:
+    """Return all modes, by ascending undamped frequency.
+
+    An overdamped pair of real eigenvalues -a, -b has the frequency sqrt(a b)/2 pi and the damping ratio (a + b)/(2 sqrt(a b)) > 1.
+
+    Raises
+    ------
+    InputError
+        When M is not positive definite at these values.
+
+    """
+    numeric = model.numeric(values)
+    try:
+        squares, shapes = scipy.linalg.eigh(numeric.K, numeric.M)
+    except np.linalg.LinAlgError as error:
+        raise InputError("the mass matrix is not positive definite: a motion has no inertia") from error
+    damped = _match(_damped_pairs(numeric), numeric, shapes)
+    shares = [_energy(numeric.M, shape) for shape in shapes.T]
+    names = _names(model, shares)
+    modes = []
+    for square, shape, share, name, (radius, ratio) in zip(squares, shapes.T, shares, names, damped, strict=True):
+        peak = shape[np.argmax(np.abs(shape))]
+        modes.append(Mode(name, float(np.sqrt(max(square, 0.0)) / (2 * np.pi)), radius / (2 * np.pi), ratio, shape / peak, share))
+    return modes
+
+
+def _energy(M: Array, shape: Array) -> Array:
+    """Return each coordinate's share of a mode's kinetic energy (cross terms split evenly, negative shares clipped)."""
+    share = np.clip(shape * (M @ shape), 0.0, None)
+    return np.asarray(share / share.sum(), dtype=np.float64)
+
+
+def _damped_pairs(numeric: NumericModel) -> list[tuple[complex, complex, NDArray[np.complex128]]]:
+    """Return the eigenvalue pairs of the state matrix with the displacement shape of each."""
+    n = numeric.M.shape[0]
+    inverse = np.linalg.inv(numeric.M)
+    state = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ numeric.K, -inverse @ numeric.C]])
+    eigenvalues, vectors = np.linalg.eig(state)
+    tolerance = 1e-9 * max(np.abs(eigenvalues).max(), 1.0)
+    pairs = [(eigenvalues[i], np.conj(eigenvalues[i]), vectors[:n, i]) for i in range(2 * n) if eigenvalues[i].imag > tolerance]
+    real = sorted((i for i in range(2 * n) if abs(eigenvalues[i].imag) <= tolerance), key=lambda i: eigenvalues[i].real)
+    while len(real) >= 2:
+        first = real.pop(0)
+        second = max(real, key=lambda i: _likeness(vectors[:n, first], vectors[:n, i]))
+        real.remove(second)
+        pairs.append((eigenvalues[first], eigenvalues[second], vectors[:n, first]))
+    return pairs
+
+
+def _likeness(left: NDArray[np.complex128], right: NDArray[np.complex128]) -> float:
+    norm = np.linalg.norm(left) * np.linalg.norm(right)
+    return float(abs(np.vdot(left, right)) / norm) if norm else 0.0
+
+
+def _match(pairs: list[tuple[complex, complex, NDArray[np.complex128]]], numeric: NumericModel, shapes: Array) -> list[tuple[float, float]]:
+    """Give each undamped mode the damped pair of the most similar shape, all at once (assignment problem)."""
+    scale = np.sqrt(np.diag(numeric.M))
+    radii = [float(np.sqrt(abs(first * second))) for first, second, _ in pairs]
+    frequency = np.sqrt(np.maximum(np.einsum("ij,ik,kj->j", shapes, numeric.K, shapes), 0.0))
+    cost = np.zeros((shapes.shape[1], len(pairs)))
+    for i, shape in enumerate(shapes.T):
+        for j, (_, _, vector) in enumerate(pairs):
+            detuning = abs(np.log(max(radii[j], 1e-9) / max(frequency[i], 1e-9)))
+            cost[i, j] = -_likeness(scale * vector, (scale * shape).astype(complex)) + 0.5 * min(detuning, 2.0)
+    _, chosen = scipy.optimize.linear_sum_assignment(cost)
+    result = []
+    for j in chosen:
+        first, second, _ = pairs[j]
+        result.append((radii[j], float(-(first + second).real / (2 * radii[j])) if radii[j] else 0.0))
+    return result
+
+
+def _names(model: LinearModel, shares: list[Array]) -> list[str]:
+    """Name modes by their largest energy; where a name would repeat, its second share (or a number) tells them apart."""
+    plain = [f"{item.owner} {item.motion}" for item in model.coordinates]
+    names = []
+    for share in shares:
+        order = np.argsort(share)[::-1]
+        name = plain[order[0]]
+        if share[order[0]] < _SHARED and len(order) > 1 and share[order[1]] > 0.15:
+            name = f"{name} with {plain[order[1]]}"
+        names.append(name)
+    repeated = {name for name in names if names.count(name) > 1}
+    seen: dict[str, int] = {}
+    for i, name in enumerate(names):
+        if name in repeated:
+            seen[name] = seen.get(name, 0) + 1
+            names[i] = f"{name} ({seen[name]})"
+    return names

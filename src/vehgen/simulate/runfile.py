@@ -1,0 +1,323 @@
+"""The run file: which vehicle, how fast, over which road, with what other inputs, sensors and outputs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from vehgen.errors import InputError, did_you_mean
+from vehgen.mechanics.outputs import ElementOutput, Output, Place, PointOutput
+from vehgen.simulate.quantities import Angle, Force, Frequency, Length, PositiveLength, PositiveSpeed, PositiveTime
+from vehgen.vehicle.document import Located, read_document
+from vehgen.vehicle.expressions import Expression, ExpressionError
+from vehgen.vehicle.loading import load_vehicle, validate
+from vehgen.vehicle.model import Noun, Vehicle
+from vehgen.vehicle.units import LENGTH
+
+DEFAULT_STEP = 1e-3
+DEFAULT_KEEP = 10
+
+
+class HumpEntry(Noun):
+    """A hump on the road."""
+
+    shape: Literal["half_sine", "versine", "trapezoid", "rectangle", "points"]
+    length: PositiveLength | None = None
+    height: Length | None = None
+    at: Length
+    ramp: float | None = Field(None, gt=0, le=0.5)
+    radius: PositiveLength | None = None
+    file: str | None = None
+    distance: str = "distance"
+    height_column: str = "height"
+
+    @model_validator(mode="after")
+    def _complete(self) -> HumpEntry:
+        needed = ("file",) if self.shape == "points" else ("length", "height", *(("radius",) if self.shape == "rectangle" else ()))
+        for key in needed:
+            if getattr(self, key) is None:
+                raise PydanticCustomError("joint", "a {shape} hump lacks the key {key}", {"shape": self.shape, "key": key})
+        return self
+
+
+class IsoEntry(Noun):
+    """A random road of an ISO 8608 class."""
+
+    class_: Literal["A", "B", "C", "D", "E", "F", "G", "H"] = Field(alias="class")
+    seed: int = 0
+
+
+class ProfileEntry(Noun):
+    """A measured profile: a CSV file with columns of distance and height [m]."""
+
+    file: str
+    distance: str = "distance"
+    height: str = "height"
+
+
+class RoadEntry(Noun):
+    """One of hump, iso8608, profile."""
+
+    hump: HumpEntry | None = None
+    iso8608: IsoEntry | None = None
+    profile: ProfileEntry | None = None
+
+    @model_validator(mode="after")
+    def _one(self) -> RoadEntry:
+        if sum(item is not None for item in (self.hump, self.iso8608, self.profile)) != 1:
+            raise PydanticCustomError("joint", "a road entry is one of hump, iso8608, profile")
+        return self
+
+
+class SpeedFile(Noun):
+    """A speed history: a CSV file with columns of time [s] and speed [m/s]."""
+
+    file: str
+    time: str = "t"
+    speed: str = "speed"
+
+
+class ForceHarmonic(Noun):
+    """amplitude * sin(2 pi frequency t + phase)."""
+
+    amplitude: Force
+    frequency: Frequency
+    phase: Angle = 0.0
+
+
+class DisplacementHarmonic(Noun):
+    """amplitude * sin(2 pi frequency t + phase)."""
+
+    amplitude: Length
+    frequency: Frequency
+    phase: Angle = 0.0
+
+
+class PlaceEntry(Noun):
+    """A place on a body: `x` from its COG, or `distance` behind an axle, hinge or body."""
+
+    body: str
+    x: Expression | None = None
+    behind: str | None = None
+    distance: Length = 0.0
+
+    @model_validator(mode="after")
+    def _one_way(self) -> PlaceEntry:
+        if self.x is not None and self.behind is not None:
+            raise PydanticCustomError("joint", "a place has `x`, or `behind` with `distance`, not both")
+        return self
+
+    def place(self, name: str) -> Place:
+        """Return the place under its name."""
+        return Place(name, self.body, self.x, self.behind, self.distance)
+
+
+class ForceEntry(PlaceEntry):
+    """A vertical force on a body, upwards positive: harmonic, or measured in a CSV file (columns in s and N)."""
+
+    harmonic: ForceHarmonic | None = None
+    file: str | None = None
+    time: str = "t"
+    force: str = "force"
+
+    @model_validator(mode="after")
+    def _one_source(self) -> ForceEntry:
+        if (self.harmonic is None) == (self.file is None):
+            raise PydanticCustomError("joint", "either `harmonic` or `file` was expected")
+        return self
+
+
+class DisplacementEntry(Noun):
+    """How the ground end of a link moves: harmonic, or measured in a CSV file (columns in s and m)."""
+
+    harmonic: DisplacementHarmonic | None = None
+    file: str | None = None
+    time: str = "t"
+    displacement: str = "displacement"
+
+    @model_validator(mode="after")
+    def _one_source(self) -> DisplacementEntry:
+        if (self.harmonic is None) == (self.file is None):
+            raise PydanticCustomError("joint", "either `harmonic` or `file` was expected")
+        return self
+
+
+class ChannelEntry(Noun):
+    """A recorded column: its unit where it is not SI, and its sign where its axis is reversed."""
+
+    column: str
+    unit: str | None = None
+    sign: Literal[1, -1] = 1
+
+
+def _default_channels() -> dict[str, str | ChannelEntry]:
+    return {"acceleration": "", "pitch_rate": ""}
+
+
+class SensorEntry(PlaceEntry):
+    """A sensor: a place, and the column of each quantity it records."""
+
+    channels: dict[str, str | ChannelEntry] = Field(default_factory=_default_channels)
+
+
+class OutputEntry(Noun):
+    """A travel or force of an axle's suspension or tyre, or of a link."""
+
+    quantity: str
+    axle: str | None = None
+    link: str | None = None
+
+    @model_validator(mode="after")
+    def _one_owner(self) -> OutputEntry:
+        if (self.axle is None) == (self.link is None):
+            raise PydanticCustomError("joint", "an output belongs to an `axle` or a `link`")
+        return self
+
+
+class RunFile(Noun):
+    """A run as its file declares it, quantities in SI units."""
+
+    vehicle: str
+    title: str = ""
+    set: str | None = None
+    parameters: dict[str, Expression] = Field(default_factory=dict)
+    speed: PositiveSpeed | SpeedFile = Field(union_mode="left_to_right")
+    duration: PositiveTime | None = None
+    step: PositiveTime = DEFAULT_STEP
+    sample: PositiveTime | None = None
+    road: list[RoadEntry] = Field(default_factory=list)
+    footprint: PositiveLength | None = None
+    forces: dict[str, ForceEntry] = Field(default_factory=dict)
+    displacements: dict[str, DisplacementEntry] = Field(default_factory=dict)
+    sensors: dict[str, SensorEntry] = Field(default_factory=dict)
+    outputs: dict[str, OutputEntry] = Field(default_factory=dict)
+    recording: str | None = None
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run file with the vehicle it names and the folder its own files are relative to."""
+
+    file: RunFile
+    vehicle: Vehicle
+    folder: Path
+    document: Located
+
+    @property
+    def keep(self) -> int:
+        """Every how many steps a sample is kept."""
+        return DEFAULT_KEEP if self.file.sample is None else round(self.file.sample / self.file.step)
+
+    def values(self) -> dict[str, float]:
+        """Return the vehicle's free parameters in this run [SI]: file, then set, then the run's own."""
+        own = {name: expression.evaluate({}) for name, expression in self.file.parameters.items()}
+        return self.vehicle.values(self.file.set, own)
+
+    def outputs(self) -> tuple[Output, ...]:
+        """Return every channel the run asks for; with no sensor and no output, the acceleration of every body's COG."""
+        found: list[Output] = []
+        for name, sensor in self.file.sensors.items():
+            for quantity, channel in sensor.channels.items():
+                column = channel if isinstance(channel, str) else channel.column
+                found.append(PointOutput(column or f"{name}_{quantity}", sensor.place(name), quantity))
+        for name, output in self.file.outputs.items():
+            found.append(ElementOutput(name, output.axle or output.link or "", output.quantity))
+        if not found:
+            found = [PointOutput(f"{name}_acceleration", Place(name, name), "acceleration") for name in self.vehicle.bodies]
+        return tuple(found)
+
+    def forces(self) -> tuple[Place, ...]:
+        """Return the places of the applied forces."""
+        return tuple(entry.place(name) for name, entry in self.file.forces.items())
+
+
+def load_run(path: str | Path) -> Run:
+    """Read a run file and the vehicle it names.
+
+    Raises
+    ------
+    InputError
+        With file, line and column, what is wrong and what would be right.
+
+    """
+    path = Path(path)
+    document = read_document(path)
+    if not isinstance(document.value, dict):
+        raise InputError("a file of `key: value` lines was expected", document.position)
+    file = validate(RunFile, document.plain(), document)
+    try:
+        vehicle = load_vehicle(file.vehicle, path.parent)
+    except InputError as error:
+        if error.position is None:
+            raise InputError(error.message, document.find(("vehicle",))) from error
+        raise
+    run = Run(file, vehicle, path.parent, document)
+    _check(run)
+    return run
+
+
+def _check(run: Run) -> None:
+    file, vehicle, document = run.file, run.vehicle, run.document
+
+    def known(kind: str, name: str, allowed: Mapping[str, object] | list[str], *place: str) -> None:
+        if name not in allowed:
+            raise InputError(f"{vehicle.name} has no {kind} {name!r}; {did_you_mean(name, allowed)}", document.find(place))
+
+    dimensions = vehicle.dimensions
+    for name, expression in file.parameters.items():
+        known("parameter with a value", name, list(vehicle.free_parameters), "parameters", name)
+        try:
+            found = expression.dimension({})
+        except ExpressionError as error:
+            raise InputError(str(error), document.find(("parameters", name))) from error
+        if found != dimensions[name]:
+            raise InputError(f"{name} must be in {dimensions[name]}, found {found}", document.find(("parameters", name)))
+    if file.set is not None:
+        known("parameter set", file.set, vehicle.sets, "set")
+    for kind, entries in (("forces", file.forces), ("sensors", file.sensors)):
+        for name, entry in entries.items():
+            known("body", entry.body, vehicle.bodies, kind, name, "body")
+            if entry.behind is not None:
+                known(
+                    "axle, hinge or body",
+                    entry.behind,
+                    {**vehicle.axles, **vehicle.hinges, **vehicle.bodies},
+                    kind,
+                    name,
+                    "behind",
+                )
+            if entry.x is not None:
+                try:
+                    found = entry.x.dimension(dimensions)
+                except ExpressionError as error:
+                    raise InputError(str(error), document.find((kind, name, "x"))) from error
+                if found != LENGTH and (entry.x.names or entry.x.evaluate({}) != 0.0):
+                    raise InputError(f"x must be in m, found {found}", document.find((kind, name, "x")))
+    grounded = [name for name, link in vehicle.links.items() if "ground" in link.points]
+    for name in file.displacements:
+        known("link to the ground", name, grounded, "displacements", name)
+    for name, output in file.outputs.items():
+        known(
+            "axle" if output.axle else "link",
+            output.axle or output.link or "",
+            vehicle.axles if output.axle else vehicle.links,
+            "outputs",
+            name,
+        )
+    names = [output.name for output in run.outputs()]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(
+                f"two channels are named {name!r}; each column needs a name of its own",
+                document.find(("sensors",), key=True),
+            )
+    if file.sample is not None and (run.keep < 1 or abs(run.keep * file.step - file.sample) > 1e-9 * file.sample):
+        raise InputError(
+            f"`sample` must be a whole number of steps of {file.step:g} s, found {file.sample:g} s",
+            document.find(("sample",)),
+        )

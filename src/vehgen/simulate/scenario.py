@@ -1,0 +1,188 @@
+"""From a run file to what drives the vehicle: road under every wheel, forces, moving ground."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.codegen import Drive
+from vehgen.errors import InputError
+from vehgen.mechanics.linear_model import LinearModel
+from vehgen.road import (
+    ConstantSpeed,
+    Hump,
+    Iso8608Road,
+    MeasuredProfile,
+    Profile,
+    SpeedHistory,
+    SpeedLaw,
+    Track,
+    pass_time,
+    read_columns,
+    wheel_inputs,
+)
+from vehgen.simulate.runfile import DisplacementHarmonic, ForceHarmonic, HumpEntry, RoadEntry, Run
+
+Array = NDArray[np.float64]
+AFTER_LAST_HUMP = 3.0
+"""Seconds simulated after the last wheel left the last hump, where a run does not say how long it is."""
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A force or displacement over time, harmonic or measured (linear between samples, constant outside)."""
+
+    harmonic: ForceHarmonic | DisplacementHarmonic | None = None
+    time: Array | None = None
+    values: Array | None = None
+
+    def at(self, t: Array) -> Array:
+        """Return its values at times t [s]."""
+        if self.harmonic is not None:
+            item = self.harmonic
+            return np.asarray(item.amplitude * np.sin(2 * np.pi * item.frequency * t + item.phase))
+        assert self.time is not None
+        assert self.values is not None
+        return np.interp(t, self.time, self.values)
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """What happens to a vehicle: a track at a speed, signals at ground links and forces, step and samples.
+
+    `ground` and `forces` are in the order of the model's inputs and forces.
+    """
+
+    track: Track
+    speed: SpeedLaw
+    duration: float
+    dt: float
+    keep: int
+    ground: tuple[Signal | None, ...] = ()
+    forces: tuple[Signal, ...] = ()
+    nulls: tuple[float, ...] = ()
+    hump_lengths: tuple[float, ...] = ()
+    time: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        steps = round(self.duration / (self.dt * self.keep)) * self.keep
+        object.__setattr__(self, "time", np.arange(steps + 1) * self.dt)
+
+    @property
+    def top_speed(self) -> float:
+        """The highest speed of the run [m/s]."""
+        return float(np.max(np.diff(self.speed.distance(self.time)) / self.dt)) if len(self.time) > 1 else 0.0
+
+    def drive(self, offsets: Array) -> Drive:
+        """Return the inputs of a vehicle whose axles run `offsets shape (n_axles,)` [m] behind the first to arrive."""
+        wheels = wheel_inputs(self.track, self.speed, offsets, self.time)
+        half = self.dt / 2
+        ground, ground_rates = [], []
+        for signal in self.ground:
+            ground.append(np.zeros_like(self.time) if signal is None else signal.at(self.time))
+            ground_rates.append(
+                np.zeros_like(self.time) if signal is None else (signal.at(self.time + half) - signal.at(self.time - half)) / self.dt
+            )
+        forces = np.column_stack([signal.at(self.time) for signal in self.forces]) if self.forces else np.zeros((len(self.time), 0))
+        inputs = np.column_stack([wheels.heights, *ground])
+        rates = np.column_stack([wheels.rates, *ground_rates])
+        return Drive(self.dt, inputs, rates, forces)
+
+
+def make_scenario(run: Run, model: LinearModel, values: dict[str, float]) -> Scenario:
+    """Build the scenario of a run file.
+
+    Raises
+    ------
+    InputError
+        For files that cannot be read, or a run with no end.
+    """
+    file = run.file
+    offsets = model.wheel_offsets(values)
+    speed = _speed(run)
+    parts, humps = [], []
+    for entry in file.road:
+        part = _road_part(entry, run, speed, offsets)
+        parts.append(part)
+        if isinstance(part, Hump):
+            humps.append(part)
+    track = Track(tuple(parts), footprint=file.footprint or 0.0)
+    if file.duration is not None:
+        duration = file.duration
+    elif humps:
+        duration = pass_time(track, speed, offsets) + AFTER_LAST_HUMP
+    else:
+        raise InputError("a run without a hump needs `duration`, e.g. 10 s", run.document.position)
+    names = model.inputs[len(run.vehicle.axles) :]
+    ground = tuple(_ground(run, name.partition(".")[2]) for name in names)
+    forces = tuple(
+        Signal(harmonic=entry.harmonic) if entry.harmonic else _measured(run, entry.file or "", entry.time, entry.force, ("forces", name))
+        for name, entry in file.forces.items()
+    )
+    top = float(np.max(np.diff(speed.distance(np.linspace(0.0, duration, 200)))) / (duration / 199))
+    nulls = {round(float(null), 3) for hump in humps for null in hump.spectral_nulls(top, 30.0)}
+    return Scenario(
+        track, speed, duration, file.step, run.keep, ground, forces, tuple(sorted(nulls)), tuple(hump.length for hump in humps)
+    )
+
+
+def _speed(run: Run) -> SpeedLaw:
+    spec = run.file.speed
+    if isinstance(spec, float):
+        return ConstantSpeed(spec)
+    time, speed = _columns(run, spec.file, (spec.time, spec.speed), ("speed", "file"))
+    return SpeedHistory(time, speed)
+
+
+def _road_part(entry: RoadEntry, run: Run, speed: SpeedLaw, offsets: Array) -> Profile:
+    if entry.hump is not None:
+        return _hump(entry.hump, run)
+    if entry.profile is not None:
+        distance, height = _columns(run, entry.profile.file, (entry.profile.distance, entry.profile.height), ("road",))
+        return MeasuredProfile(distance, height)
+    assert entry.iso8608 is not None
+    if run.file.duration is None:
+        length = 100.0 + float(offsets.max(initial=0.0))
+        length = max([length, *(item.hump.at + 100.0 for item in run.file.road if item.hump is not None)])
+    else:
+        length = float(speed.distance(np.array([run.file.duration]))[0]) + 10.0
+    return Iso8608Road(entry.iso8608.class_, entry.iso8608.seed, length)
+
+
+def _hump(entry: HumpEntry, run: Run) -> Hump:
+    if entry.shape == "points":
+        s, height = _columns(run, entry.file or "", (entry.distance, entry.height_column), ("road",))
+        return Hump.from_points(entry.at, s, height)
+    extra = {"ramp": entry.ramp} if entry.ramp is not None else {}
+    if entry.radius is not None:
+        extra["radius"] = entry.radius
+    assert entry.length is not None
+    assert entry.height is not None
+    return Hump.from_shape(entry.shape, entry.at, entry.length, entry.height, **extra)
+
+
+def _ground(run: Run, link: str) -> Signal | None:
+    entry = run.file.displacements.get(link)
+    if entry is None:
+        return None
+    if entry.harmonic is not None:
+        return Signal(harmonic=entry.harmonic)
+    return _measured(run, entry.file or "", entry.time, entry.displacement, ("displacements", link))
+
+
+def _measured(run: Run, file: str, time: str, column: str, place: tuple[str, ...]) -> Signal:
+    t, values = _columns(run, file, (time, column), (*place, "file"))
+    if (np.diff(t) <= 0).any():
+        raise InputError(f"the times in {file} must ascend", run.document.find((*place, "file")))
+    return Signal(time=t, values=values)
+
+
+def _columns(run: Run, file: str, names: tuple[str, str], place: tuple[str, ...]) -> tuple[Array, Array]:
+    path = Path(run.folder) / file
+    if not path.is_file():
+        raise InputError(f"no file {path}", run.document.find(place))
+    first, second = read_columns(path, names)
+    return first, second

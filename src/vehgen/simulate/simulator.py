@@ -1,0 +1,164 @@
+"""One vehicle or a population over a run."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.codegen import Drive, Kernel, write_text
+from vehgen.errors import InputError
+from vehgen.mechanics import Channel, ElementOutput, LinearModel, Output, Place, derive, static_loads
+from vehgen.simulate.runfile import Run
+from vehgen.simulate.scenario import Scenario, make_scenario
+from vehgen.simulate.doubts import lift_off, spectral_nulls, step_too_coarse
+from vehgen.vehicle import Vehicle
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Response:
+    """What came out: `time shape (n_samples,)` [s], `values shape (n_individuals, n_samples, n_channels)` in the channels' units.
+
+    `warnings` says what makes the answer doubtful.
+    """
+
+    time: Array
+    values: Array
+    channels: tuple[Channel, ...]
+    warnings: tuple[str, ...] = ()
+
+    def channel(self, name: str) -> Array:
+        """Return one channel, `shape (n_individuals, n_samples)`."""
+        return np.asarray(self.values[:, :, [item.name for item in self.channels].index(name)])
+
+
+class Simulator:
+    """Runs a vehicle, once derived and compiled, as often as wanted.
+
+    Parameters
+    ----------
+    vehicle
+        A checked vehicle.
+    outputs
+        The channels to compute.
+    forces
+        Where forces act.
+    """
+
+    def __init__(self, vehicle: Vehicle, outputs: Iterable[Output], forces: Iterable[Place] = ()) -> None:
+        self.model: LinearModel = derive(vehicle, outputs, forces)
+        self.kernel = Kernel(self.model)
+
+    def parameters(self, values: Mapping[str, float] | Sequence[Mapping[str, float]] | None = None) -> Array:
+        """Return the array of a population from values by name [SI]; what is not named keeps the file's value.
+
+        Returns
+        -------
+        `shape (n_individuals, n_parameters)` in the order of `model.parameters`.
+        """
+        individuals = [values or {}] if values is None or isinstance(values, Mapping) else list(values)
+        rows = [list(self.model.values(overrides=individual).values()) for individual in individuals]
+        return np.array(rows, dtype=np.float64)
+
+    def run(self, parameters: Array, scenario: Scenario, threads: int | None = None) -> Array:
+        """Simulate a population over a scenario.
+
+        Individuals whose axles stand at the same distances share their wheel inputs and run together.
+
+        Parameters
+        ----------
+        parameters
+            `shape (n_individuals, n_parameters)`.
+        scenario
+            Road, speed and other inputs.
+        threads
+            How many cores to use (default: all).
+
+        Returns
+        -------
+        `shape (n_individuals, n_samples, n_channels)`.
+        """
+        offsets = np.round(self.wheel_offsets(parameters), 9)
+        distinct, group = np.unique(offsets, axis=0, return_inverse=True)
+        group = group.ravel()
+        responses: Array | None = None
+        for index, layout in enumerate(distinct):
+            members = np.flatnonzero(group == index)
+            drive: Drive = scenario.drive(layout)
+            part = self.kernel.run(parameters[members], drive, scenario.keep, threads=threads)
+            if len(distinct) == 1:
+                responses = part
+            else:
+                if responses is None:
+                    responses = np.empty((len(parameters), *part.shape[1:]))
+                responses[members] = part
+        assert responses is not None
+        return self._add_static(parameters, responses)
+
+    def wheel_offsets(self, parameters: Array) -> Array:
+        """Return each axle's distance behind the first to arrive, `shape (n_individuals, n_axles)` [m]."""
+        columns = self._layout_columns()
+        distinct, group = np.unique(parameters[:, columns], axis=0, return_index=True, return_inverse=True)[1:]
+        rows = [self.model.wheel_offsets(dict(zip(self.model.parameters, parameters[i], strict=True))) for i in distinct]
+        return np.array(rows)[group.ravel()]
+
+    def _layout_columns(self) -> list[int]:
+        """Columns of the parameters that the axles' positions depend on."""
+        names = {symbol.name for x in self.model.layout.axles.values() for symbol in x.free_symbols}
+        for symbol, expression in reversed(self.model.definitions):
+            if symbol.name in names:
+                names |= {item.name for item in expression.free_symbols}
+        return [i for i, name in enumerate(self.model.parameters) if name in names]
+
+    def _add_static(self, parameters: Array, responses: Array) -> Array:
+        """Add the static load to channels that ask for the whole tyre load."""
+        for column, channel in enumerate(self.model.channels):
+            if channel.quantity == "tyre_load":
+                for row, individual in enumerate(parameters):
+                    loads = static_loads(self.model, dict(zip(self.model.parameters, individual, strict=True)))
+                    responses[row, :, column] += loads.axles[channel.owner]
+        return responses
+
+
+def simulate(run: Run) -> Response:
+    """Simulate a run file's vehicle and look for what makes the answer doubtful.
+
+    Raises
+    ------
+    InputError
+        When the response is not finite.
+    """
+    wanted = run.outputs()
+    tyres = [ElementOutput(f"tyre force of {name}", name, "tyre_force") for name in run.vehicle.axles]
+    simulator = Simulator(run.vehicle, (*wanted, *tyres), run.forces())
+    values = simulator.model.values(overrides=run.values())
+    scenario = make_scenario(run, simulator.model, values)
+    parameters = simulator.parameters(values)
+    responses = simulator.run(parameters, scenario)
+    if not np.isfinite(responses).all():
+        raise InputError("the response is not finite: check the vehicle's values and the step")
+    n = len(wanted)
+    messages = [
+        *lift_off(simulator.model, values, responses[0, :, n:]),
+        *spectral_nulls(simulator.model, values, scenario),
+        *step_too_coarse(simulator.model, values, scenario),
+    ]
+    time = np.arange(responses.shape[1]) * scenario.dt * scenario.keep
+    return Response(time, responses[:, :, :n], simulator.model.channels[:n], tuple(messages))
+
+
+def write_csv(path: Path, response: Response) -> None:
+    """Write the first individual's response: a column t [s] and one per channel, in SI units."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["t", *(channel.name for channel in response.channels)])
+    for t, row in zip(response.time, response.values[0], strict=True):
+        writer.writerow([f"{t:.9g}", *(f"{value:.9g}" for value in row)])
+    write_text(path, text.getvalue())

@@ -1,0 +1,143 @@
+"""YAML files read as data with the place of every value, refusing what a stranger's file could do to us."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
+
+from vehgen.errors import InputError, Position
+
+MAX_BYTES = 1_000_000
+MAX_VALUES = 20_000
+MAX_DEPTH = 20
+
+
+@dataclass(frozen=True)
+class Located:
+    """A value of a YAML file with its place: a scalar, a list, or a mapping of names to located values."""
+
+    value: Any
+    position: Position
+    key_position: Position | None = None
+
+    def plain(self) -> Any:
+        """Return the bare data."""
+        if isinstance(self.value, dict):
+            return {key: item.plain() for key, item in self.value.items()}
+        if isinstance(self.value, list):
+            return [item.plain() for item in self.value]
+        return self.value
+
+    def find(self, path: tuple[str | int, ...], *, key: bool = False) -> Position:
+        """Return the place of the value (or key) at `path`; parts of the path that the file lacks are passed over."""
+        node = self
+        for part in path:
+            child: Located | None = None
+            if isinstance(node.value, dict):
+                child = node.value.get(str(part))
+            elif isinstance(node.value, list) and isinstance(part, int) and part < len(node.value):
+                child = node.value[part]
+            if child is not None:
+                node = child
+        return node.key_position if key and node.key_position else node.position
+
+
+def read_document(path: Path) -> Located:
+    """Read a YAML file into located data.
+
+    Raises
+    ------
+    InputError
+        For a missing, oversized, malformed or hostile file (aliases that multiply, custom tags, deep nesting, duplicate keys).
+
+    """
+    try:
+        size = path.stat().st_size
+        if size > MAX_BYTES:
+            raise InputError(f"{path} has {size} bytes; a file of at most {MAX_BYTES} bytes was expected")
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        raise InputError(f"no file {path}") from error
+    except IsADirectoryError as error:
+        raise InputError(f"{path} is a folder; a YAML file was expected") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path} is not UTF-8 text") from error
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror}") from error
+    return read_text(text, path)
+
+
+def read_text(text: str, path: Path | str) -> Located:
+    """Read YAML text into located data; `path` is what errors call it."""
+    try:
+        root = YAML(typ="safe", pure=True).compose(text)
+    except MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        place = Position(path, mark.line + 1, mark.column + 1) if mark else Position(path, 1, 1)
+        raise InputError(f"not valid YAML: {error.problem or error.context}", place) from error
+    except (YAMLError, ValueError) as error:
+        raise InputError(f"not valid YAML: {str(error).splitlines()[0]}", Position(path, 1, 1)) from error
+    except RecursionError as error:
+        raise InputError("nested too deeply", Position(path, 1, 1)) from error
+    if root is None:
+        raise InputError("the file is empty", Position(path, 1, 1))
+    return _Converter(path).convert(root, 0)
+
+
+class _Converter:
+    """Turns composed YAML nodes into Located values, counting them so that aliases cannot multiply without end."""
+
+    def __init__(self, path: Path | str) -> None:
+        self.path = path
+        self.count = 0
+
+    def convert(self, node: Node, depth: int) -> Located:
+        position = Position(self.path, node.start_mark.line + 1, node.start_mark.column + 1)
+        self.count += 1
+        if self.count > MAX_VALUES:
+            raise InputError(f"more than {MAX_VALUES} values (do aliases multiply?)", position)
+        if depth > MAX_DEPTH:
+            raise InputError(f"nested more than {MAX_DEPTH} deep", position)
+        kind = str(node.tag).rpartition(":")[2]
+        if isinstance(node, MappingNode) and kind == "map":
+            return Located(self._mapping(node, depth), position)
+        if isinstance(node, SequenceNode) and kind == "seq":
+            return Located([self.convert(item, depth + 1) for item in node.value], position)
+        if isinstance(node, ScalarNode):
+            return Located(_scalar(node, kind, position), position)
+        raise InputError(f"the tag {node.tag} is not allowed", position)
+
+    def _mapping(self, node: MappingNode, depth: int) -> dict[str, Located]:
+        mapping: dict[str, Located] = {}
+        for key, item in node.value:
+            place = Position(self.path, key.start_mark.line + 1, key.start_mark.column + 1)
+            if not isinstance(key, ScalarNode):
+                raise InputError("a key must be a name", place)
+            if key.value in mapping:
+                raise InputError(f"duplicate name {key.value!r}; each may stand once", place)
+            mapping[key.value] = replace(self.convert(item, depth + 1), key_position=place)
+        return mapping
+
+
+def _scalar(node: ScalarNode, kind: str, position: Position) -> Any:
+    text = node.value
+    try:
+        match kind:
+            case "null":
+                return None
+            case "bool":
+                return text.lower() == "true"
+            case "int":
+                return int(text.replace("_", ""), 0)
+            case "float":
+                return float(text.replace("_", "").replace(".inf", "inf").replace(".nan", "nan"))
+            case "str" | "timestamp":
+                return text
+    except ValueError:
+        return text
+    raise InputError(f"the tag {node.tag} is not allowed", position)

@@ -1,0 +1,145 @@
+"""Units of vehicle and run files, and the dimensions they carry."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+
+from vehgen.errors import InputError, did_you_mean
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """Exponents of metre, kilogram and second; the radian counts as a plain number."""
+
+    length: Fraction = Fraction(0)
+    mass: Fraction = Fraction(0)
+    time: Fraction = Fraction(0)
+
+    def __mul__(self, other: Dimension) -> Dimension:
+        return Dimension(self.length + other.length, self.mass + other.mass, self.time + other.time)
+
+    def __truediv__(self, other: Dimension) -> Dimension:
+        return self * other.power(Fraction(-1))
+
+    def power(self, exponent: Fraction) -> Dimension:
+        """Return this dimension raised to `exponent`."""
+        return Dimension(self.length * exponent, self.mass * exponent, self.time * exponent)
+
+    def __str__(self) -> str:
+        """Name the dimension by its SI unit, the field's usual one where there is one."""
+        for name, dimension in NAMED_DIMENSIONS.items():
+            if dimension == self:
+                return name
+        parts = []
+        for symbol, exponent in (("kg", self.mass), ("m", self.length), ("s", self.time)):
+            if exponent:
+                parts.append(symbol if exponent == 1 else f"{symbol}^{exponent}")
+        return " ".join(parts)
+
+
+def _dimension(length: int, mass: int, time: int) -> Dimension:
+    return Dimension(Fraction(length), Fraction(mass), Fraction(time))
+
+
+NONE = _dimension(0, 0, 0)
+LENGTH = _dimension(1, 0, 0)
+MASS = _dimension(0, 1, 0)
+TIME = _dimension(0, 0, 1)
+SPEED = _dimension(1, 0, -1)
+ACCELERATION = _dimension(1, 0, -2)
+FREQUENCY = _dimension(0, 0, -1)
+FORCE = _dimension(1, 1, -2)
+MOMENT = _dimension(2, 1, -2)
+STIFFNESS = _dimension(0, 1, -2)
+DAMPING = _dimension(0, 1, -1)
+INERTIA = _dimension(2, 1, 0)
+PITCH_DAMPING = _dimension(2, 1, -1)
+
+NAMED_DIMENSIONS: dict[str, Dimension] = {
+    "no unit": NONE,
+    "m": LENGTH,
+    "kg": MASS,
+    "s": TIME,
+    "m/s": SPEED,
+    "m/s^2": ACCELERATION,
+    "1/s": FREQUENCY,
+    "N": FORCE,
+    "N m": MOMENT,
+    "N/m": STIFFNESS,
+    "N s/m": DAMPING,
+    "kg m^2": INERTIA,
+    "N m s": PITCH_DAMPING,
+}
+
+UNITS: dict[str, tuple[float, Dimension]] = {
+    "m": (1.0, LENGTH),
+    "mm": (1e-3, LENGTH),
+    "cm": (1e-2, LENGTH),
+    "km": (1e3, LENGTH),
+    "kg": (1.0, MASS),
+    "g": (1e-3, MASS),
+    "t": (1e3, MASS),
+    "s": (1.0, TIME),
+    "ms": (1e-3, TIME),
+    "min": (60.0, TIME),
+    "h": (3600.0, TIME),
+    "Hz": (1.0, FREQUENCY),
+    "N": (1.0, FORCE),
+    "kN": (1e3, FORCE),
+    "MN": (1e6, FORCE),
+    "Pa": (1.0, FORCE / (LENGTH * LENGTH)),
+    "kPa": (1e3, FORCE / (LENGTH * LENGTH)),
+    "MPa": (1e6, FORCE / (LENGTH * LENGTH)),
+    "GPa": (1e9, FORCE / (LENGTH * LENGTH)),
+    "rad": (1.0, NONE),
+    "deg": (math.pi / 180.0, NONE),
+}
+"""Unit name -> (factor to SI, dimension)."""
+
+_ATOM = re.compile(r"([A-Za-z]+)(?:(?:\^|\*\*)(-?\d+))?")
+_JOIN = re.compile(r"\s*([/*·])\s*|\s+")
+
+
+def read_unit(text: str, start: int = 0) -> tuple[float, Dimension, int] | None:
+    """Read the longest run of units that begins at `text[start]`.
+
+    Returns
+    -------
+    (factor, dimension, end) with the factor to SI, or None where no unit stands.
+    `N s/m` divides by the metre only; `*`, a space and a middle dot multiply.
+
+    """
+    factor, dimension, end = 1.0, NONE, start
+    divide = False
+    position = start
+    while True:
+        atom = _ATOM.match(text, position)
+        if atom is None or atom.group(1) not in UNITS or _continues_name(text, atom.end()):
+            break
+        size, unit = UNITS[atom.group(1)]
+        exponent = int(atom.group(2) or 1) * (-1 if divide else 1)
+        factor *= size**exponent
+        dimension = dimension * unit.power(Fraction(exponent))
+        end = atom.end()
+        join = _JOIN.match(text, end)
+        if join is None:
+            break
+        divide = join.group(1) == "/"
+        position = join.end()
+    return (factor, dimension, end) if end > start else None
+
+
+def _continues_name(text: str, position: int) -> bool:
+    return position < len(text) and (text[position].isalnum() or text[position] == "_")
+
+
+def parse_unit(text: str) -> tuple[float, Dimension]:
+    """Parse a whole unit such as `kN s/m`; raises InputError naming the nearest unit."""
+    found = read_unit(text.strip())
+    if found is None or found[2] != len(text.strip()):
+        word = text.strip().split("/")[0].split(" ")[0]
+        raise InputError(f"unknown unit {text!r}; {did_you_mean(word, UNITS)}")
+    return found[0], found[1]
