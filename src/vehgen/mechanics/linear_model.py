@@ -40,8 +40,8 @@ class NumericModel:
     """The model's matrices at parameter values, SI units.
 
     M, C, K `shape (n_dof, n_dof)`; P, Q `shape (n_dof, n_inputs)`; F `shape (n_dof, n_forces)`; `weight shape (n_dof,)` the generalised
-    gravity force [N, N m]; `outputs` the channels' coefficients of acceleration, velocity, displacement `shape (n_channels, n_dof)`, input and
-    input_rate `shape (n_channels, n_inputs)`.
+    gravity force [N, N m]; `outputs` the channels' coefficients of acceleration, velocity, displacement `shape (n_channels, n_dof)`,
+    input and input_rate `shape (n_channels, n_inputs)`.
     """
 
     M: NDArray[np.float64]

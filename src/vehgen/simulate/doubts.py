@@ -49,8 +49,8 @@ def step_too_coarse(model: LinearModel, values: Mapping[str, float], scenario: S
     error = half / np.arctan(half) - 1 if half else 0.0
     if error > MAX_PERIOD_ERROR:
         yield (
-            f"the step of {scenario.dt * 1e3:g} ms is too coarse: it stretches the period of {fastest.name} ({fastest.undamped_hz:.1f} Hz) by "
-            f"{error:.1%}; 1 ms or less is usual"
+            f"the step of {scenario.dt * 1e3:g} ms is too coarse: it stretches the period of {fastest.name} "
+            f"({fastest.undamped_hz:.1f} Hz) by {error:.1%}; 1 ms or less is usual"
         )
     for length in scenario.hump_lengths:
         steps = length / (scenario.top_speed * scenario.dt)

@@ -124,9 +124,7 @@ def make_scenario(run: Run, model: LinearModel, values: dict[str, float]) -> Sce
     )
     top = float(np.max(np.diff(speed.distance(np.linspace(0.0, duration, 200)))) / (duration / 199))
     nulls = {round(float(null), 3) for hump in humps for null in hump.spectral_nulls(top, 30.0)}
-    return Scenario(
-        track, speed, duration, file.step, run.keep, ground, forces, tuple(sorted(nulls)), tuple(hump.length for hump in humps)
-    )
+    return Scenario(track, speed, duration, file.step, run.keep, ground, forces, tuple(sorted(nulls)), tuple(hump.length for hump in humps))
 
 
 def _speed(run: Run) -> SpeedLaw:

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from vehgen.codegen import Drive, Kernel, write_text
 from vehgen.errors import InputError
 from vehgen.mechanics import Channel, ElementOutput, LinearModel, Output, Place, derive, static_loads
+from vehgen.simulate.doubts import lift_off, spectral_nulls, step_too_coarse
 from vehgen.simulate.runfile import Run
 from vehgen.simulate.scenario import Scenario, make_scenario
-from vehgen.simulate.doubts import lift_off, spectral_nulls, step_too_coarse
 from vehgen.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -150,7 +150,7 @@ def simulate(run: Run) -> Response:
         *spectral_nulls(simulator.model, values, scenario),
         *step_too_coarse(simulator.model, values, scenario),
     ]
-    time = np.arange(responses.shape[1]) * scenario.dt * scenario.keep
+    time = np.arange(responses.shape[1], dtype=np.float64) * scenario.dt * scenario.keep
     return Response(time, responses[:, :, :n], simulator.model.channels[:n], tuple(messages))
 
 

@@ -1,0 +1,34 @@
+"""The library of force laws, one file each."""
+
+from vehgen.mechanics.laws.asymmetric_damping import ASYMMETRIC_DAMPING
+from vehgen.mechanics.laws.base import Kind, Law, LawParameter, LawStep, Motion
+from vehgen.mechanics.laws.bump_stop import BUMP_STOP
+from vehgen.mechanics.laws.cubic_stiffness import CUBIC_STIFFNESS
+from vehgen.mechanics.laws.custom import custom_law
+from vehgen.mechanics.laws.dry_friction import DRY_FRICTION
+from vehgen.mechanics.laws.elasto_plastic import ELASTO_PLASTIC
+from vehgen.mechanics.laws.hysteresis import HYSTERESIS
+from vehgen.mechanics.laws.progressive_stiffness import PROGRESSIVE_STIFFNESS
+from vehgen.mechanics.laws.quadratic_damping import QUADRATIC_DAMPING
+from vehgen.mechanics.laws.quadratic_stiffness import QUADRATIC_STIFFNESS
+from vehgen.mechanics.laws.relaxation import RELAXATION
+from vehgen.mechanics.laws.tyre_liftoff import TYRE_LIFTOFF
+
+LAWS: dict[str, Law] = {
+    law.name: law
+    for law in (
+        DRY_FRICTION,
+        ELASTO_PLASTIC,
+        CUBIC_STIFFNESS,
+        QUADRATIC_STIFFNESS,
+        PROGRESSIVE_STIFFNESS,
+        BUMP_STOP,
+        ASYMMETRIC_DAMPING,
+        QUADRATIC_DAMPING,
+        RELAXATION,
+        HYSTERESIS,
+        TYRE_LIFTOFF,
+    )
+}
+
+__all__ = ["LAWS", "Kind", "Law", "LawParameter", "LawStep", "Motion", "custom_law"]

@@ -1,0 +1,103 @@
+"""What a force law is: an expression of travel, rate and own states, beside the linear k and c of a suspension, tyre, link or hinge.
+
+A step of the kernels is an implicit midpoint rule, so a law says its mean force over a step from the travel `d` and rate `v` in the
+middle of the step, and how its states move on. Travel and force are positive in compression and count from static equilibrium.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+import sympy as sp
+
+from vehgen.vehicle.units import FORCE, LENGTH, MOMENT, NONE, TIME, Dimension
+
+Kind = Literal["suspension", "tyre", "link", "hinge"]
+EVERYWHERE: tuple[Kind, ...] = ("suspension", "tyre", "link", "hinge")
+
+
+@dataclass(frozen=True)
+class LawParameter:
+    """A parameter of a law; its dimension is force^a travel^b time^c, so that it fits vertical springs and hinges alike.
+
+    `low` and `high` bound what is physically usual for a heavy vehicle's suspension, in SI units.
+    """
+
+    name: str
+    powers: tuple[int, int, int]
+    meaning: str
+    low: float
+    high: float
+
+    def dimension(self, kind: Kind) -> Dimension:
+        """Return its dimension on a suspension, tyre, link (force and length) or hinge (moment and angle)."""
+        force, travel = (MOMENT, NONE) if kind == "hinge" else (FORCE, LENGTH)
+        result = NONE
+        for unit, power in zip((force, travel, TIME), self.powers, strict=True):
+            for _ in range(abs(power)):
+                result = result * unit if power > 0 else result / unit
+        return result
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What a law may use: travel d [m] and rate v [m/s] in mid-step, step h [s], the element's own k and c, its static force, its states."""
+
+    d: sp.Symbol
+    v: sp.Symbol
+    h: sp.Symbol
+    k: sp.Expr
+    c: sp.Expr
+    static: sp.Expr
+    states: Mapping[str, sp.Symbol] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class LawStep:
+    """A law over one step.
+
+    Attributes
+    ----------
+    force
+        Mean force over the step [N], an expression of d, v and the states at its start.
+    friction
+        Bound F of a set-valued Coulomb force: whatever stops the slip, within +-F [N].
+    states
+        The states at the end of the step.
+    now
+        Force at an instant, from the d, v and states of that instant (without friction).
+    slope
+        An upper bound of d force/d v in a step that depends on parameters and h alone, where one exists: it spares a division.
+    """
+
+    force: sp.Expr = sp.S.Zero
+    friction: sp.Expr = sp.S.Zero
+    states: Mapping[str, sp.Expr] = field(default_factory=dict)
+    now: sp.Expr = sp.S.Zero
+    slope: sp.Expr | None = None
+
+
+@dataclass(frozen=True)
+class Law:
+    """A force law of the library: what it is in words, its parameters and states, and its step.
+
+    `write(motion, parameters)` returns the LawStep; `equation` is plain text; `strength` names the parameter that is 0 without the law.
+    """
+
+    name: str
+    title: str
+    equation: str
+    meaning: str
+    source: str
+    strength: str
+    parameters: tuple[LawParameter, ...]
+    write: Callable[[Motion, Mapping[str, sp.Expr]], LawStep]
+    states: tuple[str, ...] = ()
+    attaches_to: tuple[Kind, ...] = EVERYWHERE
+
+
+def positive(expression: sp.Expr) -> sp.Expr:
+    """Return max(expression, 0)."""
+    return sp.Max(expression, 0)

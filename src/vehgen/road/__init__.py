@@ -1,0 +1,25 @@
+"""What excites it? Humps, random and measured roads, the tyre's footprint, and what every wheel sees at a speed."""
+
+from vehgen.road.humps import Hump
+from vehgen.road.iso8608 import CLASSES, Iso8608Road, displacement_psd
+from vehgen.road.speed import ConstantSpeed, SpeedHistory, SpeedLaw
+from vehgen.road.tables import read_columns
+from vehgen.road.track import MeasuredProfile, Profile, Track
+from vehgen.road.wheels import WheelInputs, pass_time, wheel_inputs
+
+__all__ = [
+    "CLASSES",
+    "ConstantSpeed",
+    "Hump",
+    "Iso8608Road",
+    "MeasuredProfile",
+    "Profile",
+    "SpeedHistory",
+    "SpeedLaw",
+    "Track",
+    "WheelInputs",
+    "displacement_psd",
+    "pass_time",
+    "read_columns",
+    "wheel_inputs",
+]

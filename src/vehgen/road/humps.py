@@ -1,0 +1,124 @@
+"""Humps: shapes with a start, a length and a height along the road."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.errors import InputError, did_you_mean
+
+Array = NDArray[np.float64]
+Shape = Callable[[Array], Array]
+
+
+@dataclass(frozen=True)
+class Hump:
+    """A hump from `at` to `at + length` [m]; `shape` gives its height [m] at s in [0, length] from its start."""
+
+    at: float
+    length: float
+    shape: Shape
+
+    @property
+    def end(self) -> float:
+        """Where it ends along the road [m]."""
+        return self.at + self.length
+
+    def height(self, s: Array) -> Array:
+        """Return the height at positions s along the road [m]; zero outside the hump."""
+        local = np.asarray(s, dtype=np.float64) - self.at
+        inside = (local > 0) & (local < self.length)
+        return np.where(inside, self.shape(np.clip(local, 0.0, self.length)), 0.0)
+
+    @classmethod
+    def from_shape(cls, name: str, at: float, length: float, height: float, **extra: float) -> Hump:
+        """Make a half_sine, versine, trapezoid (`ramp` share of the length) or rectangle (`radius` of its edges).
+
+        Raises
+        ------
+        InputError
+            For an unknown shape, or dimensions that do not fit it.
+        """
+        makers: dict[str, Callable[..., Shape]] = {
+            "half_sine": half_sine,
+            "versine": versine,
+            "trapezoid": trapezoid,
+            "rectangle": rectangle,
+        }
+        if name not in makers:
+            raise InputError(f"unknown hump shape {name!r}; {did_you_mean(name, makers)}")
+        if not (length > 0 and np.isfinite([at, length, height]).all()):
+            raise InputError(f"a hump needs a positive length and finite numbers, found length {length} m, height {height} m, at {at} m")
+        return cls(at, length, makers[name](length, height, **extra))
+
+    @classmethod
+    def from_points(cls, at: float, distance: Array, height: Array) -> Hump:
+        """Make a hump from points `distance`, `height` [m] `shape (n,)`, linear between them."""
+        distance, height = np.asarray(distance, dtype=np.float64), np.asarray(height, dtype=np.float64)
+        if len(distance) < 2 or (np.diff(distance) <= 0).any():
+            raise InputError("a hump of points needs at least two, with ascending distances")
+        start = distance - distance[0]
+        return cls(at, float(start[-1]), lambda s: np.interp(s, start, height))
+
+    def spectral_nulls(self, speed: float, f_max: float) -> Array:
+        """Return the frequencies up to `f_max` [Hz] at which the hump, crossed at `speed` [m/s], excites nothing.
+
+        They are the minima of its Fourier transform that fall below a thousandth of their surroundings.
+        """
+        s = np.linspace(0.0, self.length, 4001)
+        profile = self.shape(s)
+        step = 0.001 * speed / self.length
+        frequency = np.arange(step, f_max + 5 * step, step)
+        magnitude = np.concatenate([self._transform(part / speed, s, profile) for part in np.array_split(frequency, 50)])
+        scale = np.maximum.accumulate(magnitude[::-1])[::-1]
+        middle = magnitude[1:-1]
+        low = (middle <= magnitude[:-2]) & (middle < magnitude[2:]) & (middle < 5e-3 * np.maximum(scale[1:-1], 1e-3 * magnitude.max()))
+        found = frequency[1:-1][low]
+        return np.asarray(found[found <= f_max])
+
+    @staticmethod
+    def _transform(wavenumber: Array, s: Array, profile: Array) -> Array:
+        kernel = np.exp(-2j * np.pi * wavenumber[:, None] * s[None, :])
+        return np.asarray(np.abs(np.trapezoid(kernel * profile, s, axis=1)), dtype=np.float64)
+
+
+def half_sine(length: float, height: float) -> Shape:
+    """Return height*sin(pi s/length)."""
+    return lambda s: height * np.sin(np.pi * s / length)
+
+
+def versine(length: float, height: float) -> Shape:
+    """Return height*(1 - cos(2 pi s/length))/2."""
+    return lambda s: 0.5 * height * (1.0 - np.cos(2.0 * np.pi * s / length))
+
+
+def trapezoid(length: float, height: float, ramp: float = 0.25) -> Shape:
+    """Return linear ramps over the share `ramp` of the length at both ends, and a flat top."""
+    if not 0 < ramp <= 0.5:
+        raise InputError(f"the ramp of a trapezoid is a share of its length in (0, 0.5], found {ramp}")
+    return lambda s: height * np.clip(np.minimum(s, length - s) / (ramp * length), 0.0, 1.0)
+
+
+def rectangle(length: float, height: float, radius: float) -> Shape:
+    """Return a rectangle whose edges rise by two circular arcs of `radius`, foot and shoulder, that meet half-way up.
+
+    An arc that turns by the angle a covers radius*sin(a) along the road and radius*(1 - cos(a)) upwards; half of the height fixes a.
+    Edges of 2*radius or higher would need a vertical wall between the arcs and are refused.
+    """
+    rise = abs(height)
+    if not radius > 0 or rise > 2 * radius:
+        raise InputError(f"the edges of a rectangle of height {height} m need a radius of at least {rise / 2} m, found {radius} m")
+    run = np.sqrt(radius**2 - (radius - rise / 2) ** 2)
+    if 4 * run > length:
+        raise InputError(f"the rounded edges take {4 * run:.3f} m of a hump of {length} m; make it longer or the radius smaller")
+
+    def shape(s: Array) -> Array:
+        edge = np.minimum(np.minimum(s, length - s), 2 * run)
+        foot = radius - np.sqrt(np.maximum(radius**2 - np.minimum(edge, run) ** 2, 0.0))
+        shoulder = rise - (radius - np.sqrt(np.maximum(radius**2 - np.minimum(2 * run - edge, run) ** 2, 0.0)))
+        return np.asarray(np.copysign(1.0, height) * np.where(edge < run, foot, shoulder))
+
+    return shape

@@ -1,0 +1,71 @@
+"""Random roads of the classes of ISO 8608:2016."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.errors import InputError, did_you_mean
+
+Array = NDArray[np.float64]
+
+REFERENCE = 0.1
+"""Reference spatial frequency n0, cycles/m."""
+BAND = (0.011, 2.83)
+"""Spatial frequencies that the standard covers, cycles/m."""
+CLASSES: dict[str, tuple[float, float, float]] = {
+    name: (factor * 8e-6, factor * 16e-6, factor * 32e-6) for name, factor in zip("ABCDEFGH", (4.0**i for i in range(8)), strict=True)
+}
+"""Class -> (lower, geometric mean, upper) bound of the displacement PSD Gd(n0) [m^3]; A has no lower and H no upper bound of its own."""
+TAPER = 2.0
+"""The road rises smoothly from level over its first metres, so that a vehicle can start at rest."""
+
+
+@dataclass(frozen=True)
+class Iso8608Road:
+    """A random road: a sum of cosines with the mean PSD of a class, Gd(n) = Gd(n0) (n/n0)^-2, and phases from a seed.
+
+    The cosines are spaced by 1/period, with a period of at least `length`, so that the profile does not repeat itself.
+    """
+
+    roughness: str
+    seed: int
+    length: float
+    spacing: float = 0.01
+    _heights: Array = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        if self.roughness not in CLASSES:
+            raise InputError(f"unknown road class {self.roughness!r}; {did_you_mean(self.roughness, CLASSES)}")
+        if not self.length > 0:
+            raise InputError(f"a road needs a positive length, found {self.length} m")
+        n_points = int(np.ceil(max(self.length, 1.0 / BAND[0]) / self.spacing)) + 1
+        period = n_points * self.spacing
+        n = np.arange(n_points // 2 + 1) / period
+        inside = (n >= BAND[0]) & (n <= BAND[1])
+        amplitude = np.zeros_like(n)
+        amplitude[inside] = np.sqrt(2.0 * displacement_psd(self.roughness, n[inside]) / period)
+        phase = np.random.default_rng(self.seed).uniform(0.0, 2.0 * np.pi, len(n))
+        heights = np.fft.irfft(0.5 * n_points * amplitude * np.exp(1j * phase), n_points)
+        object.__setattr__(self, "_heights", heights)
+
+    @property
+    def end(self) -> float:
+        """A random road has no hump to leave behind."""
+        return -np.inf
+
+    def height(self, s: Array) -> Array:
+        """Return the height [m] at positions s along the road [m]: zero before it starts, periodic beyond its length."""
+        s = np.asarray(s, dtype=np.float64)
+        period = len(self._heights) * self.spacing
+        grid = np.arange(len(self._heights) + 1) * self.spacing
+        closed = np.append(self._heights, self._heights[0])
+        taper = 0.5 - 0.5 * np.cos(np.pi * np.clip(s / TAPER, 0.0, 1.0))
+        return np.asarray(taper * np.interp(np.mod(s, period), grid, closed))
+
+
+def displacement_psd(roughness: str, n: Array) -> Array:
+    """Return the one-sided displacement PSD of a class's mean [m^3] at spatial frequencies n [cycles/m] (ISO 8608, exponent 2)."""
+    return np.asarray(CLASSES[roughness][1] * (np.asarray(n) / REFERENCE) ** -2.0)

@@ -1,0 +1,87 @@
+"""The road as the wheels see it: humps, random roads and measured profiles added up, through the tyre's footprint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.errors import InputError
+
+Array = NDArray[np.float64]
+_FOOTPRINT_POINTS = 32
+
+
+class Profile(Protocol):
+    """Anything with a height along the road, and the place where its last hump ends (-inf without one)."""
+
+    @property
+    def end(self) -> float:
+        """Where its last hump ends [m]."""
+        ...
+
+    def height(self, s: Array) -> Array:
+        """Return the height [m] at positions s [m]."""
+        ...
+
+
+@dataclass(frozen=True)
+class MeasuredProfile:
+    """A measured profile: points `distance`, `heights` [m] `shape (n,)`, linear between them, constant outside.
+
+    Its first height counts as the level on which the vehicle starts.
+    """
+
+    distance: Array
+    heights: Array
+
+    def __post_init__(self) -> None:
+        if len(self.distance) < 2 or (np.diff(self.distance) <= 0).any():
+            raise InputError("a profile needs at least two points, with ascending distances")
+
+    @property
+    def end(self) -> float:
+        """Where the profile ends [m]."""
+        return float(self.distance[-1])
+
+    def height(self, s: Array) -> Array:
+        """Return the height above the first point [m] at positions s [m]."""
+        return np.asarray(np.interp(s, self.distance, self.heights) - self.heights[0])
+
+
+@dataclass(frozen=True)
+class Track:
+    """The sum of profiles, averaged over a footprint [m] (0: a point contact).
+
+    The moving average is an integral over the contact length, by Gauss-Legendre quadrature on four panels, exact for polynomials of
+    degree 15 in each: a hump shorter than the footprint is still seen whole.
+    """
+
+    parts: tuple[Profile, ...]
+    footprint: float = 0.0
+
+    @property
+    def end(self) -> float:
+        """Where the last hump ends for the rear edge of the footprint [m]; -inf without a hump."""
+        return max((part.end for part in self.parts), default=-np.inf) + self.footprint / 2
+
+    def height(self, s: Array) -> Array:
+        """Return the height [m] that a wheel centred at s [m] sees."""
+        s = np.asarray(s, dtype=np.float64)
+        if self.footprint <= 0:
+            return self._raw(s)
+        nodes, weights = np.polynomial.legendre.leggauss(_FOOTPRINT_POINTS // 4)
+        total = np.zeros_like(s)
+        for panel in range(4):
+            for node, weight in zip(nodes, weights, strict=True):
+                offset = (panel + (node + 1) / 2) / 4 - 0.5
+                total += weight / 8 * self._raw(s + offset * self.footprint)
+        return total
+
+    def _raw(self, s: Array) -> Array:
+        total = np.zeros_like(s)
+        for part in self.parts:
+            total += part.height(s)
+        return total

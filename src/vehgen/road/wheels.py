@@ -1,0 +1,65 @@
+"""What every wheel sees: one track, delayed by the axle's distance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.road.speed import SpeedLaw
+from vehgen.road.track import Track
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class WheelInputs:
+    """Road `heights` [m] and their `rates` [m/s] under every axle, both `shape (n_steps + 1, n_axles)`."""
+
+    heights: Array
+    rates: Array
+
+
+def wheel_inputs(track: Track, speed: SpeedLaw, offsets: Array, time: Array) -> WheelInputs:
+    """Return the road under every axle.
+
+    Parameters
+    ----------
+    track
+        The road.
+    speed
+        How far the first axle has come at a time.
+    offsets
+        `shape (n_axles,)`: how far each axle runs behind the first to arrive [m].
+    time
+        `shape (n_steps + 1,)`: evenly spaced times [s].
+
+    Returns
+    -------
+    Heights at these times, and central differences over half a step to both sides (second order).
+    """
+    offsets = np.asarray(offsets, dtype=np.float64)
+    half = (time[1] - time[0]) / 2 if len(time) > 1 else 0.5
+    edges = np.append(time - half, time[-1] + half)
+    along = speed.distance(time)[:, None] - offsets[None, :]
+    around = track.height(speed.distance(edges)[:, None] - offsets[None, :])
+    return WheelInputs(track.height(along), np.diff(around, axis=0) / (2 * half))
+
+
+def pass_time(track: Track, speed: SpeedLaw, offsets: Array) -> float:
+    """Return the time [s] at which the last axle has left the last hump (0 where there is none)."""
+    target = track.end + float(np.max(offsets, initial=0.0))
+    if not np.isfinite(target) or target <= 0:
+        return 0.0
+    late = 1.0
+    while speed.distance(np.array([late]))[0] < target:
+        late *= 2.0
+    early = 0.0
+    while late - early > 1e-6:
+        middle = (early + late) / 2
+        if speed.distance(np.array([middle]))[0] < target:
+            early = middle
+        else:
+            late = middle
+    return late
