@@ -6,4 +6,13 @@ from vehgen.report.mode_shapes import draw_modes
 from vehgen.report.page import figure_svg, save_figure, write_build_folder
 from vehgen.report.response_plot import plot_response
 
-__all__ = ["draw_modes", "draw_vehicle", "equations_latex", "equations_text", "figure_svg", "plot_response", "save_figure", "write_build_folder"]
+__all__ = [
+    "draw_modes",
+    "draw_vehicle",
+    "equations_latex",
+    "equations_text",
+    "figure_svg",
+    "plot_response",
+    "save_figure",
+    "write_build_folder",
+]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 
 import numpy as np
@@ -28,9 +29,10 @@ def draw_vehicle(model: LinearModel, values: Mapping[str, float] | None = None) 
     sketch = make_sketch(model, values)
     length = sketch.right - sketch.left
     rows = 2 if sketch.hinges or len(sketch.boxes) > 1 else 1
-    depth = 0.75 + 0.6 * rows
+    crowded = _crowded(sketch)
+    depth = 0.75 + 0.6 * rows + (0.9 if crowded else 0.0)
     height = sketch.top + depth + 1.0
-    width = float(np.clip(0.75 * length, 7.5, 22.0))
+    width = float(np.clip(0.75 * length, 7.5, 12.0 + 0.32 * length))
     figure = Figure(figsize=(width, width * height / (length + 2.6)), layout="constrained")
     axes = figure.add_subplot()
     axes.set_aspect("equal")
@@ -42,16 +44,22 @@ def draw_vehicle(model: LinearModel, values: Mapping[str, float] | None = None) 
     for index, (name, box) in enumerate(sketch.boxes.items()):
         _draw_body(axes, model, name, box, FILLS[index % len(FILLS)], size)
     for name in sketch.axles:
-        _draw_axle(axes, model, name, sketch, size)
+        _draw_axle(axes, model, name, sketch, size, crowded)
     for name, (x, first, second) in sketch.links.items():
         _draw_link(axes, name, x, first, second, sketch, size)
     for name, (x, z) in sketch.hinges.items():
+        for body in model.vehicle.hinges[name].points:
+            edge = float(np.clip(z, sketch.boxes[body].bottom, sketch.boxes[body].top))
+            axes.plot([x, x], [edge, z], color=ACCENT, lw=1.4, zorder=5)
         axes.add_patch(Circle((x, z), 0.09, facecolor="white", edgecolor=ACCENT, lw=1.6, zorder=6))
         axes.annotate(name, (x, z), (0, 9), textcoords="offset points", ha="center", va="bottom", fontsize=size - 1, color=ACCENT, zorder=7)
-    _dimension_chain(axes, sorted({x for x, _ in sketch.axles.values()}), -0.55, "axles", size, INK)
+    low = -1.35 if crowded else -0.55
+    _dimension_chain(axes, sorted({x for x, _ in sketch.axles.values()}), low, "axles", size, INK)
     if rows == 2:
-        marks = sorted({round(box.x, 6) for box in sketch.boxes.values() if box.right - box.left > 1.0} | {x for x, _ in sketch.hinges.values()})
-        _dimension_chain(axes, marks, -1.15, "COGs, hinges", size, ACCENT)
+        marks = sorted(
+            {round(box.x, 6) for box in sketch.boxes.values() if box.right - box.left > 1.0} | {x for x, _ in sketch.hinges.values()}
+        )
+        _dimension_chain(axes, marks, low - 0.6, "COGs, hinges", size, ACCENT)
     _draw_convention(axes, sketch.right + 0.35, sketch.top + 0.15, size)
     axes.set_title(f"{model.vehicle.title or model.vehicle.name}  (to scale; lengths in metres)", loc="left", fontsize=size + 2, color=INK)
     return figure
@@ -82,7 +90,7 @@ def _draw_body(axes: Axes, model: LinearModel, name: str, box: Box, fill: str, s
     axes.text(*place, label, fontsize=size, ha="center" if small else "left", va="top", color=INK, zorder=6)
 
 
-def _draw_axle(axes: Axes, model: LinearModel, name: str, sketch: Sketch, size: float) -> None:
+def _draw_axle(axes: Axes, model: LinearModel, name: str, sketch: Sketch, size: float, crowded: bool) -> None:
     x, hub = sketch.axles[name]
     axle = model.vehicle.axles[name]
     axes.add_patch(Circle((x, hub), sketch.wheel_radius, facecolor="#3b4650", edgecolor=INK, lw=0.8, alpha=0.85, zorder=3))
@@ -90,7 +98,15 @@ def _draw_axle(axes: Axes, model: LinearModel, name: str, sketch: Sketch, size: 
     if axle.suspension is not None:
         box = sketch.boxes[axle.body]
         _spring_damper(axes, x, hub, max(box.bottom, hub + 0.35), 0.16)
-    axes.text(x, 0.02 - 0.12, axle.title or name, fontsize=size - 1, ha="center", va="top", color=INK)
+    turn = {"rotation": 35, "ha": "right", "rotation_mode": "anchor"} if crowded else {"ha": "center"}
+    axes.text(x, -0.1, axle.title or name, fontsize=size - 1, va="top", color=INK, **turn)
+
+
+def _crowded(sketch: Sketch) -> bool:
+    """Tell whether neighbouring axles stand too close for their names to be written side by side."""
+    places = sorted(x for x, _ in sketch.axles.values())
+    longest = max((len(name) for name in sketch.axles), default=0)
+    return any(right - left < 0.15 * longest for left, right in itertools.pairwise(places))
 
 
 def _draw_link(axes: Axes, name: str, x: float, first: str, second: str, sketch: Sketch, size: float) -> None:
@@ -113,7 +129,13 @@ def _spring_damper(axes: Axes, x: float, bottom: float, top: float, half: float,
     axes.plot(zigzag, height, color=color, lw=1.0, zorder=4)
     right, middle = x + half, (bottom + top) / 2
     axes.plot([right, right], [bottom, middle - 0.05], color=color, lw=1.0, zorder=4)
-    axes.plot([right - 0.06, right - 0.06, right + 0.06, right + 0.06], [middle + 0.09, middle - 0.05, middle - 0.05, middle + 0.09], color=color, lw=1.0, zorder=4)
+    axes.plot(
+        [right - 0.06, right - 0.06, right + 0.06, right + 0.06],
+        [middle + 0.09, middle - 0.05, middle - 0.05, middle + 0.09],
+        color=color,
+        lw=1.0,
+        zorder=4,
+    )
     axes.plot([right - 0.045, right + 0.045], [middle + 0.03] * 2, color=color, lw=1.4, zorder=4)
     axes.plot([right, right], [middle + 0.03, top], color=color, lw=1.0, zorder=4)
 
@@ -124,10 +146,18 @@ def _dimension_chain(axes: Axes, marks: list[float], z: float, label: str, size:
         return
     for x in marks:
         axes.plot([x, x], [z - 0.1, z + 0.1], color=color, lw=0.8)
-    for left, right in zip(marks[:-1], marks[1:], strict=True):
+    for left, right in itertools.pairwise(marks):
         axes.annotate("", (left, z), (right, z), arrowprops={"arrowstyle": "<->", "color": color, "lw": 0.8, "shrinkA": 0, "shrinkB": 0})
         narrow = right - left < 0.9
-        axes.text((left + right) / 2, z + 0.05, f"{right - left:.2f}", ha="center", va="bottom", fontsize=size - (2.5 if narrow else 1), color=color)
+        axes.text(
+            (left + right) / 2,
+            z + 0.05,
+            f"{right - left:.2f}",
+            ha="center",
+            va="bottom",
+            fontsize=size - (2.5 if narrow else 1),
+            color=color,
+        )
     axes.text(marks[-1] + 0.15, z, label, fontsize=size - 2, color=color, va="center")
 
 

@@ -60,5 +60,7 @@ def _draw_mode(axes: Axes, model: LinearModel, mode: Mode, values: Mapping[str, 
     axes.set_aspect("equal")
     axes.set_axis_off()
     axes.set_title(
-        f"{mode.name}\n{mode.undamped_hz:.2f} Hz undamped, {mode.damped_hz:.2f} Hz damped, ratio {mode.damping_ratio:.3f}", fontsize=8.5, color=INK
+        f"{mode.name}\n{mode.undamped_hz:.2f} Hz undamped, {mode.damped_hz:.2f} Hz damped, ratio {mode.damping_ratio:.3f}",
+        fontsize=8.5,
+        color=INK,
     )

@@ -34,8 +34,8 @@ def write_build_folder(
 ) -> list[Path]:
     """Write a vehicle's build folder; returns the files written.
 
-    `kernel.py`, `equations.txt`, `equations.tex`, `index.html` and, with `plots`, `drawing.svg` and `modes.svg`. Each file appears whole or not
-    at all.
+    `kernel.py`, `equations.txt`, `equations.tex`, `index.html` and, with `plots`, `drawing.svg` and `modes.svg`. Each file appears whole
+    or not at all.
     """
     texts = {"kernel.py": kernel_source, "equations.txt": equations_text(model), "equations.tex": equations_latex(model)}
     if plots:

@@ -14,7 +14,9 @@ COLOURS = ("#0b5fa5", "#d55e00", "#1b9e77", "#7b3294", "#555555", "#b8860b")
 STYLES = ("-", "--", "-.", ":", "-", "--")
 
 
-def plot_response(time: NDArray[np.float64], channels: Sequence[tuple[str, str, str]], values: NDArray[np.float64], title: str = "") -> Figure:
+def plot_response(
+    time: NDArray[np.float64], channels: Sequence[tuple[str, str, str]], values: NDArray[np.float64], title: str = ""
+) -> Figure:
     """Plot channels (name, quantity, unit) with `values shape (n_samples, n_channels)` over `time shape (n_samples,)` [s]."""
     kinds = list(dict.fromkeys((quantity, unit) for _, quantity, unit in channels))
     figure = Figure(figsize=(9.0, 1.0 + 2.1 * len(kinds)), layout="constrained")

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.mechanics import LinearModel
+from vehgen.mechanics.rows import Entries
 from vehgen.mechanics.symbols import to_sympy
 from vehgen.vehicle.model import GROUND
 
@@ -137,7 +138,7 @@ def _attached(
 
 def body_motion(model: LinearModel, values: Mapping[str, float], shape: Array) -> dict[str, tuple[float, float]]:
     """Return (heave, pitch) of every body for a displacement vector `shape (n_dof,)`."""
-    entries = {}
+    entries: Entries = {}
     for i, name in enumerate(model.vehicle.bodies):
         entries |= {(2 * i, j): value for j, value in model.motion.heave[name].items()}
         entries |= {(2 * i + 1, j): value for j, value in model.motion.pitch[name].items()}
@@ -148,7 +149,9 @@ def body_motion(model: LinearModel, values: Mapping[str, float], shape: Array) -
     return {name: (float(moved[2 * i]), float(moved[2 * i + 1])) for i, name in enumerate(model.vehicle.bodies)}
 
 
-def axle_motion(model: LinearModel, bodies: Mapping[str, tuple[float, float]], values: Mapping[str, float], shape: Array) -> dict[str, float]:
+def axle_motion(
+    model: LinearModel, bodies: Mapping[str, tuple[float, float]], values: Mapping[str, float], shape: Array
+) -> dict[str, float]:
     """Return how far every wheel rises for a displacement vector `shape (n_dof,)`."""
     rises = {}
     names = [item.name for item in model.coordinates]

@@ -43,7 +43,7 @@ class LawParameter:
 
 @dataclass(frozen=True)
 class Motion:
-    """What a law may use: travel d [m] and rate v [m/s] in mid-step, step h [s], the element's own k and c, its static force, its states."""
+    """What a law may use: travel d [m] and rate v [m/s] in mid-step, step h [s], the element's k, c and static force, its states."""
 
     d: sp.Symbol
     v: sp.Symbol
