@@ -1,7 +1,7 @@
 """How does it run? From a LinearModel to a compiled kernel that advances whole populations."""
 
 from vehgen.codegen.cache import cache_folder, write_text
-from vehgen.codegen.kernel import Drive, Kernel
+from vehgen.codegen.kernel import Drive, Kernel, KernelResult
 from vehgen.codegen.kernel_source import KernelSource, write_kernel
 
-__all__ = ["Drive", "Kernel", "KernelSource", "cache_folder", "write_kernel", "write_text"]
+__all__ = ["Drive", "Kernel", "KernelResult", "KernelSource", "cache_folder", "write_kernel", "write_text"]

@@ -64,7 +64,7 @@ def write_text(path: Path, text: str) -> None:
 def import_kernel(text: str, folder: Path | None = None) -> ModuleType:
     """Write a kernel's source into the cache (unless it is there) and import it; importing compiles it or loads what was compiled."""
     name = kernel_name(text)
-    module_name = f"vehgen_generated.{name}"
+    module_name = f"vehgen_{name}"
     if module_name in sys.modules:
         return sys.modules[module_name]
     path = (folder or cache_folder()) / f"{name}.py"
@@ -74,6 +74,10 @@ def import_kernel(text: str, folder: Path | None = None) -> ModuleType:
     if specification is None or specification.loader is None:
         raise InputError(f"cannot import the generated kernel {path}")
     module = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(module)
-    sys.modules[module_name] = module
+    sys.modules[module_name] = module  # numba looks the module up while it compiles
+    try:
+        specification.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[module_name]
+        raise
     return module

@@ -44,6 +44,30 @@ class Drive:
         return np.arange(self.inputs.shape[0], dtype=np.float64) * self.dt
 
 
+@dataclass(frozen=True)
+class KernelResult:
+    """What a kernel computed.
+
+    `responses shape (n_individuals, n_samples, n_channels)` in the channels' units; `failures` maps an individual's number to why its
+    response cannot be used.
+    """
+
+    responses: Array
+    failures: dict[int, str]
+
+
+def find_failures(names: tuple[str, ...], parameters: Array, responses: Array) -> dict[int, str]:
+    """Say of each individual without a finite response why it has none."""
+    failures: dict[int, str] = {}
+    for individual in np.flatnonzero(~np.isfinite(responses).all(axis=(1, 2))):
+        bad = [name for name, value in zip(names, parameters[individual], strict=True) if not np.isfinite(value)]
+        if bad:
+            failures[int(individual)] = f"its parameter {bad[0]} is not a finite number"
+        else:
+            failures[int(individual)] = "it diverges: its matrices are not positive definite, or the step is too coarse for it"
+    return failures
+
+
 class Kernel:
     """The compiled Newmark kernel of a model.
 
@@ -75,7 +99,9 @@ class Kernel:
         """Compile now, or load what an earlier process compiled."""
         _ = self._advance
 
-    def run(self, parameters: Array, drive: Drive, keep: int = 10, initial: Array | None = None, threads: int | None = None) -> Array:
+    def run(
+        self, parameters: Array, drive: Drive, keep: int = 10, initial: Array | None = None, threads: int | None = None
+    ) -> KernelResult:
         """Simulate a population.
 
         Parameters
@@ -93,9 +119,7 @@ class Kernel:
 
         Returns
         -------
-        responses
-            `shape (n_individuals, n_steps // keep + 1, n_channels)`; NaN where an individual has no finite response.
-
+        The responses, and which individuals failed and why; a failed individual leaves the others as they are.
         """
         parameters = np.ascontiguousarray(np.atleast_2d(parameters), dtype=np.float64)
         self._check(parameters, drive, keep)
@@ -129,7 +153,7 @@ class Kernel:
         else:
             for first in starts:
                 block(first)
-        return responses
+        return KernelResult(responses, find_failures(self.model.parameters, parameters, responses))
 
     def _check(self, parameters: Array, drive: Drive, keep: int) -> None:
         expected = len(self.model.parameters)

@@ -11,8 +11,9 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from vehgen.errors import InputError, did_you_mean
-from vehgen.mechanics.outputs import ElementOutput, Output, Place, PointOutput
+from vehgen.mechanics.outputs import AXLE_QUANTITIES, LINK_QUANTITIES, POINT_QUANTITIES, ElementOutput, Output, Place, PointOutput
 from vehgen.simulate.quantities import Angle, Force, Frequency, Length, PositiveLength, PositiveSpeed, PositiveTime
+from vehgen.vehicle.checks import check_values
 from vehgen.vehicle.document import Located, read_document
 from vehgen.vehicle.expressions import Expression, ExpressionError
 from vehgen.vehicle.loading import load_vehicle, validate
@@ -21,6 +22,7 @@ from vehgen.vehicle.units import LENGTH
 
 DEFAULT_STEP = 1e-3
 DEFAULT_KEEP = 10
+MAX_STEPS = 10_000_000
 
 
 class HumpEntry(Noun):
@@ -264,21 +266,28 @@ def load_run(path: str | Path) -> Run:
 def _check(run: Run) -> None:
     file, vehicle, document = run.file, run.vehicle, run.document
 
-    def known(kind: str, name: str, allowed: Mapping[str, object] | list[str], *place: str) -> None:
+    def known(kind: str, name: str, allowed: Mapping[str, object] | list[str], *place: str, key: bool = False) -> None:
         if name not in allowed:
-            raise InputError(f"{vehicle.name} has no {kind} {name!r}; {did_you_mean(name, allowed)}", document.find(place))
+            raise InputError(f"{vehicle.name} has no {kind} {name!r}; {did_you_mean(name, allowed)}", document.find(place, key=key))
 
     dimensions = vehicle.dimensions
-    for name, expression in file.parameters.items():
-        known("parameter with a value", name, list(vehicle.free_parameters), "parameters", name)
-        try:
-            found = expression.dimension({})
-        except ExpressionError as error:
-            raise InputError(str(error), document.find(("parameters", name))) from error
-        if found != dimensions[name]:
-            raise InputError(f"{name} must be in {dimensions[name]}, found {found}", document.find(("parameters", name)))
     if file.set is not None:
         known("parameter set", file.set, vehicle.sets, "set")
+    for name, expression in file.parameters.items():
+        known("parameter with a value", name, list(vehicle.free_parameters), "parameters", name, key=True)
+        try:
+            if expression.names:
+                raise ExpressionError(f"expected a plain quantity in {dimensions[name]}, found a symbol in {expression.text!r}")
+            found, number = expression.dimension({}), expression.evaluate({})
+        except ExpressionError as error:
+            raise InputError(str(error), document.find(("parameters", name), offset=error.offset)) from error
+        if found != dimensions[name] and number != 0.0:
+            raise InputError(f"{name} must be in {dimensions[name]}, found {found}", document.find(("parameters", name)))
+    try:
+        check_values(vehicle, run.values(), " in this run")
+    except InputError as error:
+        place = document.find(("parameters" if file.parameters else "set" if file.set else "vehicle",), key=True)
+        raise InputError(f"{error.message} ({error.position})" if error.position else error.message, place) from error
     for kind, entries in (("forces", file.forces), ("sensors", file.sensors)):
         for name, entry in entries.items():
             known("body", entry.body, vehicle.bodies, kind, name, "body")
@@ -294,13 +303,21 @@ def _check(run: Run) -> None:
             if entry.x is not None:
                 try:
                     found = entry.x.dimension(dimensions)
+                    number = entry.x.evaluate(vehicle.all_values(run.values()))
                 except ExpressionError as error:
-                    raise InputError(str(error), document.find((kind, name, "x"))) from error
-                if found != LENGTH and (entry.x.names or entry.x.evaluate({}) != 0.0):
+                    raise InputError(str(error), document.find((kind, name, "x"), offset=error.offset)) from error
+                if found != LENGTH and (entry.x.names or number != 0.0):
                     raise InputError(f"x must be in m, found {found}", document.find((kind, name, "x")))
     grounded = [name for name, link in vehicle.links.items() if "ground" in link.points]
     for name in file.displacements:
-        known("link to the ground", name, grounded, "displacements", name)
+        known("link to the ground", name, grounded, "displacements", name, key=True)
+    for name, sensor in file.sensors.items():
+        for quantity in sensor.channels:
+            if quantity not in POINT_QUANTITIES:
+                raise InputError(
+                    f"unknown quantity {quantity!r} of a sensor; {did_you_mean(quantity, POINT_QUANTITIES)}",
+                    document.find(("sensors", name, "channels", quantity), key=True),
+                )
     for name, output in file.outputs.items():
         known(
             "axle" if output.axle else "link",
@@ -308,7 +325,15 @@ def _check(run: Run) -> None:
             vehicle.axles if output.axle else vehicle.links,
             "outputs",
             name,
+            "axle" if output.axle else "link",
         )
+        quantities = AXLE_QUANTITIES if output.axle else LINK_QUANTITIES
+        if output.quantity not in quantities:
+            owner = "an axle" if output.axle else "a link"
+            raise InputError(
+                f"unknown quantity {output.quantity!r} of {owner}; {did_you_mean(output.quantity, quantities)}",
+                document.find(("outputs", name, "quantity")),
+            )
     names = [output.name for output in run.outputs()]
     for name in names:
         if names.count(name) > 1:
@@ -316,6 +341,11 @@ def _check(run: Run) -> None:
                 f"two channels are named {name!r}; each column needs a name of its own",
                 document.find(("sensors",), key=True),
             )
+    if file.duration is not None and file.duration > MAX_STEPS * file.step:
+        raise InputError(
+            f"a run has at most {MAX_STEPS} steps; {file.duration:g} s in steps of {file.step:g} s are more",
+            document.find(("duration",)),
+        )
     if file.sample is not None and (run.keep < 1 or abs(run.keep * file.step - file.sample) > 1e-9 * file.sample):
         raise InputError(
             f"`sample` must be a whole number of steps of {file.step:g} s, found {file.sample:g} s",

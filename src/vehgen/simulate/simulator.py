@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,8 +12,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.codegen import Drive, Kernel, write_text
-from vehgen.errors import InputError
+from vehgen.codegen import Drive, Kernel, KernelResult, write_text
+from vehgen.errors import InputError, ModelWarning
 from vehgen.mechanics import Channel, ElementOutput, LinearModel, Output, Place, derive, static_loads
 from vehgen.simulate.doubts import lift_off, spectral_nulls, step_too_coarse
 from vehgen.simulate.runfile import Run
@@ -67,7 +68,7 @@ class Simulator:
         rows = [list(self.model.values(overrides=individual).values()) for individual in individuals]
         return np.array(rows, dtype=np.float64)
 
-    def run(self, parameters: Array, scenario: Scenario, threads: int | None = None) -> Array:
+    def run(self, parameters: Array, scenario: Scenario, threads: int | None = None) -> KernelResult:
         """Simulate a population over a scenario.
 
         Individuals whose axles stand at the same distances share their wheel inputs and run together.
@@ -83,16 +84,19 @@ class Simulator:
 
         Returns
         -------
-        `shape (n_individuals, n_samples, n_channels)`.
+        Responses and failures; a failed individual raises a ModelWarning and leaves the others unharmed.
         """
         offsets = np.round(self.wheel_offsets(parameters), 9)
         distinct, group = np.unique(offsets, axis=0, return_inverse=True)
         group = group.ravel()
         responses: Array | None = None
+        failures: dict[int, str] = {}
         for index, layout in enumerate(distinct):
             members = np.flatnonzero(group == index)
             drive: Drive = scenario.drive(layout)
-            part = self.kernel.run(parameters[members], drive, scenario.keep, threads=threads)
+            result = self.kernel.run(parameters[members], drive, scenario.keep, threads=threads)
+            failures.update({int(members[i]): reason for i, reason in result.failures.items()})
+            part = result.responses
             if len(distinct) == 1:
                 responses = part
             else:
@@ -100,7 +104,8 @@ class Simulator:
                     responses = np.empty((len(parameters), *part.shape[1:]))
                 responses[members] = part
         assert responses is not None
-        return self._add_static(parameters, responses)
+        _warn_of(failures, len(parameters))
+        return KernelResult(self._add_static(parameters, responses), failures)
 
     def wheel_offsets(self, parameters: Array) -> Array:
         """Return each axle's distance behind the first to arrive, `shape (n_individuals, n_axles)` [m]."""
@@ -122,9 +127,18 @@ class Simulator:
         for column, channel in enumerate(self.model.channels):
             if channel.quantity == "tyre_load":
                 for row, individual in enumerate(parameters):
+                    if not np.isfinite(individual).all():
+                        continue
                     loads = static_loads(self.model, dict(zip(self.model.parameters, individual, strict=True)))
                     responses[row, :, column] += loads.axles[channel.owner]
         return responses
+
+
+def _warn_of(failures: Mapping[int, str], n_individuals: int) -> None:
+    if failures and n_individuals > 1:
+        first = min(failures)
+        text = f"{len(failures)} of {n_individuals} individuals failed; individual {first}: {failures[first]}"
+        warnings.warn(ModelWarning(text), stacklevel=3)
 
 
 def simulate(run: Run) -> Response:
@@ -141,9 +155,10 @@ def simulate(run: Run) -> Response:
     values = simulator.model.values(overrides=run.values())
     scenario = make_scenario(run, simulator.model, values)
     parameters = simulator.parameters(values)
-    responses = simulator.run(parameters, scenario)
-    if not np.isfinite(responses).all():
-        raise InputError("the response is not finite: check the vehicle's values and the step")
+    result = simulator.run(parameters, scenario)
+    responses = result.responses
+    if result.failures:
+        raise InputError(f"the vehicle has no finite response: {result.failures[0]}")
     n = len(wanted)
     messages = [
         *lift_off(simulator.model, values, responses[0, :, n:]),

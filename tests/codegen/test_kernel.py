@@ -1,0 +1,146 @@
+"""The generated kernel against textbook Newmark and the exact first-order-hold solution."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from vehgen.codegen import Drive, Kernel, write_kernel
+from vehgen.errors import InputError
+from vehgen.mechanics import ElementOutput, Place, PointOutput, derive
+from vehgen.road import ConstantSpeed, Hump, Track, wheel_inputs
+from vehgen.simulate import exact_response, newmark_response
+from vehgen.vehicle import bundled_models, load_vehicle
+
+OUTPUTS = (
+    PointOutput("L1_az", Place("L1", "tractor", behind="axle1", distance=-0.29), "acceleration"),
+    PointOutput("L1_q", Place("L1", "tractor", behind="axle1", distance=-0.29), "pitch_rate"),
+    PointOutput("L2_az", Place("L2", "semitrailer", behind="fifth_wheel", distance=9.32), "acceleration"),
+    PointOutput("L2_q", Place("L2", "semitrailer", behind="fifth_wheel", distance=9.32), "pitch_rate"),
+    ElementOutput("travel4", "axle4", "suspension_travel"),
+    ElementOutput("tyre1", "axle1", "tyre_force"),
+)
+
+
+@pytest.fixture(scope="module")
+def tractor():
+    model = derive(load_vehicle("tractor5"), OUTPUTS)
+    return model, Kernel(model)
+
+
+def hump_drive(model, dt, duration=9.0):
+    time = np.arange(round(duration / dt) + 1) * dt
+    track = Track((Hump.from_shape("half_sine", 1.003, 0.4, 0.03),))
+    wheels = wheel_inputs(track, ConstantSpeed(2.0), model.wheel_offsets(), time)
+    return Drive(dt, wheels.heights, wheels.rates, np.zeros((len(time), 0)))
+
+
+def relative(error, reference):
+    return np.linalg.norm(error, axis=0) / np.linalg.norm(reference, axis=0)
+
+
+def test_equals_the_numpy_oracle(tractor):
+    model, kernel = tractor
+    drive = hump_drive(model, 1e-3)
+    rng = np.random.default_rng(5)
+    base = np.array(list(model.values().values()))
+    parameters = base * np.where(base != 0, rng.uniform(0.95, 1.05, (37, len(base))), 1.0)
+    result = kernel.run(parameters, drive, 10, threads=2)
+    assert not result.failures
+    for individual in (0, 17, 31, 32, 36):
+        values = dict(zip(model.parameters, parameters[individual], strict=True))
+        oracle = newmark_response(model, drive, 10, values)
+        np.testing.assert_allclose(result.responses[individual], oracle, rtol=0, atol=1e-10 * np.abs(oracle).max())
+        np.testing.assert_allclose(relative(result.responses[individual] - oracle, oracle), 0, atol=1e-10)
+
+
+def test_second_order_towards_the_exact_solution(tractor):
+    model, kernel = tractor
+    exact = exact_response(model, hump_drive(model, 0.125e-3), 80)
+    parameters = np.array([list(model.values().values())])
+    errors = [
+        relative(kernel.run(parameters, hump_drive(model, dt), round(0.01 / dt)).responses[0] - exact, exact) for dt in (2e-3, 1e-3, 5e-4)
+    ]
+    assert errors[1].max() < 1e-3
+    order = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+    assert order.min() > 1.8
+    assert order.max() < 2.3
+
+
+def test_blocks_threads_and_steps_do_not_change_an_individual(tractor):
+    model, kernel = tractor
+    drive = hump_drive(model, 1e-3, 4.0)
+    parameters = np.repeat([list(model.values().values())], 70, axis=0)
+    parameters[:, 0] *= np.linspace(0.9, 1.1, 70)
+    one = kernel.run(parameters, drive, 10, threads=1).responses
+    two = kernel.run(parameters, drive, 10, threads=2).responses
+    np.testing.assert_array_equal(one, two)
+    np.testing.assert_array_equal(kernel.run(parameters[40:41], drive, 10).responses[0], one[40])
+    fine = kernel.run(parameters[:1], drive, 1).responses[0]
+    np.testing.assert_array_equal(fine[::10], one[0])
+
+
+def test_a_failed_individual_is_named_and_harms_no_other(tractor):
+    model, kernel = tractor
+    drive = hump_drive(model, 1e-3, 4.0)
+    parameters = np.repeat([list(model.values().values())], 3, axis=0)
+    good = kernel.run(parameters[:1], drive).responses[0]
+    parameters[1, model.parameters.index("k1")] = np.nan
+    result = kernel.run(parameters, drive)
+    assert list(result.failures) == [1]
+    assert "k1" in result.failures[1]
+    np.testing.assert_array_equal(result.responses[0], good)
+    np.testing.assert_array_equal(result.responses[2], good)
+
+
+def test_wrong_shapes_are_refused(tractor):
+    model, kernel = tractor
+    drive = hump_drive(model, 1e-3, 1.0)
+    with pytest.raises(InputError, match="parameters have shape"):
+        kernel.run(np.zeros((2, 3)), drive)
+    with pytest.raises(InputError, match="inputs"):
+        kernel.run(np.zeros((1, len(model.parameters))), Drive(1e-3, drive.inputs[:, :2], drive.rates, drive.forces))
+
+
+def test_source_is_the_same_every_time_and_readable(tractor):
+    _, kernel = tractor
+    again = write_kernel(derive(load_vehicle("tractor5"), OUTPUTS))
+    assert again.text == kernel.source.text
+    assert "rise of the COG of tractor" in again.text
+
+
+def test_compiled_code_is_found_again_by_another_process(tmp_path):
+    program = (
+        "import sys, time; from pathlib import Path; from vehgen.codegen import Kernel; from vehgen.mechanics import derive;"
+        "from vehgen.vehicle import load_vehicle; k = Kernel(derive(load_vehicle('quarter_car')), Path(sys.argv[1]));"
+        "k.compile(); print(sum(k._advance.stats.cache_hits.values()), sum(k._advance.stats.cache_misses.values()))"
+    )
+    runs = [
+        subprocess.run([sys.executable, "-c", program, str(tmp_path)], capture_output=True, text=True, check=True).stdout.split()
+        for _ in range(2)
+    ]
+    assert runs == [["0", "1"], ["1", "0"]]
+
+
+BASELINE = {
+    "b_double": 384,
+    "quarter_car": 27,
+    "road_train": 1180,
+    "sedan2": 76,
+    "tractor5": 206,
+    "tractor5_cab": 292,
+    "tractor5_cargo": 206,
+    "tractor5_module": 237,
+    "tractor5_module_paper": 237,
+    "truck_dolly_trailer": 354,
+    "truck_walking_beam": 98,
+    "vbi2d_2A3": 216,
+}
+
+
+def test_operation_counts_do_not_rise():
+    counts = {name: write_kernel(derive(load_vehicle(path))).operation_counts["step"] for name, path in bundled_models().items()}
+    assert counts.keys() == BASELINE.keys()
+    for name, count in counts.items():
+        assert count <= BASELINE[name], f"{name}: {count} operations per step, {BASELINE[name]} in the baseline"
