@@ -136,8 +136,9 @@ def _independent(layout: dict) -> list[str]:
 def _eliminate(mass, forces, pushes, gravity, G, kept, chosen, names) -> Equations:
     """Solve the constrained balances for unit accelerations of the kept coordinates and read off what forces they take.
 
-    With reactions r: diag(mass) a = f + G^T r, G a = 0. All motions compatible with the constraints are the null space of G;
-    fore-aft motion that no force drives follows from the balance itself, so the null space splits into the kept coordinates and free fore-aft translations.
+    With reactions r: diag(mass) a = f + G^T r, G a = 0. All motions compatible with the constraints are the null space of G; fore-aft
+    motion that no force drives follows from the balance itself, so the null space splits into the kept coordinates and free fore-aft
+    translations.
     """
     size = len(mass)
     if len(G):

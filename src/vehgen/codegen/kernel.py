@@ -49,11 +49,12 @@ class KernelResult:
     """What a kernel computed.
 
     `responses shape (n_individuals, n_samples, n_channels)` in the channels' units; `failures` maps an individual's number to why its
-    response cannot be used.
+    response cannot be used; `residuals shape (n_individuals,)` is the largest change of a law's force in the last sweep of a step [N].
     """
 
     responses: Array
     failures: dict[int, str]
+    residuals: Array
 
 
 def find_failures(names: tuple[str, ...], parameters: Array, responses: Array) -> dict[int, str]:
@@ -126,6 +127,7 @@ class Kernel:
         n_individuals, lanes = parameters.shape[0], self.source.lanes
         n_samples, n_channels = drive.n_steps // keep + 1, len(self.model.channels)
         responses = np.empty((n_individuals, n_samples, n_channels))
+        residuals = np.zeros(n_individuals)
         advance = self._advance
         n_dof = self.model.n_dof
         arrays = tuple(np.ascontiguousarray(item, dtype=np.float64) for item in (drive.inputs, drive.rates, drive.forces))
@@ -133,9 +135,9 @@ class Kernel:
         def block(first: int) -> None:
             last = min(first + lanes, n_individuals)
             rows = np.minimum(np.arange(first, first + lanes), last - 1)
-            state = np.zeros(2 * n_dof * lanes)
+            state = np.zeros(self.source.n_states * lanes)
             if initial is not None:
-                state[:] = np.ascontiguousarray(initial[rows].T).ravel()
+                state[: 2 * n_dof * lanes] = np.ascontiguousarray(initial[rows].T).ravel()
             full = last - first == lanes
             target = responses[first:last] if full else np.empty((lanes, n_samples, n_channels))
             constants = np.empty(self.source.n_constants * lanes)
@@ -144,6 +146,8 @@ class Kernel:
             advance(lanewise, *arrays, drive.dt, keep, constants, state, kept, target)
             if not full:
                 responses[first:last] = target[: last - first]
+            if self.source.nonlinear:
+                residuals[first:last] = state[-lanes:][: last - first]
 
         starts = range(0, n_individuals, lanes)
         workers = min(threads or os.cpu_count() or 1, len(starts))
@@ -153,7 +157,7 @@ class Kernel:
         else:
             for first in starts:
                 block(first)
-        return KernelResult(responses, find_failures(self.model.parameters, parameters, responses))
+        return KernelResult(responses, find_failures(self.model.parameters, parameters, responses), residuals)
 
     def _check(self, parameters: Array, drive: Drive, keep: int) -> None:
         expected = len(self.model.parameters)

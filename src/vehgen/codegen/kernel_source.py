@@ -11,6 +11,8 @@ from vehgen.mechanics.linear_model import LinearModel
 
 LANES = 32
 """Individuals that advance side by side in the innermost loop."""
+NONLINEAR_LANES = 16
+"""The same with force laws, whose many constants would not stay in the first cache otherwise."""
 
 
 @dataclass(frozen=True)
@@ -21,15 +23,19 @@ class KernelSource:
     lanes: int
     operation_counts: dict[str, int]
     n_constants: int
+    n_states: int
+    nonlinear: bool
 
 
-def write_kernel(model: LinearModel, lanes: int = LANES) -> KernelSource:
+def write_kernel(model: LinearModel, lanes: int | None = None) -> KernelSource:
     """Print the Newmark kernel of a linear model."""
     step = write_step(model)
-    state = [*step.displacement, *step.velocity]
-    printer = Printer(step.program, {STEP: [*step.next_displacement, *step.next_velocity], SAMPLE: step.channels}, step.time_step)
+    nonlinear = any(element.laws for element in model.elements)
+    lanes = lanes or (NONLINEAR_LANES if nonlinear else LANES)
+    state = [leaf for leaf, _ in step.states]
+    printer = Printer(step.program, {STEP: [node for _, node in step.states], SAMPLE: step.channels}, step.time_step)
     lines = [_header(model, printer), *_function(model, step, printer, state, lanes)]
-    return KernelSource("\n".join(lines) + "\n", lanes, printer.operation_counts, len(printer.constants))
+    return KernelSource("\n".join(lines) + "\n", lanes, printer.operation_counts, len(printer.constants), len(state), nonlinear)
 
 
 def _header(model: LinearModel, printer: Printer) -> str:
@@ -78,7 +84,7 @@ def _function(model: LinearModel, step: StepProgram, printer: Printer, state: li
     setup += [
         f"constants[{place * lanes} + j] = {printer.texts.get(node, printer.name(node))}" for node, place in printer.constants.items()
     ]
-    results = [*step.next_displacement, *step.next_velocity]
+    results = [node for _, node in step.states]
     advance = printer.statements(printer.needed[STEP], results, load_loop)
     advance += [f"state[{i * lanes} + j] = {printer.texts[node]}" for i, node in enumerate(results)]
     sample = printer.statements(printer.needed[SAMPLE], step.channels, load_loop)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from vehgen.codegen.condensation import Condensation
 from vehgen.codegen.factorisation import Matrix, factorise
 from vehgen.codegen.program import SAMPLE, SETUP, STEP, Node, Program
 from vehgen.mechanics.linear_model import LinearModel
@@ -21,17 +22,17 @@ from vehgen.mechanics.rows import Entries, Row
 
 @dataclass(frozen=True)
 class StepProgram:
-    """The program of a step: where its leaves are read from, the next state, the channels at a sample."""
+    """The program of a step: where its leaves are read from, the states (leaf, value after the step), the channels at a sample.
+
+    The first 2 n_dof states are the displacements and velocities; those of force laws follow.
+    """
 
     program: Program
     parameters: dict[str, Node]
     time_step: Node
-    displacement: list[Node]
-    velocity: list[Node]
     drives: list[Node]
     sample_drives: list[Node]
-    next_displacement: list[Node]
-    next_velocity: list[Node]
+    states: list[tuple[Node, Node]]
     channels: list[Node]
 
 
@@ -85,15 +86,22 @@ def write_step(model: LinearModel) -> StepProgram:
         terms += [program.negate(program.multiply(node, u[j])) for (row, j), node in sorted(K.items()) if row == i]
         terms += [program.multiply(node, drives[j]) for (row, j), node in sorted(loads.items()) if row == i]
         right.append(program.label(program.total(terms), f"r{i}"))
-    middle = [program.label(node, f"vm{i}") for i, node in enumerate(factor.solve(program, right))]
+    middle = factor.solve(program, right)
+    laws, further = None, []
+    if any(element.laws for element in model.elements):
+        laws = Condensation(model, program, symbols, memo, h, factor, K)
+        nonlinear = laws.write(middle, u, v, drives)
+        middle, further = nonlinear.middle, nonlinear.states
+    middle = [program.label(node, f"vm{i}") for i, node in enumerate(middle)]
     next_v = [program.subtract(program.add(middle[i], middle[i]), v[i]) for i in range(n)]
     next_u = [program.add(u[i], program.multiply(h, middle[i])) for i in range(n)]
 
     su = [program.leaf(f"u{i}", SAMPLE) for i in range(n)]
     sv = [program.leaf(f"v{i}", SAMPLE) for i in range(n)]
     sample_drives = [program.leaf(name, SAMPLE) for name in names]
-    channels = _channels(model, program, symbols, memo, (M, C, K, loads), (su, sv, sample_drives))
-    return StepProgram(program, parameters, h, u, v, drives, sample_drives, next_u, next_v, channels)
+    channels = _channels(model, program, symbols, memo, (M, C, K, loads), (su, sv, sample_drives), laws)
+    states = [*zip(u, next_u, strict=True), *zip(v, next_v, strict=True), *further]
+    return StepProgram(program, parameters, h, drives, sample_drives, states, channels)
 
 
 def identifier(name: str) -> str:
@@ -126,12 +134,15 @@ def _channels(
     memo: dict[sp.Expr, Node],
     matrices: tuple[Matrix, Matrix, Matrix, Matrix],
     state: tuple[list[Node], list[Node], list[Node]],
+    laws: Condensation | None,
 ) -> list[Node]:
     """Write each channel; accelerations follow from equilibrium, and only those that a channel uses are computed."""
     M, C, K, loads = matrices
     u, v, drives = state
     width = len(model.inputs)
     acceleration: list[Node] = []
+    now = laws.now(u, v, drives) if laws else []
+    pushes = laws.loads(now) if laws else {}
     if any(channel.acceleration for channel in model.channels):
         factor = factorise(program, model.n_dof, M, "M")
         forces = []
@@ -139,6 +150,7 @@ def _channels(
             terms = [program.multiply(node, drives[j]) for (row, j), node in sorted(loads.items()) if row == i]
             terms += [program.negate(program.multiply(node, v[j])) for (row, j), node in sorted(C.items()) if row == i]
             terms += [program.negate(program.multiply(node, u[j])) for (row, j), node in sorted(K.items()) if row == i]
+            terms += [program.negate(pushes[i])] if i in pushes else []
             forces.append(program.total(terms))
         acceleration = [program.label(node, f"a{i}") for i, node in enumerate(factor.solve(program, forces))]
 
@@ -149,5 +161,12 @@ def _channels(
     for channel in model.channels:
         terms = times(channel.acceleration, acceleration) + times(channel.velocity, v) + times(channel.displacement, u)
         terms += times(channel.input, drives[:width]) + times(channel.input_rate, drives[width : 2 * width])
+        if laws and not channel.quantity.endswith("travel"):
+            kind = channel.quantity.rpartition("_")[0]
+            terms += [
+                force
+                for joint, force in zip(laws.joints, now, strict=True)
+                if (joint.element.kind, joint.element.name) == (kind, channel.owner)
+            ]
         found.append(program.total(terms))
     return found

@@ -146,6 +146,8 @@ class Program:
             return self.number(float(expression))
         if expression.is_Pow:
             return self._power(self.convert(expression.base, symbols, memo), float(expression.exp))
+        if isinstance(expression, sp.Heaviside):
+            return self.apply("step", self.convert(expression.args[0], symbols, memo))
         arguments = [self.convert(argument, symbols, memo) for argument in expression.args]
         if expression.is_Add:
             return self.total(arguments)

@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> None:
     counts = kernel.source.operation_counts
     print_table("Kernel", ("phase", "operations"), [(phase, str(count)) for phase, count in counts.items()], right=(1,))
     warn(findings)
-    console().print(f"built in {seconds:.1f} s; open {folder / 'index.html'}", highlight=False)
+    console().print(f"built in {seconds:.1f} s; open {folder / 'index.html'}", highlight=False, markup=False)
 
 
 def _show(model: LinearModel, values: dict[str, float], modes: list[Mode], loads: StaticLoads) -> None:

@@ -49,4 +49,4 @@ def run(options: argparse.Namespace) -> None:
     )
     warn(response.warnings)
     for item in written:
-        console().print(f"wrote {item}", highlight=False)
+        console().print(f"wrote {item}", highlight=False, markup=False)

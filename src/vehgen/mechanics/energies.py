@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import sympy as sp
 
 from vehgen.mechanics.kinematics import Kinematics
+from vehgen.mechanics.law_terms import LawTerm, read_laws
+from vehgen.mechanics.laws import Kind
 from vehgen.mechanics.rows import Row, combine
 from vehgen.mechanics.symbols import to_sympy
 from vehgen.vehicle.model import GROUND, Body, Vehicle
@@ -30,11 +32,12 @@ class Element:
     """
 
     name: str
-    kind: str
+    kind: Kind
     k: sp.Expr
     c: sp.Expr
     row: Row
     input_row: Row
+    laws: tuple[LawTerm, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -92,18 +95,22 @@ def _elements(vehicle: Vehicle, motion: Kinematics) -> tuple[tuple[Element, ...]
         if axle.suspension is not None:
             spring = axle.suspension
             row = combine((one, wheel), (down, body_rise))
-            elements.append(Element(name, "suspension", to_sympy(spring.k), to_sympy(spring.c), row, {}))
+            elements.append(
+                Element(name, "suspension", to_sympy(spring.k), to_sympy(spring.c), row, {}, read_laws(vehicle, "suspension", name))
+            )
         row = combine((down, wheel))
-        elements.append(Element(name, "tyre", to_sympy(axle.tyre.k), to_sympy(axle.tyre.c), row, {index: one}))
+        elements.append(
+            Element(name, "tyre", to_sympy(axle.tyre.k), to_sympy(axle.tyre.c), row, {index: one}, read_laws(vehicle, "tyre", name))
+        )
     for name, link in vehicle.links.items():
         (first, first_point), (second, second_point) = link.ends
         if second == GROUND:
             (first, first_point), (second, second_point) = link.ends[::-1]
         row = combine((one, motion.rise(first, to_sympy(first_point.x))), (down, motion.rise(second, to_sympy(second_point.x))))
         input_row = {inputs.index(f"ground.{name}"): one} if first == GROUND else {}
-        elements.append(Element(name, "link", to_sympy(link.k), to_sympy(link.c), row, input_row))
+        elements.append(Element(name, "link", to_sympy(link.k), to_sympy(link.c), row, input_row, read_laws(vehicle, "link", name)))
     for name, hinge in vehicle.hinges.items():
         (first, _), (second, _) = hinge.ends
         row = combine((one, motion.pitch[second]), (down, motion.pitch[first]))
-        elements.append(Element(name, "hinge", to_sympy(hinge.k), to_sympy(hinge.c), row, {}))
+        elements.append(Element(name, "hinge", to_sympy(hinge.k), to_sympy(hinge.c), row, {}, read_laws(vehicle, "hinge", name)))
     return tuple(elements), inputs

@@ -42,7 +42,9 @@ def static_loads(model: LinearModel, values: Mapping[str, float] | None = None) 
     displacement = _solve(model, numeric.K, numeric.weight)
     rows, stiffness = element_rows(model, values)
     forces = stiffness * (rows @ displacement)
-    elements = {(element.kind, element.name): float(force) for element, force in zip(model.elements, forces, strict=True)}
+    elements: dict[tuple[str, str], float] = {
+        (element.kind, element.name): float(force) for element, force in zip(model.elements, forces, strict=True)
+    }
     axles = {name: elements["tyre", name] for name in model.vehicle.axles}
     hinges = {name: _hinge_force(model, name, elements, values) for name in model.vehicle.hinges}
     return StaticLoads(axles, hinges, elements, displacement)

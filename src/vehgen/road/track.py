@@ -56,8 +56,8 @@ class MeasuredProfile:
 class Track:
     """The sum of profiles, averaged over a footprint [m] (0: a point contact).
 
-    The moving average is the difference of the road's integral between the edges of the contact, taken from a grid of half a millimetre: a hump
-    shorter than the footprint is still seen whole.
+    The moving average is the difference of the road's integral between the edges of the contact, taken from a grid of half a
+    millimetre: a hump shorter than the footprint is still seen whole.
     """
 
     parts: tuple[Profile, ...]

@@ -91,11 +91,13 @@ class Simulator:
         group = group.ravel()
         responses: Array | None = None
         failures: dict[int, str] = {}
+        residuals = np.zeros(len(parameters))
         for index, layout in enumerate(distinct):
             members = np.flatnonzero(group == index)
             drive: Drive = scenario.drive(layout)
             result = self.kernel.run(parameters[members], drive, scenario.keep, threads=threads)
             failures.update({int(members[i]): reason for i, reason in result.failures.items()})
+            residuals[members] = result.residuals
             part = result.responses
             if len(distinct) == 1:
                 responses = part
@@ -105,7 +107,7 @@ class Simulator:
                 responses[members] = part
         assert responses is not None
         _warn_of(failures, len(parameters))
-        return KernelResult(self._add_static(parameters, responses), failures)
+        return KernelResult(self._add_static(parameters, responses), failures, residuals)
 
     def wheel_offsets(self, parameters: Array) -> Array:
         """Return each axle's distance behind the first to arrive, `shape (n_individuals, n_axles)` [m]."""

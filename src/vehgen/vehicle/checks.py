@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import keyword
+import math
 import re
 from collections.abc import Iterable, Mapping
 from itertools import chain
 
-from vehgen.errors import InputError, Position, did_you_mean
+from vehgen.errors import InputError, did_you_mean
 from vehgen.vehicle.expressions import Expression, ExpressionError
 from vehgen.vehicle.model import GROUND, Joint, Vehicle
 from vehgen.vehicle.units import NONE, UNITS, Dimension
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
 _RESERVED = {GROUND, "k", "c", "title", "points", "laws"}
+_FILE_NAME = re.compile(r"[^\W_][^/\\:]*\Z")
+MAX_CHAIN = 100
+SCALE = 1e20
+"""Quantities beyond it, and masses below its inverse, are slips of the pen that no arithmetic survives (SI units)."""
 
 
 def check_vehicle(vehicle: Vehicle) -> None:
@@ -26,16 +31,20 @@ def check_vehicle(vehicle: Vehicle) -> None:
     _check_values(vehicle)
 
 
-def _fail(vehicle: Vehicle, message: str, *path: str | int, key: bool = False, offset: int = 0) -> InputError:
-    position = vehicle.position(*path, key=key)
-    if position and offset:
-        position = Position(position.file, position.line, position.column + offset)
-    return InputError(message, position)
+def _fail(vehicle: Vehicle, message: str, *path: str | int, key: bool = False, offset: int | None = None) -> InputError:
+    return InputError(message, vehicle.position(*path, key=key, offset=offset))
 
 
 def _check_names(vehicle: Vehicle) -> None:
     if not vehicle.bodies:
         raise _fail(vehicle, "a vehicle needs at least one body", "bodies", key=True)
+    if not _FILE_NAME.match(vehicle.name) or len(vehicle.name) > 100:
+        raise _fail(
+            vehicle,
+            f"{vehicle.name[:100]!r} cannot name a vehicle, because it names a folder too: a letter or digit, then anything but / \\ : was "
+            "expected, 100 characters at most",
+            "name",
+        )
     for name in vehicle.parameters:
         if name in UNITS:
             raise _fail(
@@ -69,27 +78,35 @@ def _check_name(vehicle: Vehicle, kind: str, name: str) -> None:
 
 
 def _check_circles(vehicle: Vehicle) -> None:
-    """Refuse unknown symbols in `equals`, and chains of `equals` that bite their tail."""
-    done: set[str] = set()
+    """Refuse unknown symbols in `equals`, and chains of `equals` that bite their tail or are very long."""
+    depths: dict[str, int] = {}
 
-    def visit(name: str, trail: tuple[str, ...]) -> None:
+    def visit(name: str, trail: tuple[str, ...]) -> int:
         if name in trail:
             circle = " -> ".join((*trail[trail.index(name) :], name))
             raise _fail(vehicle, f"circular `equals`: {circle}", "parameters", trail[-1], "equals")
         definition = vehicle.parameters[name].equals
-        if name in done or definition is None:
-            return
-        for other in sorted(definition.names):
-            if other not in vehicle.parameters:
+        if name in depths or definition is None:
+            return depths.get(name, 0)
+        too_long = f"more than {MAX_CHAIN} parameters follow one another through `equals`"
+        if len(trail) >= MAX_CHAIN:
+            raise _fail(vehicle, too_long, "parameters", name, "equals")
+        depths_below = [0]
+        for symbol in definition.symbols:
+            if symbol.name not in vehicle.parameters:
                 raise _fail(
                     vehicle,
-                    f"unknown symbol {other!r}; {did_you_mean(other, vehicle.parameters)}",
+                    f"unknown symbol {symbol.name!r}; {did_you_mean(symbol.name, vehicle.parameters)}",
                     "parameters",
                     name,
                     "equals",
+                    offset=symbol.offset,
                 )
-            visit(other, (*trail, name))
-        done.add(name)
+            depths_below.append(visit(symbol.name, (*trail, name)))
+        depths[name] = 1 + max(depths_below)
+        if depths[name] > MAX_CHAIN:
+            raise _fail(vehicle, too_long, "parameters", name, "equals")
+        return depths[name]
 
     for name in vehicle.parameters:
         visit(name, ())
@@ -106,10 +123,11 @@ def _check_units(vehicle: Vehicle) -> None:
                     name,
                     entry,
                 )
-        definition, entry = (parameter.value, "value") if parameter.value is not None else (parameter.equals, "equals")
-        assert definition is not None
-        _dimension(vehicle, definition, _dimensions_so_far(vehicle, definition), "parameters", name, entry)
-    dimensions = vehicle.dimensions
+    dimensions: dict[str, Dimension] = {}
+    for name in vehicle.parameters:
+        _find_dimension(vehicle, name, dimensions)
+    for path, expression, expected in vehicle.quantities():
+        _expect(vehicle, expression, expected, dimensions, *path)
     for name, parameter in vehicle.parameters.items():
         for index, bound in enumerate(parameter.range or ()):
             _expect(vehicle, bound, dimensions[name], {}, "parameters", name, "range", index)
@@ -127,19 +145,18 @@ def _check_units(vehicle: Vehicle) -> None:
             if expression.names:
                 raise _fail(vehicle, "a set lists plain quantities, not expressions of parameters", "sets", set_name, name)
             _expect(vehicle, expression, dimensions[name], {}, "sets", set_name, name)
-    for path, expression, expected in vehicle.quantities():
-        _expect(vehicle, expression, expected, dimensions, *path)
 
 
-def _dimensions_so_far(vehicle: Vehicle, expression: Expression) -> dict[str, Dimension]:
-    """Dimensions of the names an expression uses, found through their definitions."""
-    found: dict[str, Dimension] = {}
-    for name in expression.names & vehicle.parameters.keys():
-        definition = vehicle.parameters[name].value or vehicle.parameters[name].equals
-        assert definition is not None
-        entry = "value" if vehicle.parameters[name].value is not None else "equals"
-        found[name] = _dimension(vehicle, definition, _dimensions_so_far(vehicle, definition), "parameters", name, entry)
-    return found
+def _find_dimension(vehicle: Vehicle, name: str, dimensions: dict[str, Dimension]) -> None:
+    """Add a parameter's dimension, and those it follows from, to `dimensions`."""
+    if name in dimensions:
+        return
+    parameter = vehicle.parameters[name]
+    definition, entry = (parameter.value, "value") if parameter.value is not None else (parameter.equals, "equals")
+    assert definition is not None
+    for symbol in definition.symbols:
+        _find_dimension(vehicle, symbol.name, dimensions)
+    dimensions[name] = _dimension(vehicle, definition, dimensions, "parameters", name, entry)
 
 
 def _dimension(vehicle: Vehicle, expression: Expression, dimensions: Mapping[str, Dimension], *path: str | int) -> Dimension:
@@ -151,7 +168,7 @@ def _dimension(vehicle: Vehicle, expression: Expression, dimensions: Mapping[str
 
 def _expect(vehicle: Vehicle, expression: Expression, expected: Dimension, dimensions: Mapping[str, Dimension], *path: str | int) -> None:
     found = _dimension(vehicle, expression, dimensions, *path)
-    if found == expected or (not expression.names and expression.evaluate({}) == 0.0):
+    if found == expected or _is_zero(expression):
         return
     what = ".".join(str(part) for part in path)
     message = f"{what} must be in {expected}, found {found} in {expression.text!r}"
@@ -160,6 +177,13 @@ def _expect(vehicle: Vehicle, expression: Expression, expected: Dimension, dimen
         where = f"; give {unitless[0]!r} its unit" if unitless else f"; write e.g. '{expression.text} {expected}'"
         message = f"missing unit: {message}{where}"
     raise _fail(vehicle, message, *path)
+
+
+def _is_zero(expression: Expression) -> bool:
+    try:
+        return not expression.names and expression.evaluate({}) == 0.0
+    except ExpressionError:
+        return False
 
 
 def _check_connections(vehicle: Vehicle) -> None:
@@ -201,13 +225,16 @@ def _check_connections(vehicle: Vehicle) -> None:
 
 
 def _check_tree(vehicle: Vehicle) -> None:
-    """Refuse loops of hinges and of carriers."""
+    """Refuse loops of hinges and of carriers, and `at` for a body that is already placed."""
     group = {name: name for name in vehicle.bodies}
 
     def root(name: str) -> str:
         while group[name] != name:
             name = group[name]
         return name
+
+    def join(first: str, second: str) -> None:
+        group[root(second)] = root(first)
 
     for name, hinge in vehicle.hinges.items():
         first, second = (root(end) for end in hinge.points)
@@ -220,7 +247,7 @@ def _check_tree(vehicle: Vehicle) -> None:
                 name,
                 key=True,
             )
-        group[second] = first
+        join(first, second)
     for name in vehicle.bodies:
         trail = [name]
         while (carrier := vehicle.bodies[trail[-1]].carried_by) is not None:
@@ -233,11 +260,32 @@ def _check_tree(vehicle: Vehicle) -> None:
                     "carried_by",
                 )
             trail.append(carrier.body)
+    for name, body in vehicle.bodies.items():
+        if body.carried_by is not None:
+            join(body.carried_by.body, name)
+    for link in vehicle.links.values():
+        if GROUND not in link.points:
+            join(*link.points)
+    placed = {root(next(iter(vehicle.bodies)))}
+    for name, body in vehicle.bodies.items():
+        if body.at is not None:
+            if root(name) in placed:
+                message = f"body {name!r} is placed already, by what connects it to the first body (or to one that has `at`); remove `at`"
+                raise _fail(vehicle, message, "bodies", name, "at", key=True)
+            placed.add(root(name))
 
 
 def _check_values(vehicle: Vehicle) -> None:
+    for name, parameter in vehicle.parameters.items():
+        _check_number(vehicle, parameter.value, "parameters", name, "value")
+        for index, bound in enumerate(parameter.range or ()):
+            _check_number(vehicle, bound, "parameters", name, "range", index)
+    for set_name, entries in vehicle.sets.items():
+        for name, expression in entries.items():
+            _check_number(vehicle, expression, "sets", set_name, name)
+    values = vehicle.values()
     for name, (low, high) in vehicle.ranges().items():
-        value = vehicle.values()[name]
+        value = values[name]
         if not low < high:
             raise _fail(vehicle, f"the range of {name} is empty: {low:g} is not below {high:g}", "parameters", name, "range")
         if not low <= value <= high:
@@ -252,6 +300,18 @@ def _check_values(vehicle: Vehicle) -> None:
         check_values(vehicle, vehicle.values(parameter_set), f" in the set {parameter_set!r}" if parameter_set else "")
 
 
+def _check_number(vehicle: Vehicle, expression: Expression | None, *path: str | int) -> None:
+    """Refuse a plain quantity without a finite value."""
+    if expression is None:
+        return
+    try:
+        number = expression.evaluate({})
+    except ExpressionError as error:
+        raise _fail(vehicle, str(error), *path) from error
+    if not math.isfinite(number):
+        raise _fail(vehicle, f"{expression.text!r} is not a finite number", *path)
+
+
 def check_values(vehicle: Vehicle, free: Mapping[str, float], where: str = "") -> None:
     """Check that masses and inertias are positive and stiffness and damping not negative for these values [SI].
 
@@ -263,12 +323,18 @@ def check_values(vehicle: Vehicle, free: Mapping[str, float], where: str = "") -
     """
     try:
         values = vehicle.all_values(free)
-        numbers = {path: expression.evaluate(values) for path, expression, _ in vehicle.quantities()}
-    except ExpressionError as error:
-        raise InputError(f"{error}{where}") from error
-    for path, number in numbers.items():
-        if number != number or abs(number) == float("inf"):
+    except InputError as error:
+        raise InputError(f"{error.message}{where}", error.position) from error
+    numbers: dict[tuple[str, ...], float] = {}
+    for path, expression, _ in vehicle.quantities():
+        try:
+            number = numbers[path] = expression.evaluate(values)
+        except ExpressionError as error:
+            raise _fail(vehicle, f"{error}{where}", *path) from error
+        if not math.isfinite(number):
             raise _fail(vehicle, f"{'.'.join(path)} is not a finite number{where}", *path)
+        if abs(number) > SCALE or (path[-1] in ("mass", "pitch_inertia") and 0 < number < 1 / SCALE):
+            raise _fail(vehicle, f"{'.'.join(path)} is {number:g}{where}, out of any scale (SI units)", *path)
         if path[-1] in ("mass", "pitch_inertia", "k", "c") and number < 0:
             raise _fail(vehicle, f"negative {path[-1]}: {'.'.join(path)} is {number:g}{where}; it must not be below 0", *path)
     for name, axle in vehicle.axles.items():
@@ -299,13 +365,19 @@ def check_values(vehicle: Vehicle, free: Mapping[str, float], where: str = "") -
                     name,
                     key=True,
                 )
-            if numbers.get(("bodies", name, "pitch_inertia"), 1.0) == 0 and not _is_hinged(vehicle.hinges, name):
+            given = "size" if body.pitch_inertia is None else "pitch_inertia"
+            if given == "pitch_inertia":
+                inertia = numbers["bodies", name, "pitch_inertia"]
+            else:
+                sides = (numbers["bodies", name, "size", side] for side in ("length", "height"))
+                inertia = numbers["bodies", name, "mass"] * sum(side**2 for side in sides)
+            if inertia == 0 and not _is_hinged(vehicle.hinges, name):
                 raise _fail(
                     vehicle,
                     f"a degree of freedom without inertia: body {name!r} pitches with no pitch inertia{where}",
                     "bodies",
                     name,
-                    "pitch_inertia",
+                    given,
                 )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import unicodedata
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -15,15 +16,21 @@ from vehgen.errors import InputError, Position
 MAX_BYTES = 1_000_000
 MAX_VALUES = 20_000
 MAX_DEPTH = 20
+_PLAIN_KEYS = {"str", "int", "float", "bool", "null", "timestamp", "merge", "value"}
 
 
 @dataclass(frozen=True)
 class Located:
-    """A value of a YAML file with its place: a scalar, a list, or a mapping of names to located values."""
+    """A value of a YAML file with its place: a scalar, a list, or a mapping of names to located values.
+
+    `indent` is how many columns right of `position` a scalar's text begins (1 after a quote), None where it does not stand there as it is
+    (a mapping or list, escapes, several lines).
+    """
 
     value: Any
     position: Position
     key_position: Position | None = None
+    indent: int | None = None
 
     def plain(self) -> Any:
         """Return the bare data."""
@@ -33,18 +40,28 @@ class Located:
             return [item.plain() for item in self.value]
         return self.value
 
-    def find(self, path: tuple[str | int, ...], *, key: bool = False) -> Position:
-        """Return the place of the value (or key) at `path`; parts of the path that the file lacks are passed over."""
+    def child(self, part: str | int) -> Located | None:
+        """Return the value under a key or index, None where there is none."""
+        if isinstance(self.value, dict):
+            return self.value.get(str(part))
+        if isinstance(self.value, list) and isinstance(part, int) and part < len(self.value):
+            child: Located = self.value[part]
+            return child
+        return None
+
+    def find(self, path: tuple[str | int, ...], *, key: bool = False, offset: int | None = None) -> Position:
+        """Return the place of the value (or key, or character `offset` of a text) at `path`.
+
+        Parts of the path that the file lacks are passed over.
+        """
         node = self
         for part in path:
-            child: Located | None = None
-            if isinstance(node.value, dict):
-                child = node.value.get(str(part))
-            elif isinstance(node.value, list) and isinstance(part, int) and part < len(node.value):
-                child = node.value[part]
-            if child is not None:
-                node = child
-        return node.key_position if key and node.key_position else node.position
+            node = node.child(part) or node
+        if key and node.key_position:
+            return node.key_position
+        if offset is None or node.indent is None:
+            return node.position
+        return replace(node.position, column=node.position.column + node.indent + offset)
 
 
 def read_document(path: Path) -> Located:
@@ -60,7 +77,10 @@ def read_document(path: Path) -> Located:
         size = path.stat().st_size
         if size > MAX_BYTES:
             raise InputError(f"{path} has {size} bytes; a file of at most {MAX_BYTES} bytes was expected")
-        text = path.read_text(encoding="utf-8")
+        with path.open(encoding="utf-8") as file:
+            text = file.read(MAX_BYTES + 1)
+        if len(text) > MAX_BYTES:
+            raise InputError(f"{path} does not end; a file of at most {MAX_BYTES} bytes was expected")
     except FileNotFoundError as error:
         raise InputError(f"no file {path}") from error
     except IsADirectoryError as error:
@@ -109,7 +129,7 @@ class _Converter:
         if isinstance(node, SequenceNode) and kind == "seq":
             return Located([self.convert(item, depth + 1) for item in node.value], position)
         if isinstance(node, ScalarNode):
-            return Located(_scalar(node, kind, position), position)
+            return Located(_scalar(node, kind, position), position, indent=_indent(node))
         raise InputError(f"the tag {node.tag} is not allowed", position)
 
     def _mapping(self, node: MappingNode, depth: int) -> dict[str, Located]:
@@ -118,14 +138,20 @@ class _Converter:
             place = Position(self.path, key.start_mark.line + 1, key.start_mark.column + 1)
             if not isinstance(key, ScalarNode):
                 raise InputError("a key must be a name", place)
+            if str(key.tag).rpartition(":")[2] not in _PLAIN_KEYS:
+                raise InputError(f"the tag {key.tag} is not allowed", place)
+            _check_characters(key.value, place)
             if key.value in mapping:
                 raise InputError(f"duplicate name {key.value!r}; each may stand once", place)
-            mapping[key.value] = replace(self.convert(item, depth + 1), key_position=place)
+            found = replace(self.convert(item, depth + 1), key_position=place)
+            is_nothing = isinstance(item, ScalarNode) and item.start_mark.index == item.end_mark.index
+            mapping[key.value] = replace(found, position=place) if is_nothing else found  # ruamel puts nothing where the next thing begins
         return mapping
 
 
 def _scalar(node: ScalarNode, kind: str, position: Position) -> Any:
     text = node.value
+    _check_characters(text, position)
     try:
         match kind:
             case "null":
@@ -141,3 +167,17 @@ def _scalar(node: ScalarNode, kind: str, position: Position) -> Any:
     except ValueError:
         return text
     raise InputError(f"the tag {node.tag} is not allowed", position)
+
+
+def _indent(node: ScalarNode) -> int | None:
+    """Return how many columns right of its mark the text of a scalar begins, None where it is not written there as it is."""
+    quotes = 1 if node.style in ("'", '"') else 0
+    whole = node.end_mark.line == node.start_mark.line and node.end_mark.column - node.start_mark.column == len(node.value) + 2 * quotes
+    return quotes if whole else None
+
+
+def _check_characters(text: str, position: Position) -> None:
+    """Refuse control characters, which could command a terminal, and half characters, which cannot be written."""
+    for character in text:
+        if unicodedata.category(character) in ("Cc", "Cs") and character not in "\t\n\r":
+            raise InputError(f"the character U+{ord(character):04X} is not allowed in a text", position)

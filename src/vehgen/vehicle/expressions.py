@@ -10,7 +10,7 @@ from __future__ import annotations
 import ast
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, TypeVar
@@ -19,14 +19,17 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from vehgen.errors import did_you_mean
-from vehgen.vehicle.units import NONE, UNITS, Dimension, read_unit
+from vehgen.errors import InputError, did_you_mean
+from vehgen.vehicle.units import NONE, Dimension, nearest_unit, read_unit
 
 MAX_LENGTH = 1000
-_NUMBER = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
-_NAME = re.compile(r"[A-Za-z_]\w*")
+MAX_DEPTH = 100
+_NUMBER = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+_SIGNS = "+-*/^(),"
 _OPERATORS: dict[type[ast.operator], str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
 FUNCTIONS = ("sqrt", "abs", "sign", "min", "max")
+_ALLOWED = f"only numbers, units, parameter names, + - * / ** and {', '.join(FUNCTIONS)} may stand in an expression"
 
 T = TypeVar("T")
 
@@ -78,7 +81,12 @@ class Expression:
     @property
     def names(self) -> frozenset[str]:
         """The parameter names it uses."""
-        return frozenset(_names(self.root))
+        return frozenset(symbol.name for symbol in self.symbols)
+
+    @property
+    def symbols(self) -> tuple[Name, ...]:
+        """Each use of a parameter's name, from left to right."""
+        return tuple(_symbols(self.root))
 
     def evaluate(self, values: Mapping[str, float]) -> float:
         """Return its value in SI units; raises ExpressionError where it is undefined."""
@@ -157,7 +165,7 @@ def parse(text: str, extra_functions: tuple[str, ...] = ()) -> Expression:
         offset = offsets[min(max(column - 1, 0), len(offsets) - 1)]
         raise ExpressionError(f"cannot read {text!r} as an expression", offset) from error
     try:
-        return Expression(text, _convert(tree.body, text, quantities, offsets))
+        return Expression(text, _convert(tree.body, quantities, offsets))
     except RecursionError as error:
         raise ExpressionError(f"{text[:40]!r}... is nested too deeply") from error
 
@@ -178,23 +186,32 @@ def _replace_quantities(text: str) -> tuple[str, list[tuple[float, Dimension]], 
         elif number:
             piece, end = f" _q{len(quantities)} ", number.end()
             value, dimension = float(number.group()), NONE
+            if math.isinf(value):
+                raise ExpressionError(f"{number.group()[:40]} is too large a number", position)
             blank = end
             while blank < len(text) and text[blank] == " ":
                 blank += 1
-            unit = read_unit(text, blank)
+            try:
+                unit = read_unit(text, blank)
+            except InputError as error:
+                raise ExpressionError(error.message, blank) from error
             if unit is not None:
                 value, dimension, end = value * unit[0], unit[1], unit[2]
             elif _NAME.match(text, blank):
                 word = _NAME.match(text, blank)
                 assert word is not None
                 raise ExpressionError(
-                    f"{word.group()!r} after {number.group()} is not a unit; {did_you_mean(word.group(), UNITS)} "
+                    f"{word.group()!r} after {number.group()} is not a unit; {nearest_unit(word.group())} "
                     f"(to multiply, write {number.group()} * {word.group()})",
                     blank,
                 )
             quantities.append((value, dimension))
-        else:
+        elif text[position].isspace():
+            piece, end = " ", position + 1
+        elif text[position] in _SIGNS:
             piece, end = ("**" if text[position] == "^" else text[position]), position + 1
+        else:
+            raise ExpressionError(f"{_ALLOWED}, found {text[position]!r}", position)
         pieces.append(piece)
         offsets.extend([position] * len(piece))
         position = end
@@ -203,11 +220,13 @@ def _replace_quantities(text: str) -> tuple[str, list[tuple[float, Dimension]], 
     return source.strip(), quantities, (offsets[lead:] or [0]) + [len(text)]
 
 
-def _convert(node: ast.expr, text: str, quantities: list[tuple[float, Dimension]], offsets: list[int]) -> Node:
+def _convert(node: ast.expr, quantities: list[tuple[float, Dimension]], offsets: list[int], depth: int = 0) -> Node:
     offset = offsets[min(node.col_offset, len(offsets) - 1)]
+    if depth > MAX_DEPTH:
+        raise ExpressionError(f"an expression is nested more than {MAX_DEPTH} deep", offset)
 
     def inside(child: ast.expr) -> Node:
-        return _convert(child, text, quantities, offsets)
+        return _convert(child, quantities, offsets, depth + 1)
 
     match node:
         case ast.Name(id=name) if name.startswith("_q"):
@@ -232,15 +251,12 @@ def _convert(node: ast.expr, text: str, quantities: list[tuple[float, Dimension]
             return Operation(function, tuple(inside(argument) for argument in arguments_), offset)
         case ast.Call():
             raise ExpressionError(f"only {', '.join(FUNCTIONS)} may be called in an expression", offset)
-    raise ExpressionError(
-        f"only numbers, units, parameter names, + - * / ** and {', '.join(FUNCTIONS)} may stand in an expression",
-        offset,
-    )
+    raise ExpressionError(_ALLOWED, offset)
 
 
 def _check_exponent(node: Node, offset: int) -> None:
     value = _constant(node)
-    if value is None or abs(value) > 10:
+    if value is None or not abs(value) <= 10:
         raise ExpressionError("an exponent must be a plain number between -10 and 10", offset)
 
 
@@ -256,12 +272,12 @@ def _constant(node: Node) -> float | None:
     return None
 
 
-def _names(node: Node) -> set[str]:
+def _symbols(node: Node) -> Iterator[Name]:
     if isinstance(node, Name):
-        return {node.name}
-    if isinstance(node, Number):
-        return set()
-    return set().union(*(_names(argument) for argument in node.arguments))
+        yield node
+    elif isinstance(node, Operation):
+        for argument in node.arguments:
+            yield from _symbols(argument)
 
 
 def apply_float(operator: str, arguments: list[float]) -> float:

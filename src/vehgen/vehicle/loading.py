@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from importlib import resources
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
 
@@ -15,6 +15,7 @@ from vehgen.vehicle.document import Located, read_document, read_text
 from vehgen.vehicle.model import Joint, Vehicle
 
 Model = TypeVar("Model", bound=BaseModel)
+MAX_EXTENDS = 20
 
 
 def models_folder() -> Path:
@@ -39,12 +40,22 @@ def find_vehicle_file(name: str | Path, beside: Path | None = None) -> Path:
     """
     path = Path(name)
     local = path if path.is_absolute() or beside is None else beside / path
-    if local.exists():
-        return local
-    bundled = bundled_models()
+    try:
+        if local.exists():
+            return local
+    except OSError as error:
+        raise InputError(f"cannot read {local}: {error.strerror}") from error
+    try:
+        return _find_bundled(path)
+    except InputError as error:
+        raise InputError(f"no file {local}, and {error.message}") from error
+
+
+def _find_bundled(name: str | Path) -> Path:
+    path, bundled = Path(name), bundled_models()
     if path.parent == Path() and path.stem in bundled and path.suffix in ("", ".yaml"):
         return bundled[path.stem]
-    raise InputError(f"no file {local}, and no bundled model {path.stem!r}; {did_you_mean(path.stem, bundled)}")
+    raise InputError(f"no bundled model {path.stem!r}; {did_you_mean(path.stem, bundled)}")
 
 
 def load_vehicle(name: str | Path, beside: Path | None = None) -> Vehicle:
@@ -89,7 +100,13 @@ def _read_extended(path: Path, seen: tuple[Path, ...], at: Position | None = Non
     if resolved in seen:
         chain = " -> ".join(item.name for item in (*seen[seen.index(resolved) :], resolved))
         raise InputError(f"circular `extends`: {chain}", at)
-    return _extend(read_document(path), path, (*seen, resolved))
+    if len(seen) >= MAX_EXTENDS:
+        raise InputError(f"more than {MAX_EXTENDS} files extend one another", at)
+    try:
+        document = read_document(path)
+    except InputError as error:
+        raise InputError(error.message, error.position or at) from error
+    return _extend(document, path, (*seen, resolved))
 
 
 def _extend(document: Located, path: Path | None, seen: tuple[Path, ...]) -> tuple[Located, tuple[Path, ...]]:
@@ -102,7 +119,7 @@ def _extend(document: Located, path: Path | None, seen: tuple[Path, ...]) -> tup
     if not isinstance(base_name.value, str):
         raise InputError("`extends` names a file", base_name.position)
     try:
-        base_path = find_vehicle_file(base_name.value, path.parent if path else Path("/nonexistent"))
+        base_path = find_vehicle_file(base_name.value, path.parent) if path else _find_bundled(base_name.value)
     except InputError as error:
         raise InputError(error.message, base_name.position) from error
     base, base_files = _read_extended(base_path, seen, base_name.position)
@@ -117,7 +134,7 @@ def merge(base: Located, change: Located) -> Located:
         return change
     kept = dict(base.value)
     for clash, other in (("equals", ("value", "range")), ("value", ("equals",))):
-        if clash in change.value:
+        if clash in change.value and not isinstance(change.value[clash].value, dict):
             kept = {key: item for key, item in kept.items() if key not in other}
     for key, item in change.value.items():
         if item.value is None:
@@ -143,21 +160,26 @@ def validate(model: type[Model], data: Any, document: Located) -> Model:
 def _translate(error: ValidationError, model: type[BaseModel], document: Located) -> InputError:
     errors = error.errors()
     first = next((item for item in errors if item["type"] == "extra_forbidden"), errors[0])
-    path = tuple(part for part in first["loc"] if part != "points")
+    if isinstance(first["input"], dict) and first["type"] in ("quantity", "string_type"):  # the entry is one of two kinds: not this one
+        beside = first["loc"][:-1]
+        first = next((item for item in errors if item["loc"][: len(beside)] == beside and item["type"] != first["type"]), first)
+    path = (*_in_file(first["loc"][:-1], document), first["loc"][-1])
     if first["type"] == "extra_forbidden":
         key = str(path[-1])
-        known = sorted(set(_fields_beside(model, path)))
+        known = sorted({*_fields_beside(model, first["loc"]), *(["extends"] if model is Vehicle and len(path) == 1 else [])})
         return InputError(f"unknown key {key!r}; {did_you_mean(key, known)}", document.find(path, key=True))
+    if first["type"] in ("missing", "too_long", "tuple_type") and "range" in path[-2:]:
+        return InputError("a range has two ends: [low, high]", document.find(path))
     if first["type"] == "missing":
         place = ".".join(str(part) for part in path[:-1]) or "the file"
         return InputError(f"{place} lacks the key {str(path[-1])!r}", document.find(path[:-1], key=True))
-    position = document.find(path)
     offset = (first.get("ctx") or {}).get("offset")
-    if isinstance(offset, int):
-        position = Position(position.file, position.line, position.column + offset)
+    position = document.find(path, offset=offset if isinstance(offset, int) else None)
     message = first["msg"]
     if first["type"] in ("model_type", "dict_type"):
         message = "expected `key: value` entries"
+    elif first["type"] in ("tuple_type", "list_type"):
+        message = f"expected a list: [first, second], or lines that begin with `- ` (found {str(first['input'])[:60]!r})"
     elif first["type"] == "literal_error":
         message = f"{message[0].lower()}{message[1:]}, found {first['input']!r}"
     elif first["type"] not in ("expression", "joint", "parameter", "axle", "quantity"):
@@ -165,26 +187,33 @@ def _translate(error: ValidationError, model: type[BaseModel], document: Located
     return InputError(message, position)
 
 
+def _in_file(path: tuple[int | str, ...], document: Located) -> tuple[int | str, ...]:
+    """Leave out what pydantic adds to a path: the names of fields and of kinds that the file does not show."""
+    node = document
+    kept: list[int | str] = []
+    for part in path:
+        child = node.child(part)
+        if child is not None:
+            node = child
+            kept.append(part)
+    return tuple(kept)
+
+
 def _fields_beside(model: type[BaseModel], path: tuple[int | str, ...]) -> Iterator[str]:
-    """Yield the keys allowed where the unknown key at `path` stands."""
+    """Yield the keys allowed where the unknown key at pydantic's `path` stands."""
     current: Any = model
     for part in path[:-1]:
-        annotation = current.model_fields[part].annotation if _is_model(current) and part in current.model_fields else current
-        current = _inner_model(annotation)
+        if _is_model(current):
+            current = next((field.annotation for name, field in current.model_fields.items() if part in (name, field.alias)), None)
+        else:  # dict[str, X], list[X], or a union whose chosen member `part` names
+            current = get_args(current)[-1] if get_args(current) else None
+        if type(None) in get_args(current):
+            current = get_args(current)[0]
     if _is_model(current):
-        yield from (name for name in current.model_fields if not (issubclass(current, Joint) and name == "points"))
+        for name, field in current.model_fields.items():
+            if not (issubclass(current, Joint) and name == "points"):
+                yield field.alias or name
 
 
 def _is_model(item: Any) -> bool:
     return isinstance(item, type) and issubclass(item, BaseModel)
-
-
-def _inner_model(annotation: Any) -> Any:
-    """Return the first pydantic model inside an annotation such as dict[str, Body] or Spring | None."""
-    if _is_model(annotation):
-        return annotation
-    for argument in getattr(annotation, "__args__", ()):
-        found = _inner_model(argument)
-        if _is_model(found):
-            return found
-    return annotation

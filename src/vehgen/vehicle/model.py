@@ -11,12 +11,14 @@ from pydantic_core import PydanticCustomError
 
 from vehgen.errors import InputError, Position, did_you_mean
 from vehgen.vehicle.document import Located
-from vehgen.vehicle.expressions import Expression, parse
+from vehgen.vehicle.expressions import Expression, ExpressionError, parse
 from vehgen.vehicle.units import DAMPING, INERTIA, LENGTH, MASS, MOMENT, PITCH_DAMPING, STIFFNESS, Dimension
 
 GROUND = "ground"
 Motion = Literal["heave", "pitch"]
 ZERO = parse("0")
+LawEntry = dict[str, Expression | dict[str, Expression]]
+"""Parameters of a force law; of an own `law`, its `force` and its `parameters`."""
 
 
 class Noun(BaseModel):
@@ -81,26 +83,24 @@ class Spring(Noun):
 
     k: Expression = ZERO
     c: Expression = ZERO
+    laws: tuple[dict[str, LawEntry], ...] = Field((), description="force laws in parallel with k and c, each `{name: {parameter: value}}`")
 
 
 class Joint(Spring):
     """What joins two bodies: the keys that are not its own are the bodies' names."""
 
-    model_config = ConfigDict(
-        extra="forbid",
-        frozen=True,
-        json_schema_extra=lambda schema: _describe_joint(schema),
-    )
     points: dict[str, Point] = Field(default_factory=dict)
     title: str = ""
 
     @model_validator(mode="before")
     @classmethod
     def _gather_points(cls, data: Any) -> Any:
-        if not isinstance(data, Mapping) or "points" in data:
+        if not isinstance(data, Mapping):
             return data
-        own = {key: value for key, value in data.items() if key in cls.model_fields}
-        points = {key: ({} if value is None else value) for key, value in data.items() if key not in cls.model_fields}
+        own = {key: value for key, value in data.items() if key in cls.model_fields or "points" in data}
+        points = own.pop("points", {key: ({} if value is None else value) for key, value in data.items() if key not in own})
+        if not isinstance(points, Mapping):
+            return data
         if len(points) != 2:
             named = ", ".join(points) or "none"
             raise PydanticCustomError(
@@ -113,11 +113,6 @@ class Joint(Spring):
         """The two (body name, point) in the file's order."""
         first, second = self.points.items()
         return first, second
-
-
-def _describe_joint(schema: dict[str, Any]) -> None:
-    schema["properties"].pop("points", None)
-    schema["additionalProperties"] = {"$ref": "#/$defs/Point"}
 
 
 class Hinge(Joint):
@@ -175,9 +170,9 @@ class Vehicle(Noun):
         """The files it was read from: its own first, then those it extends."""
         return self._files
 
-    def position(self, *path: str | int, key: bool = False) -> Position | None:
-        """Return where the value (or key) at `path` stands in its file."""
-        return self._document.find(path, key=key) if self._document else None
+    def position(self, *path: str | int, key: bool = False, offset: int | None = None) -> Position | None:
+        """Return where the value (or key, or character `offset` of a text) at `path` stands in its file."""
+        return self._document.find(path, key=key, offset=offset) if self._document else None
 
     @property
     def free_parameters(self) -> tuple[str, ...]:
@@ -232,14 +227,25 @@ class Vehicle(Noun):
         return values
 
     def all_values(self, free: Mapping[str, float]) -> dict[str, float]:
-        """Return the values of all parameters, those given by `equals` included [SI]."""
+        """Return the values of all parameters, those given by `equals` included [SI].
+
+        Raises
+        ------
+        InputError
+            Where an `equals` has no value for these, such as 1/0.
+
+        """
         values = dict(free)
 
         def value(name: str) -> float:
             if name not in values:
                 definition = self.parameters[name].equals
                 assert definition is not None
-                values[name] = definition.evaluate({other: value(other) for other in definition.names})
+                used = {other: value(other) for other in definition.names}
+                try:
+                    values[name] = definition.evaluate(used)
+                except ExpressionError as error:
+                    raise InputError(str(error), self.position("parameters", name, "equals")) from error
             return values[name]
 
         return {name: value(name) for name in self.parameters}

@@ -19,4 +19,7 @@ def vehicle_schema() -> dict[str, Any]:
     schema.pop("required", None)
     for name in ("Body", "Axle"):
         schema["$defs"][name].pop("required", None)
+    for name in ("Hinge", "Link"):
+        joint = schema["$defs"][name]
+        joint["additionalProperties"] = joint["properties"].pop("points")["additionalProperties"]
     return schema

@@ -99,7 +99,8 @@ UNITS: dict[str, tuple[float, Dimension]] = {
 }
 """Unit name -> (factor to SI, dimension)."""
 
-_ATOM = re.compile(r"([A-Za-z]+)(?:(?:\^|\*\*)(-?\d+))?")
+MAX_EXPONENT = 9
+_ATOM = re.compile(r"([A-Za-z]+)(?:(?:\^|\*\*)(-?[0-9]+))?")
 _JOIN = re.compile(r"\s*([/*·])\s*|\s+")
 
 
@@ -111,6 +112,11 @@ def read_unit(text: str, start: int = 0) -> tuple[float, Dimension, int] | None:
     (factor, dimension, end) with the factor to SI, or None where no unit stands.
     `N s/m` divides by the metre only; `*`, a space and a middle dot multiply.
 
+    Raises
+    ------
+    InputError
+        For an exponent beyond MAX_EXPONENT.
+
     """
     factor, dimension, end = 1.0, NONE, start
     divide = False
@@ -119,6 +125,10 @@ def read_unit(text: str, start: int = 0) -> tuple[float, Dimension, int] | None:
         atom = _ATOM.match(text, position)
         if atom is None or atom.group(1) not in UNITS or _continues_name(text, atom.end()):
             break
+        if end > start and text.startswith("(", atom.end()):
+            break  # `0.5 m * min(a, b)`: a function, not minutes
+        if len((atom.group(2) or "").lstrip("-0")) > 1:
+            raise InputError(f"the exponent of a unit must be between -{MAX_EXPONENT} and {MAX_EXPONENT}, found {atom.group(2)[:40]}")
         size, unit = UNITS[atom.group(1)]
         exponent = int(atom.group(2) or 1) * (-1 if divide else 1)
         factor *= size**exponent
@@ -136,10 +146,16 @@ def _continues_name(text: str, position: int) -> bool:
     return position < len(text) and (text[position].isalnum() or text[position] == "_")
 
 
+def nearest_unit(word: str) -> str:
+    """Say which units are nearest to `word`: those that differ in capitals only, else those spelt alike."""
+    same = [unit for unit in UNITS if unit.lower() == word.lower()]
+    return "did you mean " + " or ".join(repr(unit) for unit in same) + "?" if same else did_you_mean(word, UNITS)
+
+
 def parse_unit(text: str) -> tuple[float, Dimension]:
     """Parse a whole unit such as `kN s/m`; raises InputError naming the nearest unit."""
     found = read_unit(text.strip())
     if found is None or found[2] != len(text.strip()):
         word = text.strip().split("/")[0].split(" ")[0]
-        raise InputError(f"unknown unit {text!r}; {did_you_mean(word, UNITS)}")
+        raise InputError(f"unknown unit {text!r}; {nearest_unit(word)}")
     return found[0], found[1]

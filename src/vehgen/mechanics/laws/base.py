@@ -30,6 +30,7 @@ class LawParameter:
     meaning: str
     low: float
     high: float
+    default: float | None = None
 
     def dimension(self, kind: Kind) -> Dimension:
         """Return its dimension on a suspension, tyre, link (force and length) or hinge (moment and angle)."""

@@ -35,7 +35,7 @@ HYSTERESIS = Law(
     parameters=(
         LawParameter("force", (1, 0, 0), "force of the fully developed loop", 0.0, 2.0e4),
         LawParameter("travel", (0, 1, 0), "travel over which the loop develops", 5.0e-4, 0.02),
-        LawParameter("beta", (0, 0, 0), "share of the loss that follows |v| (0.5: straight unloading)", 0.3, 1.0),
+        LawParameter("beta", (0, 0, 0), "share of the loss that follows |v| (0.5: straight unloading)", 0.3, 1.0, 0.5),
     ),
     write=_write,
     states=("z",),

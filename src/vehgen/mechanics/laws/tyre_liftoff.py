@@ -21,7 +21,7 @@ TYRE_LIFTOFF = Law(
     meaning="over a sharp hump the wheel loses contact; the static load decides when",
     source="D. Cebon, Handbook of Vehicle-Road Interaction, 1999",
     strength="share",
-    parameters=(LawParameter("share", (0, 0, 0), "1: the tyre cannot pull; 0: the linear tyre", 0.0, 1.0),),
+    parameters=(LawParameter("share", (0, 0, 0), "1: the tyre cannot pull; 0: the linear tyre", 0.0, 1.0, 1.0),),
     write=_write,
     attaches_to=("tyre",),
 )
