@@ -25,10 +25,11 @@ class Factor:
     def solve(self, program: Program, right: list[Node]) -> list[Node]:
         """Return the solution of A x = right as nodes of the program."""
         x = list(right)
-        for column in self.order:
-            for (i, j), factor in self.lower.items():
-                if j == column:
-                    x[i] = program.subtract(x[i], program.multiply(factor, x[column]))
+        done: list[int] = []
+        for row in self.order:
+            terms = [program.negate(program.multiply(self.lower[row, j], x[j])) for j in done if (row, j) in self.lower]
+            x[row] = program.total([x[row], *terms])
+            done.append(row)
         for row in reversed(self.order):
             terms = [program.multiply(self.inverse[row], x[row])]
             terms += [program.negate(program.multiply(factor, x[i])) for (i, j), factor in self.lower.items() if j == row]
