@@ -28,7 +28,6 @@ _HOMES = {
     "Simulator": "vehgen.simulate",
     "load_run": "vehgen.simulate",
     "natural_modes": "vehgen.simulate",
-    "simulate": "vehgen.simulate",
 }
 
 __all__ = [*_HOMES]
@@ -37,7 +36,7 @@ if TYPE_CHECKING:
     from vehgen.codegen import Drive, Kernel
     from vehgen.errors import InputError, ModelWarning
     from vehgen.mechanics import ElementOutput, LinearModel, Place, PointOutput, derive, static_loads
-    from vehgen.simulate import Response, Simulator, load_run, natural_modes, simulate
+    from vehgen.simulate import Response, Simulator, load_run, natural_modes
     from vehgen.vehicle import bundled_models, load_vehicle, parse_vehicle
 
 

@@ -66,7 +66,7 @@ def test_an_unknown_key_is_refused_wherever_it_stands(name: str):
             assert not VEHICLE.is_valid(data), path
             del item["massss"]
             count += 1
-    assert count > 20
+    assert count > 8
     assert VEHICLE.is_valid(data)
 
 

@@ -199,7 +199,10 @@ class Condensation:
             for i in range(self.model.n_dof)
         ]
         states = [(program.leaf(f"f{joint.number}", STEP), forces[joint.number]) for joint in self.joints]
-        states += [(program.leaf(f"g{joint.number}", STEP), stuck[joint.number]) for joint in self.joints if joint.friction]
+        for joint in self.joints:
+            if joint.friction:
+                last = program.leaf(f"g{joint.number}", STEP)
+                states += [(program.leaf(f"h{joint.number}", STEP), last), (last, stuck[joint.number])]
         for joint in self.joints:
             rate = self._times(joint.row, middle)
             d = program.add(starts[joint.number], program.multiply(self.half_h, rate))
@@ -238,9 +241,13 @@ class Condensation:
         program, i = self.program, joint.number
         others = [program.negate(program.multiply(self.normalised[i][j], force)) for j, force in enumerate(before) if j != i]
         needed = program.total([pull, *others, program.negate(smooth), program.multiply(slope, slip)])
-        zero = program.number(0.0)
+        return self._clip(joint, needed)
+
+    def _clip(self, joint: _Joint, force: Node) -> Node:
+        """Clip a friction force to its bound."""
+        program, zero = self.program, self.program.number(0.0)
         bound = self._read(joint, sp.Add(*(step.friction for step in joint.steps)), zero, zero, STEP)
-        return program.apply("min", program.apply("max", needed, program.negate(bound)), bound)
+        return program.apply("min", program.apply("max", force, program.negate(bound)), bound)
 
     def _residual(self, before: list[Node], after: list[Node]) -> Node:
         worst = self.program.leaf("residual", STEP)
@@ -249,7 +256,10 @@ class Condensation:
         return worst
 
     def now(self, u: list[Node], v: list[Node], drives: list[Node]) -> list[Node]:
-        """Return every element's law force at a sample: smooth laws at that instant, friction as in the step before."""
+        """Return every element's law force at a sample: smooth laws at that instant, friction from the two steps before.
+
+        A sample ends a step, half a step after the friction last found; the line through the last two forces reaches it.
+        """
         program, width = self.program, len(self.model.inputs)
         found = []
         for joint in self.joints:
@@ -257,7 +267,9 @@ class Condensation:
             rate = program.add(self._times(joint.row, v), self._times(joint.input_row, drives[width:]))
             force = self._read(joint, sp.Add(*(step.now for step in joint.steps)), d, rate, SAMPLE)
             if joint.friction:
-                force = program.add(force, program.leaf(f"g{joint.number}", SAMPLE))
+                last, before = (program.leaf(f"{name}{joint.number}", SAMPLE) for name in "gh")
+                half = program.multiply(program.number(0.5), program.subtract(last, before))
+                force = program.add(force, self._clip(joint, program.add(last, half)))
             found.append(force)
         return found
 

@@ -13,8 +13,6 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 SETUP, STEP, SAMPLE = 0, 1, 2
-_CHAIN = 4
-"""Longest chain of additions."""
 
 Node = int
 """A node of a program: its number."""
@@ -122,14 +120,8 @@ class Program:
         return self.apply("/", left, right)
 
     def total(self, terms: list[Node]) -> Node:
-        """Return the sum of the terms: positive ones first, so that no sum starts with a minus.
-
-        A long sum is split into parallel chains, because each addition waits for the one before it in its chain.
-        """
+        """Return the sum of the terms: positive ones first, so that no sum starts with a minus."""
         ordered = sorted(terms, key=lambda term: self.operations[term] == "neg")
-        if len(ordered) > _CHAIN:
-            half = (len(ordered) + 1) // 2
-            return self.add(self.total(ordered[:half]), self.total(ordered[half:]))
         result = self.number(0.0)
         for term in ordered:
             result = self.add(result, term)

@@ -13,7 +13,7 @@ EXAMPLE = "python -m vehgen simulate run.yaml --out response.csv --plot"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.add_argument("run_file", metavar="RUN", help="a run file")
-    parser.add_argument("--out", metavar="CSV", type=Path, help="where to write the response (default: RUN with .csv)")
+    parser.add_argument("--out", metavar="CSV", type=Path, help="where to write the response (default: RUN_response.csv beside it)")
     parser.add_argument("--plot", action="store_true", help="draw the response too, beside the CSV file")
     add_json(parser)
 

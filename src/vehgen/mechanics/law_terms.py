@@ -101,8 +101,15 @@ def _read_custom(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], give
 
 def _expect(vehicle: Vehicle, expression: Expression, expected: Dimension, dimensions: Mapping[str, Dimension], *path: str | int) -> None:
     found = _dimension(vehicle, expression, dimensions, *path)
-    if found != expected and (expression.names or expression.evaluate({}) != 0.0):
+    if found != expected and (expression.names or _value(vehicle, expression, *path) != 0.0):
         raise InputError(f"{path[-1]} must be in {expected}, found {found} in {expression.text!r}", vehicle.position(*path))
+
+
+def _value(vehicle: Vehicle, expression: Expression, *path: str | int) -> float:
+    try:
+        return expression.evaluate({})
+    except ExpressionError as error:
+        raise InputError(str(error), vehicle.position(*path)) from error
 
 
 def _dimension(vehicle: Vehicle, expression: Expression, dimensions: Mapping[str, Dimension], *path: str | int) -> Dimension:

@@ -102,8 +102,14 @@ def _match(pairs: list[tuple[complex, complex, NDArray[np.complex128]]], numeric
     result = []
     for j in chosen:
         first, second, _ = pairs[j]
-        result.append((radii[j], float(-(first + second).real / (2 * radii[j])) if radii[j] else 0.0))
+        result.append((radii[j], _ratio(first + second, radii[j])))
     return result
+
+
+def _ratio(total: complex, radius: float) -> float:
+    """Return -(sum of a pair)/(2 radius), zero where it is rounding error."""
+    ratio = float(-total.real / (2 * radius)) if radius else 0.0
+    return ratio if abs(ratio) > 1e-12 else 0.0
 
 
 def _names(model: LinearModel, shares: list[Array]) -> list[str]:

@@ -1,0 +1,57 @@
+"""Write force-laws.md from the library of laws: `python docs/make_force_laws_page.py`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from vehgen.mechanics.laws import LAWS
+
+PAGE = Path(__file__).parent / "force-laws.md"
+HEAD = """\
+# Force laws
+
+Made by `python docs/make_force_laws_page.py` from the library.
+
+A suspension, tyre, link or hinge may carry any number of laws in parallel with its k and c:
+
+```yaml
+axles:
+  axle1:
+    body: tractor
+    x: b1
+    mass: m1
+    suspension: {k: k1, c: c1, laws: [{dry_friction: {force: 3 kN}}, {bump_stop: {k: 2 MN/m, clearance: 60 mm}}]}
+    tyre: {k: kt1, laws: [{tyre_liftoff: {}}]}
+```
+
+Travel d and rate v are positive in compression and count from static equilibrium. On a hinge they are the relative pitch and its
+rate, and forces are moments.
+A parameter of a law may be an expression of the vehicle's parameters, so that calibration can search it;
+its strength at zero gives the linear vehicle.
+
+Your own law is an expression of d, v and its parameters:
+
+```yaml
+suspension: {k: k1, c: c1, laws: [{law: {force: k3*d**3, parameters: {k3: 5e7 N/m^3}}}]}
+```
+
+`sqrt`, `abs`, `sign`, `min` and `max` may be used. Its units are checked like any other.
+"""
+
+
+def page() -> str:
+    """Return the page's text."""
+    lines = [HEAD]
+    for law in LAWS.values():
+        lines += [f"## {law.name}", "", f"**{law.title}.** {law.meaning[0].upper()}{law.meaning[1:]}.", "", f"    {law.equation}", ""]
+        lines += ["| parameter | unit on a spring | usual range, SI | meaning |", "|---|---|---|---|"]
+        for item in law.parameters:
+            optional = "" if item.default is None else f" (default {item.default:g})"
+            unit = str(item.dimension("link")).replace("no unit", "–")
+            lines.append(f"| `{item.name}`{optional} | {unit} | {item.low:g} to {item.high:g} | {item.meaning} |")
+        lines += ["", f"On: {', '.join(law.attaches_to)}. Source: {law.source}.", ""]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), encoding="utf-8")

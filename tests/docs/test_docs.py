@@ -1,0 +1,52 @@
+"""What the pages show is there and works."""
+
+import importlib.util
+import re
+from pathlib import Path
+
+import pytest
+
+from vehgen.mechanics import derive
+from vehgen.simulate import load_run, simulate
+from vehgen.vehicle import bundled_models, load_vehicle
+
+ROOT = Path(__file__).parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.name)
+def test_links_lead_somewhere(page):
+    for target in re.findall(r"\]\(([^)#]+)\)", page.read_text(encoding="utf-8")):
+        if not target.startswith("http"):
+            assert (page.parent / target).exists(), target
+
+
+def test_every_bundled_vehicle_is_drawn():
+    text = (ROOT / "docs" / "models.md").read_text(encoding="utf-8")
+    for name in bundled_models():
+        assert f"## {name}\n" in text
+        assert (ROOT / "docs" / "images" / "models" / f"{name}.svg").exists()
+
+
+def test_force_laws_page_is_up_to_date():
+    specification = importlib.util.spec_from_file_location("make_force_laws_page", ROOT / "docs" / "make_force_laws_page.py")
+    module = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(module)
+    assert module.PAGE.read_text(encoding="utf-8") == module.page()
+
+
+def test_the_tutorials_road_train():
+    run = load_run(ROOT / "docs" / "examples" / "two_humps.yaml")
+    response = simulate(run)
+    peaks = {channel.name: abs(response.values[0, :, i]).max() for i, channel in enumerate(response.channels)}
+    assert peaks["cab_az"] == pytest.approx(3.7584, abs=1e-4)
+    assert peaks["tridem_force"] == pytest.approx(69302, abs=1)
+    assert any("tridem_front would leave the road" in text for text in response.warnings)
+    assert derive(run.vehicle).n_dof == 16
+
+
+def test_the_tutorials_files_are_those_on_the_page():
+    text = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
+    for name in ("my_truck.yaml", "two_humps.yaml"):
+        assert (ROOT / "docs" / "examples" / name).read_text(encoding="utf-8") in text
+    assert load_vehicle(ROOT / "docs" / "examples" / "my_truck.yaml").title == "My first truck"

@@ -1,0 +1,160 @@
+"""Runs, populations, inputs of every kind, and what is warned of."""
+
+import csv
+
+import numpy as np
+import pytest
+
+from vehgen.errors import InputError, ModelWarning
+from vehgen.mechanics import ElementOutput, Place, PointOutput, derive, static_loads
+from vehgen.simulate import Simulator, lint, load_run, make_scenario, simulate, write_csv
+from vehgen.vehicle import load_vehicle, parse_vehicle
+
+
+def run_of(tmp_path, text):
+    path = tmp_path / "run.yaml"
+    path.write_text(text)
+    return load_run(path)
+
+
+QUIET = "vehicle: tractor5\nspeed: 2 m/s\nduration: 0.5 s\n"
+
+
+def test_a_harmonic_force_gives_the_steady_state(tmp_path):
+    text = (
+        "vehicle: quarter_car\nspeed: 1 m/s\nduration: 60 s\nforces: {push: {body: body, harmonic: {amplitude: 2 kN, frequency: 5 Hz}}}\n"
+    )
+    text += "sensors: {s: {body: body, channels: {displacement: z}}}\n"
+    response = simulate(run_of(tmp_path, text))
+    numeric = derive(load_vehicle("quarter_car")).numeric()
+    w = 2 * np.pi * 5
+    expected = 2000 * np.linalg.inv(numeric.K + 1j * w * numeric.C - w**2 * numeric.M)[0, 0]
+    late = response.time > 40
+    fit = np.exp(-1j * w * response.time[late])
+    found = 2j * np.mean(response.values[0, late, 0] * fit)
+    assert abs(found) == pytest.approx(abs(expected), rel=2e-3)
+    assert np.angle(found / expected) == pytest.approx(0, abs=5e-3)
+
+
+def test_a_moving_ground_shakes_a_rig(tmp_path):
+    vehicle = "bodies: {table: {mass: 100 kg, motions: [heave]}}\nlinks: {rig: {ground: {}, table: {}, k: 1 MN/m, c: 2 kN s/m}}\n"
+    (tmp_path / "rig.yaml").write_text(vehicle)
+    text = "vehicle: rig.yaml\nspeed: 1 m/s\nduration: 20 s\ndisplacements: {rig: {harmonic: {amplitude: 5 mm, frequency: 6 Hz}}}\n"
+    text += "sensors: {s: {body: table, channels: {displacement: z}}}\noutputs: {f: {link: rig, quantity: link_force}}\n"
+    response = simulate(run_of(tmp_path, text))
+    w = 2 * np.pi * 6
+    gain = (1e6 + 2e3j * w) / (1e6 + 2e3j * w - 100 * w**2)
+    late = response.time > 10
+    assert np.abs(response.values[0, late, 0]).max() == pytest.approx(0.005 * abs(gain), rel=5e-3)
+    assert np.abs(response.values[0, late, 1]).max() == pytest.approx(100 * w**2 * 0.005 * abs(gain), rel=1e-2)
+
+
+def test_measured_forces_and_profiles(tmp_path):
+    (tmp_path / "force.csv").write_text("t,F\n0,0\n0.1,1000\n100,1000\n")
+    (tmp_path / "road.csv").write_text("s,h\n0,0\n1,0\n1.5,0.02\n500,0.02\n")
+    text = "vehicle: quarter_car\nspeed: 10 m/s\nduration: 40 s\nroad: [{profile: {file: road.csv, distance: s, height: h}}]\n"
+    text += "forces: {push: {body: body, file: force.csv, time: t, force: F}}\nsensors: {s: {body: body, channels: {displacement: z}}}\n"
+    response = simulate(run_of(tmp_path, text))
+    numeric = derive(load_vehicle("quarter_car")).numeric()
+    assert response.values[0, -1, 0] == pytest.approx(0.02 + 1000 * np.linalg.inv(numeric.K)[0, 0], rel=1e-3)
+
+
+def test_tyre_load_is_static_plus_dynamic(tmp_path):
+    text = QUIET + "outputs: {a: {axle: axle1, quantity: tyre_load}, b: {axle: axle1, quantity: tyre_force}}\n"
+    response = simulate(run_of(tmp_path, text))
+    load = static_loads(derive(load_vehicle("tractor5"))).axles["axle1"]
+    np.testing.assert_allclose(response.values[0, :, 0], load, rtol=1e-12)
+    np.testing.assert_allclose(response.values[0, :, 1], 0, atol=1e-9)
+
+
+def test_a_population_with_different_wheelbases(tmp_path):
+    (tmp_path / "two.yaml").write_text("extends: sedan2\n")
+    run = run_of(tmp_path, "vehicle: two.yaml\nspeed: 3 m/s\nroad: [{hump: {shape: versine, length: 0.5 m, height: 2 cm, at: 1 m}}]\n")
+    simulator = Simulator(run.vehicle, [PointOutput("z", Place("s", "body"), "acceleration")])
+    name = "wheelbase"
+    assert name in run.vehicle.free_parameters
+    scenario = make_scenario(run, simulator.model, simulator.model.values())
+    population = simulator.parameters([{}, {name: 3.4}, {}])
+    together = simulator.run(population, scenario).responses
+    for i in range(3):
+        np.testing.assert_array_equal(simulator.run(population[i : i + 1], scenario).responses[0], together[i])
+    assert np.abs(together[0] - together[1]).max() > 0.01
+    np.testing.assert_array_equal(together[0], together[2])
+
+
+def test_failed_individuals_warn(tmp_path):
+    run = run_of(tmp_path, QUIET + "road: [{hump: {shape: versine, length: 0.5 m, height: 2 cm, at: 0.1 m}}]\n")
+    simulator = Simulator(run.vehicle, [ElementOutput("f", "axle1", "tyre_load")])
+    scenario = make_scenario(run, simulator.model, simulator.model.values())
+    population = simulator.parameters([{}, {"k1": float("nan")}])
+    with pytest.warns(ModelWarning, match="1 of 2 individuals failed; individual 1: its parameter k1"):
+        result = simulator.run(population, scenario)
+    assert np.isfinite(result.responses[0]).all()
+
+
+def test_doubts_are_voiced(tmp_path):
+    hump = "road: [{hump: {shape: half_sine, length: 0.4 m, height: 4 cm, at: 1 m}}]\n"
+    warnings = simulate(run_of(tmp_path, "vehicle: tractor5\nspeed: 2 m/s\n" + hump)).warnings
+    assert any("would leave the road" in text for text in warnings)
+    assert any("null at 12.50 Hz" in text and "axle4 hop" in text for text in warnings)
+    assert not any("too coarse" in text for text in warnings)
+    coarse = simulate(run_of(tmp_path, "vehicle: tractor5\nspeed: 2 m/s\nstep: 10 ms\nsample: 10 ms\n" + hump)).warnings
+    assert any("too coarse" in text for text in coarse)
+    gentle = (
+        "vehicle: tractor5\nspeed: 2 m/s\nfootprint: 0.24 m\nroad: [{hump: {shape: half_sine, length: 0.5 m, height: 5 mm, at: 1 m}}]\n"
+    )
+    assert not any("leave the road" in text for text in simulate(run_of(tmp_path, gentle)).warnings)
+
+
+def test_csv_columns(tmp_path):
+    response = simulate(run_of(tmp_path, QUIET + "sensors: {L1: {body: tractor, channels: {acceleration: a, pitch_rate: {column: q}}}}\n"))
+    write_csv(tmp_path / "out.csv", response)
+    rows = list(csv.reader((tmp_path / "out.csv").open()))
+    assert rows[0] == ["t", "a", "q"]
+    assert len(rows) == 52
+    assert [float(row[0]) for row in rows[1:4]] == [0.0, 0.01, 0.02]
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("speed: 2", r"run.yaml:2:8: expected m/s, found no unit in '2'"),
+        ("speed: 0 m/s", r"run.yaml:2:8: expected a finite number above 0"),
+        ("sped: 2 m/s", r"run.yaml:2:1: unknown key 'sped'; did you mean 'speed'"),
+        ("speed: 2 m/s\nset: SHCM-9", r"run.yaml:3:6: tractor5 has no parameter set 'SHCM-9'; did you mean"),
+        ("speed: 2 m/s\nsensors: {L1: {body: trctor}}", r"run.yaml:3:22: tractor5 has no body 'trctor'; did you mean 'tractor'"),
+        ("speed: 2 m/s\nsensors: {L1: {body: tractor, behind: axle9}}", r"did you mean 'axle"),
+        ("speed: 2 m/s\nroad: [{hump: {shape: half_sine, at: 1 m}}]", r"lacks the key length"),
+        ("speed: 2 m/s\nroad: [{}]", r"one of hump, iso8608, profile"),
+        ("speed: 2 m/s\nparameters: {k9: 3 N/m}", r"no parameter with a value 'k9'"),
+        ("speed: 2 m/s\nparameters: {k1: 3 kg}", r"k1 must be in N/m, found kg"),
+        ("speed: 2 m/s\nsample: 1.5 ms", r"whole number of steps"),
+        ("speed: 2 m/s\noutputs: {a: {axle: axle7, quantity: tyre_load}}", r"no axle 'axle7'"),
+    ],
+)
+def test_bad_run_files(tmp_path, line, message):
+    with pytest.raises(InputError, match=message):
+        run_of(tmp_path, f"vehicle: tractor5\n{line}\n")
+
+
+def test_a_run_without_end_is_refused(tmp_path):
+    with pytest.raises(InputError, match="needs `duration`"):
+        simulate(run_of(tmp_path, "vehicle: tractor5\nspeed: 2 m/s\n"))
+
+
+def test_lint_finds_what_is_odd():
+    model = derive(
+        parse_vehicle(
+            "extends: sedan2\naxles: {third: {body: body, x: Lf + 0.1 m, mass: 90 kg, suspension: {k: 1 N/m}, tyre: {k: 1 MN/m}}}\n"
+        )
+    )
+    findings = lint(model)
+    assert any(
+        "overlapping axles: third and front are 0.10 m apart" in text or "overlapping axles: front and third" in text for text in findings
+    )
+    model = derive(parse_vehicle("extends: quarter_car\naxles: {axle1: {tyre: {k: 0 N/m}}}\n"))
+    assert any("singular stiffness" in text for text in lint(model))
+    assert any("radius of gyration of semitrailer" in text for text in lint(derive(load_vehicle("vbi2d_2A3"))))
+    assert any(
+        "negative load" in text for text in lint(derive(load_vehicle("sedan2")), {**derive(load_vehicle("sedan2")).values(), "Lf": -2.0})
+    )
