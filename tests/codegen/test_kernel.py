@@ -144,3 +144,36 @@ def test_operation_counts_do_not_rise():
     assert counts.keys() == BASELINE.keys()
     for name, count in counts.items():
         assert count <= BASELINE[name], f"{name}: {count} operations per step, {BASELINE[name]} in the baseline"
+
+
+def test_perturbed_lanes_and_direct_differentiation_agree():
+    from vehgen.simulate.sensitivity import direct_sensitivities
+
+    model = derive(load_vehicle("tractor5"), OUTPUTS)
+    drive = hump_drive(model, 1e-3, 4.0)
+    names = ["mS", "IT", "k1", "c4", "kt2", "a1", "b6", "b1", "L1.shift"]
+    response, direct = direct_sensitivities(model, drive, names, 10)
+    parameters = np.array(list(model.values().values()))
+    kernel = Kernel(model)
+    np.testing.assert_allclose(response, kernel.run(parameters, drive, 10).responses[0], atol=1e-9 * np.abs(response).max())
+    for name, derivative in zip(names, direct, strict=True):
+        column = model.parameters.index(name)
+        step = 1e-4 * (abs(parameters[column]) or 1.0)
+        pair = np.repeat(parameters[None], 2, axis=0)
+        pair[0, column] += step
+        pair[1, column] -= step
+        above, below = kernel.run(pair, drive, 10).responses
+        difference = (above - below) / (2 * step)
+        assert np.linalg.norm(difference - derivative) < 1e-5 * np.linalg.norm(derivative), name
+
+
+def test_a_reduction_keeps_memory_small_and_answers_alike(tractor):
+    model, kernel = tractor
+    drive = hump_drive(model, 1e-3, 1.0)
+    parameters = np.repeat([list(model.values().values())], 200, axis=0)
+    parameters[:, 0] *= np.linspace(0.9, 1.1, 200)
+    parameters[150, 0] = np.nan
+    peaks, failures = kernel.reduce(parameters, drive, lambda responses: np.abs(responses).max(axis=1), block=64)
+    whole = kernel.run(parameters, drive)
+    np.testing.assert_array_equal(peaks, np.abs(whole.responses).max(axis=1))
+    assert list(failures) == [150]

@@ -15,9 +15,11 @@ from numpy.typing import NDArray
 from vehgen.codegen.cache import import_kernel, kernel_name
 from vehgen.codegen.kernel_source import KernelSource, write_kernel
 from vehgen.errors import InputError
-from vehgen.mechanics.linear_model import LinearModel
+from vehgen.mechanics.linear_model import GRAVITY, LinearModel
 
 Array = NDArray[np.float64]
+UNCONVERGED = 0.01
+"""Residual of the force laws over the vehicle's weight above which an individual counts as failed."""
 
 
 @dataclass(frozen=True)
@@ -107,6 +109,38 @@ class Kernel:
         """Compile now, or load what an earlier process compiled."""
         _ = self._advance
 
+    def reduce(
+        self,
+        parameters: Array,
+        drive: Drive,
+        reduction: Callable[[Array], Array],
+        keep: int = 10,
+        block: int = 1024,
+        threads: int | None = None,
+    ) -> tuple[Array, dict[int, str]]:
+        """Simulate a population of any size and keep only what a reduction makes of each individual's response.
+
+        Parameters
+        ----------
+        parameters, drive, keep, threads
+            As in :meth:`run`.
+        reduction
+            Maps responses `shape (n, n_samples, n_channels)` to an array whose first axis is n.
+        block
+            Individuals whose responses are in memory at a time.
+
+        Returns
+        -------
+        The reductions of all individuals, and the failures as in :class:`KernelResult`.
+        """
+        parts: list[Array] = []
+        failures: dict[int, str] = {}
+        for first in range(0, len(parameters), block):
+            result = self.run(parameters[first : first + block], drive, keep, threads=threads)
+            failures.update({first + i: reason for i, reason in result.failures.items()})
+            parts.append(np.asarray(reduction(result.responses)))
+        return np.concatenate(parts), failures
+
     def run(
         self, parameters: Array, drive: Drive, keep: int = 10, initial: Array | None = None, threads: int | None = None
     ) -> KernelResult:
@@ -164,7 +198,20 @@ class Kernel:
         else:
             for first in starts:
                 block(first)
-        return KernelResult(responses, find_failures(self.model.parameters, parameters, responses), residuals)
+        return KernelResult(responses, self._failures(parameters, responses, residuals), residuals)
+
+    def _failures(self, parameters: Array, responses: Array, residuals: Array) -> dict[int, str]:
+        failures = find_failures(self.model.parameters, parameters, responses)
+        if self.source.nonlinear:
+            limit = UNCONVERGED * self._weight()
+            for individual in np.flatnonzero(residuals > limit):
+                reason = f"its force laws did not converge: {residuals[individual]:.3g} N were left in the worst step; take a smaller step"
+                failures.setdefault(int(individual), reason)
+        return failures
+
+    def _weight(self) -> float:
+        numbers = self.model.evaluate({(0, i): term.inertia for i, term in enumerate(self.model.energies.weights)}, self.model.values())
+        return GRAVITY * sum(numbers.values())
 
     def _check(self, parameters: Array, drive: Drive, keep: int) -> None:
         expected = len(self.model.parameters)

@@ -167,7 +167,7 @@ def _multiply_add(x: Array, factor: float, rounds: int) -> float:
 
 
 def vector_peak() -> float:
-    """Return the rate of multiply-adds that one core reaches on data in its first cache, in 10^9 operations per second (each counts two)."""
+    """Return the rate of multiply-adds that one core reaches on data in its first cache, in 10^9 operations per second."""
     raw = np.ones(104)
     start = (-raw.ctypes.data // 8) % 8
     x, rounds = raw[start : start + 96], 1_000_000

@@ -56,7 +56,7 @@ def exact_response(
     q, v = x[:, :n], x[:, n:]
     forces = drive.inputs @ numeric.P.T + rates @ numeric.Q.T + drive.forces @ numeric.F.T
     a = (forces - v @ numeric.C.T - q @ numeric.K.T) @ inverse.T
-    return _channels(numeric, a, v, q, drive.inputs, rates)[::keep]
+    return channel_values(numeric, a, v, q, drive.inputs, rates)[::keep]
 
 
 def newmark_response(
@@ -68,23 +68,30 @@ def newmark_response(
 ) -> Array:
     """Return the response by textbook Newmark (beta 1/4, gamma 1/2), `shape (n_steps // keep + 1, n_channels)`."""
     numeric = model.numeric(values)
-    h, n = drive.dt, model.n_dof
     forces = drive.inputs @ numeric.P.T + drive.rates @ numeric.Q.T + drive.forces @ numeric.F.T
+    q, v, a = newmark_states(numeric, forces, drive.dt, initial)
+    return channel_values(numeric, a, v, q, drive.inputs, drive.rates)[::keep]
+
+
+def newmark_states(numeric: NumericModel, forces: Array, dt: float, initial: Array | None = None) -> tuple[Array, Array, Array]:
+    """Return displacements, velocities and accelerations under forces `shape (n_steps + 1, n_dof)` or `(n_steps + 1, n_dof, n_cases)`."""
+    h, n = dt, forces.shape[1]
     effective = scipy.linalg.lu_factor(numeric.M + h / 2 * numeric.C + h * h / 4 * numeric.K)
-    q, v, a = (np.zeros((drive.n_steps + 1, n)) for _ in range(3))
+    q, v, a = (np.zeros_like(forces) for _ in range(3))
     if initial is not None:
         q[0], v[0] = initial[:n], initial[n:]
     a[0] = np.linalg.solve(numeric.M, forces[0] - numeric.C @ v[0] - numeric.K @ q[0])
-    for k in range(drive.n_steps):
+    for k in range(len(forces) - 1):
         q_free = q[k] + h * v[k] + h * h / 4 * a[k]
         v_free = v[k] + h / 2 * a[k]
         a[k + 1] = scipy.linalg.lu_solve(effective, forces[k + 1] - numeric.C @ v_free - numeric.K @ q_free)
         v[k + 1] = v_free + h / 2 * a[k + 1]
         q[k + 1] = q_free + h * h / 4 * a[k + 1]
-    return _channels(numeric, a, v, q, drive.inputs, drive.rates)[::keep]
+    return q, v, a
 
 
-def _channels(numeric: NumericModel, a: Array, v: Array, q: Array, inputs: Array, rates: Array) -> Array:
+def channel_values(numeric: NumericModel, a: Array, v: Array, q: Array, inputs: Array, rates: Array) -> Array:
+    """Return the channels' values over time, `shape (n_steps + 1, n_channels)`."""
     rows = numeric.outputs
     return np.asarray(
         a @ rows["acceleration"].T

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.codegen import Drive, Kernel, KernelResult, write_text
-from vehgen.errors import InputError, ModelWarning
+from vehgen.errors import InputError, ModelWarning, did_you_mean
 from vehgen.mechanics import Channel, ElementOutput, LinearModel, Output, Place, derive, static_loads
 from vehgen.simulate.doubts import lift_off, spectral_nulls, step_too_coarse
 from vehgen.simulate.runfile import Run
@@ -108,6 +108,38 @@ class Simulator:
         assert responses is not None
         _warn_of(failures, len(parameters))
         return KernelResult(self._add_static(parameters, responses), failures, residuals)
+
+    def jacobian(self, parameters: Array, scenario: Scenario, names: Sequence[str], relative_step: float = 1e-4) -> tuple[Array, Array]:
+        """Return one individual's response and its derivatives, by perturbed lanes of one population.
+
+        Parameters
+        ----------
+        parameters
+            `shape (n_parameters,)`.
+        scenario
+            Road, speed and other inputs.
+        names
+            The parameters to differentiate by.
+        relative_step
+            Step of the central differences over the parameter's magnitude (over 1 where it is 0).
+
+        Returns
+        -------
+        response `shape (n_samples, n_channels)` and derivatives `shape (len(names), n_samples, n_channels)` per SI unit.
+        """
+        columns = [self._column(name) for name in names]
+        steps = np.array([relative_step * (abs(parameters[column]) or 1.0) for column in columns])
+        population = np.repeat(parameters[None, :], 2 * len(columns) + 1, axis=0)
+        for i, (column, step) in enumerate(zip(columns, steps, strict=True)):
+            population[2 * i + 1, column] += step
+            population[2 * i + 2, column] -= step
+        responses = self.run(population, scenario).responses
+        return responses[0], (responses[1::2] - responses[2::2]) / (2 * steps[:, None, None])
+
+    def _column(self, name: str) -> int:
+        if name not in self.model.parameters:
+            raise InputError(f"no parameter {name!r}; {did_you_mean(name, self.model.parameters)}")
+        return self.model.parameters.index(name)
 
     def wheel_offsets(self, parameters: Array) -> Array:
         """Return each axle's distance behind the first to arrive, `shape (n_individuals, n_axles)` [m]."""

@@ -1,0 +1,157 @@
+"""What must hold for force laws beyond their numbers: zero strength, parked vehicles, energy, failures."""
+
+import numpy as np
+import pytest
+
+from vehgen.codegen import Drive, Kernel
+from vehgen.errors import InputError
+from vehgen.mechanics import Place, PointOutput, derive
+from vehgen.mechanics.laws import LAWS
+from vehgen.vehicle import load_vehicle, parse_vehicle
+
+OUTPUTS = (
+    PointOutput("a", Place("L1", "body"), "acceleration"),
+    PointOutput("z", Place("L1", "body"), "displacement"),
+    PointOutput("v", Place("L1", "body"), "velocity"),
+    PointOutput("q", Place("L1", "body"), "pitch_rate"),
+)
+VALUES = {
+    "clearance": "5 mm",
+    "rebound": "5 mm",
+    "start": "2 mm",
+    "time": "20 ms",
+    "travel": "2 mm",
+    "ratio": "0.5",
+    "beta": "0.6",
+    "share": "0",
+}
+UNITS = {"force": "N", "k": "N/m", "k3": "N/m^3", "k2": "N/m^2", "c": "N s/m", "c2": "N s^2/m^2"}
+
+
+def sedan(laws, part="suspension", extra=""):
+    axles = "".join(f"  {axle}: {{{part}: {{laws: [{laws}]}}}}\n" for axle in ("front", "rear"))
+    return parse_vehicle(f"extends: sedan2\naxles:\n{axles}{extra}")
+
+
+def hump(model, duration=2.0, height=0.03):
+    time = np.arange(round(duration / 1e-3) + 1) * 1e-3
+    s = time[:, None] * 3.0 - model.wheel_offsets() - 0.3
+    inside = (s > 0) & (s < 0.5)
+    w = np.where(inside, height * np.sin(np.pi * s / 0.5), 0.0)
+    dw = np.where(inside, 3 * height * np.pi / 0.5 * np.cos(np.pi * s / 0.5), 0.0)
+    return Drive(1e-3, w, dw, np.zeros((len(time), 0)))
+
+
+def run(vehicle, drive=None, outputs=OUTPUTS, initial=None, **changes):
+    model = derive(vehicle, outputs)
+    parameters = np.array([list(model.values(overrides=changes).values())])
+    return model, Kernel(model).run(parameters, drive or hump(model), 1, initial=initial)
+
+
+@pytest.mark.parametrize("name", sorted(LAWS))
+def test_a_law_of_no_strength_is_the_linear_vehicle(name):
+    law = LAWS[name]
+    given = {
+        item.name: VALUES.get(item.name, f"1 {UNITS.get(item.name, '')}")
+        for item in law.parameters
+        if item.default is None or item.name in VALUES
+    }
+    given[law.strength] = f"0 {UNITS.get(law.strength, '')}".strip()
+    text = ", ".join(f"{key}: {value}" for key, value in given.items())
+    _, found = run(sedan(f"{{{name}: {{{text}}}}}", "tyre" if name == "tyre_liftoff" else "suspension"))
+    _, linear = run(load_vehicle("sedan2"))
+    for column in range(len(OUTPUTS)):
+        expected = linear.responses[0, :, column]
+        assert np.abs(found.responses[0, :, column] - expected).max() <= 1e-10 * np.abs(expected).max()
+
+
+def test_friction_holds_a_parked_vehicle_still():
+    """A push below the friction of both suspensions leaves the body standing on its tyres."""
+    vehicle = sedan("{dry_friction: {force: 2 kN}}")
+    model = derive(vehicle, OUTPUTS, [Place("push", "body")])
+    time = np.arange(8001) * 1e-3
+    force = np.where(time > 0.5, 1500.0, 0.0)[:, None] * np.minimum((time[:, None] - 0.5) / 3, 1).clip(0)
+    quiet = np.zeros((len(time), 2))
+    parameters = np.array([list(model.values().values())])
+    z = Kernel(model).run(parameters, Drive(1e-3, quiet, quiet, force), 1).responses[0, :, 1]
+    values = model.values()
+    on_tyres = 1500.0 / (values["ktf"] + values["ktr"])
+    on_springs = 1500.0 / (1 / (1 / values["ktf"] + 1 / values["kf"]) + 1 / (1 / values["ktr"] + 1 / values["kr"]))
+    assert z[-1] < 2 * on_tyres
+    assert on_springs > 5 * on_tyres
+    still = sedan("{dry_friction: {force: 2 kN}}", extra="")
+    model = derive(still, OUTPUTS)
+    nothing = Drive(1e-3, quiet, quiet, np.zeros((len(time), 0)))
+    assert not Kernel(model).run(parameters[:, : len(model.parameters)], nothing, 1).responses.any()
+
+
+@pytest.mark.parametrize(
+    "laws", ["{dry_friction: {force: 500 N}}", "{elasto_plastic: {force: 500 N, k: 3e5 N/m}}", "{quadratic_damping: {c2: 9e3 N s^2/m^2}}"]
+)
+def test_energy_never_grows(laws):
+    """Released from a push, an undamped vehicle with a dissipative law only loses energy."""
+    undamped = "parameters: {cf: {value: 0 N s/m}, cr: {value: 0 N s/m}}\n"
+    vehicle = sedan(laws, extra=undamped.replace("0 N s/m}", "0 N s/m, range: null}"))
+    model = derive(
+        vehicle,
+        [
+            PointOutput(f"{kind}{i}", Place(f"p{i}", "body", x=None), kind)
+            for i in range(1)
+            for kind in ("displacement", "velocity", "pitch", "pitch_rate")
+        ],
+    )
+    n = model.n_dof
+    numeric = model.numeric()
+    initial = np.zeros(2 * n)
+    initial[:2] = 0.02, 0.01
+    rest = np.zeros((3001, 2))
+    kernel = Kernel(model)
+    parameters = np.array([list(model.values().values())])
+    states = []
+    for steps in range(0, 1501, 25):
+        drive = Drive(1e-3, rest[: steps + 1], rest[: steps + 1], np.zeros((steps + 1, 0)))
+        states.append(kernel.run(parameters, drive, max(steps, 1), initial=initial[None]).responses[0, -1])
+    assert np.isfinite(states).all()
+    body = np.array(states)
+    kinetic = 0.5 * numeric.M[0, 0] * body[:, 1] ** 2 + 0.5 * numeric.M[1, 1] * body[:, 3] ** 2
+    start = 0.5 * initial[:n] @ numeric.K @ initial[:n]
+    assert kinetic.max() <= start
+    assert kinetic[-10:].max() < 0.5 * kinetic.max()
+
+
+def test_residuals_are_reported_and_divergence_is_a_failure():
+    _, good = run(sedan("{hysteresis: {force: 400 N, travel: 3 mm}}"))
+    assert 0 < good.residuals[0] < 10
+    assert not good.failures
+    _, bad = run(sedan("{law: {force: -a*d**3, parameters: {a: 1e12 N/m^3}}}"))
+    assert 0 in bad.failures
+
+
+def test_unknown_laws_and_wrong_units_have_their_place():
+    for laws, message in (
+        ("{dry_frction: {force: 1 N}}", "unknown force law 'dry_frction'; did you mean 'dry_friction'"),
+        ("{dry_friction: {forc: 1 N}}", "dry_friction has no parameter 'forc'; did you mean 'force'"),
+        ("{dry_friction: {}}", "lacks its parameter 'force'"),
+        ("{cubic_stiffness: {k3: 1 N/m}}", "k3 must be in"),
+        ("{tyre_liftoff: {}}", "belongs on a tyre, not on a suspension"),
+        ("{law: {force: a*d, parameters: {a: 1 N}}}", "force must be in N"),
+        ("{law: {force: a*dd, parameters: {a: 1 N}}}", "unknown symbol 'dd'"),
+    ):
+        with pytest.raises(InputError, match=r":\d+:\d+: ") as caught:
+            derive(sedan(laws))
+        assert message in str(caught.value)
+
+
+def test_hinge_friction_locks_the_articulation():
+    text = "extends: tractor5\nhinges:\n  fifth_wheel: {laws: [{dry_friction: {force: MOMENT}}]}\n"
+    outputs = [PointOutput("t", Place("T", "tractor"), "pitch"), PointOutput("s", Place("S", "semitrailer"), "pitch")]
+    apart = []
+    for moment in ("0 N m", "5 MN m"):
+        vehicle = parse_vehicle(text.replace("MOMENT", moment))
+        model = derive(vehicle, outputs)
+        time = np.arange(4001) * 1e-3
+        w = np.where((time[:, None] * 2 - model.wheel_offsets() - 0.5) > 0, 0.02, 0.0)
+        drive = Drive(1e-3, w, 0 * w, np.zeros((len(time), 0)))
+        pitch = Kernel(model).run(np.array([list(model.values().values())]), drive, 1).responses[0]
+        apart.append(np.abs(pitch[:, 0] - pitch[:, 1]).max())
+    assert apart[1] < 0.02 * apart[0]
