@@ -43,7 +43,7 @@ def drive(model, n_steps: int) -> Drive:
 
 
 def compare(n_individuals: int = 300, rounds: int = 7) -> list[tuple[str, int, float]]:
-    """Return (name, threads, ns per step and individual); vehgen and the yardstick take turns, so that a drifting machine is fair to both."""
+    """Return (name, threads, ns per step and individual); vehgen and the yardstick take turns, so that drift is fair to both."""
     systems = tractor5_population(n_individuals)
     inputs = hump_inputs(N_STEPS, DT)
     rows: list[tuple[str, int, float]] = []

@@ -1,31 +1,55 @@
-"""Textbook Newmark on dense matrices, one individual at a time, compiled with numba.
-
-Average acceleration (beta = 1/4, gamma = 1/2) in displacement form, as in Bathe, Finite Element Procedures, Table 9.3: effective
-stiffness inverted once, displacement, velocity and acceleration carried along.
-"""
+"""The loop that a user would write first: dense Newmark, one individual at a time, compiled by numba."""
 
 from __future__ import annotations
 
-import importlib.util
-
+import numba
 import numpy as np
-from systems import Array, Systems, n_kept
 
-TITLE = "numba, dense textbook Newmark"
+from benchmarks.peers.systems import Array, Systems
 
 
 def available() -> str | None:
-    """Return why this peer cannot run, or None."""
-    return None if importlib.util.find_spec("numba") else "numba is not installed"
+    """Return why it cannot run, or None."""
+    return None
 
 
-def run(systems: Systems, inputs: Array, dt: float, keep: int, threads: int = 1) -> Array:
-    """Return the accelerations at the sensors, `shape (n_individuals, n_kept, n_sensors)`."""
-    import _dense_numba_kernel as kernel
+@numba.njit(cache=True, nogil=True)
+def _newmark(M, C, K, P, S, inputs, dt, keep, out):  # noqa: ANN001, ANN202
+    n, steps = M.shape[0], inputs.shape[0] - 1
+    inverse = np.linalg.inv(M + dt / 2 * C + dt * dt / 4 * K)
+    u, v, a = np.zeros(n), np.zeros(n), np.linalg.solve(M, P @ inputs[0])
+    free_u, free_v, force = np.zeros(n), np.zeros(n), np.zeros(n)
+    for step in range(steps + 1):
+        if step % keep == 0:
+            for j in range(S.shape[0]):
+                total = 0.0
+                for i in range(n):
+                    total += S[j, i] * a[i]
+                out[step // keep, j] = total
+        if step == steps:
+            break
+        for i in range(n):
+            free_u[i] = u[i] + dt * v[i] + dt * dt / 4 * a[i]
+            free_v[i] = v[i] + dt / 2 * a[i]
+        for i in range(n):
+            total = 0.0
+            for j in range(inputs.shape[1]):
+                total += P[i, j] * inputs[step + 1, j]
+            for j in range(n):
+                total -= C[i, j] * free_v[j] + K[i, j] * free_u[j]
+            force[i] = total
+        for i in range(n):
+            total = 0.0
+            for j in range(n):
+                total += inverse[i, j] * force[j]
+            a[i] = total
+            v[i] = free_v[i] + dt / 2 * total
+            u[i] = free_u[i] + dt * dt / 4 * total
 
-    out = np.empty((len(systems), n_kept(inputs, keep), systems.S.shape[1]))
-    advance = kernel.advance_serial if threads == 1 else kernel.advance_parallel
-    a0 = 4.0 / dt**2
-    inverse = np.linalg.inv(a0 * systems.M + 2.0 / dt * systems.C + systems.K)
-    advance(systems.M, systems.C, systems.K, systems.P, systems.S, inverse, np.ascontiguousarray(inputs), dt, keep, out)
+
+def run(systems: Systems, inputs: Array, dt: float, keep: int) -> Array:
+    """Return sensor accelerations, `shape (n_individuals, n_samples, 2)`."""
+    out = np.empty((len(systems.M), (len(inputs) - 1) // keep + 1, systems.S.shape[1]))
+    for i in range(len(systems.M)):
+        _newmark(systems.M[i], systems.C[i], systems.K[i], systems.P[i], systems.S[i], inputs, dt, keep, out[i])
     return out

@@ -1,116 +1,74 @@
-"""What every peer is given: a population of linear systems M q'' + C q' + K q = P w(t), and the five-axle truck as one.
-
-The truck is the unladen tractor-semitrailer of J. Wu and Y. Li, "Parameter calibration of heavy-duty truck dynamics", Sensors 23(24),
-9691 (2023), with the values of its Table A2 (row DHCM-1&2), all divided by the tractor's sprung mass. The matrices are typed here from
-the equations and do not come from vehgen, so that a peer can also catch vehgen out.
-"""
+"""The population that every peer simulates: Table A2's five-axle vehicle (Wu & Li 2023, doi:10.3390/s23249691), written out by hand."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-
-# Table A2, DHCM-1&2, per unit of the tractor's sprung mass: [-], [m^2], [1/s^2], [1/s], [1/s^2], [m]
-MASS_S, INERTIA_T, INERTIA_S = 4.77, 45.75, 95.89
-AXLE_MASS = (0.11, 0.40, 0.48, 0.57, 0.34)
-STIFFNESS = (198.83, 93.02, 869.88, 537.26, 1313.27)
-DAMPING = (12.57, 33.04, 6.80, 36.52, 23.60)
-TYRE = (1460.53, 4488.70, 4360.85, 2689.24, 808.00)
-HINGE_ABOVE_T, HINGE_ABOVE_S, AXLE1_AHEAD, HINGE_AHEAD_S = 0.97, 0.82, 1.32, 4.14
-# measured distances [m]: axle 1 to axle 2, axle 3 and the hinge; the hinge to axle 4 and axle 5
-TO_AXLE2, TO_AXLE3, TO_HINGE, TO_AXLE4, TO_AXLE5 = 3.46, 4.80, 3.75, 8.50, 9.73
-WHEELS = (0.0, TO_AXLE2, TO_AXLE3, TO_HINGE + TO_AXLE4, TO_HINGE + TO_AXLE5)
-# sensors: on the tractor 0.29 m ahead of axle 1, on the semitrailer 5.76 m behind the hinge [m]
-SENSOR_T_BEHIND_AXLE1, SENSOR_S_BEHIND_HINGE = -0.29, 5.76
+MASS = 8000.0
+TABLE = {
+    "mS": 4.77, "m1": 0.11, "m2": 0.40, "m3": 0.48, "m4": 0.57, "m5": 0.34, "IT": 45.75, "IS": 95.89,
+    "k1": 198.83, "k2": 93.02, "k3": 869.88, "k4": 537.26, "k5": 1313.27,
+    "c1": 12.57, "c2": 33.04, "c3": 6.80, "c4": 36.52, "c5": 23.60,
+    "kt1": 1460.53, "kt2": 4488.70, "kt3": 4360.85, "kt4": 2689.24, "kt5": 808.00,
+}  # fmt: skip
+GEOMETRY = {"a1": 0.97, "a2": 0.82, "b1": 1.32, "b6": 4.14}
 
 
 @dataclass(frozen=True)
 class Systems:
-    """A population: `M`, `C`, `K` `shape (n_individuals, n, n)`, `P` `shape (n_individuals, n, n_inputs)`.
-
-    The acceleration at the sensors is `S @ q''`, `S` `shape (n_individuals, n_sensors, n)`.
-    """
+    """M, C, K `shape (n_individuals, 8, 8)`, P `(n_individuals, 8, 5)`, sensor rows S `(n_individuals, 2, 8)`, and the physical parameters behind them."""
 
     M: Array
     C: Array
     K: Array
     P: Array
     S: Array
+    parameters: dict[str, Array]
 
-    def __len__(self) -> int:
-        return len(self.M)
-
-    def first(self, number: int) -> Systems:
-        """Return the first individuals only, for a peer too slow for them all."""
-        return Systems(*(getattr(self, field.name)[:number] for field in fields(self)))
-
-
-def n_kept(inputs: Array, keep: int) -> int:
-    """Return how many samples are kept: sample 0 and every `keep`-th after it."""
-    return (len(inputs) - 1) // keep + 1
+    def part(self, count: int) -> Systems:
+        """Return the first individuals."""
+        own = {key: value[:count] for key, value in self.parameters.items()}
+        return Systems(self.M[:count], self.C[:count], self.K[:count], self.P[:count], self.S[:count], own)
 
 
-def tractor5_population(n_individuals: int, seed: int, spread: float = 0.1) -> Systems:
-    """Return five-axle trucks, q = [z_T, theta_T, theta_S, z_1 .. z_5], pitch positive nose-down.
-
-    Parameters
-    ----------
-    n_individuals
-        How many; the first is the truck of Table A2.
-    seed
-        Of the random generator.
-    spread
-        Every parameter but the measured distances is multiplied by a factor drawn from 1 - spread to 1 + spread.
-    """
-    factor = 1.0 + spread * np.random.default_rng(seed).uniform(-1.0, 1.0, (n_individuals, 27))
-    factor[:1] = 1.0
-    scalars = (factor[:, i] * value for i, value in enumerate((MASS_S, INERTIA_T, INERTIA_S, HINGE_ABOVE_T, HINGE_ABOVE_S)))
-    mS, IT, IS, a1, a2 = scalars
-    b1, b6 = factor[:, 5] * AXLE1_AHEAD, factor[:, 6] * HINGE_AHEAD_S
-    m, k, c, kt = (factor[:, 7 + 5 * i : 12 + 5 * i] * value for i, value in enumerate((AXLE_MASS, STIFFNESS, DAMPING, TYRE)))
-    b7 = TO_HINGE - b1
-    mu = mS / (1.0 + mS)
-
-    body = np.empty((n_individuals, 3, 3))
-    body[:, 0, 0] = 1.0 + mS
-    body[:, 0, 1] = body[:, 1, 0] = b7 * mS
-    body[:, 0, 2] = body[:, 2, 0] = b6 * mS
-    body[:, 1, 1] = IT + b7**2 * mS + mu * a1**2
-    body[:, 1, 2] = body[:, 2, 1] = b6 * b7 * mS - mu * a1 * a2
-    body[:, 2, 2] = IS + b6**2 * mS + mu * a2**2
-
-    # height of each axle's upper end is g @ [z_T, theta_T, theta_S]
-    one, zero = np.ones(n_individuals), np.zeros(n_individuals)
-    rows = [(one, -b1, zero), (one, TO_AXLE2 - b1, zero), (one, TO_AXLE3 - b1, zero), (one, b7, zero + TO_AXLE4), (one, b7, zero + TO_AXLE5)]
-    g = np.stack([np.stack(row, axis=1) for row in rows], axis=1)
-    incidence = np.concatenate([-g, np.broadcast_to(np.eye(5), (n_individuals, 5, 5))], axis=2)
-
-    M, P, S = np.zeros((n_individuals, 8, 8)), np.zeros((n_individuals, 8, 5)), np.zeros((n_individuals, 2, 8))
-    M[:, :3, :3] = body
-    axle = np.arange(5)
-    M[:, 3 + axle, 3 + axle] = m
-    K = np.einsum("nai,na,naj->nij", incidence, k, incidence)
-    C = np.einsum("nai,na,naj->nij", incidence, c, incidence)
-    K[:, 3 + axle, 3 + axle] += kt
-    P[:, 3 + axle, axle] = kt
-    S[:, 0, :2] = np.stack([one, -(b1 - SENSOR_T_BEHIND_AXLE1)], axis=1)
-    S[:, 1, :3] = np.stack([one, b7, zero + SENSOR_S_BEHIND_HINGE], axis=1)
-    return Systems(M, C, K, P, S)
+def tractor5_population(n_individuals: int, seed: int = 0, spread: float = 0.1) -> Systems:
+    """Return a population around the table, everything that calibration searches varied by +-spread."""
+    rng = np.random.default_rng(seed)
+    p = {"mT": np.full(n_individuals, MASS)}
+    for name, value in TABLE.items():
+        p[name] = value * MASS * rng.uniform(1 - spread, 1 + spread, n_individuals)
+    for name, value in GEOMETRY.items():
+        p[name] = value * rng.uniform(1 - spread, 1 + spread, n_individuals)
+    a1, a2, b1, b6, mS = (p[name] for name in ("a1", "a2", "b1", "b6", "mS"))
+    b7, one, none = 3.75 - b1, np.ones(n_individuals), np.zeros(n_individuals)
+    M, C, K = (np.zeros((n_individuals, 8, 8)) for _ in range(3))
+    mu = p["mT"] * mS / (p["mT"] + mS)
+    M[:, 0, 0], M[:, 0, 1], M[:, 0, 2] = p["mT"] + mS, b7 * mS, b6 * mS
+    M[:, 1, 1], M[:, 1, 2] = p["IT"] + b7**2 * mS + mu * a1**2, b6 * b7 * mS - mu * a1 * a2
+    M[:, 2, 2] = p["IS"] + b6**2 * mS + mu * a2**2
+    M[:, 1, 0], M[:, 2, 0], M[:, 2, 1] = M[:, 0, 1], M[:, 0, 2], M[:, 1, 2]
+    P = np.zeros((n_individuals, 8, 5))
+    rows = [(one, -b1, none), (one, 3.46 - b1, none), (one, 4.80 - b1, none), (one, b7, 8.50 * one), (one, b7, 9.73 * one)]
+    for i, row in enumerate(rows):
+        travel = np.zeros((n_individuals, 8))
+        travel[:, :3], travel[:, 3 + i] = np.column_stack(row), -1
+        square = np.einsum("ni,nj->nij", travel, travel)
+        M[:, 3 + i, 3 + i] = p[f"m{i + 1}"]
+        C += p[f"c{i + 1}"][:, None, None] * square
+        K += p[f"k{i + 1}"][:, None, None] * square
+        K[:, 3 + i, 3 + i] += p[f"kt{i + 1}"]
+        P[:, 3 + i, i] = p[f"kt{i + 1}"]
+    S = np.zeros((n_individuals, 2, 8))
+    S[:, 0, :3] = np.column_stack([one, -(b1 + 0.29), none])
+    S[:, 1, :3] = np.column_stack([one, b7, 9.32 * one])
+    return Systems(M, C, K, P, S, p)
 
 
-def half_sine_inputs(n_steps: int, dt: float, speed: float = 2.0, at: float = 1.0, length: float = 0.4, height: float = 0.03) -> Array:
-    """Return the road under the five wheels over a half-sine hump, `shape (n_steps + 1, 5)` [m]: one track, each wheel later than the last.
-
-    Parameters
-    ----------
-    n_steps, dt
-        Number of steps and their size [s].
-    speed, at, length, height
-        Speed [m/s]; where the hump begins ahead of wheel 1, its length and its height [m].
-    """
-    x = speed * dt * np.arange(n_steps + 1)[:, None] - at - np.array(WHEELS)
-    return np.where((x > 0.0) & (x < length), height * np.sin(np.pi * x / length), 0.0)
+def hump_inputs(n_steps: int, dt: float) -> Array:
+    """Return the road under five axles that cross a half-sine hump of 0.5 m x 0.03 m at 2 m/s, `shape (n_steps + 1, 5)`."""
+    s = 2.0 * dt * np.arange(n_steps + 1)[:, None] - 1.0 - np.array([0.0, 3.46, 4.80, 12.25, 13.48])
+    return np.where((s > 0) & (s < 0.5), 0.03 * np.sin(np.pi * s / 0.5), 0.0)
