@@ -114,7 +114,7 @@ def test_compiled_code_is_found_again_by_another_process(tmp_path):
     program = (
         "import sys, time; from pathlib import Path; from vehgen.codegen import Kernel; from vehgen.mechanics import derive;"
         "from vehgen.vehicle import load_vehicle; k = Kernel(derive(load_vehicle('quarter_car')), Path(sys.argv[1]));"
-        "k.compile(); print(sum(k._advance.stats.cache_hits.values()), sum(k._advance.stats.cache_misses.values()))"
+        "k.compile(); print(sum(k._module.advance.stats.cache_hits.values()), sum(k._module.advance.stats.cache_misses.values()))"
     )
     runs = [
         subprocess.run([sys.executable, "-c", program, str(tmp_path)], capture_output=True, text=True, check=True).stdout.split()

@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,13 +102,12 @@ class Kernel:
         return kernel_name(self.source.text)
 
     @cached_property
-    def _advance(self) -> Callable[..., None]:
-        advance: Callable[..., None] = import_kernel(self.source.text, self._folder).advance
-        return advance
+    def _module(self) -> ModuleType:
+        return import_kernel(self.source.text, self._folder)
 
     def compile(self) -> None:
         """Compile now, or load what an earlier process compiled."""
-        _ = self._advance
+        _ = self._module
 
     def reduce(
         self,
@@ -169,22 +169,21 @@ class Kernel:
         n_samples, n_channels = drive.n_steps // keep + 1, len(self.model.channels)
         responses = np.empty((n_individuals, n_samples, n_channels))
         residuals = np.zeros(n_individuals)
-        advance = self._advance
+        module = self._module
         n_dof = self.model.n_dof
         arrays = tuple(np.ascontiguousarray(item, dtype=np.float64) for item in (drive.inputs, drive.rates, drive.forces))
 
         def block(first: int) -> None:
             last = min(first + lanes, n_individuals)
             rows = np.minimum(np.arange(first, first + lanes), last - 1)
-            state = aligned(self.source.n_states * lanes)
+            work = aligned(module.WORK)
+            work[: parameters.shape[1] * lanes] = np.ascontiguousarray(parameters[rows].T).ravel()
+            state = work[module.STATE : module.KEPT]
             if initial is not None:
                 state[: 2 * n_dof * lanes] = np.ascontiguousarray(initial[rows].T).ravel()
             full = last - first == lanes
             target = responses[first:last] if full else np.empty((lanes, n_samples, n_channels))
-            constants = aligned(self.source.n_constants * lanes)
-            kept = aligned(max(n_channels, 1) * lanes)
-            lanewise = np.ascontiguousarray(parameters[rows].T).ravel()
-            advance(lanewise, *arrays, drive.dt, keep, constants, state, kept, target)
+            module.advance(work, *arrays, drive.dt, keep, target)
             if not full:
                 responses[first:last] = target[: last - first]
             if self.source.nonlinear:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
+from vehgen.codegen.lane_loops import cut
 from vehgen.codegen.newmark import StepProgram, write_step
 from vehgen.codegen.printing import Printer
 from vehgen.codegen.program import SAMPLE, STEP, Node
@@ -35,7 +37,8 @@ def write_kernel(model: LinearModel, lanes: int | None = None) -> KernelSource:
     state = [leaf for leaf, _ in step.states]
     printer = Printer(step.program, {STEP: [node for _, node in step.states], SAMPLE: step.channels}, step.time_step)
     lines = [_header(model, printer), *_function(model, step, printer, state, lanes)]
-    return KernelSource("\n".join(lines) + "\n", lanes, printer.operation_counts, len(printer.constants), len(state), nonlinear)
+    text = _fold("\n".join(lines) + "\n")
+    return KernelSource(text, lanes, printer.operation_counts, len(printer.constants), len(state), nonlinear)
 
 
 def _header(model: LinearModel, printer: Printer) -> str:
@@ -57,7 +60,9 @@ Arithmetic operations: {counts["setup"]} once per individual, {counts["step"]} p
 
 import math
 
-import numba'''
+import numba
+
+from vehgen.codegen.selects import lower, sign, step, upper'''
 
 
 def _function(model: LinearModel, step: StepProgram, printer: Printer, state: list[Node], lanes: int) -> list[str]:
@@ -68,62 +73,88 @@ def _function(model: LinearModel, step: StepProgram, printer: Printer, state: li
 
     def load_setup(node: Node) -> str | None:
         if node in parameter_place:
-            return f"parameters[{parameter_place[node] * lanes} + j]"
+            return f"work[PARAMETERS + {parameter_place[node] * lanes} + j]"
         return None
 
     def load_loop(node: Node) -> str | None:
         if node in printer.constants:
-            return f"constants[{printer.constants[node] * lanes} + j]"
+            return f"work[CONSTANTS + {printer.constants[node] * lanes} + j]"
         name = program.labels.get(node, "")
         if program.operations[node] == "leaf" and name in state_place:
-            return f"state[{state_place[name] * lanes} + j]"
+            return f"work[STATE + {state_place[name] * lanes} + j]"
         return None
 
     constants = list(printer.constants)
     setup = printer.statements(printer.setup, constants, load_setup)
-    setup += [
-        f"constants[{place * lanes} + j] = {printer.texts.get(node, printer.name(node))}" for node, place in printer.constants.items()
+    stores = [
+        f"work[CONSTANTS + {place * lanes} + j] = {printer.texts.get(node, printer.name(node))}"
+        for node, place in printer.constants.items()
     ]
+    setup_bodies, setup_scratch = cut(setup, stores, lanes)
     results = [node for _, node in step.states]
     advance = printer.statements(printer.needed[STEP], results, load_loop)
-    advance += [f"state[{i * lanes} + j] = {printer.texts[node]}" for i, node in enumerate(results)]
+    stores = [f"work[STATE + {i * lanes} + j] = {printer.texts[node]}" for i, node in enumerate(results)]
+    advance_bodies, advance_scratch = cut(advance, stores, lanes)
     sample = printer.statements(printer.needed[SAMPLE], step.channels, load_loop)
-    sample += [f"kept[{i * lanes} + j] = {printer.texts[node]}" for i, node in enumerate(step.channels)]
+    stores = [f"work[KEPT + {i * lanes} + j] = {printer.texts[node]}" for i, node in enumerate(step.channels)]
+    sample_bodies, sample_scratch = cut(sample, stores, lanes)
     means = _drive_reads(printer, step.drives, STEP, "0.5*({array}[n, {i}] + {array}[n + 1, {i}])", model)
     values = _drive_reads(printer, step.sample_drives, SAMPLE, "{array}[n, {i}]", model)
 
-    def block(statements: list[str], indent: int) -> list[str]:
+    sections = _sections(len(parameter_place), len(constants), len(state), n_channels, max(setup_scratch, advance_scratch, sample_scratch))
+
+    def loops(bodies: list[list[str]], indent: int) -> list[str]:
         blank = "    " * indent
-        return [f"{blank}for j in range({lanes}):", *(f"{blank}    {line}" for line in statements or ["pass"])]
+        lines = []
+        for body in bodies:
+            lines += [f"{blank}for j in range({lanes}):", *(f"{blank}    {line}" for line in body or ["pass"])]
+        return lines
 
     return [
         "",
         "LANES = " + str(lanes),
-        f"N_CONSTANTS = {len(constants)}",
-        f"N_STATES = {len(state)}",
-        f"N_CHANNELS = {n_channels}",
+        *(f"{name} = {start * lanes}" for name, start in sections.items()),
         "",
         "",
         "@numba.njit(",
-        '    "void(f8[::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], f8, i8, f8[::1], f8[::1], f8[::1], f8[:, :, ::1])",',
+        '    "void(f8[::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], f8, i8, f8[:, :, ::1])",',
         '    nogil=True, cache=True, fastmath={"contract", "nsz"}, error_model="numpy",',
         ")",
-        "def advance(parameters, inputs, rates, forces, dt, keep, constants, state, kept, responses):",
+        "def advance(work, inputs, rates, forces, dt, keep, responses):",
         f'    """Advance {lanes} individuals over all steps; responses has shape ({lanes}, samples, {n_channels})."""',
         "    n_steps = inputs.shape[0] - 1",
-        *block(setup, 1),
+        *loops(setup_bodies, 1),
         "    for n in range(n_steps + 1):",
         "        if n % keep == 0:",
         "            sample = n // keep",
         *(f"            {line}" for line in values),
-        *block(sample, 3),
+        *loops(sample_bodies, 3),
         f"            for channel in range({n_channels}):",
         f"                for j in range({lanes}):",
-        f"                    responses[j, sample, channel] = kept[channel*{lanes} + j]",
+        f"                    responses[j, sample, channel] = work[KEPT + channel*{lanes} + j]",
         "        if n < n_steps:",
         *(f"            {line}" for line in means),
-        *block(advance, 3),
+        *loops(advance_bodies, 3),
     ]
+
+
+def _fold(text: str) -> str:
+    """Write `work[STATE + 96 + j]` as `work[1248 + j]`: fewer operations for the compiler's front end, which takes most of its time."""
+    starts = {name: int(value) for name, value in re.findall(r"^(PARAMETERS|CONSTANTS|STATE|KEPT|SCRATCH) = (\d+)$", text, re.M)}
+    return re.sub(r"work\[([A-Z]+) \+ (\d+) \+ j\]", lambda match: f"work[{starts[match[1]] + int(match[2])} + j]", text)
+
+
+def _sections(n_parameters: int, n_constants: int, n_states: int, n_channels: int, n_scratch: int) -> dict[str, int]:
+    """Return where each section of the work array starts, in rows of lanes; WORK is its whole length.
+
+    One array instead of several lets the compiler see from constant distances that no two accesses overlap.
+    """
+    sizes = {"PARAMETERS": n_parameters, "CONSTANTS": n_constants, "STATE": n_states, "KEPT": n_channels, "SCRATCH": n_scratch}
+    starts, start = {}, 0
+    for name, size in sizes.items():
+        starts[name] = start
+        start += size
+    return {**starts, "WORK": start}
 
 
 def _drive_reads(printer: Printer, drives: list[Node], phase: int, pattern: str, model: LinearModel) -> list[str]:

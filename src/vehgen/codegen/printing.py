@@ -8,8 +8,7 @@ from collections.abc import Callable, Iterable
 from vehgen.codegen.program import SAMPLE, SETUP, STEP, Node, Program
 
 _BINARY = {"+": 1, "-": 1, "*": 2, "/": 2, "**": 3}
-_WRITTEN = {"min": 2, "max": 2, "sign": 2}
-"""How often an operation's text repeats its arguments."""
+_FUNCTIONS = {"min": "lower", "max": "upper"}
 _MAX_INLINE = 90
 
 
@@ -95,10 +94,9 @@ class Printer:
         own = set(nodes)
         uses: Counter[Node] = Counter()
         for node in nodes:
-            written = _WRITTEN.get(self.program.operations[node], 1)
             uses.update(dict.fromkeys(self.program.arguments[node], 0))
             for argument in self.program.arguments[node]:
-                uses[argument] += written
+                uses[argument] += 1
         keep = set(targets)
         texts: dict[Node, tuple[str, int]] = {}
         lines: list[str] = []
@@ -146,15 +144,6 @@ class Printer:
         texts = [text for text, _ in arguments]
         if operation == "neg":
             return f"-{texts[0]}" if arguments[0][1] >= 2 else f"-({texts[0]})", 1
-        if operation == "select":
-            return f"({texts[1]} if {texts[0]} > 0.0 else {texts[2]})", 9
-        if operation in ("min", "max"):
-            sign = "<" if operation == "min" else ">"
-            return f"({texts[0]} if {texts[0]} {sign} {texts[1]} else {texts[1]})", 9
-        if operation == "step":
-            return f"(1.0 if {texts[0]} > 0.0 else 0.0)", 9
         if operation == "sqrt":
             return f"math.sqrt({texts[0]})", 9
-        if operation == "sign":
-            return f"((1.0 if {texts[0]} > 0.0 else 0.0) - (1.0 if {texts[0]} < 0.0 else 0.0))", 9
-        return f"{operation}({', '.join(texts)})", 9
+        return f"{_FUNCTIONS.get(operation, operation)}({', '.join(texts)})", 9

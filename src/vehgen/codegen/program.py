@@ -61,7 +61,7 @@ class Program:
         return node
 
     def apply(self, operation: str, *arguments: Node) -> Node:
-        """Return a function of nodes: min, max, abs, sqrt, sign, select."""
+        """Return a function of nodes: min, max, abs, sqrt, sign, step."""
         return self._node(operation, arguments, max(self.phases[item] for item in arguments))
 
     def add(self, left: Node, right: Node) -> Node:
