@@ -26,7 +26,20 @@ def _library() -> ctypes.CDLL:
     folder = Path(tempfile.mkdtemp(prefix="vehgen-yardstick-"))
     source, target = Path(__file__).with_name("kernel.cpp"), folder / "kernel.so"
     subprocess.run(
-        ["g++", "-O3", "-march=native", "-mprefer-vector-width=512", "-ffp-contract=fast", "-fno-math-errno", "-shared", "-fPIC", "-pthread", source, "-o", target],
+        [
+            "g++",
+            "-O3",
+            "-march=native",
+            "-mprefer-vector-width=512",
+            "-ffp-contract=fast",
+            "-fno-math-errno",
+            "-shared",
+            "-fPIC",
+            "-pthread",
+            source,
+            "-o",
+            target,
+        ],
         check=True,
     )
     return ctypes.CDLL(str(target))

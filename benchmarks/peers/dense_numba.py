@@ -14,7 +14,7 @@ def available() -> str | None:
 
 
 @numba.njit(cache=True, nogil=True)
-def _newmark(M, C, K, P, S, inputs, dt, keep, out):  # noqa: ANN001, ANN202
+def _newmark(M, C, K, P, S, inputs, dt, keep, out):
     n, steps = M.shape[0], inputs.shape[0] - 1
     inverse = np.linalg.inv(M + dt / 2 * C + dt * dt / 4 * K)
     u, v, a = np.zeros(n), np.zeros(n), np.linalg.solve(M, P @ inputs[0])

@@ -1,9 +1,15 @@
-// The yardstick: the five-axle vehicle by hand, in vector registers.
+// The yardstick: the five-axle vehicle by hand, in vector registers; a vector holds one quantity of several individuals.
 //
-// Average-acceleration Newmark as the implicit midpoint rule on (u, v): (2/h M + C + h/2 K) v_m = 2/h M v - K u + (F_n + F_n+1)/2,
-// v <- 2 v_m - v, u <- u + h v_m. Axles are condensed out of the 8 x 8 system, the 3 x 3 rest is inverted once per individual.
-// Sensor accelerations follow from equilibrium at kept samples.
-
+// Average-acceleration Newmark is the implicit midpoint rule on displacement u and velocity v. Here it is rewritten, without approximation:
+// with the body motion G of a step given at its upper end, an axle is a filter of third order, whose state can be kept in the form that
+// needs fewest products (observer form). With alpha = 2/h, q the shift by one step, w the mean road of a step, f the force on the bodies:
+//     a(q) = alpha^2 m (1-q)^2 + alpha c (1-q^2) + (k + kt) (1+q)^2,    s(q) = k (1+q) + alpha c (1-q),
+//     f = -1/2 s(q) [alpha^2 m (1-q)^2 + kt (1+q)^2] / ((1-q) a(q)) G  +  kt (1+q) s(q) / a(q) w.
+// f has a part that G makes at once (N0 G) and a part phi known before the step. The bodies, 3 coordinates: heave at axle 1, hinge, axle 4:
+//     (alpha M - sum g N0 h g') V = r,   r_n+1 = r_n + sum g (phi_n+1 + phi_n + 2 N0 G_n),   G = h g V.
+// Scales are free: phi / lambda (so that the road enters with factor 1), r (so that the 3 x 3 inverse has a unit diagonal), V (so that two
+// axles need no product for their last state, and axle 5 none for its G). What is left: 51 products and 14 sums a step.
+#include <atomic>
 #include <cstddef>
 #include <thread>
 #include <vector>
@@ -14,139 +20,209 @@ constexpr int WIDTH = 8;
 constexpr int WIDTH = 4;
 #endif
 typedef double vec __attribute__((vector_size(WIDTH * sizeof(double))));
+#define INLINE static inline __attribute__((always_inline))
 
-#ifndef GROUP
-#define GROUP 2  // vectors that advance together, so that one fills the latency of the other
-#endif
-constexpr int LANES = WIDTH * GROUP;
+constexpr int AXLES = 5, SENSORS = 2, CHUNK = 64;
 
+struct Axle {
+  vec x1, x2, x3;  // observer states / lambda; x1 = phi, x3 = body's displacement at the axle, scaled
+};
+struct State {
+  Axle axle[AXLES];
+  vec r1, rh, r4;
+};
+struct AxleRow {
+  vec a1, a2, b1, b2, b3, w;
+};
+struct Sensor {
+  vec axle[AXLES][3], road[AXLES], r1, rh, r4;
+};
 struct Block {
-  // Per axle: 2/h m, k + kt, k, kt, 1/A_ii, and the body's share of A, K and L for its travel row.
-  vec mass[5], kk[5], k[5], kt[5], inv[5], share[5], rest[5], c[5];
-  vec R1[5];
-  vec B[6];        // inverse of the condensed 3 x 3
-  vec mb[6], kb[6], cb[6];  // 2/h M, K, C of the bodies
-  vec inverse_mass[6];
+  AxleRow axle[AXLES];
+  vec i1h, i14, ih1, ih4, i41, i4h;                // the 3 x 3 inverse, beside its diagonal
+  vec g2, g3;                                      // G of axles 2, 3 = hinge + g * axle 1
+  vec q1, q2_1, q2_h, q3_1, q3_h, q4, q5_h, q5_4;  // an axle's force to r
+  vec s11, s1h, sh1, shh, sh4, s4h, s44;           // the step's own body motion to r, through all axles
+  Sensor sensor[SENSORS];
+};
+struct Matrix {
+  vec v[3][3];
+  const vec* operator[](int i) const { return v[i]; }
+  vec* operator[](int i) { return v[i]; }
 };
 
-// Travel rows of the axles on the bodies are (1, r1, r2): r1 differs between individuals, r2 is measured.
-static const double R2[5] = {0, 0, 0, 8.50, 9.73};
-
-static inline void inverse3(const vec* a, vec* o) {
-  vec c0 = a[3] * a[5] - a[4] * a[4], c1 = a[2] * a[4] - a[1] * a[5], c2 = a[1] * a[4] - a[2] * a[3];
-  vec d = 1.0 / (a[0] * c0 + a[1] * c1 + a[2] * c2);
-  o[0] = c0 * d; o[1] = c1 * d; o[2] = c2 * d;
-  o[3] = (a[0] * a[5] - a[2] * a[2]) * d;
-  o[4] = (a[1] * a[2] - a[0] * a[4]) * d;
-  o[5] = (a[0] * a[3] - a[1] * a[1]) * d;
+static Matrix inverse(const Matrix& a) {
+  vec c0 = a[1][1] * a[2][2] - a[1][2] * a[1][2], c1 = a[0][2] * a[1][2] - a[0][1] * a[2][2], c2 = a[0][1] * a[1][2] - a[0][2] * a[1][1];
+  vec d = 1.0 / (a[0][0] * c0 + a[0][1] * c1 + a[0][2] * c2), e = d * (a[0][1] * a[0][2] - a[0][0] * a[1][2]);
+  return {{{c0 * d, c1 * d, c2 * d},
+           {c1 * d, d * (a[0][0] * a[2][2] - a[0][2] * a[0][2]), e},
+           {c2 * d, e, d * (a[0][0] * a[1][1] - a[0][1] * a[0][1])}}};
 }
 
-static inline void times3(const vec* s, vec x, vec y, vec z, vec& a, vec& b, vec& c) {
-  a = s[0] * x + s[1] * y + s[2] * z;
-  b = s[1] * x + s[3] * y + s[4] * z;
-  c = s[2] * x + s[4] * y + s[5] * z;
+INLINE vec dot(const vec* a, const vec* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+INLINE void row_times(const vec* row, const Matrix& a, vec* out) {
+  for (int j = 0; j < 3; ++j) out[j] = row[0] * a[0][j] + row[1] * a[1][j] + row[2] * a[2][j];
 }
 
-// p: per individual mT mS IT IS, then m k c kt of five axles, then a1 a2 b1 b6.
-static void setup(const double* p, long n, long first, int g, double h, Block& o) {
+// p: per individual mT mS IT IS, then m k c kt of five axles (k > 0), then a1 a2 b1 b6.
+static void setup(const double* p, long n, long first, double h, Block& o) {
   auto read = [&](int row) {
     vec x;
-    for (int l = 0; l < WIDTH; ++l) {
-      long i = first + g * WIDTH + l;
-      x[l] = p[row * n + (i < n ? i : n - 1)];
-    }
+    for (int l = 0; l < WIDTH; ++l) x[l] = p[row * n + (first + l < n ? first + l : n - 1)];
     return x;
   };
-  vec a1 = read(24), a2 = read(25), b1 = read(26), b6 = read(27), b7 = 3.75 - b1;
-  o.R1[0] = -b1; o.R1[1] = 3.46 - b1; o.R1[2] = 4.80 - b1; o.R1[3] = o.R1[4] = b7;
-  vec mT = read(0), mS = read(1), IT = read(2), IS = read(3), mu = mT * mS / (mT + mS);
-  vec M[6] = {mT + mS, b7 * mS, b6 * mS, IT + b7 * b7 * mS + mu * a1 * a1, b6 * b7 * mS - mu * a1 * a2, IS + b6 * b6 * mS + mu * a2 * a2};
-  inverse3(M, o.inverse_mass);
-  vec A[6];
-  for (int i = 0; i < 6; ++i) { o.mb[i] = 2 / h * M[i]; o.kb[i] = o.cb[i] = vec{}; A[i] = o.mb[i]; }
-  for (int i = 0; i < 5; ++i) {
-    vec m = read(4 + i), k = read(9 + i), c = read(14 + i), kt = read(19 + i);
-    o.mass[i] = 2 / h * m; o.k[i] = k; o.kt[i] = kt; o.kk[i] = k + kt; o.c[i] = c;
-    vec e = c + h / 2 * k;
-    o.inv[i] = 1.0 / (o.mass[i] + e + h / 2 * kt);
-    o.share[i] = e * o.inv[i];
-    vec left = e - e * o.share[i];
-    const vec r[3] = {vec{} + 1.0, o.R1[i], vec{} + R2[i]};
-    int q = 0;
-    for (int a = 0; a < 3; ++a)
-      for (int b = a; b < 3; ++b, ++q) { o.kb[q] += r[a] * r[b] * k; o.cb[q] += r[a] * r[b] * c; A[q] += r[a] * r[b] * left; }
+  const vec one = 1.0 - vec{};
+  const double alpha = 2.0 / h;
+  vec mT = read(0), mS = read(1), a1 = read(24), a2 = read(25), b1 = read(26), b6 = read(27), b7 = 3.75 - b1, mu = mT * mS / (mT + mS);
+  Matrix M = {{{mT + mS, b7 * mS, b6 * mS},
+               {b7 * mS, read(2) + b7 * b7 * mS + mu * a1 * a1, b6 * b7 * mS - mu * a1 * a2},
+               {b6 * mS, b6 * b7 * mS - mu * a1 * a2, read(3) + b6 * b6 * mS + mu * a2 * a2}}};
+  // (z_T, theta_T, theta_S) = T (heave at axle 1, at the hinge, at axle 4)
+  Matrix T = {{{b7 / 3.75, b1 / 3.75, {}}, {-one / 3.75, one / 3.75, {}}, {{}, -one / 8.50, one / 8.50}}}, MT = {}, mass = {};
+  for (int i = 0; i < 3; ++i) row_times(M[i], T, MT[i]);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) mass[i][j] = T[0][i] * MT[0][j] + T[1][i] * MT[1][j] + T[2][i] * MT[2][j];
+  const double y2 = 3.46 / 3.75, y3 = 4.80 / 3.75, y5 = 9.73 / 8.50;
+  const vec zero = {};
+  const vec g[AXLES][3] = {{one, zero, zero}, {one * (1 - y2), one * y2, zero}, {one * (1 - y3), one * y3, zero}, {zero, zero, one}, {zero, one * (1 - y5), one * y5}};
+
+  vec lambda[AXLES], N0[AXLES], to[AXLES][3];
+  Matrix S = {}, damping = {};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) S[i][j] = alpha * mass[i][j];
+  for (int a = 0; a < AXLES; ++a) {
+    vec m = alpha * alpha * read(4 + a), k = read(9 + a), damp = read(14 + a), c = alpha * damp, kt = read(19 + a), d = 1.0 / (m + c + k + kt);
+    vec s0 = k + c, s1 = k - c, u0 = m + kt, u1 = 2.0 * (kt - m);
+    AxleRow& o_a = o.axle[a];
+    o_a.a1 = 2.0 * (m - k - kt) * d;
+    o_a.a2 = (c - m - k - kt) * d;
+    o_a.w = s1 / s0;
+    lambda[a] = kt * s0 * d;
+    N0[a] = -0.5 * s0 * u0 * d;
+    vec N1 = -0.5 * (s0 * u1 + s1 * u0) * d, N3 = -0.5 * s1 * u0 * d;
+    o_a.b1 = N1 + N0[a] * (1.0 + o_a.a1);
+    o_a.b3 = -4.0 * k * kt * d;
+    o_a.b2 = o_a.b3 - N3 + N0[a] * o_a.a2;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        S[i][j] -= h * N0[a] * g[a][i] * g[a][j];
+        damping[i][j] += damp * g[a][i] * g[a][j];
+      }
+    // Back to (z, spring force / kt, 2/h m v / kt): rows of the transformation; the suspension's force / kt at a sample is to . (x1, x2, x3).
+    vec share = s0 * d, k2 = k / kt, known = 2.0 * kt * d * (share * (m / kt - 1.0) + k2 * (1.0 - share));
+    vec z2 = -share * (1.0 - o_a.a1) - known, F2 = (1.0 - share) * (1.0 - o_a.a1) - known, P2 = known - share * (1.0 + o_a.a1);
+    vec e1 = k2 * (1.0 - share) - share, e2 = z2 + k2 * F2, det = 1.0 / (share * e2 - P2 * e1);
+    to[a][0] = (c / m * e2 - P2 * k2) * det;
+    to[a][1] = (share * k2 - e1 * c / m) * det;
+    to[a][2] = (z2 * to[a][1] - share * to[a][0]) / (4.0 * k * d);
   }
-  inverse3(A, o.B);
+  Matrix B = inverse(S);
+  vec v1 = o.axle[0].b3 / lambda[0], v4 = o.axle[3].b3 / lambda[3], vh = v4 * ((1 - y5) / y5), V[3] = {v1, vh, v4};  // scales of V and r
+  vec R[3] = {h * v1 * B[0][0], h * vh * B[1][1], h * v4 * B[2][2]};
+  auto beside = [&](int i, int j) { return V[i] * B[i][j] / (V[j] * B[j][j]); };
+  o.i1h = beside(0, 1), o.i14 = beside(0, 2), o.ih1 = beside(1, 0), o.ih4 = beside(1, 2), o.i41 = beside(2, 0), o.i4h = beside(2, 1);
+  o.g2 = (1 - y2) / y2 * vh / v1, o.g3 = (1 - y3) / y3 * vh / v1;
+  const vec unit[AXLES] = {1.0 / v1, y2 / vh, y3 / vh, 1.0 / v4, y5 / v4};
+  vec own[AXLES];
+  for (int a = 0; a < AXLES; ++a) {
+    vec scale = unit[a] / lambda[a];
+    own[a] = (o.axle[a].b1 + 2.0 * N0[a]) * scale;
+    o.axle[a].b1 *= scale, o.axle[a].b2 *= scale, o.axle[a].b3 *= scale;
+  }
+  o.q1 = R[0] * lambda[0], o.q2_1 = R[0] * lambda[1] * g[1][0], o.q3_1 = R[0] * lambda[2] * g[2][0];
+  o.q2_h = R[1] * lambda[1] * g[1][1], o.q3_h = R[1] * lambda[2] * g[2][1], o.q5_h = R[1] * lambda[4] * g[4][1];
+  o.q4 = R[2] * lambda[3], o.q5_4 = R[2] * lambda[4] * g[4][2];
+  o.s1h = o.q2_1 * own[1] + o.q3_1 * own[2], o.s11 = o.q1 * own[0] + o.q2_1 * own[1] * o.g2 + o.q3_1 * own[2] * o.g3;
+  o.sh1 = o.q2_h * own[1] * o.g2 + o.q3_h * own[2] * o.g3, o.sh4 = o.q5_h * own[4], o.shh = o.q2_h * own[1] + o.q3_h * own[2] + o.sh4;
+  o.s4h = o.q5_4 * own[4], o.s44 = o.q4 * own[3] + o.s4h;
+  // Acceleration from equilibrium: M a = sum g (force with the body held) - damping V, V = inverse(alpha M) (r - sum g phi).
+  Matrix inverse_mass = inverse(mass);
+  const vec rows[SENSORS][3] = {{one, -(b1 + 0.29), zero}, {one, b7, 9.32 * one}};
+  for (int j = 0; j < SENSORS; ++j) {
+    Sensor& s = o.sensor[j];
+    vec row[3], reaction[3], loss[3], lost[3];
+    row_times(rows[j], T, row);
+    row_times(row, inverse_mass, reaction);
+    row_times(reaction, damping, lost);
+    row_times(lost, inverse_mass, loss);
+    s.r1 = -loss[0] / (alpha * R[0]), s.rh = -loss[1] / (alpha * R[1]), s.r4 = -loss[2] / (alpha * R[2]);
+    for (int a = 0; a < AXLES; ++a) {
+      vec lever = lambda[a] * dot(reaction, g[a]);
+      for (int i = 0; i < 3; ++i) s.axle[a][i] = lever * to[a][i];
+      s.road[a] = -s.axle[a][0] - s.axle[a][1] * o.axle[a].w;
+      s.axle[a][0] += lambda[a] / alpha * dot(loss, g[a]);
+    }
+  }
 }
 
-static void run_block(const double* p, long n, long first, const double* w, long steps, double h, long keep, double* out) {
-  Block blocks[GROUP];
-  vec u[GROUP][8] = {}, v[GROUP][8] = {};
-  for (int g = 0; g < GROUP; ++g) setup(p, n, first, g, h, blocks[g]);
-  const long kept = steps / keep + 1;
-  for (long s = 0; s <= steps; ++s) {
-    if (s % keep == 0) {
-      for (int g = 0; g < GROUP; ++g) {
-        const Block& o = blocks[g];
-        vec f0, f1, f2, d0, d1, d2, a0, a1, a2;
-        times3(o.kb, u[g][0], u[g][1], u[g][2], f0, f1, f2);
-        times3(o.cb, v[g][0], v[g][1], v[g][2], d0, d1, d2);
-        f0 = -f0 - d0; f1 = -f1 - d1; f2 = -f2 - d2;
-        for (int i = 0; i < 5; ++i) {
-          vec f = o.k[i] * u[g][3 + i] + o.c[i] * v[g][3 + i];
-          f0 += f; f1 += o.R1[i] * f; f2 += R2[i] * f;
-        }
-        times3(o.inverse_mass, f0, f1, f2, a0, a1, a2);
-        for (int j = 0; j < 2; ++j) {
-          vec y = a0 + (j ? o.R1[3] : o.R1[0] - 0.29) * a1 + (j ? 9.32 : 0.0) * a2;
-          for (int l = 0; l < WIDTH; ++l) {
-            long i = first + g * WIDTH + l;
-            if (i < n) out[(i * kept + s / keep) * 2 + j] = y[l];
-          }
-        }
+// Returns what is known of phi_n+1 + phi_n before the body's motion; `unit` is an axle whose b3 is 1.
+template <bool unit>
+INLINE vec advance(Axle& s, const AxleRow& c, double road, vec G) {
+  vec w = road - vec{}, x1 = c.a1 * s.x1 + (s.x2 + w), x2 = c.w * w + (c.a2 * s.x1 + s.x3), known = x1 + s.x1;
+  s.x1 = c.b1 * G + x1;
+  s.x2 = c.b2 * G + x2;
+  s.x3 = unit ? s.x3 + G : c.b3 * G + s.x3;
+  return known;
+}
+
+INLINE void step(State& s, const Block& c, const double* road) {
+  vec v1 = c.i1h * s.rh + (c.i14 * s.r4 + s.r1), vh = s.rh + (c.ih1 * s.r1 + c.ih4 * s.r4), v4 = c.i4h * s.rh + (c.i41 * s.r1 + s.r4);
+  vec f1 = advance<true>(s.axle[0], c.axle[0], road[0], v1), f4 = advance<true>(s.axle[3], c.axle[3], road[3], v4);
+  vec f5 = advance<false>(s.axle[4], c.axle[4], road[4], v4 + vh);
+  vec f2 = advance<false>(s.axle[1], c.axle[1], road[1], c.g2 * v1 + vh), f3 = advance<false>(s.axle[2], c.axle[2], road[2], c.g3 * v1 + vh);
+  vec k1 = s.r1 + c.q1 * f1 + c.q2_1 * f2 + c.q3_1 * f3, k4 = s.r4 + c.q4 * f4 + c.q5_4 * f5;
+  vec kh = s.rh + c.q5_h * f5 + c.q2_h * f2 + c.q3_h * f3;
+  s.r1 = c.s1h * vh + (c.s11 * v1 + k1);
+  s.r4 = c.s4h * vh + (c.s44 * v4 + k4);
+  s.rh = c.shh * vh + (c.sh1 * v1 + (c.sh4 * v4 + kh));
+}
+
+INLINE vec acceleration(const State& s, const Sensor& c, const double* road) {
+  vec sum = c.r1 * s.r1 + c.rh * s.rh + c.r4 * s.r4;
+  for (int a = 0; a < AXLES; ++a)
+    sum += c.axle[a][0] * s.axle[a].x1 + (c.axle[a][1] * s.axle[a].x2 + (c.axle[a][2] * s.axle[a].x3 + c.road[a] * road[a]));
+  return sum;
+}
+
+// sums: w_n-1 + w_n before every step; means: w of the step that begins at a kept sample.
+static void run_block(const double* p, long n, long first, const double* sums, const double* means, long kept, double h, long keep, double* out) {
+  Block c;
+  setup(p, n, first, h, c);
+  State s = {};
+  vec found[CHUNK][SENSORS];
+  const long present = n - first < WIDTH ? n - first : WIDTH;
+  for (long start = 0; start < kept; start += CHUNK) {
+    const long samples = kept - start < CHUNK ? kept - start : CHUNK;
+    for (long sample = 0; sample < samples; ++sample) {
+      for (long i = start + sample ? 0 : keep - 1; i < keep; ++i, sums += AXLES) {
+        asm volatile("" ::: "memory");  // constants are read where they are used, not copied to the stack before every loop
+        step(s, c, sums);
       }
+      for (int j = 0; j < SENSORS; ++j) found[sample][j] = acceleration(s, c.sensor[j], means + (start + sample) * AXLES);
     }
-    if (s == steps) break;
-    double mean[5];
-    for (int i = 0; i < 5; ++i) mean[i] = 0.5 * (w[5 * s + i] + w[5 * s + 5 + i]);
-    for (int g = 0; g < GROUP; ++g) {
-      const Block& o = blocks[g];
-      vec *U = u[g], *V = v[g];
-      vec f0, f1, f2, k0, k1, k2, r[5];
-      times3(o.mb, V[0], V[1], V[2], f0, f1, f2);
-      times3(o.kb, U[0], U[1], U[2], k0, k1, k2);
-      f0 -= k0; f1 -= k1; f2 -= k2;
-#pragma GCC unroll 5
-      for (int i = 0; i < 5; ++i) {
-        vec rise = U[0] + o.R1[i] * U[1];
-        if (R2[i] != 0) rise += R2[i] * U[2];
-        r[i] = o.mass[i] * V[3 + i] - o.kk[i] * U[3 + i] + o.k[i] * rise + o.kt[i] * mean[i];
-        vec s1 = o.k[i] * U[3 + i] + o.share[i] * r[i];
-        f0 += s1; f1 += o.R1[i] * s1;
-        if (R2[i] != 0) f2 += R2[i] * s1;
-      }
-      vec m0, m1, m2;
-      times3(o.B, f0, f1, f2, m0, m1, m2);
-#pragma GCC unroll 5
-      for (int i = 0; i < 5; ++i) {
-        vec rate = m0 + o.R1[i] * m1;
-        if (R2[i] != 0) rate += R2[i] * m2;
-        vec m = o.inv[i] * r[i] + o.share[i] * rate;
-        U[3 + i] += h * m; V[3 + i] = 2 * m - V[3 + i];
-      }
-      U[0] += h * m0; U[1] += h * m1; U[2] += h * m2;
-      V[0] = 2 * m0 - V[0]; V[1] = 2 * m1 - V[1]; V[2] = 2 * m2 - V[2];
-    }
+    for (long l = 0; l < present; ++l)
+      for (long i = 0; i < samples * SENSORS; ++i) out[((first + l) * kept + start) * SENSORS + i] = found[i / SENSORS][i % SENSORS][l];
   }
 }
 
 extern "C" void simulate(const double* p, long n, const double* w, long steps, double h, long keep, double* out, int threads) {
-  long blocks = (n + LANES - 1) / LANES;
-  auto work = [&](long start) {
-    for (long b = start; b < blocks; b += threads) run_block(p, n, b * LANES, w, steps, h, keep, out);
+  const long kept = steps / keep + 1, blocks = (n + WIDTH - 1) / WIDTH;
+  std::vector<double> sums((steps + 1) * AXLES), means(kept * AXLES);
+  for (long s = 0; s <= steps; ++s)
+    for (int a = 0; a < AXLES; ++a) {
+      const long at = s * AXLES + a;
+      auto mean = [&](long i) { return 0.5 * (w[i] + w[i + AXLES]); };
+      const double now = s < steps ? mean(at) : 0.0, before = s > 0 ? mean(at - AXLES) : 0.0;
+      sums[at] = before + now;
+      if (s % keep == 0) means[s / keep * AXLES + a] = now;
+    }
+  std::atomic<long> next{0};
+  auto work = [&] {
+    for (long b; (b = next++) < blocks;) run_block(p, n, b * WIDTH, sums.data(), means.data(), kept, h, keep, out);
   };
-  if (threads <= 1) { work(0); return; }
   std::vector<std::thread> pool;
-  for (int t = 0; t < threads; ++t) pool.emplace_back(work, t);
+  for (int t = 1; t < threads; ++t) pool.emplace_back(work);
+  work();
   for (auto& t : pool) t.join();
 }

@@ -20,7 +20,11 @@ GEOMETRY = {"a1": 0.97, "a2": 0.82, "b1": 1.32, "b6": 4.14}
 
 @dataclass(frozen=True)
 class Systems:
-    """M, C, K `shape (n_individuals, 8, 8)`, P `(n_individuals, 8, 5)`, sensor rows S `(n_individuals, 2, 8)`, and the physical parameters behind them."""
+    """Matrices of a population.
+
+    M, C, K `shape (n_individuals, 8, 8)`, P `(n_individuals, 8, 5)`, sensor rows
+    S `(n_individuals, 2, 8)`, and the physical parameters behind them.
+    """
 
     M: Array
     C: Array

@@ -46,8 +46,8 @@ def cut(assignments: list[str], stores: list[str], lanes: int) -> tuple[list[lis
     needed: list[list[str]] = []
     for place, body in enumerate(bodies):
         text = body if place < len(bodies) - 1 else stores
-        names = {name for line in text for name in _NAME.findall(line.partition(" = ")[2])}
-        needed.append(sorted(name for name in names if defined.get(name, place) < place))
+        used = {name for line in text for name in _NAME.findall(line.partition(" = ")[2])}
+        needed.append(sorted(name for name in used if defined.get(name, place) < place))
     slots = {name: slot for slot, name in enumerate(sorted({name for names in needed for name in names}))}
     result = []
     for place, (body, names) in enumerate(zip(bodies, needed, strict=True)):

@@ -30,7 +30,7 @@ upper = _binary(">")
 """upper(a, b): the larger of two numbers; b where one is not a number."""
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic
 def step(context: Any, value: Any) -> Any:
     """step(a): 1 where a > 0, else 0."""
 
@@ -41,7 +41,7 @@ def step(context: Any, value: Any) -> Any:
     return types.float64(types.float64), code
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic
 def sign(context: Any, value: Any) -> Any:
     """sign(a): 1, 0 or -1."""
 

@@ -1,15 +1,18 @@
 """Show me: drawings, figures, equations for reading, and the page."""
 
 from vehgen.report.drawing import draw_vehicle
-from vehgen.report.equations import equations_latex, equations_text
+from vehgen.report.equations import equations_mathml, equations_text
+from vehgen.report.files import figure_svg, save_figure
+from vehgen.report.latex import equations_latex
 from vehgen.report.mode_shapes import draw_modes
-from vehgen.report.page import figure_svg, save_figure, write_build_folder
+from vehgen.report.page import write_build_folder
 from vehgen.report.response_plot import plot_response
 
 __all__ = [
     "draw_modes",
     "draw_vehicle",
     "equations_latex",
+    "equations_mathml",
     "equations_text",
     "figure_svg",
     "plot_response",

@@ -3,171 +3,211 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle, FancyBboxPatch, Wedge
+from matplotlib.patches import Circle, FancyBboxPatch, Rectangle
 
 from vehgen.mechanics import LinearModel
-from vehgen.report.sketch import Box, Sketch, make_sketch
-from vehgen.vehicle.model import GROUND
+from vehgen.mechanics.symbols import to_sympy
+from vehgen.report.canvas import ACCENT, FAINT, FILLS, INK, Canvas, Spot, text_size, within, wrap
+from vehgen.report.dimensions import Chain, draw_chains, draw_hinge_heights
+from vehgen.report.sketch import Sketch, make_sketch
+from vehgen.vehicle.expressions import Expression
+from vehgen.vehicle.model import Axle, Spring
 
-INK = "#1b2733"
-FAINT = "#8a97a3"
-FILLS = ("#cfe0ee", "#f3dfc1", "#d5e8d4", "#e6d6e8", "#f5e9a9", "#d9d9d9")
-ACCENT = "#0b5fa5"
+_TEXT = 8.5
+_ROW, _TILT = 25.0, 35.0
+"""Height of a row of dimensions in points; slope of crowded names in degrees."""
 
 
 def draw_vehicle(model: LinearModel, values: Mapping[str, float] | None = None) -> Figure:
-    """Draw a side view to scale: bodies, axles, hinges, links, COGs, and the dimensions along the road [m].
+    """Draw a side view to scale: bodies, axles, hinges, links, COGs, and their distances [m].
 
-    Outlines that the file does not give (`size`) are dashed.
+    Outlines that the file does not give (`size`) are dashed, and so are heights above the road: it gives heights only relative to
+    each other.
     """
     values = values or model.values()
     sketch = make_sketch(model, values)
-    length = sketch.right - sketch.left
-    rows = 2 if sketch.hinges or len(sketch.boxes) > 1 else 1
-    crowded = _crowded(sketch)
-    depth = 0.75 + 0.6 * rows + (0.9 if crowded else 0.0)
-    height = sketch.top + depth + 1.0
-    width = float(np.clip(0.75 * length, 7.5, 12.0 + 0.32 * length))
-    figure = Figure(figsize=(width, width * height / (length + 2.6)), layout="constrained")
-    axes = figure.add_subplot()
-    axes.set_aspect("equal")
-    axes.set_axis_off()
-    axes.set_xlim(sketch.left - 1.3, sketch.right + 1.3)
-    axes.set_ylim(-depth, sketch.top + 1.0)
-    size = float(np.clip(9.0 * width / 12.0, 7.0, 10.0))
-    axes.plot([sketch.left - 0.8, sketch.right + 0.8], [0, 0], color=INK, lw=1.2)
-    for index, (name, box) in enumerate(sketch.boxes.items()):
-        _draw_body(axes, model, name, box, FILLS[index % len(FILLS)], size)
-    for name in sketch.axles:
-        _draw_axle(axes, model, name, sketch, size, crowded)
-    for name, (x, first, second) in sketch.links.items():
-        _draw_link(axes, name, x, first, second, sketch, size)
+    names = {name: axle.title or name for name, axle in model.vehicle.axles.items()}
+    canvas, depth, chains = _canvas(model, sketch, names)
+    _draw_road(canvas, sketch)
+    for index, name in enumerate(sketch.boxes):
+        _draw_body(canvas, name, sketch, FILLS[index % len(FILLS)])
+    for name, axle in model.vehicle.axles.items():
+        _draw_axle(canvas, name, axle, sketch)
+    for name, link in model.vehicle.links.items():
+        strut = sketch.links[name]
+        canvas.spring_damper(strut.x, strut.bottom, strut.top, _acts(link.k), _acts(link.c), ACCENT, law=bool(link.laws))
     for name, (x, z) in sketch.hinges.items():
-        for body in model.vehicle.hinges[name].points:
-            edge = float(np.clip(z, sketch.boxes[body].bottom, sketch.boxes[body].top))
-            axes.plot([x, x], [edge, z], color=ACCENT, lw=1.4, zorder=5)
-        axes.add_patch(Circle((x, z), 0.09, facecolor="white", edgecolor=ACCENT, lw=1.6, zorder=6))
-        axes.annotate(name, (x, z), (0, 9), textcoords="offset points", ha="center", va="bottom", fontsize=size - 1, color=ACCENT, zorder=7)
-    low = -1.35 if crowded else -0.55
-    _dimension_chain(axes, sorted({x for x, _ in sketch.axles.values()}), low, "axles", size, INK)
-    if rows == 2:
-        marks = sorted(
-            {round(box.x, 6) for box in sketch.boxes.values() if box.right - box.left > 1.0} | {x for x, _ in sketch.hinges.values()}
-        )
-        _dimension_chain(axes, marks, low - 0.6, "COGs, hinges", size, ACCENT)
-    _draw_convention(axes, sketch.right + 0.35, sketch.top + 0.15, size)
-    axes.set_title(f"{model.vehicle.title or model.vehicle.name}  (to scale; lengths in metres)", loc="left", fontsize=size + 2, color=INK)
-    return figure
+        _draw_hinge(canvas, name, x, z, bool(model.vehicle.hinges[name].laws))
+    draw_hinge_heights(canvas, model, sketch, _TEXT - 1)
+    draw_chains(canvas, chains, -depth, _ROW, _TEXT - 0.5)
+    _name_axles(canvas, sketch, names)
+    _name_parts(canvas, model, sketch)
+    return canvas.figure
 
 
-def _draw_body(axes: Axes, model: LinearModel, name: str, box: Box, fill: str, size: float) -> None:
-    style = "-" if box.declared else (0, (4, 2))
+def _acts(quantity: Expression) -> bool:
+    """Tell whether a stiffness or damping is anything but a plain zero."""
+    return bool(to_sympy(quantity) != 0)
+
+
+def _canvas(model: LinearModel, sketch: Sketch, names: Mapping[str, str]) -> tuple[Canvas, float, list[Chain]]:
+    """Choose the scale and the room around the vehicle; also returns how far below the road the dimensions begin [m], and these."""
+    length = sketch.right - sketch.left
+    scale = float(np.clip(10.3 / length, min(0.45, 60.0 / length), 1.15))
+    point = 1 / (72 * scale)
+    margin = max(64 * point, (7.2 / scale - length) / 2)
+    left, right = sketch.left - margin, sketch.right + margin
+    width = (right - left) / point - 24
+    title = wrap(model.vehicle.title or model.vehicle.name, 12, width, bold=True)
+    notes = wrap(_notes(model, sketch), 8, width)
+    head = 15 * len(title) + 11 * len(notes) + 46
+    crowded = _crowded(sketch, names, point)
+    chains = _chains(model, sketch, 0.0 if crowded else -19 * point)
+    slant = max((text_size(name, _TEXT)[0] for name in names.values()), default=0.0) * math.sin(math.radians(_TILT))
+    depth = (20 + slant if crowded else 26) * point
+    canvas = Canvas((left, -depth - (len(chains) * _ROW + 14) * point, right, sketch.top + head * point), scale)
+    z = canvas.top - 8 * point
+    for texts, size, step, color in ((title, 12, 15, INK), (notes, 8, 11, FAINT)):
+        for text in texts:
+            canvas.write(text, (left + 12 * point, z, "left", "top"), size, color, bold=size == 12)
+            z -= step * point
+    canvas.take(left, z, right, canvas.top)
+    _draw_convention(canvas, right - 52 * point, canvas.top - (head + 12) * point)
+    canvas.take(left, -depth, right, -2 * point)
+    return canvas, depth, chains
+
+
+def _notes(model: LinearModel, sketch: Sketch) -> str:
+    notes = ["To scale; lengths in metres; heights above the road are assumed."]
+    if not all(box.declared for box in sketch.boxes.values()):
+        notes.append("Dashed outlines are not in the vehicle file.")
+    if any(element.laws for element in model.elements):
+        notes.append("An arrow across a symbol: a force law.")
+    return " ".join(notes)
+
+
+def _chains(model: LinearModel, sketch: Sketch, road: float) -> list[Chain]:
+    """Choose what is dimensioned in a row: the axles; COGs and hinges from the front axle; carried bodies from their carriers."""
+    axles = [(x, road) for x in sketch.axles.values()]
+    carried = {name: body.carried_by.body for name, body in model.vehicle.bodies.items() if body.carried_by is not None}
+    main = [(box.x, box.z) for name, box in sketch.boxes.items() if name not in carried]
+    chains = [Chain("axles", INK, axles), Chain("COGs and hinges", ACCENT, [*main, *sketch.hinges.values(), *sorted(axles)[-1:]])]
+    if carried:
+        pairs = {*carried, *carried.values()}
+        chains.append(Chain("carried bodies", "#6b4a86", [(box.x, box.z) for name, box in sketch.boxes.items() if name in pairs]))
+    return [chain for chain in chains if len(chain.marks()) > 1]
+
+
+def _draw_road(canvas: Canvas, sketch: Sketch) -> None:
+    left, right = sketch.left - 20 * canvas.point, sketch.right + 20 * canvas.point
+    canvas.line([left, right], [0, 0], INK, 1.3)
+    step, size = 9 * canvas.point, 4 * canvas.point
+    hatch = [point for x in np.arange(left + size, right, step) for point in ((x, 0.0), (x - size, -size), (np.nan, np.nan))]
+    canvas.line([x for x, _ in hatch], [z for _, z in hatch], FAINT, 0.6)
+
+
+def _draw_body(canvas: Canvas, name: str, sketch: Sketch, fill: str) -> None:
+    box = sketch.boxes[name]
+    for body, x, z in sketch.arms:
+        edge = box.edge(x, z)
+        if body == name and edge != (x, z):
+            canvas.arm((edge, (x, z)), fill)
+    corner = min(4 * canvas.point, 0.4 * (box.top - box.bottom))
     patch = FancyBboxPatch(
-        (box.left, box.bottom),
-        box.right - box.left,
-        box.top - box.bottom,
-        boxstyle="round,pad=0,rounding_size=0.08",
-        facecolor=fill,
-        edgecolor=INK,
-        lw=1.1,
-        linestyle=style,
-        alpha=0.9,
-        zorder=2,
-    )
-    axes.add_patch(patch)
-    radius = 0.12
-    for quarter in range(4):
-        color = INK if quarter % 2 else "white"
-        axes.add_patch(Wedge((box.x, box.z), radius, 90 * quarter, 90 * quarter + 90, facecolor=color, edgecolor=INK, lw=0.6, zorder=5))
-    label = model.vehicle.bodies[name].title or name
-    small = box.top - box.bottom < 0.4
-    place = ((box.left + box.right) / 2, box.bottom - 0.08) if small else (box.left + 0.1, box.top - 0.06)
-    axes.text(*place, label, fontsize=size, ha="center" if small else "left", va="top", color=INK, zorder=6)
+        (box.left, box.bottom), box.right - box.left, box.top - box.bottom, boxstyle=f"round,pad=0,rounding_size={corner}",
+        facecolor=fill, edgecolor=INK, lw=1.0, linestyle="-" if box.declared else (0, (4, 2)), alpha=0.85, zorder=2, gid=f"body-{name}",
+    )  # fmt: skip
+    canvas.axes.add_patch(patch)
+    thin = 1.5 * canvas.point
+    for x in (box.left, box.right):
+        canvas.take(x - thin, box.bottom, x + thin, box.top)
+    for z in (box.bottom, box.top):
+        canvas.take(box.left, z - thin, box.right, z + thin)
+    canvas.cog(box.x, box.z, min(6 * canvas.point, 0.35 * (box.top - box.bottom)), name)
 
 
-def _draw_axle(axes: Axes, model: LinearModel, name: str, sketch: Sketch, size: float, crowded: bool) -> None:
-    x, hub = sketch.axles[name]
-    axle = model.vehicle.axles[name]
-    axes.add_patch(Circle((x, hub), sketch.wheel_radius, facecolor="#3b4650", edgecolor=INK, lw=0.8, alpha=0.85, zorder=3))
-    axes.add_patch(Circle((x, hub), 0.45 * sketch.wheel_radius, facecolor="#e9edf0", edgecolor=INK, lw=0.6, zorder=3))
-    if axle.suspension is not None:
-        box = sketch.boxes[axle.body]
-        _spring_damper(axes, x, hub, max(box.bottom, hub + 0.35), 0.16)
-    turn = {"rotation": 35, "ha": "right", "rotation_mode": "anchor"} if crowded else {"ha": "center"}
-    axes.text(x, -0.1, axle.title or name, fontsize=size - 1, va="top", color=INK, **turn)
-
-
-def _crowded(sketch: Sketch) -> bool:
-    """Tell whether neighbouring axles stand too close for their names to be written side by side."""
-    places = sorted(x for x, _ in sketch.axles.values())
-    longest = max((len(name) for name in sketch.axles), default=0)
-    return any(right - left < 0.15 * longest for left, right in itertools.pairwise(places))
-
-
-def _draw_link(axes: Axes, name: str, x: float, first: str, second: str, sketch: Sketch, size: float) -> None:
-    ends = []
-    for body in (first, second):
-        ends.append((0.0, 0.0) if body == GROUND else (sketch.boxes[body].bottom, sketch.boxes[body].top))
-    (low, high) = sorted(ends)
-    bottom, top = low[1], high[0]
-    if top - bottom < 0.25:
-        middle = (top + bottom) / 2
-        bottom, top = middle - 0.2, middle + 0.2
-    _spring_damper(axes, x, bottom, top, 0.13, color=ACCENT)
-    axes.annotate(name, (x, (bottom + top) / 2), (9, 0), textcoords="offset points", fontsize=size - 2, color=ACCENT, va="center", zorder=7)
-
-
-def _spring_damper(axes: Axes, x: float, bottom: float, top: float, half: float, color: str = INK) -> None:
-    """Draw a zigzag spring on the left and a dashpot on the right."""
-    height = np.linspace(bottom, top, 11)
-    zigzag = x - half + 0.5 * half * np.array([0, 0, 1, -1, 1, -1, 1, -1, 1, 0, 0])
-    axes.plot(zigzag, height, color=color, lw=1.0, zorder=4)
-    right, middle = x + half, (bottom + top) / 2
-    axes.plot([right, right], [bottom, middle - 0.05], color=color, lw=1.0, zorder=4)
-    axes.plot(
-        [right - 0.06, right - 0.06, right + 0.06, right + 0.06],
-        [middle + 0.09, middle - 0.05, middle - 0.05, middle + 0.09],
-        color=color,
-        lw=1.0,
-        zorder=4,
-    )
-    axes.plot([right - 0.045, right + 0.045], [middle + 0.03] * 2, color=color, lw=1.4, zorder=4)
-    axes.plot([right, right], [middle + 0.03, top], color=color, lw=1.0, zorder=4)
-
-
-def _dimension_chain(axes: Axes, marks: list[float], z: float, label: str, size: float, color: str) -> None:
-    """Draw dimensions between neighbouring marks, front first."""
-    if len(marks) < 2:
+def _draw_axle(canvas: Canvas, name: str, axle: Axle, sketch: Sketch) -> None:
+    x, radius = sketch.axles[name], sketch.wheel_radius
+    canvas.axes.add_patch(Circle((x, radius), radius, facecolor="#aab4bd", edgecolor=INK, lw=0.9, zorder=3, gid=f"wheel-{name}"))
+    canvas.axes.add_patch(Circle((x, radius), 0.72 * radius, facecolor="#eef1f3", edgecolor=FAINT, lw=0.5, zorder=3))
+    canvas.take(x - radius, 0, x + radius, 2 * radius)
+    half = min(5.0, 0.17 * radius / canvas.point)
+    canvas.spring_damper(x, 0.0, 0.85 * radius, _acts(axle.tyre.k), _acts(axle.tyre.c), half=half, law=bool(axle.tyre.laws))
+    if axle.suspension is None:
+        canvas.axes.add_patch(Circle((x, radius), 0.13 * radius, facecolor="white", edgecolor=INK, lw=1.0, zorder=5))
         return
-    for x in marks:
-        axes.plot([x, x], [z - 0.1, z + 0.1], color=color, lw=0.8)
-    for left, right in itertools.pairwise(marks):
-        axes.annotate("", (left, z), (right, z), arrowprops={"arrowstyle": "<->", "color": color, "lw": 0.8, "shrinkA": 0, "shrinkB": 0})
-        narrow = right - left < 0.9
-        axes.text(
-            (left + right) / 2,
-            z + 0.05,
-            f"{right - left:.2f}",
-            ha="center",
-            va="bottom",
-            fontsize=size - (2.5 if narrow else 1),
-            color=color,
-        )
-    axes.text(marks[-1] + 0.15, z, label, fontsize=size - 2, color=color, va="center")
+    block = Rectangle((x - 0.32 * radius, 0.85 * radius), 0.64 * radius, 0.3 * radius, facecolor=INK, zorder=5, gid=f"unsprung-{name}")
+    canvas.axes.add_patch(block)
+    spring: Spring = axle.suspension
+    strut = sketch.suspensions[name]
+    canvas.spring_damper(strut.x, strut.bottom, strut.top, _acts(spring.k), _acts(spring.c), law=bool(spring.laws))
 
 
-def _draw_convention(axes: Axes, x: float, z: float, size: float) -> None:
+def _draw_hinge(canvas: Canvas, name: str, x: float, z: float, law: bool) -> None:
+    radius = 3.6 * canvas.point
+    canvas.axes.add_patch(Circle((x, z), radius, facecolor="white", edgecolor=ACCENT, lw=1.6, zorder=7, gid=f"hinge-{name}"))
+    canvas.take(x - radius, z - radius, x + radius, z + radius)
+    if law:
+        canvas.spring_damper(x, z - 2 * radius, z + 2 * radius, spring=False, damper=False, law=True)
+
+
+def _crowded(sketch: Sketch, names: Mapping[str, str], point: float) -> bool:
+    """Tell whether neighbouring axles stand too close for their names to be written side by side."""
+    ordered = sorted((x, text_size(names[name], _TEXT)[0] * point) for name, x in sketch.axles.items())
+    return any(right - left < (one + two) / 2 + 5 * point for (left, one), (right, two) in itertools.pairwise(ordered))
+
+
+def _name_axles(canvas: Canvas, sketch: Sketch, names: Mapping[str, str]) -> None:
+    crowded = _crowded(sketch, names, canvas.point)
+    for name, x in sketch.axles.items():
+        if crowded:
+            canvas.write(names[name], (x + 3 * canvas.point, -9 * canvas.point, "right", "top"), _TEXT, rotation=_TILT, halo=True)
+        else:
+            canvas.write(names[name], (x, -7 * canvas.point, "center", "top"), _TEXT, halo=True)
+
+
+def _name_parts(canvas: Canvas, model: LinearModel, sketch: Sketch) -> None:
+    """Write the names of bodies, hinges and links where there is room."""
+    boxes = {name: (box.left, box.bottom, box.right, box.top) for name, box in sketch.boxes.items()}
+    pad = 4 * canvas.point
+    for name, box in sketch.boxes.items():
+        text = model.vehicle.bodies[name].title or name
+        inside: list[Spot] = [
+            (box.left + pad, box.top - pad, "left", "top"),
+            (box.right - pad, box.top - pad, "right", "top"),
+            (box.left + pad, box.bottom + pad, "left", "bottom"),
+            (box.right - pad, box.bottom + pad, "right", "bottom"),
+            *((box.left + share * (box.right - box.left), box.top - pad, "center", "top") for share in (0.3, 0.5, 0.7)),
+            *((box.left + share * (box.right - box.left), box.z, "center", "center") for share in (0.15, 0.3, 0.5, 0.7, 0.85)),
+        ]
+        spots = [spot for spot in inside if within(canvas.extent(text, spot, _TEXT, bold=True), boxes[name])]
+        spots += [(box.x, box.top + pad, "center", "bottom"), (box.x, box.bottom - pad, "center", "top")]
+        spots += canvas.around(box.x, box.z, 8.0)
+        avoid = [other for key, other in boxes.items() if key != name]
+        canvas.label(text, spots, _TEXT, bold=True, avoid=avoid, anchor=(box.x, box.z), home=boxes[name])
+    for name, (x, z) in sketch.hinges.items():
+        title = model.vehicle.hinges[name].title or name
+        canvas.label(title, list(canvas.around(x, z, 7.0)), _TEXT - 0.5, ACCENT, anchor=(x, z))
+    for name, strut in sketch.links.items():
+        title = model.vehicle.links[name].title or name
+        middle, half = (strut.bottom + strut.top) / 2, 10 * canvas.point
+        home = (strut.x - half, strut.bottom, strut.x + half, strut.top)
+        canvas.label(title, list(canvas.around(strut.x, middle, 12.0)), _TEXT - 0.5, ACCENT, anchor=(strut.x, middle), home=home)
+
+
+def _draw_convention(canvas: Canvas, x: float, z: float) -> None:
     """Draw x forward, z up and the sense of positive pitch (nose down)."""
-    arrow = {"arrowstyle": "-|>", "color": FAINT, "lw": 1.0, "shrinkA": 0, "shrinkB": 0}
-    axes.annotate("", (x + 0.6, z), (x, z), arrowprops=arrow)
-    axes.annotate("", (x, z + 0.6), (x, z), arrowprops=arrow)
-    axes.text(x + 0.64, z, "x", fontsize=size - 1, color=FAINT, va="center")
-    axes.text(x, z + 0.63, "z", fontsize=size - 1, color=FAINT, ha="center")
+    arm, arrow = 26 * canvas.point, {"arrowstyle": "-|>", "color": FAINT, "lw": 1.0, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 9}
+    canvas.axes.annotate("", (x + arm, z), (x, z), arrowprops=arrow)
+    canvas.axes.annotate("", (x, z + arm), (x, z), arrowprops=arrow)
     bend = {**arrow, "connectionstyle": "arc3,rad=-0.45"}
-    axes.annotate("", (x + 0.42, z + 0.1), (x + 0.1, z + 0.42), arrowprops=bend)
-    axes.text(x + 0.38, z + 0.36, "pitch", fontsize=size - 2, color=FAINT)
+    canvas.axes.annotate("", (x + 0.72 * arm, z + 0.16 * arm), (x + 0.16 * arm, z + 0.72 * arm), arrowprops=bend)
+    for text, spot in (("x", (x + 1.1 * arm, z, "left", "center")), ("z", (x, z + 1.1 * arm, "center", "bottom"))):
+        canvas.write(text, spot, _TEXT - 0.5, FAINT)
+    canvas.write("pitch", (x + 0.62 * arm, z + 0.6 * arm, "left", "bottom"), _TEXT - 1, FAINT)
+    canvas.take(x - 6 * canvas.point, z - 6 * canvas.point, canvas.right, z + 1.6 * arm)

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
-from functools import cache
+from dataclasses import dataclass
 
 import sympy as sp
-from sympy.printing.latex import LatexPrinter
-from sympy.printing.mathml import MathMLPresentationPrinter
-from sympy.printing.str import StrPrinter
 
-from vehgen.mechanics import LinearModel
+from vehgen.mechanics import GRAVITY, LinearModel
+from vehgen.mechanics.energies import Element
+from vehgen.mechanics.law_terms import LawTerm
+from vehgen.mechanics.laws import Motion
 from vehgen.mechanics.rows import Entries
+from vehgen.report.notation import Latex, MathMl, Name, Plain, coordinate_name, gravity_symbol, latex_name, symbol_names, tidy
 
 WHOLE_MATRIX = 10
-"""Matrices of more degrees of freedom are listed entry by entry."""
+"""Matrices of more degrees of freedom are only listed entry by entry."""
+_LONG = 3
+"""A matrix shows the symbols of entries that have more operations than this; their values follow in the list."""
 _MATRICES = (
     ("M", "mass_entries", "mass matrix", True),
     ("C", "damping_entries", "damping matrix", True),
@@ -26,109 +28,212 @@ _MATRICES = (
 )
 
 
-def matrices(model: LinearModel) -> Iterator[tuple[str, str, Entries, tuple[int, int], bool]]:
-    """Yield (symbol, meaning, entries, shape, symmetric) of the matrices that are not empty."""
+@dataclass(frozen=True)
+class Matrix:
+    """A matrix for reading: its entries tidied, of a symmetric one the upper triangle; what is absent is zero."""
+
+    symbol: str
+    meaning: str
+    shape: tuple[int, int]
+    symmetric: bool
+    entries: dict[tuple[int, int], sp.Expr]
+
+    def at(self, row: int, column: int) -> tuple[tuple[int, int], sp.Expr]:
+        """Return where an entry is listed, and the entry."""
+        place = (column, row) if self.symmetric and row > column else (row, column)
+        return place, self.entries.get(place, sp.S.Zero)
+
+
+def matrices(model: LinearModel) -> Iterator[Matrix]:
+    """Yield the matrices that are not empty, and the weight vector."""
     widths = {"P": len(model.inputs), "Q": len(model.inputs), "F": len(model.forces)}
     for symbol, attribute, meaning, symmetric in _MATRICES:
-        entries: Entries = {place: value for place, value in getattr(model, attribute).items() if value != 0}
-        if entries:
-            yield symbol, meaning, entries, (model.n_dof, widths.get(symbol, model.n_dof)), symmetric
+        found: Entries = getattr(model, attribute)
+        kept = {place: tidy(value) for place, value in sorted(found.items()) if value != 0 and not (symmetric and place[0] > place[1])}
+        if kept:
+            yield Matrix(symbol, meaning, (model.n_dof, widths.get(symbol, model.n_dof)), symmetric, kept)
+    weight = {(i, 0): tidy(gravity_symbol(value, GRAVITY)) for i, value in sorted(model.weight_entries.items())}
+    yield Matrix("W", "generalised weight; static equilibrium: K q = W", (model.n_dof, 1), False, weight)
 
 
-def listed(entries: Entries, symmetric: bool) -> list[tuple[tuple[int, int], sp.Expr]]:
-    """Return the entries in order; of a symmetric matrix the upper triangle."""
-    return [(place, value) for place, value in sorted(entries.items()) if not symmetric or place[0] <= place[1]]
+def place_text(matrix: Matrix, place: tuple[int, int]) -> str:
+    """Return the indices of an entry, from 1."""
+    return f"{place[0] + 1}" if matrix.shape[1] == 1 and matrix.symbol == "W" else f"{place[0] + 1},{place[1] + 1}"
+
+
+def nonlinear(model: LinearModel) -> list[Element]:
+    """Return the elements with force laws."""
+    return [element for element in model.elements if element.laws]
+
+
+def balance(model: LinearModel) -> list[tuple[str, str, str, str]]:
+    """Return the terms of the equation of motion: (side, matrix, vector, its derivative marks)."""
+    terms = [("left", "M", "q", "''"), ("left", "C", "q", "'"), ("left", "K", "q", "")]
+    terms += [("left", "L", "n", "")] if nonlinear(model) else []
+    terms += [("right", "P", "w", "")]
+    terms += [("right", "Q", "w", "'")] if any(value != 0 for value in model.input_rate_entries.values()) else []
+    return terms + ([("right", "F", "f", "")] if model.forces else [])
+
+
+def balance_text(model: LinearModel) -> str:
+    """Return the equation of motion as text."""
+    sides = {side: " + ".join(f"{a} {b}{c}" for where, a, b, c in balance(model) if where == side) for side in ("left", "right")}
+    return f"{sides['left']} = {sides['right']}"
+
+
+def vectors(model: LinearModel) -> list[tuple[str, list[str]]]:
+    """Return what the other vectors of the equation hold: (symbol, what each component is)."""
+    said = {"road": "height of the road under {} [m]", "ground": "height of the ground end of {} [m]"}
+    inputs = [said[kind].format(name) for kind, _, name in (item.partition(".") for item in model.inputs)]
+    forces = [f"vertical force at {name} [N]" for name in model.forces]
+    return [("w", inputs), ("f", forces)] if forces else [("w", inputs)]
+
+
+def law_rows(model: LinearModel) -> list[tuple[str, sp.Expr, list[tuple[str, str, list[tuple[str, sp.Expr, str]]]]]]:
+    """Return every element with laws: (where it is, travel d, [(law, its equation, [(parameter, value, unit)])])."""
+    rows = []
+    for element in nonlinear(model):
+        travel = sp.Add(*(tidy(value * model.coordinates[i].symbol) for i, value in sorted(element.row.items())))
+        travel += sp.Add(*(value * sp.Symbol(f"w_{i + 1}", real=True) for i, value in sorted(element.input_row.items())))
+        where = f"{element.kind} of {element.name}" if element.kind in ("suspension", "tyre") else f"{element.kind} {element.name}"
+        laws = []
+        for term in element.laws:
+            units = {parameter.name: str(parameter.dimension(element.kind)) for parameter in term.law.parameters}
+            parameters = [(key, tidy(value), units[key]) for key, value in term.parameters.items()]
+            laws.append((term.law.title, _law_equation(element, term), parameters))
+        rows.append((where, travel, laws))
+    return rows
+
+
+def _law_equation(element: Element, term: LawTerm) -> str:
+    """Return a law's equation; of an own law with its parameters put in."""
+    if term.law.parameters:
+        return term.law.equation
+    d, v, h, static = (sp.Symbol(name, real=True) for name in ("d", "v", "h", "static"))
+    return f"f = {Plain().doprint(term.law.write(Motion(d, v, h, element.k, element.c, static), term.parameters).now)}"
+
+
+LAWS_NOTE = (
+    "n holds, for each element with force laws, the sum of its laws f(d, v): beside k and c, and like the travel d and the rate v = d' "
+    "positive in compression and counted from static equilibrium. A column of L holds the coefficients of the coordinates in its d."
+)
+
+
+def parameter_rows(model: LinearModel) -> list[tuple[str, sp.Expr | None, str, str]]:
+    """Return every parameter: (name, definition if dependent, unit, meaning); shifts of sensors and forces included."""
+    dimensions, definitions = model.vehicle.dimensions, {symbol.name: value for symbol, value in model.definitions}
+    rows: list[tuple[str, sp.Expr | None, str, str]] = [
+        (name, definitions.get(name), str(dimensions[name]), item.meaning) for name, item in model.vehicle.parameters.items()
+    ]
+    used = {symbol.name for entries in (model.force_entries,) for value in entries.values() for symbol in value.free_symbols}
+    shifts = [name for name in model.parameters if name not in model.vehicle.parameters and name in used]
+    return rows + [(name, None, "m", f"moves {name.removesuffix('.shift')} forward; 0 unless set") for name in shifts]
 
 
 def equations_text(model: LinearModel) -> str:
     """Return all equations as plain text, indices from 1."""
-    printer = StrPrinter({"order": "none"})
-    lines = [f"{model.vehicle.title or model.vehicle.name}", "", "M q'' + C q' + K q = P w + Q w' + F f", "", "Coordinates"]
+    text = Plain().doprint
+    lines = [model.vehicle.title or model.vehicle.name, "", balance_text(model), "", "Coordinates q"]
     lines += [f"  q{i} = {item.symbol}: {item.meaning} [{item.unit}]" for i, item in enumerate(model.coordinates, 1)]
-    lines += ["", "Inputs w", *(f"  w{i}: {name}" for i, name in enumerate(model.inputs, 1))]
-    lines += ["", "Symbols"]
-    dimensions = model.vehicle.dimensions
-    for name, parameter in model.vehicle.parameters.items():
-        equals = f" = {parameter.equals}" if parameter.equals is not None else ""
-        lines.append(f"  {name}{equals}: {parameter.meaning} [{dimensions[name]}]")
-    for symbol, meaning, entries, _, symmetric in matrices(model):
-        lines += ["", f"{symbol}, {meaning}" + (" (symmetric)" if symmetric else "")]
-        lines += [f"  {symbol}[{i + 1},{j + 1}] = {printer.doprint(value)}" for (i, j), value in listed(entries, symmetric)]
-    lines += ["", "weight, generalised gravity force (static equilibrium: K q = weight)"]
-    lines += [f"  weight[{i + 1}] = {printer.doprint(value)}" for i, value in sorted(model.weight_entries.items())]
+    for symbol, meanings in vectors(model):
+        lines += ["", f"{'Inputs' if symbol == 'w' else 'Forces'} {symbol}"]
+        lines += [f"  {symbol}{i}: {meaning}" for i, meaning in enumerate(meanings, 1)]
+    lines += ["", "Parameters"]
+    for name, definition, unit, meaning in parameter_rows(model):
+        lines.append(f"  {name}{'' if definition is None else ' = ' + text(definition)}: {meaning} [{unit}]")
+    lines.append(f"  g = {GRAVITY}: acceleration of gravity [m/s^2]")
+    for matrix in matrices(model):
+        lines += ["", f"{matrix.symbol}, {matrix.meaning}" + (" (symmetric; upper triangle)" if matrix.symmetric else "")]
+        lines += [f"  {matrix.symbol}[{place_text(matrix, place)}] = {text(value)}" for place, value in matrix.entries.items()]
+    if nonlinear(model):
+        lines += ["", f"Force laws. {LAWS_NOTE}"]
+    for column, (where, travel, laws) in enumerate(law_rows(model), 1):
+        lines.append(f"  n{column}, {where}: d = {text(travel)}")
+        for title, equation, parameters in laws:
+            given = ", ".join(f"{key} = {text(value)} [{unit}]" for key, value, unit in parameters)
+            lines.append(f"    {title}: {equation}" + (f"; {given}" if given else ""))
     return "\n".join(lines) + "\n"
 
 
-def equations_latex(model: LinearModel) -> str:
-    """Return a complete LaTeX document of the equations."""
-    printer = LatexPrinter({"order": "none", "symbol_names": _latex_names(model), "mul_symbol": "dot"})
-    lines = [
-        r"\documentclass{article}",
-        r"\usepackage{amsmath}",
-        r"\usepackage[a3paper,landscape,margin=15mm]{geometry}",
-        r"\setcounter{MaxMatrixCols}{40}",
-        r"\begin{document}",
-        rf"\section*{{{_escape(model.vehicle.title or model.vehicle.name)}}}",
-        r"\[ M\ddot q + C\dot q + Kq = Pw + Q\dot w + Ff \]",
-        r"\begin{itemize}",
-    ]
-    for item in model.coordinates:
-        lines.append(rf"\item ${printer.doprint(item.symbol)}$: {_escape(item.meaning)} [{item.unit}]")
-    dimensions = model.vehicle.dimensions
-    for name, parameter in model.vehicle.parameters.items():
-        symbol = printer.doprint(sp.Symbol(name, real=True))
-        definition = next((value for key, value in model.definitions if key.name == name), None)
-        equals = f" = {printer.doprint(definition)}" if definition is not None else ""
-        lines.append(rf"\item ${symbol}{equals}$: {_escape(parameter.meaning)} [${_unit_latex(str(dimensions[name]))}$]")
-    lines.append(r"\end{itemize}")
-    for name, meaning, entries, shape, symmetric in matrices(model):
-        lines.append(rf"\paragraph{{{name}, {meaning}}}")
-        if max(shape) <= WHOLE_MATRIX:
-            rows = [
-                " & ".join(printer.doprint(entries[i, j]) if (i, j) in entries else "0" for j in range(shape[1])) for i in range(shape[0])
-            ]
-            lines += [r"{\scriptsize\[" + name + r" = \begin{bmatrix}", (r" \\" + "\n").join(rows), r"\end{bmatrix}\]}"]
-        else:
-            lines += [rf"\[ {name}_{{{i + 1},{j + 1}}} = {printer.doprint(value)} \]" for (i, j), value in listed(entries, symmetric)]
-    lines.append(r"\end{document}")
-    return "\n".join(lines) + "\n"
+@dataclass(frozen=True)
+class Section:
+    """A matrix as MathML: the whole (small ones only), and its listed entries as (place, left side, value)."""
+
+    symbol: str
+    meaning: str
+    whole: str
+    rows: list[tuple[str, str, str]]
 
 
-def equations_mathml(model: LinearModel) -> list[tuple[str, str, list[tuple[str, str]]]]:
-    """Return, for each matrix, (symbol, meaning, [(entry's name, MathML of its value)]) for the page."""
-    result = []
-    for name, meaning, entries, _, symmetric in matrices(model):
-        rows = [(f"{i + 1},{j + 1}", mathml(value)) for (i, j), value in listed(entries, symmetric)]
-        result.append((name, meaning + (", symmetric" if symmetric else ""), rows))
-    return result
+def equations_mathml(model: LinearModel) -> list[Section]:
+    """Return every matrix as presentation MathML for the page; nothing in it needs a script."""
+    printer = MathMl(symbol_names(model))
+    sections = []
+    for matrix in matrices(model):
+        values = {place: printer.doprint(value) for place, value in matrix.entries.items()}
+        left = {place: _entry_mathml(matrix, place) for place in values}
+        whole, rows = "", list(values)
+        if max(matrix.shape) <= WHOLE_MATRIX:
+            cells = []
+            for i in range(matrix.shape[0]):
+                row = []
+                for j in range(matrix.shape[1]):
+                    place, value = matrix.at(i, j)
+                    row.append("<mn>0</mn>" if value == 0 else left[place] if is_long(value) else values[place])
+                cells.append("<mtr>" + "".join(f"<mtd>{cell}</mtd>" for cell in row) + "</mtr>")
+            whole = math(f"<mi>{matrix.symbol}</mi><mo>=</mo><mo>[</mo><mtable>{''.join(cells)}</mtable><mo>]</mo>")
+            rows = [place for place in values if is_long(matrix.entries[place])]
+        listed = [(place_text(matrix, place), math(left[place] + "<mo>=</mo>"), math(values[place])) for place in rows]
+        sections.append(Section(matrix.symbol, matrix.meaning + (" (symmetric)" if matrix.symmetric else ""), whole, listed))
+    return sections
 
 
-def mathml(expression: sp.Expr) -> str:
-    """Return an expression as presentation MathML, which browsers draw without any script."""
-    printer = MathMLPresentationPrinter({"order": "none"})
-    return f'<math xmlns="http://www.w3.org/1998/Math/MathML">{printer.doprint(expression)}</math>'
+def is_long(value: sp.Expr) -> bool:
+    """Tell whether an entry is too long to stand inside a matrix."""
+    return int(sp.count_ops(value)) > _LONG
 
 
-def _latex_names(model: LinearModel) -> dict[sp.Symbol, str]:
-    names = {sp.Symbol(name, real=True): _subscripted(name) for name in model.vehicle.parameters}
-    for item in model.coordinates:
-        names[item.symbol] = (r"\theta" if item.motion == "pitch" else "z") + rf"_{{\mathrm{{{_escape(item.owner)}}}}}"
-    return names
+def _entry_mathml(matrix: Matrix, place: tuple[int, int]) -> str:
+    return f"<msub><mi>{matrix.symbol}</mi><mtext>{place_text(matrix, place)}</mtext></msub>"
 
 
-@cache
-def _subscripted(name: str) -> str:
-    """Write mT as m_T, kt1 as k_{t1}, other names upright."""
-    head, tail = name[0], name[1:]
-    if len(name) <= 4:
-        return f"{head}_{{{tail}}}" if tail else head
-    return rf"\mathrm{{{_escape(name)}}}"
+def math(content: str) -> str:
+    """Return MathML content as an element of a page."""
+    return f"<math>{content.replace('<mo>-</mo>', '<mo>−</mo>')}</math>"
 
 
-def _unit_latex(unit: str) -> str:
-    return r"\mathrm{" + unit.replace(" ", r"\,") + "}"
+def balance_mathml(model: LinearModel) -> str:
+    """Return the equation of motion as MathML."""
+    signs = {"": "<mi>{}</mi>", "'": "<mover><mi>{}</mi><mo>˙</mo></mover>", "''": "<mover><mi>{}</mi><mo>¨</mo></mover>"}
+    sides = {
+        side: "<mo>+</mo>".join(f"<mi>{a}</mi>" + signs[c].format(b) for where, a, b, c in balance(model) if where == side)
+        for side in ("left", "right")
+    }
+    return math(f"{sides['left']}<mo>=</mo>{sides['right']}")
 
 
-def _escape(text: str) -> str:
-    """Escape text for LaTeX."""
-    return re.sub(r"([&%$#_{}])", r"\\\1", text.replace("\\", "")).replace("~", "-").replace("^", "")
+def coordinate_mathml(model: LinearModel) -> list[str]:
+    """Return the symbols of the coordinates as MathML."""
+    printer = MathMl({})
+    return [math(printer.name(coordinate_name(item.motion, item.owner)).toxml()) for item in model.coordinates]
+
+
+def expression_mathml(model: LinearModel, expression: sp.Expr) -> str:
+    """Return an expression of parameters and coordinates as MathML."""
+    names = {item.symbol: coordinate_name(item.motion, item.owner) for item in model.coordinates}
+    return math(MathMl({**names, **symbol_names(model), **_input_names(model)}).doprint(expression))
+
+
+def _input_names(model: LinearModel) -> dict[sp.Symbol, Name]:
+    return {sp.Symbol(f"w_{i + 1}", real=True): Name("w", str(i + 1)) for i in range(len(model.inputs))}
+
+
+def latex_printer(model: LinearModel) -> Latex:
+    """Return a printer that knows a model's parameters and coordinates."""
+    names = {item.symbol: coordinate_name(item.motion, item.owner) for item in model.coordinates}
+    return Latex({**names, **symbol_names(model), **_input_names(model)})
+
+
+def coordinate_latex(model: LinearModel) -> list[str]:
+    """Return the symbols of the coordinates in LaTeX."""
+    return [latex_name(coordinate_name(item.motion, item.owner)) for item in model.coordinates]

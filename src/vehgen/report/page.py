@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 import hashlib
-import io
 import platform
+import re
 from collections.abc import Mapping, Sequence
 from importlib import metadata
 from importlib.resources import files
 from pathlib import Path
 
-from jinja2 import Environment
-from markupsafe import Markup
-from matplotlib.figure import Figure
+import sympy as sp
+from jinja2 import Environment, StrictUndefined
+from markupsafe import Markup, escape
 
+import vehgen
 from vehgen.codegen import write_text
-from vehgen.mechanics import LinearModel, StaticLoads
+from vehgen.mechanics import GRAVITY, LinearModel, StaticLoads
+from vehgen.report import equations
 from vehgen.report.drawing import draw_vehicle
-from vehgen.report.equations import equations_latex, equations_mathml, equations_text, mathml
+from vehgen.report.files import figure_svg, inline_svg
+from vehgen.report.latex import equations_latex
 from vehgen.report.mode_shapes import draw_modes
+from vehgen.report.notation import tidy
 from vehgen.simulate import Mode
+
+_LONG = 14.0
+"""A drawing wider than this is scrolled on the page instead of shrunk [inches]."""
 
 
 def write_build_folder(
@@ -37,7 +44,7 @@ def write_build_folder(
     `kernel.py`, `equations.txt`, `equations.tex`, `index.html` and, with `plots`, `drawing.svg` and `modes.svg`. Each file appears whole
     or not at all.
     """
-    texts = {"kernel.py": kernel_source, "equations.txt": equations_text(model), "equations.tex": equations_latex(model)}
+    texts = {"kernel.py": kernel_source, "equations.txt": equations.equations_text(model), "equations.tex": equations_latex(model)}
     if plots:
         texts["drawing.svg"] = figure_svg(draw_vehicle(model, values))
         texts["modes.svg"] = figure_svg(draw_modes(model, modes, values))
@@ -45,26 +52,6 @@ def write_build_folder(
     for name, text in texts.items():
         write_text(folder / name, text)
     return [folder / name for name in texts]
-
-
-def figure_svg(figure: Figure) -> str:
-    """Return a figure as SVG text without the drawing program's date, so that equal figures are equal files."""
-    import matplotlib as mpl
-
-    stream = io.StringIO()
-    with mpl.rc_context({"svg.hashsalt": "vehgen", "svg.fonttype": "path"}):
-        figure.savefig(stream, format="svg", metadata={"Date": None})
-    return stream.getvalue()
-
-
-def save_figure(figure: Figure, path: Path) -> None:
-    """Save a figure as PNG or SVG by its suffix, under a temporary name first."""
-    temporary = path.with_name(f".{path.stem}.part{path.suffix}")
-    try:
-        figure.savefig(temporary, dpi=150)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def _page(
@@ -75,40 +62,123 @@ def _page(
     warnings: Sequence[str],
     texts: Mapping[str, str],
 ) -> str:
+    environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
+    environment.filters["grouped"] = grouped
+    template = environment.from_string((files("vehgen.report") / "templates" / "page.html.j2").read_text(encoding="utf-8"))
+    symbols = equations.coordinate_mathml(model)
+    return template.render(
+        vehicle=model.vehicle,
+        title=model.vehicle.title or model.vehicle.name,
+        coordinates=[(i, item, Markup(symbols[i - 1])) for i, item in enumerate(model.coordinates, 1)],
+        parameters=_parameters(model, values),
+        modes=modes,
+        axles=_axles(model, loads),
+        hinges=loads.hinges,
+        total=sum(loads.axles.values()),
+        weight=_weight(model, values),
+        gravity=GRAVITY,
+        warnings=warnings,
+        figures=_figures(model, texts),
+        long="drawing.svg" in texts and _width(texts["drawing.svg"]) > _LONG,
+        balance=Markup(equations.balance_mathml(model)),
+        vectors=equations.vectors(model),
+        sections=[
+            (section.symbol, section.meaning, Markup(section.whole), [(Markup(left), Markup(value)) for _, left, value in section.rows])
+            for section in equations.equations_mathml(model)
+        ],
+        laws=_laws(model),
+        laws_note=equations.LAWS_NOTE,
+        counts=model.operation_counts(),
+        kernel=texts["kernel.py"],
+        versions=_versions(),
+        inputs=_inputs(model),
+    )
+
+
+def _parameters(model: LinearModel, values: Mapping[str, float]) -> list[dict[str, object]]:
     vehicle = model.vehicle
     everything = vehicle.all_values({name: values[name] for name in vehicle.free_parameters})
     ranges, dimensions = vehicle.ranges(), vehicle.dimensions
-    parameters = [
+    definitions = {symbol.name: expression for symbol, expression in model.definitions}
+    return [
         {
             "name": name,
-            "value": f"{everything[name]:.6g}",
-            "unit": str(dimensions[name]).replace("no unit", "–"),
-            "range": "{:.4g} to {:.4g}".format(*ranges[name]) if name in ranges else "",
-            "equals": str(item.equals or ""),
+            "symbol": Markup(equations.expression_mathml(model, sp.Symbol(name, real=True))),
+            "value": grouped(everything[name]),
+            "unit": _unit(str(dimensions[name])),
+            "range": " to ".join(map(grouped, ranges[name])) if name in ranges else "",
+            "outside": name in ranges and not ranges[name][0] <= everything[name] <= ranges[name][1],
+            "equals": Markup(equations.expression_mathml(model, tidy(definitions[name]))) if name in definitions else "",
             "meaning": item.meaning,
         }
         for name, item in vehicle.parameters.items()
     ]
-    environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
-    template = environment.from_string((files("vehgen.report") / "templates" / "page.html.j2").read_text(encoding="utf-8"))
-    return template.render(
-        vehicle=vehicle,
-        coordinates=[(str(i), item.name, mathml(item.symbol), item.unit, item.meaning) for i, item in enumerate(model.coordinates, 1)],
-        parameters=parameters,
-        modes=modes,
-        loads=loads,
-        total=sum(loads.axles.values()),
-        warnings=warnings,
-        figures={key: _inline(texts[f"{key}.svg"]) for key in ("drawing", "modes") if f"{key}.svg" in texts},
-        equations=[(name, meaning, [(place, Markup(text)) for place, text in rows]) for name, meaning, rows in equations_mathml(model)],
-        counts=model.operation_counts(),
-        kernel=texts["kernel.py"],
-        versions={name: metadata.version(name) for name in ("vehgen", "sympy", "numpy", "numba")} | {"Python": platform.python_version()},
-        inputs=[(path.name, hashlib.sha256(path.read_bytes()).hexdigest()) for path in vehicle.files],
-        Markup=Markup,
-    )
 
 
-def _inline(svg: str) -> Markup:
-    """Return an SVG file's element for use inside a page."""
-    return Markup(svg[svg.index("<svg") :])
+def grouped(value: float) -> str:
+    """Write a number with six digits that count, thousands apart."""
+    short = float(f"{value:.6g}")
+    if short and not 1e-4 <= abs(short) < 1e10:
+        return f"{short:.6g}"
+    return (f"{short:,.0f}" if short.is_integer() else f"{short:,.10f}".rstrip("0")).replace(",", "\u202f").replace("-", "\u2212")
+
+
+def _unit(unit: str) -> str:
+    return unit.replace("no unit", "–").replace("^2", "²").replace("^3", "³")
+
+
+def _axles(model: LinearModel, loads: StaticLoads) -> list[tuple[str, str, float]]:
+    return [(name, model.vehicle.axles[name].title, force) for name, force in loads.axles.items()]
+
+
+def _weight(model: LinearModel, values: Mapping[str, float]) -> float:
+    """Return the weight of all bodies and axles [N]."""
+    masses = {(0, i): term.inertia for i, term in enumerate(model.energies.weights)}
+    return GRAVITY * sum(model.evaluate(masses, values).values())
+
+
+def _figures(model: LinearModel, texts: Mapping[str, str]) -> dict[str, Markup]:
+    title = str(escape(model.vehicle.title or model.vehicle.name))
+    said = {"drawing": f"Side view of {title}, to scale", "modes": f"Mode shapes of {title}"}
+    there = {name: texts.get(f"{name}.svg", "") for name in said}
+    return {name: Markup(inline_svg(svg, name, said[name]) if svg else "") for name, svg in there.items()}
+
+
+def _width(svg: str) -> float:
+    """Return the width of an SVG file [inches]."""
+    found = re.search(r'width="([\d.]+)pt"', svg)
+    return float(found[1]) / 72 if found else 0.0
+
+
+def _laws(model: LinearModel) -> list[tuple[str, Markup, list[tuple[str, str, list[tuple[str, Markup, str]]]]]]:
+    return [
+        (
+            where,
+            Markup(equations.expression_mathml(model, travel)),
+            [
+                (
+                    title,
+                    equation,
+                    [(key, Markup(equations.expression_mathml(model, value)), _unit(unit)) for key, value, unit in parameters],
+                )
+                for title, equation, parameters in laws
+            ],
+        )
+        for where, travel, laws in equations.law_rows(model)
+    ]
+
+
+def _versions() -> dict[str, str]:
+    others = {name: metadata.version(name) for name in ("sympy", "numpy", "numba", "matplotlib")}
+    return {"vehgen": vehgen.__version__, **others, "Python": platform.python_version()}
+
+
+def _inputs(model: LinearModel) -> list[tuple[str, str]]:
+    """Return name and SHA-256 of each of the vehicle's files."""
+    found = []
+    for path in model.vehicle.files:
+        try:
+            found.append((path.name, f"SHA-256 {hashlib.sha256(path.read_bytes()).hexdigest()}"))
+        except OSError:
+            found.append((path.name, "no longer there when this page was written"))
+    return found

@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vehgen.mechanics import LinearModel
-from vehgen.mechanics.rows import Entries
-from vehgen.mechanics.symbols import to_sympy
 from vehgen.vehicle.model import GROUND
 
-Array = NDArray[np.float64]
+CLEARANCE = 0.12
+"""The lowest body's outline stands this far above the wheels [m]."""
+_HALF = 0.4
+_STRUT = 0.55
 
 
 @dataclass(frozen=True)
 class Box:
-    """A body: its COG, and the left, right, bottom and top of its outline [m]; `declared` where the file gives its size."""
+    """A body: its COG, and the left, right, bottom and top of its outline [m].
+
+    `declared` where the file gives its size; `height_known` where it gives the COG's height relative to the first body.
+    """
 
     x: float
     z: float
@@ -27,6 +31,26 @@ class Box:
     bottom: float
     top: float
     declared: bool
+    height_known: bool
+
+    def edge(self, x: float, z: float) -> tuple[float, float]:
+        """Return the point of the outline (or inside it) nearest to (x, z)."""
+        return float(np.clip(x, self.left, self.right)), float(np.clip(z, self.bottom, self.top))
+
+    def corners(self) -> list[tuple[float, float]]:
+        """Return the corners of the outline."""
+        return [(self.left, self.bottom), (self.right, self.bottom), (self.right, self.top), (self.left, self.top)]
+
+
+@dataclass(frozen=True)
+class Strut:
+    """A spring and damper at x between `bottom` and `top` [m]; `lower` and `upper` hold it (a body, the ground, or an axle's hub)."""
+
+    x: float
+    bottom: float
+    top: float
+    lower: str
+    upper: str
 
 
 @dataclass(frozen=True)
@@ -34,25 +58,27 @@ class Sketch:
     """Positions in metres: x forward from the first body's COG, z up from the road."""
 
     boxes: dict[str, Box]
-    axles: dict[str, tuple[float, float]]
+    axles: dict[str, float]
     hinges: dict[str, tuple[float, float]]
-    links: dict[str, tuple[float, str, str]]
+    suspensions: dict[str, Strut]
+    links: dict[str, Strut]
+    arms: tuple[tuple[str, float, float], ...]
     wheel_radius: float
 
     @property
     def left(self) -> float:
         """The rearmost point."""
-        return min([box.left for box in self.boxes.values()] + [x - self.wheel_radius for x, _ in self.axles.values()])
+        return min([box.left for box in self.boxes.values()] + [x - self.wheel_radius for x in self.axles.values()])
 
     @property
     def right(self) -> float:
         """The foremost point."""
-        return max([box.right for box in self.boxes.values()] + [x + self.wheel_radius for x, _ in self.axles.values()])
+        return max([box.right for box in self.boxes.values()] + [x + self.wheel_radius for x in self.axles.values()])
 
     @property
     def top(self) -> float:
         """The highest point."""
-        return max(box.top for box in self.boxes.values())
+        return max([box.top for box in self.boxes.values()] + [z for _, z in self.hinges.values()])
 
 
 def make_sketch(model: LinearModel, values: Mapping[str, float]) -> Sketch:
@@ -66,57 +92,42 @@ def make_sketch(model: LinearModel, values: Mapping[str, float]) -> Sketch:
     found = model.evaluate(entries, values)
     bodies = {name: (found[0, i], found.get((1, i))) for i, name in enumerate(layout.bodies)}
     axles = {name: found[2, i] for i, name in enumerate(layout.axles)}
+    pins = {name: (found[3, i], found.get((4, i))) for i, name in enumerate(layout.hinges)}
     everything = vehicle.all_values({name: values[name] for name in vehicle.free_parameters})
-    links = {}
+    links: dict[str, tuple[float, str, str]] = {}
     for name, link in vehicle.links.items():
         (first, first_point), (second, second_point) = link.ends
         owner, point = (second, second_point) if first == GROUND else (first, first_point)
         links[name] = (bodies[owner][0] + point.x.evaluate(everything), first, second)
-    places = [x for x, _ in bodies.values()] + list(axles.values())
-    span = max(max(places) - min(places), 2.0)
-    radius = float(np.clip(0.06 * span, 0.3, 0.5))
-    heights = _heights(model, bodies, links, radius)
-    attached = _attached(model, axles, {name: found[3, i] for i, name in enumerate(layout.hinges)}, links)
+    radius = _wheel_radius([x for x, _ in bodies.values()], list(axles.values()))
+    attached = _attached(model, axles, {name: x for name, (x, _) in pins.items()}, links)
+    outlines = _outlines(model, {name: x for name, (x, _) in bodies.items()}, attached, everything)
+    heights, lift = _heights(model, bodies, outlines, links, radius)
+    hinges = {name: (x, heights[next(iter(vehicle.hinges[name].points))] if z is None else z + lift) for name, (x, z) in pins.items()}
     boxes = {}
-    for name, body in vehicle.bodies.items():
-        x, z = bodies[name][0], heights[name]
-        if body.size is not None:
-            half, up = body.size.length.evaluate(everything) / 2, body.size.height.evaluate(everything) / 2
-            boxes[name] = Box(x, z, x - half, x + half, z - up, z + up, True)
-            continue
-        reach = [*attached[name], x]
-        margin = 0.35 if len(reach) > 1 else 0.6
-        half = 0.10 if _on_wheels(model, name) else 0.45
-        boxes[name] = Box(x, z, min(reach) - margin, max(reach) + margin, z - half, z + half, False)
-    shift = heights[next(iter(vehicle.bodies))] - (bodies[next(iter(vehicle.bodies))][1] or 0.0)
-    hinges = {
-        name: (found[3, i], found.get((4, i), 0.0) + shift if (4, i) in found else boxes[next(iter(vehicle.hinges[name].points))].z)
-        for i, name in enumerate(layout.hinges)
+    for name, (left, right, half, declared) in outlines.items():
+        z = heights[name]
+        low = [hinges[key][1] for key, hinge in vehicle.hinges.items() if name in hinge.points and not declared and half > 0.1]
+        boxes[name] = Box(bodies[name][0], z, left, right, min([z - half, *low]), z + half, declared, bodies[name][1] is not None)
+    suspensions = {
+        name: _suspension(axles[name], name, axle.body, boxes[axle.body], radius)
+        for name, axle in vehicle.axles.items()
+        if axle.suspension is not None
     }
-    return Sketch(boxes, {name: (x, radius) for name, x in axles.items()}, hinges, links, radius)
+    struts = {name: _link(x, first, second, boxes) for name, (x, first, second) in links.items()}
+    arms = [(body, *hinges[name]) for name, hinge in vehicle.hinges.items() for body in hinge.points]
+    arms += [(strut.upper, strut.x, strut.top) for strut in (*suspensions.values(), *struts.values())]
+    arms += [(strut.lower, strut.x, strut.bottom) for strut in struts.values()]
+    arms += [(axle.body, axles[name], radius) for name, axle in vehicle.axles.items() if axle.suspension is None]
+    return Sketch(boxes, axles, hinges, suspensions, struts, tuple(arm for arm in arms if arm[0] in boxes), radius)
 
 
-def _on_wheels(model: LinearModel, body: str) -> bool:
-    """Tell whether wheels sit on the body without a suspension: it is a beam at hub height."""
-    return any(axle.body == body and axle.suspension is None for axle in model.vehicle.axles.values()) and len(model.vehicle.bodies) > 1
-
-
-def _heights(
-    model: LinearModel, bodies: Mapping[str, tuple[float, float | None]], links: Mapping[str, tuple[float, str, str]], radius: float
-) -> dict[str, float]:
-    """Return COG heights above the road: relative heights where the file gives them, lifted clear of the wheels."""
-    known = {name: z for name, (_, z) in bodies.items() if z is not None and not _on_wheels(model, name)}
-    lift = 2 * radius + 0.75 - min(known.values(), default=0.0)
-    heights = {name: z + lift for name, z in known.items()}
-    for name in bodies:
-        if name not in heights and _on_wheels(model, name):
-            heights[name] = radius
-    for name in bodies:
-        if name not in heights:
-            below = [first for _, first, second in links.values() if second == name and first in heights]
-            above = [second for _, first, second in links.values() if first == name and second in heights]
-            heights[name] = heights[below[0]] + 1.2 if below else heights[above[0]] - 0.8 if above else 2 * radius + 0.75
-    return heights
+def _wheel_radius(bodies: list[float], axles: list[float]) -> float:
+    """Return 0.5 m for trucks, less for short vehicles and where wheels would touch [m]."""
+    places = [*bodies, *axles]
+    radius = float(np.clip(0.08 * (max(places) - min(places)) + 0.05, 0.3, 0.5))
+    gaps = [right - left for left, right in itertools.pairwise(sorted(axles)) if right - left > 0.2]
+    return min(radius, 0.47 * min(gaps, default=np.inf))
 
 
 def _attached(
@@ -136,29 +147,72 @@ def _attached(
     return found
 
 
-def body_motion(model: LinearModel, values: Mapping[str, float], shape: Array) -> dict[str, tuple[float, float]]:
-    """Return (heave, pitch) of every body for a displacement vector `shape (n_dof,)`."""
-    entries: Entries = {}
-    for i, name in enumerate(model.vehicle.bodies):
-        entries |= {(2 * i, j): value for j, value in model.motion.heave[name].items()}
-        entries |= {(2 * i + 1, j): value for j, value in model.motion.pitch[name].items()}
-    rows = np.zeros((2 * len(model.vehicle.bodies), model.n_dof))
-    for place, value in model.evaluate(entries, values).items():
-        rows[place] = value
-    moved = rows @ shape
-    return {name: (float(moved[2 * i]), float(moved[2 * i + 1])) for i, name in enumerate(model.vehicle.bodies)}
-
-
-def axle_motion(
-    model: LinearModel, bodies: Mapping[str, tuple[float, float]], values: Mapping[str, float], shape: Array
-) -> dict[str, float]:
-    """Return how far every wheel rises for a displacement vector `shape (n_dof,)`."""
-    rises = {}
-    names = [item.name for item in model.coordinates]
-    for name, axle in model.vehicle.axles.items():
-        if f"hop.{name}" in names:
-            rises[name] = float(shape[names.index(f"hop.{name}")])
+def _outlines(
+    model: LinearModel, places: Mapping[str, float], attached: Mapping[str, list[float]], everything: Mapping[str, float]
+) -> dict[str, tuple[float, float, float, bool]]:
+    """Return left, right, half the height [m] of every body and whether the file gives them."""
+    outlines = {}
+    for name, body in model.vehicle.bodies.items():
+        x, reach = places[name], [*attached[name], places[name]]
+        if body.size is not None:
+            half = body.size.length.evaluate(everything) / 2
+            outlines[name] = (x - half, x + half, body.size.height.evaluate(everything) / 2, True)
+        elif is_beam(model, name, reach):
+            outlines[name] = (min(reach) - 0.1, max(reach) + 0.1, 0.09, False)
+        elif max(reach) - min(reach) < 0.1:
+            largest = 0.55 if name in {axle.body for axle in model.vehicle.axles.values()} else 0.9
+            half = float(np.clip(0.42 * np.cbrt(max(body.mass.evaluate(everything), 1.0) / 1000.0), 0.2, largest))
+            outlines[name] = (min(reach) - half, max(reach) + half, 0.9 * half, False)
         else:
-            heave, pitch = bodies[axle.body]
-            rises[name] = heave - pitch * model.evaluate({(0, 0): to_sympy(axle.x)}, values)[0, 0]
-    return rises
+            outlines[name] = (min(reach) - 0.4, max(reach) + 0.4, _HALF, False)
+    return outlines
+
+
+def is_beam(model: LinearModel, body: str, reach: list[float]) -> bool:
+    """Tell whether a body is a beam at hub height: short, not alone, and all its wheels sit on it without a suspension."""
+    wheels = [axle for axle in model.vehicle.axles.values() if axle.body == body]
+    rigid = bool(wheels) and all(axle.suspension is None for axle in wheels)
+    return rigid and len(model.vehicle.bodies) > 1 and max(reach) - min(reach) < 3.0
+
+
+def _heights(
+    model: LinearModel,
+    bodies: Mapping[str, tuple[float, float | None]],
+    outlines: Mapping[str, tuple[float, float, float, bool]],
+    links: Mapping[str, tuple[float, str, str]],
+    radius: float,
+) -> tuple[dict[str, float], float]:
+    """Return COG heights above the road, and what was added to the heights that the file gives, to clear the wheels."""
+    floor = 2 * radius + CLEARANCE
+    beams = {name for name in bodies if is_beam(model, name, [outlines[name][0], outlines[name][1]])}
+    known = {name: z for name, (_, z) in bodies.items() if z is not None and name not in beams}
+    lift = max((floor + outlines[name][2] - z for name, z in known.items()), default=floor + _HALF)
+    heights = {name: z + lift for name, z in known.items()} | dict.fromkeys(beams, radius)
+    others = {name: [two if one == name else one for _, one, two in links.values() if name in (one, two)] for name in bodies}
+    for name in [*bodies] * len(bodies):
+        tops = [heights[other] + outlines[other][2] for other in others[name] if other in heights]
+        if name not in heights and tops:
+            heights[name] = max(tops) + 0.4 + outlines[name][2]
+    for name in bodies:
+        heights.setdefault(name, floor + outlines[name][2])
+    return heights, lift
+
+
+def _suspension(x: float, axle: str, body: str, box: Box, radius: float) -> Strut:
+    """Stand a suspension on its hub; a body high above holds it by an arm."""
+    bottom = 1.15 * radius
+    return Strut(x, bottom, max(min(box.bottom, bottom + max(_STRUT, 1.1 * radius)), bottom + 0.2), axle, body)
+
+
+def _link(x: float, first: str, second: str, boxes: Mapping[str, Box]) -> Strut:
+    """Put a link between two outlines; where they overlap, below the upper one."""
+    if GROUND in (first, second):
+        body = second if first == GROUND else first
+        return Strut(x, 0.0, max(min(boxes[body].bottom, _STRUT), 0.2), GROUND, body)
+    lower, upper = sorted((first, second), key=lambda name: boxes[name].z)
+    top, bottom = boxes[upper].bottom, boxes[lower].top
+    if top - bottom < 0.15:
+        bottom = max(boxes[lower].bottom, top - 0.35)
+    if top - bottom < 0.15:
+        bottom = top - 0.25
+    return Strut(x, max(bottom, top - _STRUT), top, lower, upper)

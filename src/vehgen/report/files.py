@@ -1,0 +1,76 @@
+"""Figures as files: the same figure gives the same bytes, and no half-written file stays behind."""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+import tempfile
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import matplotlib as mpl
+from matplotlib.figure import Figure
+
+from vehgen.errors import InputError
+
+FORMATS = ("png", "svg", "pdf")
+"""What a figure can be saved as."""
+
+
+def figure_svg(figure: Figure) -> str:
+    """Return a figure as SVG text without date and random names, so that equal figures are equal files."""
+    stream = io.StringIO()
+    with _reproducible():
+        figure.savefig(stream, format="svg", metadata={"Date": None})
+    return stream.getvalue()
+
+
+def save_figure(figure: Figure, path: Path) -> None:
+    """Save a figure as its suffix says, under a temporary name first.
+
+    Raises
+    ------
+    InputError
+        For a suffix other than those of FORMATS, or a folder that cannot be written to.
+
+    """
+    kind = path.suffix.removeprefix(".").lower()
+    if kind not in FORMATS:
+        raise InputError(f"cannot save a figure as {path.name!r}: its name must end in {', '.join('.' + item for item in FORMATS)}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror}") from error
+    try:
+        with os.fdopen(handle, "wb") as stream, _reproducible():
+            figure.savefig(stream, format=kind, dpi=150, metadata={"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(kind))
+        Path(name).replace(path)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+def inline_svg(svg: str, name: str, title: str) -> str:
+    """Return the element of an SVG file for use in a page: its ids prefixed by `name`, with a title for screen readers.
+
+    `title` is text that is already escaped.
+    """
+    element = svg[svg.index("<svg") :]
+    element = re.sub(r'\bid="', f'id="{name}-', element)
+    element = re.sub(r'((?:xlink:)?href="#|url\(#)', rf"\g<1>{name}-", element)
+    element = re.sub(r"<metadata>.*?</metadata>", "", element, count=1, flags=re.DOTALL)
+    element = re.sub(r"\n *", "\n", element)
+    opening = element.index(">")
+    return f'{element[:opening]} role="img"><title>{title}</title>{element[opening + 1 :]}'
+
+
+@contextmanager
+def _reproducible() -> Iterator[None]:
+    """Fix what matplotlib would choose at random; a sign that the font lacks is drawn as a box without a warning."""
+    with mpl.rc_context({"svg.hashsalt": "vehgen", "svg.fonttype": "path"}), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph .* missing from", category=UserWarning)
+        yield
