@@ -21,7 +21,8 @@ _STRUT = 0.55
 class Box:
     """A body: its COG, and the left, right, bottom and top of its outline [m].
 
-    `declared` where the file gives its size; `height_known` where it gives the COG's height relative to the first body.
+    `declared` where the file gives its size; `height_known` where the COG stands at the height that the file gives relative to the first
+    body (a beam stands at hub height instead).
     """
 
     x: float
@@ -108,7 +109,9 @@ def make_sketch(model: LinearModel, values: Mapping[str, float]) -> Sketch:
     for name, (left, right, half, declared) in outlines.items():
         z = heights[name]
         low = [hinges[key][1] for key, hinge in vehicle.hinges.items() if name in hinge.points and not declared and half > 0.1]
-        boxes[name] = Box(bodies[name][0], z, left, right, min([z - half, *low]), z + half, declared, bodies[name][1] is not None)
+        x, given = bodies[name]
+        known = given is not None and abs(given + lift - z) < 1e-9
+        boxes[name] = Box(x, z, left, right, min([z - half, *low]), z + half, declared, known)
     suspensions = {
         name: _suspension(axles[name], name, axle.body, boxes[axle.body], radius)
         for name, axle in vehicle.axles.items()
