@@ -101,6 +101,10 @@ class Kernel:
         """The name of its file: the hash of its source."""
         return kernel_name(self.source.text)
 
+    def __getstate__(self) -> dict[str, object]:
+        """Leave the compiled code behind: who receives a kernel imports it again from the cache, or compiles it."""
+        return {key: value for key, value in vars(self).items() if key != "_module"}
+
     @cached_property
     def _module(self) -> ModuleType:
         return import_kernel(self.source.text, self._folder)

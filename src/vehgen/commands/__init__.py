@@ -9,10 +9,10 @@ import warnings
 from collections.abc import Sequence
 from typing import TextIO
 
-from vehgen.commands import bench, build, models, modes, schema, simulate, static
+from vehgen.commands import bench, build, calibrate, models, modes, schema, sensitivity, sensors, simulate, static, validate
 from vehgen.errors import InputError, ModelWarning
 
-COMMANDS = (build, modes, static, simulate, models, schema, bench)
+COMMANDS = (build, modes, static, simulate, calibrate, validate, sensitivity, sensors, models, schema, bench)
 
 
 def make_parser() -> argparse.ArgumentParser:

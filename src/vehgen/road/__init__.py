@@ -2,13 +2,14 @@
 
 from vehgen.road.humps import Hump
 from vehgen.road.iso8608 import CLASSES, Iso8608Road, displacement_psd
-from vehgen.road.speed import ConstantSpeed, SpeedHistory, SpeedLaw
+from vehgen.road.speed import AdjustedSpeed, ConstantSpeed, SpeedHistory, SpeedLaw
 from vehgen.road.tables import read_columns
 from vehgen.road.track import MeasuredProfile, Profile, Track
 from vehgen.road.wheels import WheelInputs, pass_time, wheel_inputs
 
 __all__ = [
     "CLASSES",
+    "AdjustedSpeed",
     "ConstantSpeed",
     "Hump",
     "Iso8608Road",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,7 +62,7 @@ class Hump:
         if len(distance) < 2 or (np.diff(distance) <= 0).any():
             raise InputError("a hump of points needs at least two, with ascending distances")
         start = distance - distance[0]
-        return cls(at, float(start[-1]), lambda s: np.interp(s, start, height))
+        return cls(at, float(start[-1]), partial(_points, distance=start, height=height))
 
     def spectral_nulls(self, speed: float, f_max: float) -> Array:
         """Return the frequencies up to `f_max` [Hz] at which the hump, crossed at `speed` [m/s], excites nothing.
@@ -87,19 +88,19 @@ class Hump:
 
 def half_sine(length: float, height: float) -> Shape:
     """Return height*sin(pi s/length)."""
-    return lambda s: height * np.sin(np.pi * s / length)
+    return partial(_half_sine, length=length, height=height)
 
 
 def versine(length: float, height: float) -> Shape:
     """Return height*(1 - cos(2 pi s/length))/2."""
-    return lambda s: 0.5 * height * (1.0 - np.cos(2.0 * np.pi * s / length))
+    return partial(_versine, length=length, height=height)
 
 
 def trapezoid(length: float, height: float, ramp: float = 0.25) -> Shape:
     """Return linear ramps over the share `ramp` of the length at both ends, and a flat top."""
     if not 0 < ramp <= 0.5:
         raise InputError(f"the ramp of a trapezoid is a share of its length in (0, 0.5], found {ramp}")
-    return lambda s: height * np.clip(np.minimum(s, length - s) / (ramp * length), 0.0, 1.0)
+    return partial(_trapezoid, length=length, height=height, ramp=ramp)
 
 
 def rectangle(length: float, height: float, radius: float) -> Shape:
@@ -115,10 +116,27 @@ def rectangle(length: float, height: float, radius: float) -> Shape:
     if 4 * run > length:
         raise InputError(f"the rounded edges take {4 * run:.3f} m of a hump of {length} m; make it longer or the radius smaller")
 
-    def shape(s: Array) -> Array:
-        edge = np.minimum(np.minimum(s, length - s), 2 * run)
-        foot = radius - np.sqrt(np.maximum(radius**2 - np.minimum(edge, run) ** 2, 0.0))
-        shoulder = rise - (radius - np.sqrt(np.maximum(radius**2 - np.minimum(2 * run - edge, run) ** 2, 0.0)))
-        return np.asarray(np.copysign(1.0, height) * np.where(edge < run, foot, shoulder))
+    return partial(_rectangle, length=length, height=height, radius=radius, run=float(run))
 
-    return shape
+
+def _points(s: Array, distance: Array, height: Array) -> Array:
+    return np.asarray(np.interp(s, distance, height), dtype=np.float64)
+
+
+def _half_sine(s: Array, length: float, height: float) -> Array:
+    return np.asarray(height * np.sin(np.pi * s / length))
+
+
+def _versine(s: Array, length: float, height: float) -> Array:
+    return np.asarray(0.5 * height * (1.0 - np.cos(2.0 * np.pi * s / length)))
+
+
+def _trapezoid(s: Array, length: float, height: float, ramp: float) -> Array:
+    return np.asarray(height * np.clip(np.minimum(s, length - s) / (ramp * length), 0.0, 1.0))
+
+
+def _rectangle(s: Array, length: float, height: float, radius: float, run: float) -> Array:
+    edge = np.minimum(np.minimum(s, length - s), 2 * run)
+    foot = radius - np.sqrt(np.maximum(radius**2 - np.minimum(edge, run) ** 2, 0.0))
+    shoulder = abs(height) - (radius - np.sqrt(np.maximum(radius**2 - np.minimum(2 * run - edge, run) ** 2, 0.0)))
+    return np.asarray(np.copysign(1.0, height) * np.where(edge < run, foot, shoulder))

@@ -59,3 +59,16 @@ class SpeedHistory:
         late = t - knots[index]
         along = travelled[index] + late * (speed[index] + np.interp(t, self.time, self.speed)) / 2
         return np.asarray(along - np.interp(0.0, knots, travelled))
+
+
+@dataclass(frozen=True)
+class AdjustedSpeed:
+    """A speed law with its errors: `delay` [s] by which everything happens later, and `scale` by which the speed is multiplied."""
+
+    law: SpeedLaw
+    delay: float = 0.0
+    scale: float = 1.0
+
+    def distance(self, t: Array) -> Array:
+        """Return the distance travelled [m]."""
+        return np.asarray(self.scale * self.law.distance(np.asarray(t, dtype=np.float64) - self.delay))

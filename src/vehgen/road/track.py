@@ -54,7 +54,7 @@ class MeasuredProfile:
 
 @dataclass(frozen=True)
 class Track:
-    """The sum of profiles, averaged over a footprint [m] (0: a point contact).
+    """The sum of profiles, times `scale`, averaged over a footprint [m] (0: a point contact).
 
     The moving average is the difference of the road's integral between the edges of the contact, taken from a grid of half a
     millimetre: a hump shorter than the footprint is still seen whole.
@@ -62,6 +62,7 @@ class Track:
 
     parts: tuple[Profile, ...]
     footprint: float = 0.0
+    scale: float = 1.0
 
     @property
     def end(self) -> float:
@@ -84,4 +85,4 @@ class Track:
         total = np.zeros_like(s)
         for part in self.parts:
             total += part.height(s)
-        return total
+        return self.scale * total

@@ -238,8 +238,8 @@ class Run:
         return tuple(entry.place(name) for name, entry in self.file.forces.items())
 
 
-def load_run(path: str | Path) -> Run:
-    """Read a run file and the vehicle it names.
+def load_run(path: str | Path, vehicle: Vehicle | None = None) -> Run:
+    """Read a run file and the vehicle it names, or take another vehicle in its place.
 
     Raises
     ------
@@ -253,7 +253,7 @@ def load_run(path: str | Path) -> Run:
         raise InputError("a file of `key: value` lines was expected", document.position)
     file = validate(RunFile, document.plain(), document)
     try:
-        vehicle = load_vehicle(file.vehicle, path.parent)
+        vehicle = vehicle or load_vehicle(file.vehicle, path.parent)
     except InputError as error:
         if error.position is None:
             raise InputError(error.message, document.find(("vehicle",))) from error

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,7 @@ from vehgen.codegen import Drive
 from vehgen.errors import InputError
 from vehgen.mechanics.linear_model import LinearModel
 from vehgen.road import (
+    AdjustedSpeed,
     ConstantSpeed,
     Hump,
     Iso8608Road,
@@ -51,7 +52,7 @@ class Signal:
 
 @dataclass(frozen=True)
 class Scenario:
-    """What happens to a vehicle: a track at a speed, signals at ground links and forces, step and samples.
+    """What happens to a vehicle from `start` [s]: a track at a speed, signals at ground links and forces, step and samples.
 
     `ground` and `forces` are in the order of the model's inputs and forces.
     """
@@ -65,16 +66,22 @@ class Scenario:
     forces: tuple[Signal, ...] = ()
     nulls: tuple[float, ...] = ()
     hump_lengths: tuple[float, ...] = ()
+    start: float = 0.0
     time: Array = field(init=False)
 
     def __post_init__(self) -> None:
         steps = round(self.duration / (self.dt * self.keep)) * self.keep
-        object.__setattr__(self, "time", np.arange(steps + 1) * self.dt)
+        object.__setattr__(self, "time", self.start + np.arange(steps + 1) * self.dt)
 
     @property
     def top_speed(self) -> float:
         """The highest speed of the run [m/s]."""
         return float(np.max(np.diff(self.speed.distance(self.time)) / self.dt)) if len(self.time) > 1 else 0.0
+
+    def adjusted(self, delay: float = 0.0, speed: float = 1.0, height: float = 1.0) -> Scenario:
+        """Return the same run, `delay` [s] later, at `speed` times the speed, on a road `height` times as high."""
+        law = self.speed if (delay, speed) == (0.0, 1.0) else AdjustedSpeed(self.speed, delay, speed)
+        return replace(self, speed=law, track=replace(self.track, scale=self.track.scale * height))
 
     def drive(self, offsets: Array) -> Drive:
         """Return the inputs of a vehicle whose axles run `offsets shape (n_axles,)` [m] behind the first to arrive."""

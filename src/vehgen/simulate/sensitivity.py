@@ -55,7 +55,7 @@ def direct_sensitivities(
     q, v, a = newmark_states(numeric, forces, drive.dt)
     response = channel_values(numeric, a, v, q, drive.inputs, drive.rates)[::keep]
     loads = np.zeros((*q.shape, len(names)))
-    derived = [_derivatives(model, name, values) for name in names]
+    derived = [matrix_derivatives(model, name, values) for name in names]
     for i, d in enumerate(derived):
         load = drive.inputs @ d["P"].T + drive.rates @ d["Q"].T + drive.forces @ d["F"].T
         loads[:, :, i] = load - a @ d["M"].T - v @ d["C"].T - q @ d["K"].T
@@ -70,8 +70,11 @@ def direct_sensitivities(
     return response, sensitivities
 
 
-def _derivatives(model: LinearModel, name: str, values: Mapping[str, float]) -> dict[str, Array]:
-    """Return the derivatives of all matrices and output rows by a parameter, through the parameters that follow it."""
+def matrix_derivatives(model: LinearModel, name: str, values: Mapping[str, float]) -> dict[str, Array]:
+    """Return the derivatives of all matrices and output rows by a parameter, through the parameters that follow it.
+
+    The keys are those of :class:`vehgen.mechanics.linear_model.NumericModel` (`M`, `C`, `K`, `P`, `Q`, `F`) and of its `outputs`.
+    """
     chain: dict[sp.Symbol, sp.Expr] = {sp.Symbol(name, real=True): sp.S.One}
     for symbol, expression in model.definitions:
         chain[symbol] = _total(expression, chain)

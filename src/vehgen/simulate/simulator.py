@@ -7,9 +7,11 @@ import io
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+import sympy as sp
 from numpy.typing import NDArray
 
 from vehgen.codegen import Drive, Kernel, KernelResult, write_text
@@ -143,17 +145,25 @@ class Simulator:
 
     def wheel_offsets(self, parameters: Array) -> Array:
         """Return each axle's distance behind the first to arrive, `shape (n_individuals, n_axles)` [m]."""
-        columns = self._layout_columns()
+        columns = self._layout_columns
+        if not columns:
+            row = self.model.wheel_offsets(dict(zip(self.model.parameters, parameters[0], strict=True)))
+            return np.repeat(row[None, :], len(parameters), axis=0)
         distinct, group = np.unique(parameters[:, columns], axis=0, return_index=True, return_inverse=True)[1:]
         rows = [self.model.wheel_offsets(dict(zip(self.model.parameters, parameters[i], strict=True))) for i in distinct]
         return np.array(rows)[group.ravel()]
 
+    @cached_property
     def _layout_columns(self) -> list[int]:
-        """Columns of the parameters that the axles' positions depend on."""
-        names = {symbol.name for x in self.model.layout.axles.values() for symbol in x.free_symbols}
-        for symbol, expression in reversed(self.model.definitions):
-            if symbol.name in names:
-                names |= {item.name for item in expression.free_symbols}
+        """Columns of the parameters that the distances between axles depend on."""
+        given = dict(self.model.definitions)
+        places = list(self.model.layout.axles.values())
+        names: set[str] = set()
+        for x in places[1:]:
+            distance = x - places[0]
+            while distance.free_symbols & given.keys():
+                distance = distance.xreplace(given)
+            names |= {symbol.name for symbol in sp.expand(distance).free_symbols}
         return [i for i, name in enumerate(self.model.parameters) if name in names]
 
     def _add_static(self, parameters: Array, responses: Array) -> Array:

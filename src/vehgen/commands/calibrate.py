@@ -1,0 +1,207 @@
+"""Calibrate a vehicle's parameters from what its sensors recorded over a hump."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from vehgen.commands.terminal import add_json, console, print_json, print_table, warn
+from vehgen.errors import InputError
+
+if TYPE_CHECKING:
+    from vehgen.identify.outcome import Outcome
+
+EXAMPLE = "python -m vehgen calibrate tractor5.yaml hump_2ms.yaml hump_3ms.yaml --method joint --out calibrated"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.add_argument("vehicle", metavar="VEHICLE", help="a vehicle file whose `range`s say what to search")
+    parser.add_argument("runs", metavar="RUN", nargs="+", help="run files with recordings")
+    parser.add_argument("--method", default="joint", help="joint (all sensors at once, default), dhcm (two sensors, two steps), shcm (one)")
+    parser.add_argument("--sensors", metavar="A,B", help="the sensors to use, in order (default: all of the runs)")
+    parser.add_argument("--freeze", metavar="P,Q", help="dhcm: parameters kept from the first step (default: the nearest axle's)")
+    parser.add_argument("--search", choices=("ga", "mpga"), help="one population, or three that exchange their best (default; shcm: ga)")
+    parser.add_argument("--size", type=int, default=100, metavar="N", help="individuals of a population (default 100)")
+    parser.add_argument("--generations", type=int, default=300, metavar="N", help="generations of a search (default 300)")
+    parser.add_argument("--seed", type=int, default=1, metavar="N", help="seed of all random numbers (default 1)")
+    parser.add_argument("--starts", type=int, default=6, metavar="N", help="starts of the gradient polish (default 6)")
+    parser.add_argument("--no-polish", action="store_true", help="stop after the genetic search, as the paper does; gives no intervals")
+    parser.add_argument("--band", metavar="LOW,HIGH", help="frequencies compared [Hz] (default 0.3,40)")
+    parser.add_argument("--height-error", type=float, default=0.0, metavar="R", help="relative uncertainty of the hump's height, e.g. 0.02")
+    parser.add_argument("--speed-error", type=float, default=0.01, metavar="R", help="relative uncertainty of the speed (default 0.01)")
+    parser.add_argument("--facts", metavar="FILE", type=Path, help="axle weights and other facts known from elsewhere")
+    parser.add_argument("--combination", metavar="EXPR", action="append", default=[], help="estimate this too, e.g. 'k1/(mT + mS)'")
+    parser.add_argument("--bootstrap", type=int, default=0, metavar="N", help="check the intervals with N refits to redrawn noise")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="run polish and bootstrap on the Dask cluster at this address")
+    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for results and figures (default: VEHICLE_calibrated)")
+    parser.add_argument("--resume", action="store_true", help="go on with a search that was stopped")
+    add_json(parser)
+
+
+def run(options: argparse.Namespace) -> None:
+    """Calibrate and write the vehicle file, the result and figures."""
+    import json
+
+    from vehgen.codegen import write_text
+    from vehgen.identify.calibration import calibrate
+    from vehgen.identify.facts import load_facts
+    from vehgen.identify.outcome import conclude
+    from vehgen.identify.parallel import runner_at
+    from vehgen.identify.problem import make_problem
+    from vehgen.identify.trial import load_trials
+    from vehgen.report.calibration_plots import save_calibration_figures
+    from vehgen.vehicle import load_vehicle
+
+    vehicle = load_vehicle(options.vehicle)
+    problem = make_problem(load_trials(options.runs, vehicle))
+    facts = load_facts(options.facts, problem) if options.facts else None
+    folder: Path = options.out or Path(f"{Path(options.vehicle).stem}_calibrated")
+    folder.mkdir(parents=True, exist_ok=True)
+    settings = _settings(options)
+    with runner_at(options.scheduler) as runner:
+        with _Progress(quiet=options.json) as progress:
+            found = calibrate(problem, settings, facts, progress.tell, folder / "search.json", options.resume, runner)
+            if found.stopped:
+                progress.say("stopped: the best so far is kept; --resume goes on")
+        outcome = conclude(found, facts, options.combination, 0 if found.stopped else options.bootstrap, runner)
+    name = f"{vehicle.name}_calibrated"
+    data = outcome.to_dict()
+    files = [folder / f"{name}.yaml", folder / "calibration.json"]
+    write_text(files[0], outcome.vehicle_text(folder, name))
+    write_text(files[1], json.dumps(data, indent=1))
+    files += save_calibration_figures(outcome, folder)
+    if options.json:
+        print_json({**data, "files": [str(path) for path in files]})
+    else:
+        _show(outcome, files)
+    if found.stopped:
+        raise KeyboardInterrupt
+
+
+def _settings(options: argparse.Namespace):  # type: ignore[no-untyped-def]
+    from vehgen.identify.calibration import Settings
+    from vehgen.identify.genetic import GeneticSearch
+    from vehgen.identify.misfit import Nuisances
+    from vehgen.identify.objective import BAND
+
+    kind = options.search or ("ga" if options.method == "shcm" else "mpga")
+    return Settings(
+        method=options.method,
+        sensors=_list(options.sensors),
+        frozen=_list(options.freeze),
+        search=GeneticSearch(3 if kind == "mpga" else 1, options.size, options.generations),
+        seed=options.seed,
+        polish=not options.no_polish,
+        starts=max(1, options.starts),
+        band=_band(options.band) if options.band else BAND,
+        nuisances=Nuisances(speed=options.speed_error, height=options.height_error),
+    )
+
+
+def _list(text: str | None) -> tuple[str, ...]:
+    return tuple(part.strip() for part in text.split(",") if part.strip()) if text else ()
+
+
+def _band(text: str) -> tuple[float, float]:
+    try:
+        low, high = (float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError(f"--band wants two frequencies in Hz, e.g. 0.3,40; found {text!r}") from None
+    if not 0 < low < high:
+        raise InputError(f"--band wants 0 < LOW < HIGH, found {text!r}")
+    return low, high
+
+
+class _Progress:
+    """A progress bar a search or polish, with the best objective so far."""
+
+    def __init__(self, quiet: bool) -> None:
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+        self._console = Console(stderr=True)
+        self._bars = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TextColumn("{task.completed:.0f}/{task.total:.0f}  best {task.fields[best]}"),
+            TimeElapsedColumn(),
+            console=self._console,
+            disable=quiet or not self._console.is_terminal,
+        )
+        self._tasks: dict[str, int] = {}
+
+    def __enter__(self) -> _Progress:
+        self._bars.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._bars.stop()
+
+    def tell(self, label: str, done: int, total: int, best: float) -> None:
+        """Show what is done."""
+        from rich.progress import TaskID
+
+        if label not in self._tasks:
+            self._tasks[label] = int(self._bars.add_task(label, total=total, best=""))
+        self._bars.update(TaskID(self._tasks[label]), completed=done, best=f"{best:.5g}")
+
+    def say(self, text: str) -> None:
+        """Print a line."""
+        self._console.print(text)
+
+
+def _show(outcome: Outcome, files: list[Path]) -> None:
+    calibration = outcome.calibration
+    rows = []
+    for item in outcome.parameters:
+        estimate = item.estimate
+        interval = "" if estimate.low is None or estimate.high is None else f"{estimate.low:.4g} to {estimate.high:.4g}"
+        rows.append((estimate.name, f"{estimate.value:.5g}", item.unit, interval, item.status))
+    print_table(
+        f"{calibration.problem.trials[0].run.vehicle.name}: {calibration.settings.method}",
+        ("parameter", "value", "unit", "90 % interval", "status"),
+        rows,
+        right=(1,),
+    )
+    if outcome.modes:
+        modes = [
+            (hz.name, f"{hz.value:.3f}", "" if hz.low is None else f"{hz.low:.3f} to {hz.high:.3f}", f"{zeta.value:.3f}")
+            for hz, zeta in outcome.modes
+        ]
+        print_table("natural modes", ("mode", "undamped [Hz]", "90 % interval", "damping ratio"), modes, right=(1, 3))
+    print_table(
+        "objective (Eq. 5): area between the PSDs over the measured area",
+        ("channel", "term"),
+        [(name, f"{value:.4f}") for name, value in outcome.objective.items()],
+        right=(1,),
+    )
+    warn(_doubts(outcome))
+    for path in files:
+        console().print(f"wrote {path}", highlight=False, markup=False)
+
+
+def _doubts(outcome: Outcome) -> list[str]:
+    found = []
+    rank, searched = outcome.structure.rank, outcome.structure.space.size
+    if rank < searched:
+        moved = "; ".join(", ".join(list(direction)[:8]) + (" ..." if len(direction) > 8 else "") for direction in outcome.null_directions)
+        found.append(
+            f"of {searched} parameters these sensors can tell {rank} combinations, whatever the run: values marked gauge are one of many "
+            f"(they trade along: {moved}); --facts can close this"
+        )
+    bound = [item.estimate.name for item in outcome.parameters if item.status == "bound"]
+    if bound:
+        found.append(f"set by the search range, not by the data: {', '.join(bound)}")
+    found += [
+        f"the tyre of {name} would have left the road (its load falls to {share:.2f} of the static load): the linear tyre does not hold"
+        for name, share in outcome.lift_off.items()
+        if share < 0
+    ]
+    fits = outcome.calibration.steps[-1].fits
+    if fits and fits[0].chi2 > 1.2:
+        found.append(
+            f"the residuals are larger than the noise model allows (chi2 {fits[0].chi2:.2f}): `diagnose` looks for what is missing"
+        )
+    return found

@@ -1,0 +1,78 @@
+"""Compare a vehicle with recordings that took no part in its calibration."""
+
+from __future__ import annotations
+
+import argparse
+from itertools import pairwise
+from pathlib import Path
+
+from vehgen.commands.terminal import add_json, console, print_json, print_table
+
+EXAMPLE = "python -m vehgen validate calibrated/tractor5_calibrated.yaml road_b.yaml --out validation"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.add_argument("vehicle", metavar="VEHICLE", help="a vehicle file, for example one that `calibrate` wrote")
+    parser.add_argument("runs", metavar="RUN", nargs="+", help="run files with recordings")
+    parser.add_argument("--bands", metavar="A,B,C", help="edges of the frequency bands [Hz] (default: the paper's)")
+    parser.add_argument("--astm", metavar="NAME", help="draw an ASTM D4169 truck spectrum beside the accelerations, e.g. 'level II'")
+    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for results and figures (default: VEHICLE_validation)")
+    add_json(parser)
+
+
+def run(options: argparse.Namespace) -> None:
+    """Validate and write the table and figures."""
+    import json
+
+    from vehgen.codegen import write_text
+    from vehgen.errors import InputError, did_you_mean
+    from vehgen.identify.trial import load_trials
+    from vehgen.identify.validation import validate
+    from vehgen.measure import SPECTRA
+    from vehgen.report.validation_plots import save_validation_figures
+    from vehgen.vehicle import load_vehicle
+
+    if options.astm is not None and options.astm not in SPECTRA:
+        raise InputError(f"no spectrum {options.astm!r}; {did_you_mean(options.astm, SPECTRA)}")
+    bands = None
+    if options.bands:
+        try:
+            edges = [float(part) for part in options.bands.split(",")]
+        except ValueError:
+            raise InputError(f"--bands wants frequencies in Hz, e.g. 2,5,8,12; found {options.bands!r}") from None
+        bands = tuple(pairwise(edges))
+    vehicle = load_vehicle(options.vehicle)
+    found = validate(load_trials(options.runs, vehicle), bands)
+    folder: Path = options.out or Path(f"{Path(options.vehicle).stem}_validation")
+    folder.mkdir(parents=True, exist_ok=True)
+    data = {
+        "vehicle": vehicle.name,
+        "bands_hz": [list(band) for band in found.bands],
+        "channels": [
+            {
+                "run": item.run,
+                "channel": item.channel,
+                "quantity": item.quantity,
+                "measured_rms": item.measured_rms.tolist(),
+                "simulated_rms": item.simulated_rms.tolist(),
+                "relative_errors": [None if error != error else float(error) for error in item.errors],
+            }
+            for item in found.channels
+        ],
+        "worst_acceleration_error": None if found.worst != found.worst else found.worst,
+    }
+    files = [folder / "validation.json"]
+    write_text(files[0], json.dumps(data, indent=1))
+    files += save_validation_figures(found, folder, options.astm)
+    if options.json:
+        print_json({**data, "files": [str(path) for path in files]})
+        return
+    for item in found.channels:
+        rows = [
+            (f"{low:g}-{high:g}", f"{measured:.4g}", f"{simulated:.4g}", f"{100 * error:+.1f}")
+            for (low, high), measured, simulated, error in zip(found.bands, item.measured_rms, item.simulated_rms, item.errors, strict=True)
+        ]
+        print_table(f"{item.run}: {item.channel}", ("band [Hz]", "measured rms", "simulated rms", "error [%]"), rows, right=(1, 2, 3))
+    for path in files:
+        console().print(f"wrote {path}", highlight=False, markup=False)

@@ -1,0 +1,1 @@
+"""Which parameters? Calibration of vehicles from recordings over humps and roads."""

@@ -1,0 +1,165 @@
+"""Facts that are known from elsewhere and close what recordings leave open: axle weights, coupled and uncoupled, and single parameters.
+
+A facts file:
+
+    parameters:   {mS: {value: 22 t, uncertainty: 0.5 t}}
+    axle_weights: {axle1: {value: 71 kN, uncertainty: 0.5 kN}}           # on a scale, all coupled
+    uncoupled:    {tractor: {axle1: {value: 50 kN, uncertainty: 0.5 kN}}}  # the body alone, its hinges opened
+
+A fact enters the fit as a residual, (model - value)/uncertainty.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from vehgen.errors import InputError, did_you_mean
+from vehgen.identify.problem import Problem
+from vehgen.mechanics import LinearModel, derive, static_loads
+from vehgen.simulate.quantities import Force
+from vehgen.vehicle import Vehicle
+from vehgen.vehicle.document import read_document
+from vehgen.vehicle.expressions import Expression, ExpressionError
+from vehgen.vehicle.loading import validate
+from vehgen.vehicle.model import GROUND, Noun
+
+Array = NDArray[np.float64]
+_DIFFERENCE = 1e-6
+
+
+class Weight(Noun):
+    """What an axle presses on the road, and how well that is known."""
+
+    value: Force
+    uncertainty: Annotated[Force, Field(gt=0)]
+
+
+class Known(Noun):
+    """A parameter's value from elsewhere, and how well it is known."""
+
+    value: Expression
+    uncertainty: Expression
+
+
+class FactsFile(Noun):
+    """A facts file as it is written."""
+
+    parameters: dict[str, Known] = Field(default_factory=dict)
+    axle_weights: dict[str, Weight] = Field(default_factory=dict)
+    uncoupled: dict[str, dict[str, Weight]] = Field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Fact:
+    """One fact: how the model computes it from all free parameters, and what it is."""
+
+    name: str
+    model: Callable[[Mapping[str, float]], float]
+    value: float
+    uncertainty: float
+
+
+@dataclass(frozen=True)
+class Facts:
+    """Facts about the vehicle of a problem, as residuals."""
+
+    problem: Problem
+    facts: tuple[Fact, ...]
+
+    def residuals(self, values: Array) -> Array:
+        """Return (model - value)/uncertainty at searched values `shape (n_parameters,)` [SI]."""
+        known = self.problem.trials[0].values | self.problem.best_values(values)
+        return np.array([(fact.model(known) - fact.value) / fact.uncertainty for fact in self.facts])
+
+    def jacobian(self, values: Array) -> Array:
+        """Return the residuals' derivatives per SI unit, `shape (n_facts, n_parameters)`."""
+        space = self.problem.space
+        steps = _DIFFERENCE * (space.upper - space.lower)
+        columns = [
+            (self.residuals(values + step * row) - self.residuals(values - step * row)) / (2 * step)
+            for step, row in zip(steps, np.eye(space.size), strict=True)
+        ]
+        return np.column_stack(columns)
+
+
+def load_facts(path: str | Path, problem: Problem) -> Facts:
+    """Read a facts file about a problem's vehicle.
+
+    Raises
+    ------
+    InputError
+        With its place, for a name the vehicle lacks, a wrong unit, or an uncertainty that is not positive.
+    """
+    document = read_document(Path(path))
+    file = validate(FactsFile, document.plain(), document)
+    vehicle = problem.trials[0].run.vehicle
+    facts: list[Fact] = []
+    for name, known in file.parameters.items():
+        if name not in vehicle.parameters:
+            raise InputError(
+                f"{vehicle.name} has no parameter {name!r}; {did_you_mean(name, vehicle.parameters)}",
+                document.find(("parameters", name), key=True),
+            )
+        for key, expression in (("value", known.value), ("uncertainty", known.uncertainty)):
+            place = document.find(("parameters", name, key))
+            try:
+                found = expression.dimension({})
+            except ExpressionError as error:
+                raise InputError(str(error), place) from error
+            if found != vehicle.dimensions[name]:
+                raise InputError(f"{name} is in {vehicle.dimensions[name]}, found {found}", place)
+        uncertainty = known.uncertainty.evaluate({})
+        if not uncertainty > 0:
+            raise InputError("an uncertainty above 0 was expected", document.find(("parameters", name, "uncertainty")))
+        facts.append(Fact(name, _parameter(vehicle, name), known.value.evaluate({}), uncertainty))
+    groups: list[tuple[tuple[str, ...], Vehicle, str, dict[str, Weight]]] = [(("axle_weights",), vehicle, "", file.axle_weights)]
+    for body, weights in file.uncoupled.items():
+        if body not in vehicle.bodies:
+            raise InputError(
+                f"{vehicle.name} has no body {body!r}; {did_you_mean(body, vehicle.bodies)}", document.find(("uncoupled", body), key=True)
+            )
+        groups.append((("uncoupled", body), uncouple(vehicle, body), f" of {body} alone", weights))
+    for place_of, part, suffix, weights in groups:
+        model = derive(part) if weights else None
+        for axle, weight in weights.items():
+            if axle not in part.axles:
+                raise InputError(f"no axle {axle!r}{suffix}; {did_you_mean(axle, part.axles)}", document.find((*place_of, axle), key=True))
+            assert model is not None
+            facts.append(Fact(f"load of {axle}{suffix}", _axle_load(model, axle), weight.value, weight.uncertainty))
+    if not facts:
+        raise InputError("no fact was found: parameters, axle_weights or uncoupled were expected", document.position)
+    return Facts(problem, tuple(facts))
+
+
+def uncouple(vehicle: Vehicle, body: str) -> Vehicle:
+    """Return what stands when the hinges of a body are opened: it, all that links and carrying join to it, and their axles."""
+    side, grown = {body}, True
+    while grown:
+        pairs = [set(link.points) - {GROUND} for link in vehicle.links.values()]
+        pairs += [{name, item.carried_by.body} for name, item in vehicle.bodies.items() if item.carried_by is not None]
+        wider = side.union(*(pair for pair in pairs if pair & side))
+        grown, side = wider != side, wider
+    return vehicle.model_copy(
+        update={
+            "name": f"{vehicle.name}, {body} alone",
+            "bodies": {name: item for name, item in vehicle.bodies.items() if name in side},
+            "hinges": {name: hinge for name, hinge in vehicle.hinges.items() if set(hinge.points) <= side},
+            "axles": {name: axle for name, axle in vehicle.axles.items() if axle.body in side},
+            "links": {name: link for name, link in vehicle.links.items() if set(link.points) - {GROUND} <= side},
+        }
+    )
+
+
+def _parameter(vehicle: Vehicle, name: str) -> Callable[[Mapping[str, float]], float]:
+    return lambda values: vehicle.all_values({key: values[key] for key in vehicle.free_parameters})[name]
+
+
+def _axle_load(model: LinearModel, axle: str) -> Callable[[Mapping[str, float]], float]:
+    return lambda values: static_loads(model, {name: values[name] for name in model.parameters}).axles[axle]

@@ -1,0 +1,166 @@
+"""The genetic search: one population (GA) or several that exchange their best (MPGA), as Wu & Li 2023 (Sect. 2.4) configure them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.errors import InputError
+from vehgen.identify.genetic.crossover import recombine
+from vehgen.identify.genetic.migration import migrate
+from vehgen.identify.genetic.mutation import mutate
+from vehgen.identify.genetic.selection import rank_fitness, sample_parents
+
+Array = NDArray[np.float64]
+Objective = Callable[[Array], Array]
+CROSSOVER_RATES = (0.7, 0.9)
+MUTATION_RATES = (0.01, 0.05)
+
+
+@dataclass(frozen=True)
+class SearchState:
+    """Where a search stands after `generation` generations; all that is needed to go on bit for bit.
+
+    `genes shape (n_populations, size, n_genes)` in the unit cube, `objective shape (n_populations, size)`, `elite shape (n_genes,)` the
+    best individual ever seen with its `elite_objective`, `rates shape (n_populations, 2)` each population's crossover and mutation rate,
+    `history` the best objective after each generation, `random` the state of the generator.
+    """
+
+    generation: int
+    genes: Array
+    objective: Array
+    elite: Array
+    elite_objective: float
+    rates: Array
+    history: tuple[float, ...]
+    random: dict[str, Any]
+
+    def to_json(self) -> str:
+        """Return the state as text that :meth:`from_json` reads back exactly (floats in shortest exact form)."""
+        data = {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in vars(self).items()}
+        return json.dumps(data)
+
+    @classmethod
+    def from_json(cls, text: str) -> SearchState:
+        """Read a state; raises InputError for text that is none."""
+        try:
+            data = json.loads(text)
+            arrays = {key: np.array(data[key], dtype=np.float64) for key in ("genes", "objective", "elite", "rates")}
+            state = cls(
+                generation=int(data["generation"]),
+                elite_objective=float(data["elite_objective"]),
+                history=tuple(float(value) for value in data["history"]),
+                random=data["random"],
+                **arrays,
+            )
+            _generator(state.random)
+        except (ValueError, KeyError, TypeError) as error:
+            raise InputError(f"this is not the state of a search: {error}") from error
+        return state
+
+
+@dataclass(frozen=True)
+class GeneticSearch:
+    """A genetic algorithm over the unit cube.
+
+    Parameters
+    ----------
+    populations
+        1 for a GA; the paper's MPGA has 3.
+    size
+        Individuals of a population, even.
+    generations
+        How many generations follow the first.
+    """
+
+    populations: int = 3
+    size: int = 100
+    generations: int = 300
+
+    def __post_init__(self) -> None:
+        if self.populations < 1 or self.size < 4 or self.size % 2 or self.generations < 0:
+            raise InputError(
+                "a genetic search needs at least 1 population of an even number of at least 4 individuals, and generations not below 0; "
+                f"found {self.populations} of {self.size} over {self.generations}"
+            )
+
+    @property
+    def evaluations(self) -> int:
+        """How many individuals are evaluated in all."""
+        return self.populations * self.size * (self.generations + 1)
+
+    def start(self, objective: Objective, n_genes: int, seed: int, first: Array | None = None) -> SearchState:
+        """Return the first generation, uniform over the unit cube.
+
+        Parameters
+        ----------
+        objective
+            Maps points `shape (n, n_genes)` to values `shape (n,)`, the smaller the better; inf for what cannot be used.
+        n_genes
+            Number of searched parameters.
+        seed
+            Of the random numbers.
+        first
+            `shape (n_genes,)`: a point that takes the place of the first individual of each population.
+        """
+        random = np.random.Generator(np.random.PCG64(seed))
+        genes = random.random((self.populations, self.size, n_genes))
+        if first is not None:
+            genes[:, 0] = first
+        rates = np.column_stack([random.uniform(*CROSSOVER_RATES, self.populations), random.uniform(*MUTATION_RATES, self.populations)])
+        values = self._evaluate(objective, genes)
+        if not np.isfinite(values).any():
+            raise InputError("no individual of the first generation has a finite objective: look at the ranges")
+        best = int(values.argmin())
+        elite = genes.reshape(-1, n_genes)[best].copy()
+        value = float(values.ravel()[best])
+        return SearchState(0, genes, values, elite, value, rates, (value,), _state(random))
+
+    def advance(self, state: SearchState, objective: Objective) -> SearchState:
+        """Return the next generation: selection, crossover, mutation, evaluation, elite, migration."""
+        random = _generator(state.random)
+        n_genes = state.genes.shape[2]
+        children = np.empty_like(state.genes)
+        for i in range(self.populations):
+            parents = sample_parents(rank_fitness(state.objective[i]), self.size, random)
+            crossed = recombine(state.genes[i][parents], state.rates[i, 0], random)
+            children[i] = mutate(crossed, state.rates[i, 1], random)
+        values = self._evaluate(objective, children)
+        for i in range(self.populations):  # each population keeps its best over the generations
+            best, worst = state.objective[i].argmin(), values[i].argmax()
+            if state.objective[i, best] < values[i].min():
+                children[i, worst], values[i, worst] = state.genes[i, best], state.objective[i, best]
+        children, values = migrate(children, values)
+        best = int(values.argmin())
+        elite, value = state.elite, state.elite_objective
+        if values.ravel()[best] < value:
+            elite, value = children.reshape(-1, n_genes)[best].copy(), float(values.ravel()[best])
+        return replace(
+            state,
+            generation=state.generation + 1,
+            genes=children,
+            objective=values,
+            elite=elite,
+            elite_objective=value,
+            history=(*state.history, value),
+            random=_state(random),
+        )
+
+    def _evaluate(self, objective: Objective, genes: Array) -> Array:
+        values = objective(genes.reshape(-1, genes.shape[2])).reshape(genes.shape[:2])
+        return np.where(np.isnan(values), np.inf, values)
+
+
+def _generator(state: Any) -> np.random.Generator:
+    random = np.random.Generator(np.random.PCG64(0))
+    random.bit_generator.state = state
+    return random
+
+
+def _state(random: np.random.Generator) -> dict[str, Any]:
+    return dict(random.bit_generator.state)

@@ -1,0 +1,123 @@
+"""Which parameters can the measurements tell at all? Structural rank and null directions, for any vehicle.
+
+The road's way to the sensors is known exactly: frequency responses and their derivatives by every searched parameter. Directions in
+parameter space along which no response changes, at any frequency, from any axle, are gauges: no run over any road can tell them, whatever
+the noise. They are found as the null space of the stacked derivatives, which are exact, so that a gap of many decades separates a gauge
+from a parameter that is merely hard to see.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from vehgen.identify.problem import Problem
+from vehgen.identify.space import SearchSpace
+from vehgen.mechanics.linear_model import LinearModel
+from vehgen.simulate.frequency import response_derivatives
+
+Array = NDArray[np.float64]
+FREQUENCIES = np.geomspace(0.4, 40.0, 40)
+"""Where responses are compared [Hz]; the null space does not depend on the choice."""
+ZERO = 1e-9
+"""Singular values below this share of the largest are zero: exact derivatives leave about 1e-14."""
+IN_NULL_SPACE = 1e-5
+"""A quantity whose gradient has a larger share than this in the null space cannot be told."""
+
+
+@dataclass(frozen=True)
+class Structure:
+    """What the sensors can tell of the searched parameters.
+
+    `null shape (n_null, n_parameters)`: changes of the parameters in the unit cube that no response shows, each of `pivots` changed by one
+    alone. `singular_values shape (n_parameters,)` of the scaled derivatives, largest first.
+    """
+
+    space: SearchSpace
+    null: Array
+    pivots: tuple[int, ...]
+    singular_values: Array
+
+    @property
+    def rank(self) -> int:
+        """How many combinations of the parameters can be told."""
+        return self.space.size - len(self.null)
+
+    @property
+    def row_space(self) -> Array:
+        """An orthonormal basis of what can be told, `shape (n_parameters, rank)`."""
+        return np.asarray(scipy.linalg.null_space(self.null)) if len(self.null) else np.eye(self.space.size)
+
+    def can_tell(self, gradient: Array) -> bool:
+        """Return whether a quantity can be told whose derivatives by the unit cube's coordinates are `gradient shape (n_parameters,)`."""
+        norm = float(np.linalg.norm(gradient))
+        if norm == 0 or not len(self.null):
+            return True
+        basis = scipy.linalg.orth(self.null.T)
+        return bool(np.linalg.norm(basis.T @ gradient) < IN_NULL_SPACE * norm)
+
+    def directions(self, values: Array) -> list[dict[str, float]]:
+        """Return each null direction as changes [SI] of the parameters it moves, for a change of its pivot by 1 % of the pivot's range."""
+        found = []
+        for row, pivot in zip(self.null, self.pivots, strict=True):
+            change = row * self.space.slopes(values)
+            change *= 0.01 * (self.space.upper[pivot] - self.space.lower[pivot]) / change[pivot]
+            moved = np.abs(row) > 1e-6 * np.abs(row).max()
+            found.append({name: float(change[i]) for i, name in enumerate(self.space.names) if moved[i]})
+        return found
+
+
+def find_structure(problem: Problem, values: Array) -> Structure:
+    """Return the structural rank and null directions at searched values `shape (n_parameters,)` [SI].
+
+    Every trial's sensors are taken together. The axles' ways to the sensors count one by one: their roads are one road with known delays,
+    which runs at several speeds tell apart. Force laws are not in it.
+    """
+    found = []
+    for trial in {(repr(item.simulator.model.channels), item.fixed): item for item in problem.trials}.values():
+        known = {name: float(v) for name, v in problem.best_values(values).items() if name not in trial.fixed}
+        found.append(_scaled_derivatives(problem, trial.simulator.model, trial.values | known, trial.fixed, values))
+    null, singular = null_space(np.concatenate(found, axis=0))
+    if not len(null):
+        return Structure(problem.space, null, (), singular)
+    pivots = scipy.linalg.qr(null, pivoting=True, mode="r")[1][: len(null)]
+    reduced = np.asarray(np.linalg.solve(null[:, pivots], null), dtype=np.float64)
+    reduced[np.abs(reduced) < 1e-8 * np.abs(reduced).max()] = 0.0
+    return Structure(problem.space, reduced, tuple(int(i) for i in pivots), singular)
+
+
+def null_space(derivatives: Array) -> tuple[Array, Array]:
+    """Return the directions along which exact derivatives `shape (m, n_parameters)` vanish, and the scaled derivatives' singular values.
+
+    Returns
+    -------
+    Directions of unit length `shape (n_null, n_parameters)`, singular values `shape (n_parameters,)`, largest first.
+    """
+    norms = np.linalg.norm(derivatives, axis=0)
+    scale = np.where(norms > 0, norms, 1.0)
+    _, found, rows = np.linalg.svd(derivatives / scale)
+    singular = np.asarray(found, dtype=np.float64)
+    count = int((singular < ZERO * singular[0]).sum())
+    null = rows[len(rows) - count :] / scale
+    return np.asarray(null / np.linalg.norm(null, axis=1, keepdims=True)), singular
+
+
+def _scaled_derivatives(
+    problem: Problem, model: LinearModel, values: Mapping[str, float], fixed: tuple[str, ...], searched: Array
+) -> Array:
+    names = problem.space.names
+    flat = stacked_derivatives(model, values, names) * problem.space.slopes(searched)
+    flat[:, [i for i, name in enumerate(names) if name in fixed]] = 0.0
+    return flat
+
+
+def stacked_derivatives(model: LinearModel, values: Mapping[str, float], names: tuple[str, ...]) -> Array:
+    """Return the derivatives of all channels' frequency responses by parameters, each channel scaled to 1, `shape (m, len(names))`."""
+    derived = response_derivatives(model, values, names, FREQUENCIES)
+    scale = np.linalg.norm(derived, axis=(0, 1), keepdims=True)
+    flat = (derived / np.where(scale > 0, scale, 1.0)).reshape(len(names), -1)
+    return np.concatenate([flat.real, flat.imag], axis=1).T

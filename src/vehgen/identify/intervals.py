@@ -1,0 +1,232 @@
+"""How sure? Intervals from the Fisher information, for parameters, combinations and natural frequencies; bootstraps to check them.
+
+The information of a fit is J'J of its whitened residuals. Nuisances are marginalised. Along the null directions of the model's structure
+there is none, and what has a part along them gets no interval; for all else the covariance is V (V' F V)^-1 V', V a basis of what can be
+told. Intervals of positive quantities are symmetric on a logarithmic scale.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.stats
+from numpy.typing import NDArray
+
+from vehgen.errors import InputError
+from vehgen.identify.facts import Facts
+from vehgen.identify.identifiability import Structure
+from vehgen.identify.polish import Polished, polish
+from vehgen.simulate import Mode, natural_modes
+from vehgen.vehicle.expressions import ExpressionError, parse
+
+Array = NDArray[np.float64]
+LEVEL = 0.90
+"""Confidence level of all intervals."""
+_DIFFERENCE = 1e-5
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A quantity's value with its interval at LEVEL; `low` and `high` are None where the data cannot tell it."""
+
+    name: str
+    value: float
+    low: float | None = None
+    high: float | None = None
+
+    def covers(self, truth: float) -> bool:
+        """Return whether the interval holds a value."""
+        return self.low is not None and self.high is not None and self.low <= truth <= self.high
+
+
+Quantity = Callable[[Array], float]
+"""Maps searched values `shape (n_parameters,)` [SI] to a number."""
+
+
+class Uncertainty:
+    """The covariance of a fit's parameters, and intervals of anything that depends on them.
+
+    Parameters
+    ----------
+    fit
+        A polished fit.
+    structure
+        What its sensors can tell.
+    facts
+        What else was known, as residuals.
+    """
+
+    def __init__(self, fit: Polished, structure: Structure, facts: Facts | None = None) -> None:
+        self.fit = fit
+        self.structure = structure
+        self.values = fit.values
+        space = fit.misfit.problem.space
+        jacobian = fit.misfit.jacobian(fit.x)
+        information = jacobian.T @ jacobian
+        n = fit.misfit.n_parameters
+        cross, own = information[:n, n:], information[n:, n:]
+        self.information = information[:n, :n] - cross @ np.linalg.solve(own, cross.T) if own.size else information[:n, :n]
+        if facts is not None:
+            known = facts.jacobian(self.values) * space.slopes(self.values)
+            self.information = self.information + known.T @ known
+        self.basis = _told(structure, facts, self.values)
+        reduced = self.basis.T @ self.information @ self.basis
+        self.covariance = self.basis @ np.linalg.pinv(reduced, hermitian=True) @ self.basis.T
+
+    def gradient(self, quantity: Quantity) -> Array:
+        """Return a quantity's derivatives by the unit cube's coordinates, `shape (n_parameters,)`."""
+        space = self.fit.misfit.problem.space
+        unit = self.fit.misfit.split(self.fit.x)[0]
+        steps = np.eye(space.size) * _DIFFERENCE
+        return np.array([(quantity(space.values(unit + step)) - quantity(space.values(unit - step))) / (2 * _DIFFERENCE) for step in steps])
+
+    def estimate(self, name: str, quantity: Quantity) -> Estimate:
+        """Return a quantity with its interval."""
+        value, gradient = quantity(self.values), self.gradient(quantity)
+        return self._interval(name, value, gradient) if self.can_tell(gradient) else Estimate(name, value)
+
+    def can_tell(self, gradient: Array) -> bool:
+        """Return whether the data tell a quantity with these derivatives."""
+        rest = gradient - self.basis @ (self.basis.T @ gradient)
+        return bool(np.linalg.norm(rest) <= 1e-4 * max(float(np.linalg.norm(gradient)), 1e-300))
+
+    def parameters(self) -> list[Estimate]:
+        """Return every searched parameter."""
+        return [self.estimate(name, _component(i)) for i, name in enumerate(self.structure.space.names)]
+
+    def given_pivots(self) -> list[Estimate]:
+        """Return every parameter as if the structure's pivots were known exactly: the gauge closed by decree."""
+        kept = [i for i in range(self.structure.space.size) if i not in self.structure.pivots]
+        covariance = np.zeros_like(self.information)
+        covariance[np.ix_(kept, kept)] = np.linalg.pinv(self.information[np.ix_(kept, kept)], hermitian=True)
+        slopes = self.structure.space.slopes(self.values)
+        found = []
+        for i, name in enumerate(self.structure.space.names):
+            gradient = np.zeros(len(slopes))
+            gradient[i] = slopes[i]
+            found.append(self._interval(name, float(self.values[i]), gradient, covariance))
+        return found
+
+    def combination(self, text: str) -> Estimate:
+        """Return an expression of the vehicle's parameters, such as `k1/(mT + mS)`.
+
+        Raises
+        ------
+        InputError
+            For text that is no expression of them.
+        """
+        return self.estimate(text, self.expression(text))
+
+    def expression(self, text: str) -> Quantity:
+        """Return an expression of the vehicle's parameters as a quantity; raises InputError for text that is none."""
+        trial = self.fit.misfit.problem.trials[0]
+        vehicle = trial.run.vehicle
+        names = self.structure.space.names
+        try:
+            expression = parse(text)
+            unknown = expression.names - set(vehicle.parameters)
+            if unknown:
+                raise InputError(f"the combination {text!r} names {', '.join(sorted(unknown))}, which {vehicle.name} does not have")
+            expression.dimension(vehicle.dimensions)
+        except ExpressionError as error:
+            raise InputError(f"{text!r}: {error}") from error
+
+        def quantity(values: Array) -> float:
+            free = {name: trial.values[name] for name in vehicle.free_parameters} | dict(zip(names, values.tolist(), strict=True))
+            return float(expression.evaluate(vehicle.all_values(free)))
+
+        return quantity
+
+    def ratios(self) -> list[Estimate]:
+        """Return ratios that the data tell of parameters that they do not tell: those that all null directions scale alike."""
+        slopes = self.structure.space.slopes(self.values)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            relative = np.where(self.values == 0, np.nan, self.structure.null * slopes / self.values)
+        groups: dict[tuple[float, ...], list[int]] = {}
+        for i in range(self.structure.space.size):
+            key = tuple(float(f"{item:.5g}") for item in relative[:, i])
+            if np.isfinite(relative[:, i]).all() and any(key) and i not in self.structure.pivots:
+                groups.setdefault(key, []).append(i)
+        names = self.structure.space.names
+        return [self.combination(f"{names[i]}/{names[group[0]]}") for group in groups.values() for i in group[1:]]
+
+    def frequencies(self) -> list[tuple[Estimate, Estimate]]:
+        """Return each mode's undamped frequency [Hz] and damping ratio."""
+        space = self.fit.misfit.problem.space
+        unit = self.fit.misfit.split(self.fit.x)[0]
+        middle = self.mode_table(self.values)
+        step = 10 * _DIFFERENCE
+        steps = np.eye(space.size) * step
+        derived = np.array(
+            [(self.mode_table(space.values(unit + s)) - self.mode_table(space.values(unit - s))) / (2 * step) for s in steps]
+        )
+        labels = [mode.name for mode in self._modes(self.values)]
+        pairs = []
+        for j, label in enumerate(labels):
+            both = [
+                self._interval(label, float(middle[k, j]), derived[:, k, j])
+                if self.can_tell(derived[:, k, j])
+                else Estimate(label, float(middle[k, j]))
+                for k in (0, 1)
+            ]
+            pairs.append((both[0], both[1]))
+        return pairs
+
+    def mode_table(self, values: Array) -> Array:
+        """Return all undamped frequencies [Hz] and damping ratios at searched values, `shape (2, n_modes)`."""
+        found = self._modes(values)
+        return np.array([[mode.undamped_hz for mode in found], [mode.damping_ratio for mode in found]])
+
+    def _modes(self, values: Array) -> list[Mode]:
+        trial = self.fit.misfit.problem.trials[0]
+        names = self.structure.space.names
+        return natural_modes(trial.simulator.model, trial.values | dict(zip(names, values.tolist(), strict=True)))
+
+    def _interval(self, name: str, value: float, gradient: Array, covariance: Array | None = None) -> Estimate:
+        covariance = self.covariance if covariance is None else covariance
+        variance = max(float(gradient @ covariance @ gradient), 0.0)
+        spread = float(scipy.stats.norm.ppf(0.5 + LEVEL / 2)) * variance**0.5
+        if value > 0:
+            factor = float(np.exp(min(spread / value, 50.0)))
+            return Estimate(name, value, value / factor, value * factor)
+        return Estimate(name, value, value - spread, value + spread)
+
+
+def _component(i: int) -> Quantity:
+    return lambda values: float(values[i])
+
+
+def _told(structure: Structure, facts: Facts | None, values: Array) -> Array:
+    """Return an orthonormal basis of what structure and facts together can tell."""
+    if facts is None or not len(structure.null):
+        return structure.row_space
+    known = facts.jacobian(values) * structure.space.slopes(values)
+    free = structure.null.T / np.linalg.norm(structure.null, axis=1)
+    _, singular, rows = np.linalg.svd(known @ free)
+    rank = int((singular > 1e-8 * max(float(np.abs(known).max(initial=0.0)), 1e-300)).sum())
+    null = (free @ rows[rank:].T).T
+    return Structure(structure.space, null, structure.pivots, structure.singular_values).row_space
+
+
+def refit(fit: Polished, seed: int, facts: Facts | None = None) -> Array:
+    """Return the parameters [SI] fitted to one set of measurements drawn from a fit: one replicate of a parametric bootstrap."""
+    random = np.random.Generator(np.random.PCG64(seed))
+    misfit = fit.misfit
+    drawn = misfit.draw(fit.x, random)
+    trials = [
+        replace(trial, measurement=replace(trial.measurement, values=values))
+        for trial, values in zip(misfit.problem.trials, drawn, strict=True)
+    ]
+    unit, _ = misfit.split(fit.x)
+    again = polish(
+        misfit.problem.with_trials(trials),
+        unit,
+        misfit.nuisances,
+        misfit.band,
+        noises=misfit.noises,
+        start=fit.x[misfit.n_parameters :],
+        facts=facts,
+    )
+    return again.values

@@ -1,0 +1,172 @@
+"""The misfit that uses phase: whitened residuals of all channels, for least squares.
+
+Residuals are compared line by line within a band (by Parseval's theorem the same as in time, for what lies within the band) and whitened
+by the noise's cross spectral density, so that their sum of squares is -2 ln of the likelihood. What a run does not know of itself exactly
+is fitted along with the parameters: its delay, the scales of its speed and of its hump's height.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.identify.noise import Noise, RoadAnswer, road_answer, transform
+from vehgen.identify.objective import BAND
+from vehgen.identify.problem import Problem
+from vehgen.identify.trial import Trial
+from vehgen.simulate import Scenario
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Noises = dict[tuple[str, ...], Noise]
+STEP = 1e-4
+"""Half step of the central differences, in the unit cube and in units of a nuisance's uncertainty."""
+
+
+@dataclass(frozen=True)
+class Nuisances:
+    """Standard deviations of what a run does not know of itself; 0 leaves it out.
+
+    `delay` of the recording's clock [s]; `speed` and `height` relative errors of the speed and of the road's height.
+    """
+
+    delay: float = 0.2
+    speed: float = 0.01
+    height: float = 0.0
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Those that are fitted."""
+        return tuple(name for name in ("delay", "speed", "height") if getattr(self, name) > 0)
+
+    def adjust(self, scenario: Scenario, values: Array) -> Scenario:
+        """Return a scenario with errors `values shape (len(names),)`, in units of their standard deviations."""
+        found = {name: float(value) * getattr(self, name) for name, value in zip(self.names, values, strict=True)}
+        return scenario.adjusted(found.get("delay", 0.0), 1.0 + found.get("speed", 0.0), 1.0 + found.get("height", 0.0))
+
+
+@dataclass(frozen=True)
+class _Weight:
+    """A trial's spectral lines within the band, the road's way into them, and the matrices that whiten it."""
+
+    inside: NDArray[np.bool_]
+    answer: RoadAnswer
+    whitener: Complex
+
+
+class Misfit:
+    """Whitened residuals and their derivatives.
+
+    The unknowns x are the searched parameters in the unit cube, then each trial's nuisances in units of their standard deviations (which
+    also enter as residuals, their prior).
+
+    Parameters
+    ----------
+    problem
+        Trials and searched parameters.
+    noises
+        One noise per distinct set of channels.
+    reference
+        Searched values `shape (n_parameters,)` [SI] at which the road's part of the noise is computed: weights must not chase the fit.
+    nuisances
+        What is fitted along.
+    band
+        Frequencies compared [Hz].
+    """
+
+    def __init__(
+        self, problem: Problem, noises: Noises, reference: Array, nuisances: Nuisances | None = None, band: tuple[float, float] = BAND
+    ) -> None:
+        self.problem = problem
+        self.noises = noises
+        self.nuisances = nuisances or Nuisances()
+        self.band = band
+        self._weights = [self._weight(trial, problem.best_values(reference)) for trial in problem.trials]
+
+    def _weight(self, trial: Trial, reference: Mapping[str, float]) -> _Weight:
+        dt = trial.measurement.dt
+        frequency = np.asarray(np.fft.rfftfreq(len(trial.measurement.time), dt), dtype=np.float64)
+        inside = (frequency >= self.band[0]) & (frequency <= self.band[1])
+        own = {name: value for name, value in reference.items() if name not in trial.fixed}
+        answer = road_answer(trial, frequency[inside], trial.values | own)
+        return _Weight(inside, answer, self.noises[trial.channels].whitener(answer))
+
+    @property
+    def n_parameters(self) -> int:
+        """Number of searched parameters."""
+        return self.problem.space.size
+
+    @property
+    def n_unknowns(self) -> int:
+        """Number of unknowns, nuisances included."""
+        return self.n_parameters + len(self.problem.trials) * len(self.nuisances.names)
+
+    def split(self, x: Array) -> tuple[Array, Array]:
+        """Return the parameters `shape (n_parameters,)` in the unit cube and the nuisances `shape (n_trials, len(names))`."""
+        return x[: self.n_parameters], x[self.n_parameters :].reshape(len(self.problem.trials), len(self.nuisances.names))
+
+    def simulate(self, x: Array) -> list[Array]:
+        """Return each trial's response, `shape (n_samples, n_channels)`."""
+        unit, errors = self.split(x)
+        values = self.problem.space.values(unit)[None]
+        return [
+            self.problem.respond(values, trial, self.nuisances.adjust(trial.scenario, error))[0][0]
+            for trial, error in zip(self.problem.trials, errors, strict=True)
+        ]
+
+    def lines(self, x: Array) -> list[tuple[Complex, RoadAnswer]]:
+        """Return each trial's residual, measured minus simulated, as spectral lines, with the road's way into them."""
+        found = []
+        for trial, weight, simulated in zip(self.problem.trials, self._weights, self.simulate(x), strict=True):
+            found.append((transform(trial.measurement.values - simulated, trial.measurement.dt, weight.inside), weight.answer))
+        return found
+
+    def residuals(self, x: Array) -> Array:
+        """Return the whitened residuals, the nuisances' priors last: each of unit variance where model and noise are right."""
+        white = [_flatten(_apply(weight.whitener, lines)) for weight, (lines, _) in zip(self._weights, self.lines(x), strict=True)]
+        return np.concatenate([*white, x[self.n_parameters :]])
+
+    def jacobian(self, x: Array) -> Array:
+        """Return the derivatives of :meth:`residuals`, `shape (n_residuals, n_unknowns)`, by central differences in one population."""
+        unit, errors = self.split(x)
+        n, k = self.n_parameters, len(self.nuisances.names)
+        values = self.problem.space.values(unit + np.vstack([np.eye(n), -np.eye(n)]) * STEP)
+        middle = self.problem.space.values(unit)[None]
+        rows = []
+        for t, (trial, weight, error) in enumerate(zip(self.problem.trials, self._weights, errors, strict=True)):
+            responses = self.problem.respond(values, trial, self.nuisances.adjust(trial.scenario, error))[0]
+            derived = np.zeros((self.n_unknowns, *responses.shape[1:]))
+            derived[:n] = (responses[:n] - responses[n:]) / (2 * STEP)
+            for j in range(k):
+                step = STEP * np.eye(k)[j]
+                ahead, behind = (
+                    self.problem.respond(middle, trial, self.nuisances.adjust(trial.scenario, error + side))[0][0] for side in (step, -step)
+                )
+                derived[n + t * k + j] = (ahead - behind) / (2 * STEP)
+            lines = transform(derived, trial.measurement.dt, weight.inside)
+            rows.append(-_flatten(_apply(weight.whitener, lines), first=1).T)
+        prior = np.zeros((self.n_unknowns - n, self.n_unknowns))
+        prior[:, n:] = np.eye(self.n_unknowns - n)
+        return np.vstack([*rows, prior])
+
+    def draw(self, x: Array, random: np.random.Generator) -> list[Array]:
+        """Return measurements as they might have come out: the response plus noise, one array a trial (for a bootstrap)."""
+        found = []
+        for trial, weight, simulated in zip(self.problem.trials, self._weights, self.simulate(x), strict=True):
+            noise = self.noises[trial.channels]
+            lines = np.flatnonzero(weight.inside)
+            found.append(simulated + noise.draw(weight.answer, len(simulated), lines, random))
+        return found
+
+
+def _apply(whitener: Complex, lines: Complex) -> Complex:
+    return np.asarray((whitener @ lines[..., None])[..., 0])
+
+
+def _flatten(white: Complex, first: int = 0) -> Array:
+    """Return real and imaginary parts as residuals of unit variance; the axes before `first` are kept."""
+    flat = white.reshape(*white.shape[:first], -1) * np.sqrt(2)
+    return np.concatenate([flat.real, flat.imag], axis=-1)

@@ -1,0 +1,191 @@
+"""What the measured channels hold besides the vehicle's answer to the known road: sensor noise, and the roughness under the hump.
+
+    S(f) = L(f/v) G(f) H(f) R(f) H(f)* + diag(2 dt sigma^2)
+
+is the one-sided cross spectral density of the channels: white noise of standard deviation sigma in each, and the answer H(f) to a road
+of displacement spectrum L G(f), G = n0^2 v/f^2 (ISO 8608 with w = 2, n0 = 0.1 cycles/m, at v [m/s]), that all axles follow one after the
+other. L is Gd(n0) [m^3] where the road keeps to w = 2; real roads do not, so L may vary with wavenumber, straight lines between KNOTS on
+log-log paper. R_ij = exp(-2 pi i f (t_i - t_j)) rho(t_i - t_j), with rho the autocorrelation of the record's taper: in a record of finite
+length two axles share only the road that both have passed. The road's part is what a white-noise model misses: it is coloured, common
+to all channels, and stronger than a phone's own noise even on a very good road.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy.optimize
+import scipy.signal
+from numpy.typing import NDArray
+
+from vehgen.simulate.frequency import frequency_response
+
+if TYPE_CHECKING:
+    from vehgen.identify.trial import Trial
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+REFERENCE = 0.1
+"""n0 of ISO 8608 [cycles/m]."""
+KNOTS = 0.1 * 2.0 ** np.arange(9)
+"""Wavenumbers between which the road's level is interpolated [cycles/m]."""
+RAMP = 0.75
+"""Length of the taper's ramps [s]."""
+SMALLEST_LEVEL, LARGEST_LEVEL = 1e-10, 1e-2
+"""A road smoother than this Gd(n0) [m^3] counts as even (class A begins at 16e-6); none is rougher."""
+ROUGHEST = 3.0
+"""Change of ln(level) from one knot to the next that counts as one standard deviation."""
+EVEN = np.full(len(KNOTS), SMALLEST_LEVEL)
+"""Levels of an even road."""
+
+
+@dataclass(frozen=True)
+class RoadAnswer:
+    """The channels' answer to roughness in one trial, at spectral lines.
+
+    `frequency shape (n,)` [Hz]; `wavenumber shape (n,)` [cycles/m]; `gain shape (n, n_channels, n_axles)` with gain gain* = G H R H*; `dt`
+    the samples' spacing [s].
+    """
+
+    frequency: Array
+    wavenumber: Array
+    gain: Complex
+    dt: float
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Roughness `levels shape (len(KNOTS),)` [m^3] of the road beneath, and white noise `sigma shape (n_channels,)` [channels' units]."""
+
+    levels: Array
+    sigma: Array
+
+    def level(self, wavenumber: Array) -> Array:
+        """Return L at wavenumbers [cycles/m]."""
+        return np.asarray(np.exp(_interpolation(wavenumber) @ np.log(self.levels)))
+
+    def density(self, answer: RoadAnswer) -> Complex:
+        """Return S(f), `shape (n, n_channels, n_channels)`."""
+        part = np.sqrt(self.level(answer.wavenumber))[:, None, None] * answer.gain
+        return np.asarray(part @ _adjoint(part) + np.diag(2 * answer.dt * self.sigma**2))
+
+    def whitener(self, answer: RoadAnswer) -> Complex:
+        """Return W(f) with W S W* = 1, `shape (n, n_channels, n_channels)`."""
+        scale, b = self._scaled(answer)
+        root = np.linalg.cholesky(np.eye(len(scale)) + b @ _adjoint(b))
+        return np.asarray(np.linalg.inv(root) / scale, dtype=np.complex128)
+
+    def loss(self, lines: Complex, answer: RoadAnswer) -> float:
+        """Return -2 ln of Whittle's likelihood of lines `shape (n, n_channels)`, less a constant: the sum of 2 (ln det S + R* S^-1 R)."""
+        return self.loss_and_slopes(lines, answer)[0]
+
+    def loss_and_slopes(self, lines: Complex, answer: RoadAnswer) -> tuple[float, Array, Array]:
+        """Return :meth:`loss` with its derivatives by ln(levels) `shape (len(KNOTS),)` and by ln(sigma) `shape (n_channels,)`."""
+        scale, b = self._scaled(answer)
+        density = np.eye(len(scale)) + b @ _adjoint(b)
+        inverse = np.linalg.inv(density)
+        scaled = lines / scale
+        weighted = (inverse @ scaled[:, :, None])[:, :, 0]
+        determinant = len(lines) * np.log(scale).sum() + 0.5 * np.linalg.slogdet(density)[1].sum()
+        loss = 2 * (2 * determinant + (scaled.conj() * weighted).real.sum())
+        rest = inverse - weighted[:, :, None] * weighted[:, None, :].conj()
+        by_sigma = 4 * np.diagonal(rest, axis1=1, axis2=2).real.sum(axis=0)
+        by_level = 2 * (b.conj() * (rest @ b)).real.sum(axis=(1, 2))
+        return float(loss), _interpolation(answer.wavenumber).T @ by_level, by_sigma
+
+    def _scaled(self, answer: RoadAnswer) -> tuple[Array, Complex]:
+        """Return d and b with S = diag(d) (1 + b b*) diag(d), which is well conditioned however small sigma is."""
+        scale = np.sqrt(2 * answer.dt) * self.sigma
+        return scale, np.sqrt(self.level(answer.wavenumber))[:, None, None] * answer.gain / scale[:, None]
+
+    def draw(self, answer: RoadAnswer, n_samples: int, lines: NDArray[np.intp], random: np.random.Generator) -> Array:
+        """Return noise within the band of `lines` (numbers of the FFT's lines) as time histories `shape (n_samples, n_channels)`."""
+
+        def unit(shape: tuple[int, ...]) -> Complex:
+            return np.asarray((random.standard_normal(shape) + 1j * random.standard_normal(shape)) / np.sqrt(2))
+
+        road = np.sqrt(self.level(answer.wavenumber))[:, None] * (answer.gain @ unit((len(lines), answer.gain.shape[2], 1)))[:, :, 0]
+        spectrum = np.zeros((n_samples // 2 + 1, road.shape[1]), dtype=np.complex128)
+        spectrum[lines] = (road + unit(road.shape) * np.sqrt(2 * answer.dt) * self.sigma) * np.sqrt(n_samples / (2 * answer.dt))
+        return np.asarray(np.fft.irfft(spectrum, n_samples, axis=0))
+
+
+def _interpolation(wavenumber: Array) -> Array:
+    """Return the weights of ln(levels) at wavenumbers, `shape (n, len(KNOTS))`."""
+    hats = np.eye(len(KNOTS))
+    return np.column_stack([np.interp(np.log(wavenumber), np.log(KNOTS), hat) for hat in hats])
+
+
+def _adjoint(matrices: Complex) -> Complex:
+    return np.asarray(matrices.conj().transpose(0, 2, 1))
+
+
+def taper(n_samples: int, dt: float) -> Array:
+    """Return the window under which records are compared: cosine ramps of RAMP [s], or an eighth of a short record, at both ends.
+
+    What the vehicle did before the record began is unknown, and so are its first and last moments.
+    """
+    share = min(2 * RAMP / (n_samples * dt), 0.25)
+    return np.asarray(scipy.signal.windows.tukey(n_samples, share))
+
+
+def transform(values: Array, dt: float, inside: NDArray[np.bool_]) -> Complex:
+    """Return spectral lines of tapered histories `shape (..., n_samples, n_channels)`, scaled so that |line|^2 is a one-sided PSD."""
+    window = taper(values.shape[-2], dt)
+    return np.asarray(np.fft.rfft(values * window[:, None], axis=-2)[..., inside, :] * np.sqrt(2 * dt / (window**2).sum()))
+
+
+def road_answer(trial: Trial, frequency: Array, values: dict[str, float]) -> RoadAnswer:
+    """Return the channels' answer to a road of level 1 that all axles follow, at frequencies `shape (n,)` [Hz]."""
+    model = trial.simulator.model
+    response = frequency_response(model.numeric(values), frequency)[0][:, :, : len(trial.run.vehicle.axles)]
+    speed, dt = trial.scenario.top_speed, trial.measurement.dt
+    late = model.wheel_offsets(values) / speed
+    window = taper(len(trial.measurement.time), dt)
+    correlation = np.correlate(window, window, "full")[len(window) - 1 :] / (window**2).sum()
+    shared = np.interp(np.abs(late[:, None] - late[None, :]), np.arange(len(window)) * dt, correlation)
+    root = np.linalg.cholesky(shared + 1e-9 * np.eye(len(late)))
+    delayed = np.exp(-2j * np.pi * frequency[:, None] * late)
+    gain = (response * delayed[:, None, :] * (REFERENCE * np.sqrt(speed) / frequency)[:, None, None]) @ root
+    return RoadAnswer(frequency, frequency / speed, np.asarray(gain), dt)
+
+
+def estimate_noise(residuals: Sequence[tuple[Complex, RoadAnswer]], start: Noise) -> Noise:
+    """Return the most likely levels and sigmas for residuals, lines `shape (n, n_channels)` of trials with the same channels on one road.
+
+    Parameters
+    ----------
+    residuals
+        Lines and the road's way into them, trial by trial.
+    start
+        Where to begin.
+    """
+    power = np.mean([np.mean(np.abs(lines) ** 2, axis=0) / (2 * answer.dt) for lines, answer in residuals], axis=0)
+    floor = 1e-4 * np.sqrt(power)
+    knots = len(KNOTS)
+
+    def read(x: Array) -> Noise:
+        return Noise(np.exp(x[:knots]), np.exp(x[knots:]))
+
+    def loss(x: Array) -> tuple[float, Array]:
+        noise, bends = read(x), np.diff(x[:knots])
+        total = float((bends**2).sum()) / ROUGHEST**2  # holds levels that no line tells to their neighbours
+        slopes = np.zeros_like(x)
+        slopes[:knots] = 2 / ROUGHEST**2 * (np.append(0.0, bends) - np.append(bends, 0.0))
+        for lines, answer in residuals:
+            own, by_level, by_sigma = noise.loss_and_slopes(lines, answer)
+            total += own
+            slopes += np.concatenate([by_level, by_sigma])
+        return total, slopes
+
+    share = np.mean([np.mean(np.abs(lines) ** 2 / (np.abs(answer.gain) ** 2).sum(axis=2).clip(1e-300)) for lines, answer in residuals])
+    mostly_road = Noise(np.full(knots, share), 0.1 * np.sqrt(power))
+    bounds = [(np.log(SMALLEST_LEVEL), np.log(LARGEST_LEVEL))] * knots + [(np.log(low), np.log(low) + 12.0) for low in floor]
+    found = []
+    for first in (start, mostly_road):
+        levels, sigma = np.clip(first.levels, SMALLEST_LEVEL, LARGEST_LEVEL), np.maximum(first.sigma, floor)
+        found.append(scipy.optimize.minimize(loss, np.log(np.concatenate([levels, sigma])), jac=True, method="L-BFGS-B", bounds=bounds))
+    return read(min(found, key=lambda item: float(item.fun)).x)

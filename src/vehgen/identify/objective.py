@@ -1,0 +1,58 @@
+"""The objective of hump calibration (Wu & Li 2023, Eq. 5, doi:10.3390/s23249691).
+
+    FD = sum over channels of  integral |PSD_s(f) - PSD_m(f)| df / integral PSD_m(f) df
+
+over the vertical accelerations and pitch rates of all sensors and runs in use. It does not see phase, so neither the hump's time of arrival
+nor the recordings' clocks matter to it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.errors import InputError
+from vehgen.identify.problem import Problem
+from vehgen.measure import record_psd
+
+Array = NDArray[np.float64]
+BAND = (0.3, 40.0)
+"""Frequencies that a calibration compares [Hz]: below, phones drift; above, anti-aliasing filters bite."""
+
+
+class PsdObjective:
+    """Eq. 5 over a problem's trials, for whole populations.
+
+    Parameters
+    ----------
+    problem
+        Trials and searched parameters.
+    band
+        Frequencies compared [Hz].
+    """
+
+    def __init__(self, problem: Problem, band: tuple[float, float] = BAND) -> None:
+        self.problem = problem
+        self.band = band
+        self._measured: list[tuple[NDArray[np.bool_], Array]] = []
+        for trial in problem.trials:
+            frequency, density = record_psd(trial.measurement.values, trial.measurement.dt, axis=0)
+            inside = (frequency >= band[0]) & (frequency <= band[1])
+            if inside.sum() < 4:
+                raise InputError(f"{trial.name}: fewer than 4 spectral lines lie within {band[0]:g}-{band[1]:g} Hz")
+            self._measured.append((inside, density[inside]))
+
+    def __call__(self, unit: Array) -> Array:
+        """Return the objective at points of the unit cube `shape (n, n_parameters)`: `shape (n,)`, inf where an individual failed."""
+        return np.asarray(self.terms(self.problem.space.values(unit)).sum(axis=1))
+
+    def terms(self, values: Array) -> Array:
+        """Return the objective's terms at searched values `shape (n, n_parameters)` [SI]: `shape (n, channels of all trials)`."""
+        parts = []
+        for trial, (inside, density) in zip(self.problem.trials, self._measured, strict=True):
+            responses, failed = self.problem.respond(values, trial)
+            responses[failed] = 0.0
+            simulated = record_psd(responses, trial.measurement.dt, axis=1)[1][:, inside, :]
+            parts.append(np.abs(simulated - density).sum(axis=1) / density.sum(axis=0))
+            parts[-1][failed] = np.inf
+        return np.concatenate(parts, axis=1)

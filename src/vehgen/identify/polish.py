@@ -1,0 +1,176 @@
+"""The gradient polish after a search: bounded least squares on the whitened residuals, the noise estimated along the way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.optimize
+from numpy.typing import NDArray
+
+from vehgen.identify.facts import Facts
+from vehgen.identify.misfit import Misfit, Noises, Nuisances
+from vehgen.identify.noise import EVEN, Noise, estimate_noise, transform
+from vehgen.identify.objective import BAND
+from vehgen.identify.problem import Problem
+from vehgen.identify.trial import Trial
+
+Array = NDArray[np.float64]
+AT_BOUND = 1e-3
+"""Nearer than this to 0 or 1 in the unit cube, a parameter counts as on its bound."""
+HOLD = 2.0
+"""Spring that holds parameters to the file's values where no data do: its standard deviation is twice the search range."""
+ROUNDS = 3
+ROUGH, FINE = 1e-4, 1e-8
+"""Relative change of the sum of squares at which a fit ends: before the noise is known, and at the end."""
+FIRST_NOISE = 0.03
+"""White noise assumed before any is estimated, as a share of each channel's RMS."""
+FIRST_LEVEL = 1e-6
+"""Roughness from which the estimate of the road starts [m^3]."""
+LATEST = 1.0
+"""Largest delay of a recording looked for [s]."""
+
+
+@dataclass(frozen=True)
+class Polished:
+    """A fit: `x` the unknowns of `misfit` (parameters in the unit cube, nuisances).
+
+    `chi2` is the mean square of its whitened residuals; `loss` is -2 ln of the likelihood, less a constant, by which fits are compared.
+    """
+
+    misfit: Misfit
+    x: Array
+    chi2: float
+    loss: float
+
+    @property
+    def values(self) -> Array:
+        """The searched parameters [SI], `shape (n_parameters,)`."""
+        return self.misfit.problem.space.values(self.misfit.split(self.x)[0])
+
+    @property
+    def on_bound(self) -> tuple[str, ...]:
+        """The parameters that the bounds hold."""
+        unit = self.misfit.split(self.x)[0]
+        return tuple(name for name, u in zip(self.misfit.problem.space.names, unit, strict=True) if min(u, 1 - u) < AT_BOUND)
+
+
+def polish(
+    problem: Problem,
+    unit: Array,
+    nuisances: Nuisances | None = None,
+    band: tuple[float, float] = BAND,
+    rounds: int = ROUNDS,
+    noises: Noises | None = None,
+    start: Array | None = None,
+    facts: Facts | None = None,
+    max_steps: int = 60,
+) -> Polished:
+    """Fit parameters and nuisances by least squares, from a point of the unit cube.
+
+    Parameters
+    ----------
+    problem
+        Trials and searched parameters.
+    unit
+        Where to begin, `shape (n_parameters,)`.
+    nuisances, band
+        As in :class:`Misfit`.
+    rounds
+        How often the noise is estimated from the residuals and the fit repeated.
+    noises
+        Known noise; it is then not estimated.
+    start
+        Where the nuisances begin, `shape (n_unknowns - n_parameters,)`; by default delays come from cross-correlation.
+    facts
+        What is known from elsewhere.
+    max_steps
+        Evaluations of the residuals in one fit.
+    """
+    known = noises is not None
+    noises = noises or first_noises(problem)
+    values = problem.space.values(unit)
+    misfit = Misfit(problem, noises, values, nuisances, band)
+    x = np.concatenate([np.clip(unit, 0.0, 1.0), first_delays(misfit, unit) if start is None else start])
+    result = _fit(misfit, x, facts, max_steps, FINE if known else ROUGH)
+    for left in reversed(range(0 if known else rounds - 1)):
+        noises = estimate_noises(misfit, result)
+        misfit = Misfit(problem, noises, problem.space.values(misfit.split(result)[0]), nuisances, band)
+        result = _fit(misfit, result, facts, max_steps, ROUGH if left else FINE)
+    residuals = misfit.residuals(result)
+    prior = float((result[misfit.n_parameters :] ** 2).sum())
+    lines = zip(misfit.problem.trials, misfit.lines(result), strict=True)
+    loss = prior + sum(misfit.noises[trial.channels].loss(own, answer) for trial, (own, answer) in lines)
+    if facts is not None:
+        loss += float((facts.residuals(misfit.problem.space.values(misfit.split(result)[0])) ** 2).sum())
+    return Polished(misfit, result, float(np.mean(residuals**2)), loss)
+
+
+def _fit(misfit: Misfit, x: Array, facts: Facts | None, max_steps: int, tolerance: float) -> Array:
+    n, free = misfit.n_parameters, misfit.n_unknowns - misfit.n_parameters
+    low = np.concatenate([np.zeros(n), np.full(free, -np.inf)])
+    high = np.concatenate([np.ones(n), np.full(free, np.inf)])
+    inside = np.clip(x, low + 1e-6, high - 1e-6)
+    space = misfit.problem.space
+    middle = space.unit(space.start)
+    hold = np.hstack([np.eye(n) / HOLD, np.zeros((n, free))])
+
+    def residuals(x: Array) -> Array:
+        own = np.concatenate([misfit.residuals(x), (x[:n] - middle) / HOLD])
+        return own if facts is None else np.concatenate([own, facts.residuals(space.values(x[:n]))])
+
+    def jacobian(x: Array) -> Array:
+        own = np.vstack([misfit.jacobian(x), hold])
+        if facts is None:
+            return own
+        values = space.values(x[:n])
+        return np.vstack([own, np.hstack([facts.jacobian(values) * space.slopes(values), np.zeros((len(facts.facts), free))])])
+
+    found = scipy.optimize.least_squares(
+        residuals, inside, jacobian, (low, high), method="trf", x_scale="jac", xtol=1e-7, ftol=tolerance, gtol=1e-8, max_nfev=max_steps
+    )
+    return np.asarray(found.x)
+
+
+def first_noises(problem: Problem) -> Noises:
+    """Return noise to begin with: white, a share of each channel's RMS."""
+    found: Noises = {}
+    for trial in problem.trials:
+        rms = np.sqrt(np.mean(trial.measurement.values**2, axis=0))
+        found.setdefault(trial.channels, Noise(EVEN, FIRST_NOISE * rms))
+    return found
+
+
+def estimate_noises(misfit: Misfit, x: Array) -> Noises:
+    """Return the noise that the residuals show."""
+    found: Noises = {}
+    lines = misfit.lines(x)
+    for channels, old in misfit.noises.items():
+        group = [item for trial, item in zip(misfit.problem.trials, lines, strict=True) if trial.channels == channels]
+        found[channels] = estimate_noise(group, Noise(np.maximum(old.levels, FIRST_LEVEL), old.sigma / 2))
+    return found
+
+
+def first_delays(misfit: Misfit, unit: Array) -> Array:
+    """Return nuisances whose delays make measured and simulated correlate best: least squares alone may lock onto a wrong cycle."""
+    names = misfit.nuisances.names
+    found = np.zeros((len(misfit.problem.trials), len(names)))
+    if "delay" in names:
+        for t, trial in enumerate(misfit.problem.trials):
+            simulated = misfit.problem.respond(misfit.problem.space.values(unit)[None], trial)[0][0]
+            found[t, names.index("delay")] = _delay(trial, simulated, misfit.band) / misfit.nuisances.delay
+    return found.ravel()
+
+
+def _delay(trial: Trial, simulated: Array, band: tuple[float, float]) -> float:
+    dt, n = trial.measurement.dt, len(simulated)
+    frequency = np.fft.rfftfreq(n, dt)
+    inside = (frequency >= band[0]) & (frequency <= band[1])
+    scale = np.sqrt(np.mean(trial.measurement.values**2, axis=0))
+    measured, model = (transform(item / scale, dt, inside) for item in (trial.measurement.values, simulated))
+    cross = np.zeros(len(frequency), dtype=np.complex128)
+    cross[inside] = (measured * model.conj()).sum(axis=1)
+    lags = np.fft.irfft(cross, n)
+    reach = min(int(LATEST / dt), n // 2 - 1)
+    index = np.arange(-reach, reach + 1)
+    return float(index[np.argmax(lags[index])] * dt)

@@ -1,0 +1,96 @@
+"""The calibration problem: one vehicle's searched parameters against several trials."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.errors import InputError, ModelWarning
+from vehgen.identify.space import SearchSpace, search_space
+from vehgen.identify.trial import Trial
+from vehgen.simulate import Scenario, Simulator
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Trials of one vehicle and the parameters to search; made by :func:`make_problem`."""
+
+    trials: tuple[Trial, ...]
+    space: SearchSpace
+
+    def population(self, values: Array, trial: Trial) -> Array:
+        """Return a trial's population from searched values `shape (n, space.size)` [SI]: `shape (n, n_parameters)`."""
+        names = trial.simulator.model.parameters
+        base = np.array([trial.values[name] for name in names])
+        found = np.repeat(base[None, :], len(values), axis=0)
+        for column, name in enumerate(self.space.names):
+            if name not in trial.fixed:
+                found[:, names.index(name)] = values[:, column]
+        return found
+
+    def respond(self, values: Array, trial: Trial, scenario: Scenario | None = None) -> tuple[Array, NDArray[np.bool_]]:
+        """Simulate searched values over a trial.
+
+        Parameters
+        ----------
+        values
+            `shape (n, space.size)` [SI].
+        trial
+            One of `trials`.
+        scenario
+            In place of the trial's own.
+
+        Returns
+        -------
+        responses `shape (n, n_samples, n_channels)`, and which of them failed `shape (n,)`.
+        """
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ModelWarning)
+            result = trial.simulator.run(self.population(values, trial), scenario or trial.scenario)
+        failed = np.zeros(len(values), dtype=bool)
+        failed[list(result.failures)] = True
+        return result.responses, failed
+
+    def with_trials(self, trials: Sequence[Trial]) -> Problem:
+        """Return the problem over other trials."""
+        return replace(self, trials=tuple(trials))
+
+    def of_sensors(self, sensors: Sequence[str]) -> Problem:
+        """Return the problem with some sensors only."""
+        shared: dict[object, Simulator] = {}
+        return self.with_trials([trial.of_sensors(sensors, shared) for trial in self.trials])
+
+    def searching(self, names: Sequence[str], fixed: dict[str, float]) -> Problem:
+        """Return the problem that searches `names` only, other parameters standing at `fixed` [SI]."""
+        trials = [replace(trial, values=trial.values | {k: v for k, v in fixed.items() if k not in trial.fixed}) for trial in self.trials]
+        return Problem(tuple(trials), self.space.only(names))
+
+    def best_values(self, values: Array) -> dict[str, float]:
+        """Return searched values `shape (space.size,)` by name [SI]."""
+        return {name: float(value) for name, value in zip(self.space.names, values, strict=True)}
+
+
+def make_problem(trials: Sequence[Trial], names: Sequence[str] | None = None) -> Problem:
+    """Return the problem of trials of one vehicle, searching all parameters with a range or `names` of them.
+
+    Raises
+    ------
+    InputError
+        Where the trials are of different vehicles, or the ranges cannot be searched.
+    """
+    first = trials[0].run.vehicle
+    for trial in trials[1:]:
+        if trial.run.vehicle.name != first.name or trial.run.vehicle.parameters != first.parameters:
+            raise InputError(
+                f"{trial.name} is a run of {trial.run.vehicle.name}, {trials[0].name} one of {first.name}: calibrate one vehicle at a time"
+            )
+    values = first.values(trials[0].run.file.set)
+    space = search_space(first, values, names)
+    free = tuple(name for name in space.names if not all(name in trial.fixed for trial in trials))
+    return Problem(tuple(trials), space.only(free))

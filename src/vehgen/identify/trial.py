@@ -1,0 +1,120 @@
+"""A trial: one run, what was measured in it, and the scenario that the model drives through in its place."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.errors import InputError, did_you_mean
+from vehgen.measure import Measurement, read_measurement
+from vehgen.simulate import Run, Scenario, Simulator, load_run, make_scenario
+from vehgen.vehicle import Vehicle
+
+Array = NDArray[np.float64]
+STEP = 1e-3
+"""Longest internal step [s]: through 10 ms steps a stiffness comes out 17 % wrong at 15 Hz (Newmark's period error)."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One run with its measurement, ready to be simulated.
+
+    `values` are the vehicle's free parameters in this run before anything is searched [SI]; `fixed` names those that the run file sets
+    itself, which no search changes.
+    """
+
+    name: str
+    run: Run
+    measurement: Measurement
+    simulator: Simulator
+    scenario: Scenario
+    values: dict[str, float]
+    fixed: tuple[str, ...]
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of the measured channels."""
+        return tuple(channel.name for channel in self.measurement.channels)
+
+    def of_sensors(self, sensors: Sequence[str], simulators: dict[object, Simulator]) -> Trial:
+        """Return the trial with some of its sensors only.
+
+        Raises
+        ------
+        InputError
+            For a sensor that the run does not have.
+        """
+        for sensor in sensors:
+            if sensor not in self.run.file.sensors:
+                raise InputError(f"{self.name} has no sensor {sensor!r}; {did_you_mean(sensor, self.run.file.sensors)}")
+        measurement = self.measurement.of_sensors(tuple(sensors))
+        return replace(self, measurement=measurement, simulator=_simulator(self.run, measurement, simulators))
+
+
+def load_trials(paths: Sequence[str | Path], vehicle: Vehicle | None = None) -> list[Trial]:
+    """Read run files with their recordings; `vehicle` takes the place of the one they name.
+
+    Raises
+    ------
+    InputError
+        For a run that cannot be used, with its place.
+    """
+    simulators: dict[object, Simulator] = {}
+    trials: list[Trial] = []
+    for path in paths:
+        trial = make_trial(load_run(path, vehicle), Path(path).stem, simulators)
+        taken = {item.name for item in trials}
+        trials.append(replace(trial, name=trial.name if trial.name not in taken else str(path)))
+    if not trials:
+        raise InputError("at least one run was expected")
+    return trials
+
+
+def make_trial(run: Run, name: str, simulators: dict[object, Simulator] | None = None) -> Trial:
+    """Read a run's recording and lay out its scenario on the recording's clock.
+
+    Parameters
+    ----------
+    run
+        A run with a recording.
+    name
+        What to call it.
+    simulators
+        Simulators that trials with the same vehicle and channels share; filled as needed.
+    """
+    measurement = read_measurement(run)
+    dt = measurement.dt
+    keep = max(1, round(dt / min(run.file.step, STEP)))
+    step = dt / keep
+    length = float(measurement.time[-1] - measurement.time[0])
+    simulator = _simulator(run, measurement, {} if simulators is None else simulators)
+    values = simulator.model.values(overrides=run.values())
+    timed = replace(run, file=run.file.model_copy(update={"duration": float(measurement.time[-1])}))
+    scenario = replace(make_scenario(timed, simulator.model, values), duration=length, dt=step, keep=keep, start=float(measurement.time[0]))
+    _check_length(run, scenario, simulator, values, name)
+    return Trial(name, run, measurement, simulator, scenario, values, tuple(run.file.parameters))
+
+
+def _simulator(run: Run, measurement: Measurement, simulators: dict[object, Simulator]) -> Simulator:
+    outputs = tuple(channel.output for channel in measurement.channels)
+    key = (run.vehicle.files, run.vehicle.name, repr(outputs), repr(run.forces()))
+    if key not in simulators:
+        simulators[key] = Simulator(run.vehicle, outputs, run.forces())
+    return simulators[key]
+
+
+def _check_length(run: Run, scenario: Scenario, simulator: Simulator, values: dict[str, float], name: str) -> None:
+    """Refuse a recording that ends before the last axle has met the hump."""
+    humps = [entry.hump for entry in run.file.road if entry.hump is not None]
+    offsets = simulator.model.wheel_offsets(values)
+    travelled = float(scenario.speed.distance(np.array([scenario.start + scenario.duration]))[0])
+    if humps and travelled < max(hump.at for hump in humps) + float(offsets.max(initial=0.0)):
+        raise InputError(
+            f"{name}: the recording ends after {travelled:.1f} m, before the last axle ({offsets.max(initial=0.0):.1f} m behind the first) "
+            f"has met the hump at {max(hump.at for hump in humps):.1f} m: record until the vehicle has left it",
+            run.document.find(("recording",)),
+        )

@@ -1,0 +1,140 @@
+"""A run's recording as numbers: the channels of its sensors, in SI units, on an even clock."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.errors import InputError, did_you_mean
+from vehgen.mechanics.outputs import POINT_QUANTITIES, PointOutput
+from vehgen.road import read_columns
+from vehgen.simulate import Run
+from vehgen.simulate.runfile import ChannelEntry, SensorEntry
+from vehgen.vehicle.units import UNITS, read_unit
+
+Array = NDArray[np.float64]
+LOWEST_RATE = 50.0
+"""Below this sampling rate [Hz] a recording cannot show the axles' hop."""
+CLIPPED = 5
+"""So many equal samples in a row at a channel's extreme count as clipping."""
+
+
+@dataclass(frozen=True)
+class MeasuredChannel:
+    """One recorded channel: its column, the sensor it belongs to and what it measures."""
+
+    name: str
+    sensor: str
+    quantity: str
+    output: PointOutput
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """What a run's sensors recorded: `time shape (n_samples,)` [s] from `time[0]` by `dt`, `values shape (n_samples, n_channels)` [SI]."""
+
+    time: Array
+    values: Array
+    channels: tuple[MeasuredChannel, ...]
+
+    @property
+    def dt(self) -> float:
+        """Spacing of the samples [s]."""
+        return float((self.time[-1] - self.time[0]) / (len(self.time) - 1))
+
+    def of_sensors(self, names: tuple[str, ...]) -> Measurement:
+        """Return the channels of some sensors only."""
+        kept = [i for i, channel in enumerate(self.channels) if channel.sensor in names]
+        return replace(self, values=self.values[:, kept], channels=tuple(self.channels[i] for i in kept))
+
+
+def read_measurement(run: Run) -> Measurement:
+    """Read the recording that a run file names.
+
+    Raises
+    ------
+    InputError
+        Without a recording or sensor, for a missing column, samples that are missing, unevenly spaced or too far apart, for clipped
+        acceleration, and for a unit that does not fit the quantity; each says what would be right.
+    """
+    document, file = run.document, run.file
+    if file.recording is None:
+        raise InputError("this run has no `recording`, the CSV file of what its sensors measured", document.position)
+    if not file.sensors:
+        raise InputError("this run has a recording but no `sensors`", document.position)
+    path = run.folder / file.recording
+    place = document.find(("recording",))
+    if not path.is_file():
+        raise InputError(f"no file {path}", place)
+    channels, factors, columns = [], [], []
+    for sensor_name, sensor in file.sensors.items():
+        for quantity, entry in sensor.channels.items():
+            channel = _channel(sensor_name, sensor, quantity, entry)
+            channels.append(channel)
+            columns.append(channel.name)
+            factors.append(_factor(run, sensor_name, quantity, entry))
+    try:
+        time, *recorded = read_columns(path, ("t", *columns))
+    except InputError as error:
+        raise InputError(f"{error.message} ({error.position})" if error.position else error.message, place) from error
+    values = np.column_stack(recorded) * np.array(factors)
+    _check_clock(time, path.name)
+    for i, channel in enumerate(channels):
+        _check_samples(time, values[:, i], channel, path.name)
+    return Measurement(time, values, tuple(channels))
+
+
+def _channel(sensor_name: str, sensor: SensorEntry, quantity: str, entry: str | ChannelEntry) -> MeasuredChannel:
+    column = (entry if isinstance(entry, str) else entry.column) or f"{sensor_name}_{quantity}"
+    return MeasuredChannel(column, sensor_name, quantity, PointOutput(column, sensor.place(sensor_name), quantity))
+
+
+def _factor(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> float:
+    if isinstance(entry, str):
+        return 1.0
+    factor = float(entry.sign)
+    if entry.unit is not None:
+        place = run.document.find(("sensors", sensor, "channels", quantity, "unit"))
+        expected, unit = read_unit(POINT_QUANTITIES[quantity]), read_unit(entry.unit)
+        if unit is None or unit[2] != len(entry.unit):
+            raise InputError(f"{entry.unit!r} is not a unit vehgen knows; {did_you_mean(entry.unit, UNITS)}", place)
+        assert expected is not None
+        if unit[1] != expected[1]:
+            raise InputError(f"{quantity} is measured in {POINT_QUANTITIES[quantity]}, found {entry.unit}, a unit of {unit[1]}", place)
+        factor *= unit[0]
+    return factor
+
+
+def _check_clock(time: Array, name: str) -> None:
+    if len(time) < 16:
+        raise InputError(f"{name} holds {len(time)} samples; a run has hundreds")
+    steps = np.diff(time)
+    if not np.isfinite(time).all() or (steps <= 0).any():
+        row = int(np.flatnonzero(~(steps > 0))[0]) + 2
+        raise InputError(f"{name}: the times must be numbers and ascend; they do not at data row {row}")
+    dt = float(np.median(steps))
+    rate = 1 / dt
+    if rate < LOWEST_RATE * 0.99:
+        raise InputError(f"{name} was logged at {rate:.3g} Hz; at least {LOWEST_RATE:g} Hz is needed (100 Hz is usual): log again, faster")
+    if np.abs(time - time[0] - dt * np.arange(len(time))).max() > 0.25 * dt:
+        raise InputError(
+            f"{name} has an uneven clock (steps of {steps.min():.4g} to {steps.max():.4g} s); `vehgen import` puts it on an even one"
+        )
+
+
+def _check_samples(time: Array, values: Array, channel: MeasuredChannel, name: str) -> None:
+    if np.ptp(values) == 0:
+        raise InputError(f"{name}: {channel.name} is constant; the sensor recorded nothing")
+    for extreme in (values.max(), values.min()):
+        if extreme == 0:
+            continue
+        at = np.flatnonzero(values == extreme)
+        runs = np.split(at, np.flatnonzero(np.diff(at) != 1) + 1)
+        longest = max(runs, key=len)
+        if len(longest) >= CLIPPED:
+            raise InputError(
+                f"{name}: {channel.name} is clipped at {extreme:.4g} from t = {time[longest[0]]:.4g} s: use a sensor with a larger range, "
+                "a lower speed or a lower hump"
+            )

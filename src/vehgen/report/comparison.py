@@ -1,0 +1,112 @@
+"""Measured beside simulated: PSDs and time histories, a panel a channel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from vehgen.report.canvas import INK
+
+Array = NDArray[np.float64]
+MEASURED = "#9aa7b1"
+SIMULATED = "#0b5fa5"
+REFERENCE = "#d55e00"
+UNITS = {
+    "acceleration": "m/s²",
+    "pitch_rate": "rad/s",
+    "velocity": "m/s",
+    "displacement": "m",
+    "pitch": "rad",
+    "pitch_acceleration": "rad/s²",
+}
+DECADES = 5
+"""What lies further below the peak of a PSD is cut off."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """What one panel shows: abscissa `x`, `measured` and `simulated`, all `shape (n,)`, of a run's channel."""
+
+    run: str
+    channel: str
+    quantity: str
+    x: Array
+    measured: Array
+    simulated: Array
+
+
+def plot_psds(curves: Sequence[Curve], band: tuple[float, float], reference: tuple[str, Curve] | None = None) -> Figure:
+    """Plot PSDs on a logarithmic scale, measured broad and grey, simulated thin and blue.
+
+    Parameters
+    ----------
+    curves
+        One a panel; `x` is frequency [Hz].
+    band
+        Frequencies shown [Hz].
+    reference
+        A further PSD for the panels of accelerations, with its name.
+    """
+    figure, panels = _grid(len(curves))
+    for axes, curve in zip(panels, curves, strict=False):
+        inside = (curve.x >= band[0]) & (curve.x <= band[1])
+        axes.semilogy(curve.x[inside], curve.measured[inside], color=MEASURED, lw=2.4, label="measured")
+        axes.semilogy(curve.x[inside], curve.simulated[inside], color=SIMULATED, lw=1.1, label="simulated")
+        top = max(curve.measured[inside].max(), curve.simulated[inside].max())
+        if reference is not None and curve.quantity == "acceleration":
+            axes.semilogy(reference[1].x, reference[1].measured, color=REFERENCE, lw=1.1, ls=(0, (4, 2)), label=reference[0])
+        axes.set_ylim(top * 10.0**-DECADES, 3 * top)
+        axes.set_xlim(*band)
+        unit = UNITS.get(curve.quantity, "")
+        axes.set_ylabel(f"PSD [({unit})²/Hz]", color=INK)
+        axes.set_xlabel("frequency [Hz]", color=INK)
+        _finish(axes, curve)
+    _legend(figure, panels)
+    return figure
+
+
+def plot_histories(curves: Sequence[Curve]) -> Figure:
+    """Plot time histories; `x` is time [s]."""
+    figure, panels = _grid(len(curves))
+    for axes, curve in zip(panels, curves, strict=False):
+        axes.plot(curve.x, curve.measured, color=MEASURED, lw=2.2, label="measured")
+        axes.plot(curve.x, curve.simulated, color=SIMULATED, lw=0.9, label="simulated")
+        axes.set_xlim(*_busy(curve))
+        axes.set_ylabel(f"{curve.quantity.replace('_', ' ')} [{UNITS.get(curve.quantity, '')}]", color=INK)
+        axes.set_xlabel("time [s]", color=INK)
+        _finish(axes, curve)
+    _legend(figure, panels)
+    return figure
+
+
+def _busy(curve: Curve) -> tuple[float, float]:
+    """Return the part of the time in which something happens, a second around it."""
+    loud = np.flatnonzero(np.abs(curve.measured) > 0.02 * np.abs(curve.measured).max())
+    first, last = (loud[0], loud[-1]) if len(loud) else (0, len(curve.x) - 1)
+    return max(float(curve.x[0]), float(curve.x[first]) - 0.5), min(float(curve.x[-1]), float(curve.x[last]) + 0.5)
+
+
+def _grid(count: int) -> tuple[Figure, list[Axes]]:
+    columns = 2 if count > 1 else 1
+    rows = -(-count // columns)
+    figure = Figure(figsize=(5.2 * columns, 0.5 + 2.5 * rows), layout="constrained")
+    panels = list(figure.subplots(rows, columns, squeeze=False).ravel())
+    for axes in panels[count:]:
+        axes.set_visible(False)
+    return figure, panels[:count]
+
+
+def _finish(axes: Axes, curve: Curve) -> None:
+    axes.set_title(f"{curve.run}: {curve.channel}", fontsize=9.5, loc="left", color=INK, parse_math=False)
+    axes.grid(color="#e3e7ea", lw=0.6)
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def _legend(figure: Figure, panels: Sequence[Axes]) -> None:
+    handles, labels = max((axes.get_legend_handles_labels() for axes in panels), key=lambda pair: len(pair[0]))
+    figure.legend(handles, labels, loc="outside upper right", ncols=len(labels), frameon=False, fontsize=9)

@@ -1,0 +1,67 @@
+"""Figures of a validation, as the source paper's Figs. 16 to 18: PSDs and band RMS, measured beside simulated."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from vehgen.identify.validation import Validation
+from vehgen.measure import SPECTRA
+from vehgen.report.canvas import INK
+from vehgen.report.comparison import MEASURED, SIMULATED, UNITS, Curve, plot_histories, plot_psds
+from vehgen.report.files import save_figure
+
+HIGHEST = 25.0
+"""Frequencies shown [Hz]."""
+
+
+def save_validation_figures(validation: Validation, folder: Path, astm: str | None = None) -> list[Path]:
+    """Draw and save PSDs, histories and band RMS; returns their paths."""
+    densities = [
+        Curve(item.run, item.channel, item.quantity, item.frequency, item.measured_psd, item.simulated_psd) for item in validation.channels
+    ]
+    histories = [Curve(item.run, item.channel, item.quantity, item.time, item.measured, item.simulated) for item in validation.channels]
+    reference = None
+    if astm is not None:
+        frequency = np.geomspace(1.0, HIGHEST, 200)
+        spectrum = SPECTRA[astm].at(frequency)
+        reference = (SPECTRA[astm].name, Curve("", astm, "acceleration", frequency, spectrum, spectrum))
+    figures = {
+        "validation_psd.png": plot_psds(densities, (0.3, HIGHEST), reference),
+        "validation_histories.png": plot_histories(histories),
+        "validation_bands.png": plot_band_rms(validation),
+    }
+    paths = []
+    for name, figure in figures.items():
+        paths.append(folder / name)
+        save_figure(figure, paths[-1])
+    return paths
+
+
+def plot_band_rms(validation: Validation) -> Figure:
+    """Plot the band RMS of every channel as pairs of bars, the relative error in percent above each."""
+    count = len(validation.channels)
+    columns = 2 if count > 1 else 1
+    rows = -(-count // columns)
+    figure = Figure(figsize=(5.2 * columns, 0.5 + 2.5 * rows), layout="constrained")
+    panels = list(figure.subplots(rows, columns, squeeze=False).ravel())
+    place = np.arange(len(validation.bands))
+    for axes, item in zip(panels, validation.channels, strict=False):
+        axes.bar(place - 0.2, item.measured_rms, 0.38, color=MEASURED, label="measured")
+        axes.bar(place + 0.2, item.simulated_rms, 0.38, color=SIMULATED, label="simulated")
+        top = max(item.measured_rms.max(), item.simulated_rms.max())
+        for x, (measured, simulated, error) in enumerate(zip(item.measured_rms, item.simulated_rms, item.errors, strict=True)):
+            axes.text(x, max(measured, simulated) + 0.02 * top, f"{100 * error:+.0f} %", ha="center", fontsize=8.5, color=INK)
+        axes.set_ylim(0, 1.15 * top)
+        axes.set_xticks(place, [f"{low:g}-{high:g}" for low, high in validation.bands])
+        axes.set_xlabel("band [Hz]", color=INK)
+        axes.set_ylabel(f"rms [{UNITS.get(item.quantity, '')}]", color=INK)
+        axes.set_title(f"{item.run}: {item.channel}", fontsize=9.5, loc="left", color=INK, parse_math=False)
+        axes.spines[["top", "right"]].set_visible(False)
+    for axes in panels[count:]:
+        axes.set_visible(False)
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper right", ncols=2, frameon=False, fontsize=9)
+    return figure

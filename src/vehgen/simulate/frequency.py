@@ -1,0 +1,84 @@
+"""Frequency responses of linear vehicles: what the channels show per unit of road under each axle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.mechanics.linear_model import LinearModel, NumericModel
+from vehgen.simulate.sensitivity import matrix_derivatives
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+def frequency_response(numeric: NumericModel, frequency: Array) -> tuple[Complex, Complex]:
+    """Return the channels per unit of every displacement input and of every force.
+
+    Force laws are not in it.
+
+    Parameters
+    ----------
+    numeric
+        The model's matrices.
+    frequency
+        `shape (n,)` [Hz].
+
+    Returns
+    -------
+    `shape (n, n_channels, n_inputs)` and `shape (n, n_channels, n_forces)`, complex: amplitude and phase of a channel over the input's.
+    """
+    omega = 2 * np.pi * frequency
+    states = np.linalg.solve(dynamic_stiffness(numeric, omega), np.concatenate(_loads(numeric, omega), axis=2))
+    rows, direct = output_rows(numeric.outputs, omega)
+    found = rows @ states
+    width = direct.shape[2]
+    return found[:, :, :width] + direct, found[:, :, width:]
+
+
+def dynamic_stiffness(numeric: NumericModel, omega: Array) -> Complex:
+    """Return K + i w C - w^2 M at angular frequencies [rad/s], `shape (n, n_dof, n_dof)`."""
+    w = omega[:, None, None]
+    return np.asarray(numeric.K + 1j * w * numeric.C - w * w * numeric.M, dtype=np.complex128)
+
+
+def output_rows(outputs: Mapping[str, Array], omega: Array) -> tuple[Complex, Complex]:
+    """Return the channels per unit of the coordinates and, directly, of the inputs at angular frequencies [rad/s]."""
+    w = omega[:, None, None]
+    rows = -w * w * outputs["acceleration"] + 1j * w * outputs["velocity"] + outputs["displacement"]
+    return np.asarray(rows, dtype=np.complex128), np.asarray(outputs["input"] + 1j * w * outputs["input_rate"], dtype=np.complex128)
+
+
+def _loads(numeric: NumericModel, omega: Array) -> tuple[Complex, Complex]:
+    w = omega[:, None, None]
+    return np.asarray(numeric.P + 1j * w * numeric.Q, dtype=np.complex128), np.repeat(
+        numeric.F[None].astype(np.complex128), len(omega), axis=0
+    )
+
+
+def response_derivatives(model: LinearModel, values: Mapping[str, float], names: tuple[str, ...], frequency: Array) -> Complex:
+    """Return the derivatives of the road part of :func:`frequency_response` by parameters, exact.
+
+    With D X = E and H = R X + W, a parameter moves H by dR X + R D^-1 (dE - dD X) + dW.
+
+    Returns
+    -------
+    `shape (len(names), n, n_channels, n_inputs)` per SI unit of each parameter.
+    """
+    omega = 2 * np.pi * frequency
+    w = omega[:, None, None]
+    numeric = model.numeric(values)
+    stiffness = dynamic_stiffness(numeric, omega)
+    states = np.linalg.solve(stiffness, _loads(numeric, omega)[0])
+    rows, _ = output_rows(numeric.outputs, omega)
+    adjoint = np.linalg.solve(stiffness.transpose(0, 2, 1), rows.transpose(0, 2, 1)).transpose(0, 2, 1)
+    found = np.empty((len(names), len(frequency), rows.shape[1], states.shape[2]), dtype=np.complex128)
+    for i, name in enumerate(names):
+        d = matrix_derivatives(model, name, values)
+        moved_rows, moved_direct = output_rows(d, omega)
+        moved_stiffness = d["K"] + 1j * w * d["C"] - w * w * d["M"]
+        moved_load = d["P"] + 1j * w * d["Q"]
+        found[i] = moved_rows @ states + adjoint @ (moved_load - moved_stiffness @ states) + moved_direct
+    return found

@@ -1,0 +1,65 @@
+"""Vehicle files that extend another: written by programs, read by people."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from vehgen.vehicle.loading import bundled_models
+from vehgen.vehicle.model import Vehicle
+from vehgen.vehicle.units import NONE
+
+
+def quantity(vehicle: Vehicle, name: str, value: float) -> str:
+    """Return a parameter's value with its SI unit, as a vehicle file writes it; the number reads back exactly."""
+    dimension = vehicle.dimensions[name]
+    return f"{float(value)!r}" if dimension == NONE else f"{float(value)!r} {dimension}"
+
+
+def base_reference(vehicle: Vehicle, folder: Path) -> str:
+    """Return what `extends:` must say in a file in `folder`: a bundled model's name, or a path relative to the folder."""
+    if not vehicle.files:
+        return vehicle.name
+    path = vehicle.files[0].resolve()
+    if any(path == model.resolve() for model in bundled_models().values()):
+        return path.name
+    return Path(os.path.relpath(path, folder.resolve())).as_posix()
+
+
+def variant_text(
+    vehicle: Vehicle,
+    folder: Path,
+    name: str,
+    title: str,
+    values: Mapping[str, float],
+    comments: Iterable[str] = (),
+    notes: Mapping[str, str] | None = None,
+) -> str:
+    """Return a vehicle file that extends a vehicle with other parameter values.
+
+    Parameters
+    ----------
+    vehicle
+        The vehicle to extend, read from a file.
+    folder
+        Where the file will stand.
+    name, title
+        Its own.
+    values
+        New values [SI] of free parameters.
+    comments
+        Lines for its head.
+    notes
+        A comment after a parameter's line, by name.
+    """
+    lines = [f"# {' '.join(comment.split())}" for comment in comments]
+    lines += [f"extends: {_quoted(base_reference(vehicle, folder))}", f"name: {name}", f"title: {_quoted(title)}", "parameters:"]
+    for parameter, value in values.items():
+        note = (notes or {}).get(parameter, "")
+        lines.append(f"  {parameter}: {{value: {quantity(vehicle, parameter, value)}}}{f'  # {note}' if note else ''}")
+    return "\n".join(lines) + "\n"
+
+
+def _quoted(text: str) -> str:
+    return "'" + text.replace("'", "''") + "'"

@@ -1,0 +1,73 @@
+import numpy as np
+import pytest
+
+from vehgen.identify.noise import EVEN, KNOTS, Noise, RoadAnswer, estimate_noise, taper, transform
+
+
+def make_answer(random, n=400, channels=4, axles=3):
+    frequency = np.linspace(0.3, 40.0, n)
+    shape = (n, channels, axles)
+    return RoadAnswer(frequency, frequency / 2.0, random.standard_normal(shape) + 1j * random.standard_normal(shape), 0.01)
+
+
+def draw(noise, answer, random):
+    root = np.linalg.cholesky(noise.density(answer))
+    unit = random.standard_normal((*root.shape[:2], 1)) + 1j * random.standard_normal((*root.shape[:2], 1))
+    return (root @ unit / np.sqrt(2))[:, :, 0]
+
+
+def test_the_whitener_makes_the_density_one():
+    random = np.random.default_rng(0)
+    answer = make_answer(random)
+    noise = Noise(10.0 ** random.uniform(-6, -3, len(KNOTS)), np.array([1e-4, 0.1, 1.0, 0.01]))
+    white = noise.whitener(answer)
+    found = white @ noise.density(answer) @ white.conj().transpose(0, 2, 1)
+    assert np.abs(found - np.eye(4)).max() < 1e-6
+
+
+def test_the_loss_is_minus_two_ln_of_the_likelihood_and_its_slopes_are_its_derivatives():
+    random = np.random.default_rng(1)
+    answer = make_answer(random, n=50)
+    noise = Noise(10.0 ** random.uniform(-4, -1, len(KNOTS)), random.uniform(0.5, 2, 4))
+    lines = random.standard_normal((50, 4)) + 1j * random.standard_normal((50, 4))
+    loss, by_level, by_sigma = noise.loss_and_slopes(lines, answer)
+    direct = sum(
+        2 * (np.linalg.slogdet(S)[1] + (line.conj() @ np.linalg.solve(S, line)).real)
+        for S, line in zip(noise.density(answer), lines, strict=True)
+    )
+    assert loss == pytest.approx(direct, rel=1e-12)
+    for array, slopes in ((noise.levels, by_level), (noise.sigma, by_sigma)):
+        for i in range(len(array)):
+            sides = []
+            for step in (1e-5, -1e-5):
+                moved = array.copy()
+                moved[i] *= np.exp(step)
+                sides.append((Noise(moved, noise.sigma) if array is noise.levels else Noise(noise.levels, moved)).loss(lines, answer))
+            assert (sides[0] - sides[1]) / 2e-5 == pytest.approx(slopes[i], rel=1e-4, abs=1e-4)
+
+
+def test_level_and_sigma_come_out_of_noise_that_was_drawn_with_them():
+    random = np.random.default_rng(2)
+    answer = make_answer(random, n=800)
+    truth = Noise(np.full(len(KNOTS), 2e-3), np.array([0.05, 0.2, 0.1, 0.3]))
+    found = estimate_noise([(draw(truth, answer, random), answer) for _ in range(3)], Noise(np.full(len(KNOTS), 1e-5), np.ones(4)))
+    assert found.sigma == pytest.approx(truth.sigma, rel=0.2)
+    inside = (answer.wavenumber > 0.3) & (answer.wavenumber < 15)
+    assert np.median(found.level(answer.wavenumber[inside])) == pytest.approx(2e-3, rel=0.15)
+
+
+def test_histories_drawn_have_the_density_they_should():
+    random = np.random.default_rng(3)
+    n, dt = 1000, 0.01
+    frequency = np.fft.rfftfreq(n, dt)
+    inside = (frequency >= 0.3) & (frequency <= 40)
+    noise = Noise(EVEN, np.array([0.1, 0.4]))
+    answer = RoadAnswer(frequency[inside], frequency[inside], np.zeros((inside.sum(), 2, 1), complex), dt)
+    power = np.mean([np.abs(transform(noise.draw(answer, n, np.flatnonzero(inside), random), dt, inside)) ** 2 for _ in range(200)], axis=0)
+    assert power[10:-10].mean(axis=0) == pytest.approx(2 * dt * noise.sigma**2, rel=0.03)
+
+
+def test_the_taper_leaves_the_middle_alone():
+    window = taper(1000, 0.01)
+    assert window[0] == 0.0
+    assert (window[80:-80] == 1.0).all()

@@ -1,0 +1,53 @@
+import numpy as np
+import pytest
+
+from vehgen.errors import InputError
+from vehgen.measure import read_measurement
+from vehgen.simulate import load_run
+
+RUN = """vehicle: sedan2.yaml
+speed: 2 m/s
+road: [{hump: {shape: half_sine, length: 0.5 m, height: 0.03 m, at: 4 m}}]
+sensors:
+  F: {body: body, channels: {acceleration: az, pitch_rate: {column: q, unit: deg/s, sign: -1}}}
+recording: data.csv
+"""
+
+
+def write(folder, t=None, az=None, q=None, text=RUN):
+    t = np.arange(600) * 0.01 if t is None else t
+    az = np.sin(t) if az is None else az
+    q = np.cos(t) if q is None else q
+    np.savetxt(folder / "data.csv", np.column_stack([t, az, q]), delimiter=",", header="t,az,q", comments="")
+    (folder / "run.yaml").write_text(text, encoding="utf-8")
+    return load_run(folder / "run.yaml")
+
+
+def test_channels_come_in_si_units_with_their_sign(tmp_path):
+    found = read_measurement(write(tmp_path))
+    assert [channel.name for channel in found.channels] == ["az", "q"]
+    assert found.values[:, 1] == pytest.approx(-np.cos(found.time) * np.pi / 180)
+    assert found.dt == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"t": np.arange(600) * 0.4}, "2.5 Hz; at least 50 Hz"),
+        ({"t": np.cumsum(np.random.default_rng(0).uniform(0.005, 0.015, 600))}, "uneven clock"),
+        ({"t": np.r_[np.arange(300), np.arange(300)] * 0.01}, "ascend"),
+        ({"az": np.clip(10 * np.sin(np.arange(600) * 0.3) * np.exp(-((np.arange(600) - 300) ** 2) / 500), -1.5, 1.5)}, "clipped"),
+        ({"az": np.r_[np.nan, np.ones(599)]}, "not a finite number"),
+        ({"az": np.full(600, 9.81)}, "constant"),
+        ({"text": RUN.replace("deg/s", "deg")}, "pitch_rate is measured in rad/s"),
+        ({"text": RUN.replace("deg/s", "dge/s")}, "not a unit"),
+        ({"text": RUN.replace("az,", "ax,")}, "no column 'ax'"),
+        ({"text": RUN.replace("data.csv", "date.csv")}, "no file"),
+        ({"text": RUN.replace("recording: data.csv\n", "")}, "no `recording`"),
+    ],
+)
+def test_a_recording_that_cannot_be_used_says_why(tmp_path, change, said):
+    run = write(tmp_path, **change)
+    with pytest.raises(InputError, match=said) as caught:
+        read_measurement(run)
+    assert "\n" not in str(caught.value)
