@@ -1,0 +1,97 @@
+import json
+
+import pytest
+
+from tests.identify.recordings import sedan_truth, write_run
+from vehgen.commands import main
+
+SMALL = ["--generations", "5", "--size", "20", "--starts", "1"]
+
+
+@pytest.fixture
+def run(tmp_path):
+    return str(write_run(tmp_path, "hump", sedan_truth()))
+
+
+def test_calibrate_writes_vehicle_result_and_figures(run, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert main(["calibrate", "sedan2.yaml", run, "--out", str(out), "--json", *SMALL]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["rank"] == data["searched"] == 10
+    assert data["provenance"]["seed"] == 1
+    assert set(data["provenance"]["inputs"]) == {"hump.yaml", "hump.csv", "sedan2.yaml"}
+    low, high = data["parameters"]["kf"]["interval"]
+    assert low < data["parameters"]["kf"]["value"] < high
+    names = {path.name for path in out.iterdir()}
+    assert {"sedan2_calibrated.yaml", "calibration.json", "search.json", "psd.png", "histories.png", "convergence.png", "intervals.png"} <= names
+    assert json.loads((out / "calibration.json").read_text(encoding="utf-8"))["parameters"] == data["parameters"]
+
+    assert main(["validate", str(out / "sedan2_calibrated.yaml"), run, "--out", str(tmp_path / "val"), "--json", "--astm", "level II"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["worst_acceleration_error"] < 0.05
+    assert len(data["channels"]) == 4
+
+
+def test_calibrate_prints_tables_for_people(run, tmp_path, capsys):
+    assert main(["calibrate", "sedan2.yaml", run, "--method", "shcm", "--sensors", "F", "--out", str(tmp_path / "o"), *SMALL]) == 0
+    printed = capsys.readouterr().out
+    assert "identified" in printed
+    assert "body heave" in printed or "heave" in printed
+
+
+def test_a_search_stopped_by_hand_leaves_its_best_and_goes_on(run, tmp_path, capsys, monkeypatch):
+    from vehgen.identify.genetic import GeneticSearch
+
+    advance, calls = GeneticSearch.advance, []
+
+    def stop(self, state, objective):
+        calls.append(1)
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return advance(self, state, objective)
+
+    out = tmp_path / "out"
+    arguments = ["calibrate", "sedan2.yaml", run, "--out", str(out), "--json", *SMALL]
+    monkeypatch.setattr(GeneticSearch, "advance", stop)
+    assert main(arguments) == 130
+    assert json.loads(capsys.readouterr().out)["stopped"]
+    assert (out / "sedan2_calibrated.yaml").is_file()
+    monkeypatch.undo()
+    assert main([*arguments, "--resume"]) == 0
+    resumed = json.loads(capsys.readouterr().out)
+    assert main([*arguments[:4], str(tmp_path / "whole"), *arguments[5:]]) == 0
+    whole = json.loads(capsys.readouterr().out)
+    assert resumed["parameters"] == whole["parameters"]
+    assert resumed["history"] == whole["history"]
+
+
+def test_sensitivity_and_sensors(run, tmp_path, capsys):
+    assert main(["sensitivity", "sedan2.yaml", run, "--out", str(tmp_path / "s"), "--json", "--parameters", "kf,mr"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert set(data["channels"]["F_az"]) == {"kf", "mr"}
+    assert len(data["channels"]["F_az"]["kf"]["index"]) == len(data["frequency_hz"])
+    assert main(["sensors", "sedan2.yaml", run, "--count", "2", "--json"]) == 0
+    best = json.loads(capsys.readouterr().out)["best"]
+    assert best[1]["mean_error"] < best[0]["mean_error"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--band", "5"], "--band wants two frequencies"),
+        (["--method", "dhmc"], "did you mean 'dhcm'"),
+        (["--size", "7"], "even number"),
+        (["--resume"], "no search to resume"),
+        (["--sensors", "X"], "no run has a sensor 'X'"),
+        (["--facts", "nowhere.yaml"], "nowhere.yaml"),
+        (["--combination", "k9/mf"], "names k9"),
+        (["--scheduler", "tcp://127.0.0.1:1"], "no Dask scheduler answers"),
+    ],
+)
+def test_what_cannot_be_done_is_said_in_one_line(run, tmp_path, capsys, arguments, said):
+    if "--scheduler" in arguments:
+        pytest.importorskip("distributed")
+    assert main(["calibrate", "sedan2.yaml", run, "--out", str(tmp_path / "o"), *SMALL, *arguments]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
