@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Literal
 
 import sympy as sp
 
@@ -32,7 +34,7 @@ class Element:
     """
 
     name: str
-    kind: Kind
+    kind: Kind | Literal["bending"]
     k: sp.Expr
     c: sp.Expr
     row: Row
@@ -59,6 +61,11 @@ def pitch_inertia(body: Body) -> sp.Expr:
     return to_sympy(body.mass) * (to_sympy(body.size.length) ** 2 + to_sympy(body.size.height) ** 2) / 12
 
 
+def bending_mass(body: Body) -> sp.Expr:
+    """Return the modal mass of a body's bending, the integral of its shape squared over a uniform beam: a fifth of its mass [kg]."""
+    return to_sympy(body.mass) / 5
+
+
 def write_energies(vehicle: Vehicle, motion: Kinematics) -> tuple[Energies, tuple[str, ...]]:
     """Write down every energy term; also returns the names of the displacement inputs (`road.AXLE`, `ground.LINK`)."""
     inertias: list[Inertia] = []
@@ -69,6 +76,8 @@ def write_energies(vehicle: Vehicle, motion: Kinematics) -> tuple[Energies, tupl
         inertias.append(Inertia(name, pitch_inertia(body), motion.pitch[name]))
         fore_aft.setdefault(motion.groups[name], []).append(Inertia(name, mass, motion.fore_aft[name]))
     weights = list(inertias[::2])
+    for name, (row, _) in motion.bending.items():
+        inertias.append(Inertia(name, bending_mass(vehicle.bodies[name]), row))
     for name, axle in vehicle.axles.items():
         if axle.mass is not None:
             hop = Inertia(name, to_sympy(axle.mass), motion.hop[name])
@@ -113,4 +122,9 @@ def _elements(vehicle: Vehicle, motion: Kinematics) -> tuple[tuple[Element, ...]
         (first, _), (second, _) = hinge.ends
         row = combine((one, motion.pitch[second]), (down, motion.pitch[first]))
         elements.append(Element(name, "hinge", to_sympy(hinge.k), to_sympy(hinge.c), row, {}, read_laws(vehicle, "hinge", name)))
+    for name, (row, _) in motion.bending.items():
+        bending = vehicle.bodies[name].bending
+        assert bending is not None
+        omega, mass = 2 * sp.Float(math.pi) * to_sympy(bending.frequency), bending_mass(vehicle.bodies[name])
+        elements.append(Element(name, "bending", mass * omega**2, 2 * to_sympy(bending.damping_ratio) * mass * omega, row, {}))
     return tuple(elements), inputs

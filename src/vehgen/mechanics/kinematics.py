@@ -20,9 +20,9 @@ from vehgen.vehicle.model import GROUND, Point, Vehicle
 
 @dataclass(frozen=True)
 class Coordinate:
-    """An independent coordinate: `heave.BODY` [m], `pitch.BODY` [rad] or `hop.AXLE` [m]."""
+    """An independent coordinate: `heave.BODY` [m], `pitch.BODY` [rad], `bending.BODY` [m] or `hop.AXLE` [m]."""
 
-    motion: Literal["heave", "pitch", "hop"]
+    motion: Literal["heave", "pitch", "bending", "hop"]
     owner: str
 
     @property
@@ -33,7 +33,7 @@ class Coordinate:
     @property
     def symbol(self) -> sp.Symbol:
         """Its symbol in equations."""
-        return sp.Symbol(("theta_" if self.motion == "pitch" else "z_") + self.owner, real=True)
+        return sp.Symbol({"pitch": "theta_", "bending": "eta_"}.get(self.motion, "z_") + self.owner, real=True)
 
     @property
     def unit(self) -> str:
@@ -46,14 +46,16 @@ class Coordinate:
         return {
             "heave": f"rise of the COG of {self.owner}",
             "pitch": f"pitch of {self.owner}, nose-down positive",
+            "bending": f"rise of the ends of {self.owner} in its bending mode",
             "hop": f"rise of the unsprung mass of {self.owner}",
         }[self.motion]
 
 
 @dataclass(frozen=True)
 class Kinematics:
-    """Rows of heave and pitch per body, hop per axle, and fore-aft motion per body relative to its group.
+    """Rows of heave, pitch and bending per body, hop per axle, and fore-aft motion per body relative to its group.
 
+    `bending[body]` is its coordinate's row and the length over which it bends.
     `groups[body]` names the body whose fore-aft motion all bodies of its group share; `fore_aft[body]` is what the body moves
     ahead of it.
     """
@@ -64,12 +66,26 @@ class Kinematics:
     hop: dict[str, Row]
     fore_aft: dict[str, Row] = field(default_factory=dict)
     groups: dict[str, str] = field(default_factory=dict)
+    bending: dict[str, tuple[Row, sp.Expr]] = field(default_factory=dict)
 
     def rise(self, body: str, x: sp.Expr) -> Row:
         """Return the vertical motion of the point x ahead of a body's COG; the ground does not move."""
         if body == GROUND:
             return {}
-        return combine((sp.S.One, self.heave[body]), (-x, self.pitch[body]))
+        return combine((sp.S.One, self.heave[body]), (-x, self.pitch[body]), *self._bent(body, (6 * x**2, sp.S.One)))
+
+    def turn(self, body: str, x: sp.Expr) -> Row:
+        """Return the pitch of a body at the point x ahead of its COG, nose-down positive: where it bends, a point may turn more."""
+        if body == GROUND:
+            return {}
+        return combine((sp.S.One, self.pitch[body]), *self._bent(body, (-12 * x, sp.S.Zero)))
+
+    def _bent(self, body: str, shape: tuple[sp.Expr, sp.Expr]) -> list[tuple[sp.Expr, Row]]:
+        """Return what bending adds: with shape (a, b) it is (a/length^2 - b/2) of its coordinate; s = 2 x/length in (3 s^2 - 1)/2."""
+        if body not in self.bending:
+            return []
+        row, length = self.bending[body]
+        return [(shape[0] / length**2 - shape[1] / 2, row)]
 
     def index(self, name: str) -> int:
         """Return the place of a coordinate by name."""
@@ -85,6 +101,8 @@ def derive_kinematics(vehicle: Vehicle) -> Kinematics:
             coordinates.append(Coordinate("heave", name))
         if "pitch" in body.motions:
             coordinates.append(Coordinate("pitch", name))
+        if body.bending is not None:
+            coordinates.append(Coordinate("bending", name))
     coordinates += [Coordinate("hop", name) for name, axle in vehicle.axles.items() if axle.mass is not None]
     index = {coordinate.name: i for i, coordinate in enumerate(coordinates)}
     motion = Kinematics(
@@ -94,6 +112,9 @@ def derive_kinematics(vehicle: Vehicle) -> Kinematics:
         {name: unit(index[f"hop.{name}"]) for name in vehicle.axles if f"hop.{name}" in index},
     )
 
+    for name, body in vehicle.bodies.items():
+        if body.bending is not None:
+            motion.bending[name] = (unit(index[f"bending.{name}"]), to_sympy(body.bending.length))
     for name in _carrier_order(vehicle):
         body = vehicle.bodies[name]
         carrier = body.carried_by
@@ -119,7 +140,9 @@ def derive_kinematics(vehicle: Vehicle) -> Kinematics:
 def _follow(motion: Kinematics, index: dict[str, int], body: str, parent: str, parent_point: Point, point: Point) -> None:
     """Express a hinged body's motion by its parent's: both see the pin move alike."""
     motion.pitch[body] = unit(index[f"pitch.{body}"])
-    motion.heave[body] = combine((sp.S.One, motion.rise(parent, to_sympy(parent_point.x))), (to_sympy(point.x), motion.pitch[body]))
+    motion.heave[body] = {}
+    own = motion.rise(body, to_sympy(point.x))
+    motion.heave[body] = combine((sp.S.One, motion.rise(parent, to_sympy(parent_point.x))), (sp.S.NegativeOne, own))
     motion.fore_aft[body] = combine(
         (sp.S.One, motion.fore_aft[parent]),
         (to_sympy(parent_point.z), motion.pitch[parent]),

@@ -86,7 +86,7 @@ def point_channel(output: PointOutput, vehicle: Vehicle, layout: Layout, motion:
     if quantity not in POINT_QUANTITIES:
         raise InputError(f"{output.name}: unknown quantity {quantity!r} of a sensor; {did_you_mean(quantity, POINT_QUANTITIES)}")
     x = output.place.locate(vehicle, layout)
-    row = motion.pitch[output.place.body] if quantity.startswith("pitch") else motion.rise(output.place.body, x)
+    row = motion.turn(output.place.body, x) if quantity.startswith("pitch") else motion.rise(output.place.body, x)
     part = {"pitch": "displacement", "pitch_rate": "velocity", "pitch_acceleration": "acceleration"}.get(quantity, quantity)
     return Channel(output.name, quantity, POINT_QUANTITIES[quantity], output.place.body, **{part: row})
 

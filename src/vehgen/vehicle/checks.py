@@ -337,6 +337,8 @@ def check_values(vehicle: Vehicle, free: Mapping[str, float], where: str = "") -
             raise _fail(vehicle, f"{'.'.join(path)} is {number:g}{where}, out of any scale (SI units)", *path)
         if path[-1] in ("mass", "pitch_inertia", "k", "c") and number < 0:
             raise _fail(vehicle, f"negative {path[-1]}: {'.'.join(path)} is {number:g}{where}; it must not be below 0", *path)
+        if "bending" in path and path[-1] != "damping_ratio" and number <= 0:
+            raise _fail(vehicle, f"{'.'.join(path)} must be above 0, found {number:g}{where}", *path)
     for name, axle in vehicle.axles.items():
         if axle.mass is not None and numbers["axles", name, "mass"] == 0:
             raise _fail(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import json
+from collections.abc import Iterator, Mapping
 from importlib import resources
 from pathlib import Path
 from typing import Any, TypeVar, get_args
@@ -83,6 +84,26 @@ def parse_vehicle(text: str, name: str = "<text>") -> Vehicle:
     """Read a vehicle from YAML text; as :func:`load_vehicle`. `extends` may name bundled models only."""
     document, files = _extend(read_text(text, name), None, ())
     return _finish(document, files, "vehicle")
+
+
+def extend_vehicle(vehicle: Vehicle, change: Mapping[str, Any], name: str = "<change>") -> Vehicle:
+    """Return a vehicle with a change laid over it, as a file that extends it would say it.
+
+    Parameters
+    ----------
+    vehicle
+        A vehicle read from a file or text.
+    change
+        Plain mappings, lists, texts and numbers in the form of a vehicle file; None removes a key.
+
+    Raises
+    ------
+    InputError
+        For a change that does not fit.
+    """
+    assert vehicle._document is not None
+    merged = merge(vehicle._document, read_text(json.dumps(change), name))
+    return _finish(merged, vehicle.files, vehicle.name)
 
 
 def _finish(document: Located, files: tuple[Path, ...], default_name: str) -> Vehicle:

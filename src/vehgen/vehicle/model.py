@@ -12,7 +12,7 @@ from pydantic_core import PydanticCustomError
 from vehgen.errors import InputError, Position, did_you_mean
 from vehgen.vehicle.document import Located
 from vehgen.vehicle.expressions import Expression, ExpressionError, parse
-from vehgen.vehicle.units import DAMPING, INERTIA, LENGTH, MASS, MOMENT, PITCH_DAMPING, STIFFNESS, Dimension
+from vehgen.vehicle.units import DAMPING, FREQUENCY, INERTIA, LENGTH, MASS, MOMENT, NONE, PITCH_DAMPING, STIFFNESS, Dimension
 
 GROUND = "ground"
 Motion = Literal["heave", "pitch"]
@@ -59,14 +59,26 @@ class Size(Noun):
     height: Expression
 
 
+class Bending(Noun):
+    """The first bending mode of a long body, as of a uniform free beam about its COG.
+
+    Its shape is the parabola (3 s^2 - 1)/2 with s = 1 at both ends: free of heave and pitch, with the modal mass of a fifth of the body's.
+    """
+
+    length: Expression
+    frequency: Expression = Field(description="natural frequency of the free body")
+    damping_ratio: Expression = ZERO
+
+
 class Body(Noun):
-    """A rigid body with the motions it has of its own."""
+    """A rigid body with the motions it has of its own, and its bending where it is long and limber."""
 
     mass: Expression
     pitch_inertia: Expression | None = None
     motions: tuple[Motion, ...] = ("heave", "pitch")
     carried_by: CarriedBy | None = None
     size: Size | None = None
+    bending: Bending | None = None
     at: Expression | None = Field(None, description="COG ahead of the first body's COG, for unconnected bodies")
     title: str = ""
 
@@ -271,6 +283,10 @@ class Vehicle(Noun):
             if body.size is not None:
                 yield (*path, "size", "length"), body.size.length, LENGTH
                 yield (*path, "size", "height"), body.size.height, LENGTH
+            if body.bending is not None:
+                yield (*path, "bending", "length"), body.bending.length, LENGTH
+                yield (*path, "bending", "frequency"), body.bending.frequency, FREQUENCY
+                yield (*path, "bending", "damping_ratio"), body.bending.damping_ratio, NONE
             if body.at is not None:
                 yield (*path, "at"), body.at, LENGTH
         for kind, joints, stiffness, damping in (

@@ -1,0 +1,7 @@
+"""What could be missing? One file an effect."""
+
+from vehgen.effects.base import Change, Effect, EffectParameter
+from vehgen.effects.registry import EFFECTS, library
+from vehgen.effects.site import Site, Surveyor
+
+__all__ = ["EFFECTS", "Change", "Effect", "EffectParameter", "Site", "Surveyor", "library"]

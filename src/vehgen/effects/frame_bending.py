@@ -1,0 +1,36 @@
+"""The first bending mode of a long body."""
+
+from __future__ import annotations
+
+from vehgen.effects.base import Change, Effect, EffectParameter
+from vehgen.effects.law_effect import Given
+from vehgen.effects.places import long_bodies
+from vehgen.effects.site import Site
+
+
+def _edit(site: Site, symbols: Given) -> Change:
+    return {
+        "bodies": {
+            site.place: {
+                "bending": {"length": symbols["length"], "frequency": symbols["frequency"], "damping_ratio": symbols["damping_ratio"]}
+            }
+        }
+    }
+
+
+FRAME_BENDING = Effect(
+    "frame_bending",
+    "Frame bending",
+    "(m/5)*(eta'' + 2 zeta omega eta' + omega^2 eta) = force along (3 s^2 - 1)/2",
+    "a long frame bends between its supports",
+    "a lightly damped resonance between body and hop frequencies; its ends move against its middle",
+    "R. D. Blevins, Formulas for Natural Frequency and Mode Shape, 1979, ISBN 9780442207106",
+    "body",
+    (
+        EffectParameter("frequency", "Hz", "natural frequency of the free body", 3.0, 30.0, (6.0, 9.0, 14.0)),
+        EffectParameter("damping_ratio", "", "damping ratio", 0.003, 0.3, (0.03,)),
+        EffectParameter("length", "m", "length over which it bends", 0.8, 2.5, (1.2,), lambda site: max(site.length, 1.0)),
+    ),
+    long_bodies,
+    _edit,
+)

@@ -1,0 +1,15 @@
+"""Dry friction in a hinge."""
+
+from __future__ import annotations
+
+from vehgen.effects.base import EffectParameter
+from vehgen.effects.law_effect import hinge_law
+
+HINGE_FRICTION = hinge_law(
+    "hinge_friction",
+    "dry_friction",
+    "Hinge friction (Coulomb)",
+    "a greased plate that sticks: both bodies pitch as one until the moment slips",
+    "small pitch motions of the two bodies are locked together, large ones are not",
+    (EffectParameter("force", "N m", "moment at which it slips", 0.002, 0.4, (0.02, 0.1), lambda site: site.load),),
+)

@@ -1,0 +1,68 @@
+"""Effects that are a force law on a suspension, tyre or hinge."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from vehgen.effects.base import Change, Effect, EffectParameter
+from vehgen.effects.places import ALL_TYRES, axles, hinges, suspensions
+from vehgen.effects.site import Site
+from vehgen.mechanics.laws import LAWS
+
+Given = Mapping[str, str]
+
+
+def law_edit(kind: str, law: str, write: Callable[[Site, Given], Change] | None = None) -> Callable[[Site, Given], Change]:
+    """Return the edit that adds a law to a suspension, tyre or hinge.
+
+    Parameters
+    ----------
+    kind
+        `suspension`, `tyre` or `hinge`.
+    law
+        Its name in the library.
+    write
+        Returns the law's entry from the symbols (default: each of its parameters is the symbol of that name).
+    """
+
+    def edit(site: Site, symbols: Given) -> Change:
+        entry = {law: write(site, symbols) if write else dict(symbols)}
+        if kind == "hinge":
+            return {"hinges": {site.place: {"laws": [*site.laws(kind, site.place), entry]}}}
+        names = list(site.vehicle.axles) if site.place == ALL_TYRES else [site.place]
+        return {"axles": {name: {kind: {"laws": [*site.laws(kind, name), entry]}} for name in names}}
+
+    return edit
+
+
+def suspension_law(
+    name: str, law: str, signature: str, parameters: tuple[EffectParameter, ...], write: Callable[[Site, Given], Change] | None = None
+) -> Effect:
+    """Return the effect of a law of the library on a suspension."""
+    known = LAWS[law]
+    return Effect(
+        name,
+        known.title,
+        known.equation,
+        known.meaning,
+        signature,
+        known.source,
+        "suspension",
+        parameters,
+        suspensions,
+        law_edit("suspension", law, write),
+    )
+
+
+def hinge_law(name: str, law: str, title: str, meaning: str, signature: str, parameters: tuple[EffectParameter, ...]) -> Effect:
+    """Return the effect of a law of the library on a hinge."""
+    known = LAWS[law]
+    return Effect(name, title, known.equation, meaning, signature, known.source, "hinge", parameters, hinges, law_edit("hinge", law))
+
+
+def tyre_law(name: str, law: str, signature: str, parameters: tuple[EffectParameter, ...]) -> Effect:
+    """Return the effect of a law of the library on one axle's tyres."""
+    known = LAWS[law]
+    return Effect(
+        name, known.title, known.equation, known.meaning, signature, known.source, "tyre", parameters, axles, law_edit("tyre", law)
+    )

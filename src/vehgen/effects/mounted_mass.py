@@ -1,0 +1,39 @@
+"""A mass on a spring on a body: what cabs, modules and seats have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from vehgen.effects.base import Change, EffectParameter
+from vehgen.effects.law_effect import Given
+from vehgen.effects.site import Site
+
+
+def mass_edit(name: str) -> Callable[[Site, Given], Change]:
+    """Return the edit that cuts a heave-only mass out of a body and mounts it on a link."""
+
+    def edit(site: Site, symbols: Given) -> Change:
+        body, new = site.place, f"{name}_{site.place}"
+        mass, f, zeta, x = (symbols[key] for key in ("mass", "frequency", "damping_ratio", "x"))
+        omega = f"(6.283185307179586*{f})"
+        return {
+            "bodies": {
+                body: {"mass": f"{site.vehicle.bodies[body].mass.text} - {mass}"},
+                new: {"mass": mass, "motions": ["heave"], "carried_by": {"body": body, "x": x}},
+            },
+            "links": {
+                f"{new}_mount": {body: {"x": x}, new: {"x": "0 m"}, "k": f"{mass}*{omega}**2", "c": f"2*{zeta}*{mass}*{omega}"},
+            },
+        }
+
+    return edit
+
+
+def mass_parameters(frequencies: tuple[float, ...], share: tuple[float, ...]) -> tuple[EffectParameter, ...]:
+    """Return mass, natural frequency, damping ratio and place of a mounted mass."""
+    return (
+        EffectParameter("mass", "kg", "mass", 0.01, 0.6, share, lambda site: site.mass),
+        EffectParameter("frequency", "Hz", "natural frequency on its mounts", 0.8, 12.0, frequencies),
+        EffectParameter("damping_ratio", "", "damping ratio", 0.005, 0.7, (0.1,)),
+        EffectParameter("x", "m", "ahead of the COG of the body", -0.7, 0.7, (0.0,), lambda site: max(site.length, 1.0)),
+    )

@@ -1,0 +1,62 @@
+"""Where effects can live: functions that name the places of a vehicle."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+from vehgen.vehicle import Vehicle
+
+ALL_TYRES = "all tyres"
+ALL_RUNS = "all runs"
+
+
+def suspensions(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+    """Return every axle with a suspension."""
+    return tuple(name for name, axle in vehicle.axles.items() if axle.suspension is not None)
+
+
+def axles(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+    """Return every axle."""
+    return tuple(vehicle.axles)
+
+
+def all_tyres(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+    """Return all tyres as one place."""
+    return (ALL_TYRES,) if vehicle.axles else ()
+
+
+def hinges(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+    """Return every hinge."""
+    return tuple(vehicle.hinges)
+
+
+def pitching_bodies(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+    """Return every body that heaves and pitches and rides on axles or hinges."""
+    carried = {axle.body for axle in vehicle.axles.values()} | {name for hinge in vehicle.hinges.values() for name in hinge.points}
+    return tuple(name for name in vehicle.bodies if name in carried)
+
+
+def front_body(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the body of the first axle: the one that may carry a cab."""
+    return tuple(dict.fromkeys(axle.body for axle in list(vehicle.axles.values())[:1]))
+
+
+def long_bodies(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+    """Return bodies that pitch and do not bend yet."""
+    return tuple(name for name in pitching_bodies(vehicle, sensors) if vehicle.bodies[name].bending is None)
+
+
+def tandems(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+    """Return pairs of neighbouring suspended axles of one body behind the first axle, as `first+second`."""
+    names = [name for name, axle in vehicle.axles.items() if axle.suspension is not None][1:]
+    return tuple(f"{one}+{two}" for one, two in pairwise(names) if vehicle.axles[one].body == vehicle.axles[two].body)
+
+
+def sensors_(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+    """Return every sensor of the runs."""
+    return sensors
+
+
+def runs(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+    """Return all runs as one place."""
+    return (ALL_RUNS,)

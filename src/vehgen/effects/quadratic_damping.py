@@ -1,0 +1,13 @@
+"""A damper whose force grows with the square of its rate."""
+
+from __future__ import annotations
+
+from vehgen.effects.base import EffectParameter
+from vehgen.effects.law_effect import suspension_law
+
+QUADRATIC_DAMPING = suspension_law(
+    "quadratic_damping",
+    "quadratic_damping",
+    "damping grows with amplitude and speed; odd harmonics",
+    (EffectParameter("c2", "N s^2/m^2", "quadratic damping", 0.02, 30.0, (0.5, 4.0), lambda site: site.c / 0.2),),
+)

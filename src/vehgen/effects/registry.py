@@ -1,0 +1,83 @@
+"""The library of effects: those of vehgen, and those that other packages or files add."""
+
+from __future__ import annotations
+
+from importlib.metadata import entry_points
+
+from vehgen.effects.asymmetric_damping import ASYMMETRIC_DAMPING
+from vehgen.effects.base import Effect
+from vehgen.effects.bump_stop import BUMP_STOP
+from vehgen.effects.cargo_module import CARGO_MODULE
+from vehgen.effects.cubic_stiffness import CUBIC_STIFFNESS
+from vehgen.effects.dry_friction import DRY_FRICTION
+from vehgen.effects.engine_harmonic import ENGINE_HARMONIC
+from vehgen.effects.frame_bending import FRAME_BENDING
+from vehgen.effects.hinge_friction import HINGE_FRICTION
+from vehgen.effects.hinge_stiffness import HINGE_STIFFNESS
+from vehgen.effects.hysteresis import HYSTERESIS
+from vehgen.effects.progressive_stiffness import PROGRESSIVE_STIFFNESS
+from vehgen.effects.quadratic_damping import QUADRATIC_DAMPING
+from vehgen.effects.relaxation import RELAXATION
+from vehgen.effects.sensor_delay import SENSOR_DELAY
+from vehgen.effects.sensor_gain import SENSOR_GAIN
+from vehgen.effects.sensor_position import SENSOR_POSITION
+from vehgen.effects.sensor_tilt import SENSOR_TILT
+from vehgen.effects.speed_error import SPEED_ERROR
+from vehgen.effects.suspended_cab import SUSPENDED_CAB
+from vehgen.effects.tyre_damping import TYRE_DAMPING
+from vehgen.effects.tyre_footprint import TYRE_FOOTPRINT
+from vehgen.effects.tyre_liftoff import TYRE_LIFTOFF
+from vehgen.effects.walking_beam import WALKING_BEAM
+from vehgen.errors import InputError
+
+GROUP = "vehgen.effects"
+"""Entry points of this group name Effect objects of other packages."""
+
+EFFECTS: dict[str, Effect] = {
+    effect.name: effect
+    for effect in (
+        DRY_FRICTION,
+        CUBIC_STIFFNESS,
+        PROGRESSIVE_STIFFNESS,
+        BUMP_STOP,
+        ASYMMETRIC_DAMPING,
+        QUADRATIC_DAMPING,
+        HYSTERESIS,
+        RELAXATION,
+        TYRE_LIFTOFF,
+        TYRE_DAMPING,
+        TYRE_FOOTPRINT,
+        HINGE_FRICTION,
+        HINGE_STIFFNESS,
+        SUSPENDED_CAB,
+        FRAME_BENDING,
+        WALKING_BEAM,
+        CARGO_MODULE,
+        ENGINE_HARMONIC,
+        SENSOR_GAIN,
+        SENSOR_POSITION,
+        SENSOR_TILT,
+        SENSOR_DELAY,
+        SPEED_ERROR,
+    )
+}
+"""The effects of vehgen, by name."""
+
+
+def library() -> dict[str, Effect]:
+    """Return all effects: those of vehgen, then those that installed packages add.
+
+    Raises
+    ------
+    InputError
+        For an entry point that is no effect, or takes the name of another.
+    """
+    found = dict(EFFECTS)
+    for point in entry_points(group=GROUP):
+        effect = point.load()
+        if not isinstance(effect, Effect):
+            raise InputError(f"the entry point {point.name!r} of {GROUP} is not an Effect")
+        if effect.name in found:
+            raise InputError(f"two effects are named {effect.name!r}; the entry point {point.name!r} must choose another name")
+        found[effect.name] = effect
+    return found

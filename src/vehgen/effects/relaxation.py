@@ -1,0 +1,16 @@
+"""A spring in series with a dashpot (Maxwell branch)."""
+
+from __future__ import annotations
+
+from vehgen.effects.base import EffectParameter
+from vehgen.effects.law_effect import suspension_law
+
+RELAXATION = suspension_law(
+    "relaxation",
+    "relaxation",
+    "stiffness and damping change with frequency, not with amplitude: low and high frequencies want different k and c",
+    (
+        EffectParameter("k", "N/m", "stiffness of the series spring", 0.05, 10.0, (0.5, 2.0), lambda site: site.k),
+        EffectParameter("time", "s", "relaxation time, dashpot over spring", 0.002, 1.0, (0.02, 0.1)),
+    ),
+)

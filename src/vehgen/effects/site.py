@@ -1,0 +1,101 @@
+"""What is known about a place at which an effect may live: loads and stiffnesses that set the scale of its parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from vehgen.mechanics import LinearModel, derive, static_loads
+from vehgen.vehicle import Vehicle
+from vehgen.vehicle.expressions import Expression
+
+
+@dataclass(frozen=True)
+class Site:
+    """A place of a vehicle with its sizes.
+
+    `load` [N] is the static load of the axle (of the hinge, the body's weight); `k` [N/m], `c` [N s/m] its suspension's; `kt` [N/m] its
+    tyre's; `mass` [kg] and `inertia` [kg m^2] its body's; `length` [m] the distance between the body's outermost supports.
+    """
+
+    vehicle: Vehicle
+    place: str
+    load: float
+    k: float
+    c: float
+    kt: float
+    mass: float
+    inertia: float
+    length: float
+    middle: float
+
+    @property
+    def travel(self) -> float:
+        """A typical dynamic travel: a tenth of what the static load compresses the spring by, between 2 and 20 mm [m]."""
+        return min(max(0.1 * self.load / self.k, 0.002), 0.02) if self.k > 0 else 0.005
+
+    def laws(self, kind: str, name: str) -> list[object]:
+        """Return the force laws that a suspension, tyre or hinge carries already, in the form of a vehicle file."""
+        spring = self.vehicle.hinges[name] if kind == "hinge" else getattr(self.vehicle.axles[name], kind)
+        return [_plain(entry) for entry in spring.laws]
+
+
+def _plain(item: object) -> object:
+    if isinstance(item, Mapping):
+        return {key: _plain(value) for key, value in item.items()}
+    return item.text if isinstance(item, Expression) else item
+
+
+class Surveyor:
+    """Looks up sites of one vehicle.
+
+    Parameters
+    ----------
+    vehicle
+        The vehicle.
+    values
+        Its free parameters [SI].
+    """
+
+    def __init__(self, vehicle: Vehicle, values: Mapping[str, float]) -> None:
+        self.vehicle = vehicle
+        self._model: LinearModel = derive(vehicle)
+        known = {name: values.get(name, 0.0) for name in self._model.parameters}
+        self._known = vehicle.all_values({name: known[name] for name in vehicle.free_parameters})
+        self._loads = static_loads(self._model, known)
+        entries = {(0, i): x for i, x in enumerate(self._model.layout.axles.values())}
+        self._axles = dict(zip(vehicle.axles, (self._model.evaluate(entries, known)[0, i] for i in range(len(entries))), strict=True))
+        entries = {(0, i): x for i, (x, _) in enumerate(self._model.layout.bodies.values())}
+        self._bodies = dict(
+            zip(self._model.layout.bodies, (self._model.evaluate(entries, known)[0, i] for i in range(len(entries))), strict=True)
+        )
+
+    def site(self, place: str) -> Site:
+        """Return the site of an axle, hinge, body or group of axles joined by `+`."""
+        vehicle, known = self.vehicle, self._known
+        names = place.split("+")
+        load = k = c = kt = 0.0
+        body = names[0]
+        for name in names:
+            if name in vehicle.axles:
+                axle = vehicle.axles[name]
+                body = axle.body
+                load += self._loads.axles[name]
+                kt += axle.tyre.k.evaluate(known)
+                if axle.suspension is not None:
+                    k += axle.suspension.k.evaluate(known)
+                    c += axle.suspension.c.evaluate(known)
+            elif name in vehicle.hinges:
+                load += abs(self._loads.hinges[name])
+                body = vehicle.hinges[name].ends[1][0]
+        if body not in vehicle.bodies:
+            body = next(iter(vehicle.bodies))
+        mass = vehicle.bodies[body].mass.evaluate(known)
+        given = vehicle.bodies[body].pitch_inertia
+        inertia = given.evaluate(known) if given is not None else mass
+        marks = [self._axles[name] - self._bodies[body] for name, axle in vehicle.axles.items() if axle.body == body]
+        marks += [joint.points[body].x.evaluate(known) for joint in vehicle.hinges.values() if body in joint.points]
+        length = max(marks) - min(marks) if len(marks) > 1 else 1.0
+        if names[0] in vehicle.bodies:
+            load = mass * 9.81
+        return Site(vehicle, place, load, k, c, kt, mass, inertia, length, (max(marks) + min(marks)) / 2 if marks else 0.0)
