@@ -23,7 +23,15 @@ def test_calibrate_writes_vehicle_result_and_figures(run, tmp_path, capsys):
     low, high = data["parameters"]["kf"]["interval"]
     assert low < data["parameters"]["kf"]["value"] < high
     names = {path.name for path in out.iterdir()}
-    assert {"sedan2_calibrated.yaml", "calibration.json", "search.json", "psd.png", "histories.png", "convergence.png", "intervals.png"} <= names
+    assert {
+        "sedan2_calibrated.yaml",
+        "calibration.json",
+        "search.json",
+        "psd.png",
+        "histories.png",
+        "convergence.png",
+        "intervals.png",
+    } <= names
     assert json.loads((out / "calibration.json").read_text(encoding="utf-8"))["parameters"] == data["parameters"]
 
     assert main(["validate", str(out / "sedan2_calibrated.yaml"), run, "--out", str(tmp_path / "val"), "--json", "--astm", "level II"]) == 0

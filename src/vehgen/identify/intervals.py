@@ -226,7 +226,9 @@ def refit(fit: Polished, seed: int, facts: Facts | None = None) -> Array:
         misfit.nuisances,
         misfit.band,
         noises=misfit.noises,
-        start=fit.x[misfit.n_parameters :],
+        start=misfit.split(fit.x)[1].ravel(),
+        shared=misfit.shared,
+        numbers=tuple(misfit.adjusted(fit.x)),
         facts=facts,
     )
     return again.values

@@ -7,12 +7,13 @@ is fitted along with the parameters: its delay, the scales of its speed and of i
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.identify.adjustments import Adjustment
 from vehgen.identify.noise import Noise, RoadAnswer, road_answer, transform
 from vehgen.identify.objective import BAND
 from vehgen.identify.problem import Problem
@@ -60,8 +61,8 @@ class _Weight:
 class Misfit:
     """Whitened residuals and their derivatives.
 
-    The unknowns x are the searched parameters in the unit cube, then each trial's nuisances in units of their standard deviations (which
-    also enter as residuals, their prior).
+    The unknowns x are the searched parameters in the unit cube, then the shared adjustments in units of their scales, then each trial's
+    nuisances in units of their standard deviations (which also enter as residuals, their prior).
 
     Parameters
     ----------
@@ -75,15 +76,24 @@ class Misfit:
         What is fitted along.
     band
         Frequencies compared [Hz].
+    shared
+        What may be wrong with runs or sensors, fitted along.
     """
 
     def __init__(
-        self, problem: Problem, noises: Noises, reference: Array, nuisances: Nuisances | None = None, band: tuple[float, float] = BAND
+        self,
+        problem: Problem,
+        noises: Noises,
+        reference: Array,
+        nuisances: Nuisances | None = None,
+        band: tuple[float, float] = BAND,
+        shared: Sequence[Adjustment] = (),
     ) -> None:
         self.problem = problem
         self.noises = noises
         self.nuisances = nuisances or Nuisances()
         self.band = band
+        self.shared = tuple(shared)
         self._weights = [self._weight(trial, problem.best_values(reference)) for trial in problem.trials]
 
     def _weight(self, trial: Trial, reference: Mapping[str, float]) -> _Weight:
@@ -101,21 +111,34 @@ class Misfit:
 
     @property
     def n_unknowns(self) -> int:
-        """Number of unknowns, nuisances included."""
-        return self.n_parameters + len(self.problem.trials) * len(self.nuisances.names)
+        """Number of unknowns: parameters, shared adjustments, nuisances."""
+        return self.n_parameters + len(self.shared) + len(self.problem.trials) * len(self.nuisances.names)
 
     def split(self, x: Array) -> tuple[Array, Array]:
         """Return the parameters `shape (n_parameters,)` in the unit cube and the nuisances `shape (n_trials, len(names))`."""
-        return x[: self.n_parameters], x[self.n_parameters :].reshape(len(self.problem.trials), len(self.nuisances.names))
+        start = self.n_parameters + len(self.shared)
+        return x[: self.n_parameters], x[start:].reshape(len(self.problem.trials), len(self.nuisances.names))
+
+    def adjusted(self, x: Array) -> Array:
+        """Return the numbers of the shared adjustments, `shape (len(shared),)`."""
+        own = x[self.n_parameters : self.n_parameters + len(self.shared)]
+        return np.array([item.neutral + item.scale * value for item, value in zip(self.shared, own, strict=True)])
+
+    def respond(self, trial: Trial, values: Array, numbers: Array, error: Array) -> Array:
+        """Return what a trial's sensors read at searched values `shape (n, n_parameters)` [SI], adjustments and nuisances."""
+        scenario = self.nuisances.adjust(trial.scenario, error)
+        for item, value in zip(self.shared, numbers, strict=True):
+            scenario = item.scenario(scenario, float(value))
+        response = self.problem.respond(values, trial, scenario)[0]
+        for item, value in zip(self.shared, numbers, strict=True):
+            response = item.response(trial, response, float(value))
+        return response
 
     def simulate(self, x: Array) -> list[Array]:
         """Return each trial's response, `shape (n_samples, n_channels)`."""
         unit, errors = self.split(x)
-        values = self.problem.space.values(unit)[None]
-        return [
-            self.problem.respond(values, trial, self.nuisances.adjust(trial.scenario, error))[0][0]
-            for trial, error in zip(self.problem.trials, errors, strict=True)
-        ]
+        values, numbers = self.problem.space.values(unit)[None], self.adjusted(x)
+        return [self.respond(trial, values, numbers, error)[0] for trial, error in zip(self.problem.trials, errors, strict=True)]
 
     def lines(self, x: Array) -> list[tuple[Complex, RoadAnswer]]:
         """Return each trial's residual, measured minus simulated, as spectral lines, with the road's way into them."""
@@ -124,41 +147,59 @@ class Misfit:
             found.append((transform(trial.measurement.values - simulated, trial.measurement.dt, weight.inside), weight.answer))
         return found
 
+    def white_lines(self, x: Array) -> list[Complex]:
+        """Return each trial's whitened residual lines, `shape (n_lines, n_channels)`, E|line|^2 = 1 where model and noise are right."""
+        return [_apply(weight.whitener, lines) for weight, (lines, _) in zip(self._weights, self.lines(x), strict=True)]
+
+    def whiten(self, number: int, lines: Complex) -> Complex:
+        """Return lines `shape (..., n_lines, n_channels)` of trial `number` whitened."""
+        return _apply(self._weights[number].whitener, lines)
+
+    def frequency(self, number: int) -> Array:
+        """Return the frequencies of trial `number`'s lines [Hz]."""
+        return self._weights[number].answer.frequency
+
     def residuals(self, x: Array) -> Array:
         """Return the whitened residuals, the nuisances' priors last: each of unit variance where model and noise are right."""
-        white = [_flatten(_apply(weight.whitener, lines)) for weight, (lines, _) in zip(self._weights, self.lines(x), strict=True)]
-        return np.concatenate([*white, x[self.n_parameters :]])
+        return np.concatenate([*(flatten(lines) for lines in self.white_lines(x)), x[self.n_parameters + len(self.shared) :]])
 
-    def jacobian(self, x: Array) -> Array:
-        """Return the derivatives of :meth:`residuals`, `shape (n_residuals, n_unknowns)`, by central differences in one population."""
+    def white_derivatives(self, x: Array) -> list[Complex]:
+        """Return the derivatives of :meth:`white_lines` by central differences, each `shape (n_unknowns, n_lines, n_channels)`."""
         unit, errors = self.split(x)
-        n, k = self.n_parameters, len(self.nuisances.names)
+        numbers = self.adjusted(x)
+        n, s, k = self.n_parameters, len(self.shared), len(self.nuisances.names)
         values = self.problem.space.values(unit + np.vstack([np.eye(n), -np.eye(n)]) * STEP)
         middle = self.problem.space.values(unit)[None]
-        rows = []
+        found = []
         for t, (trial, weight, error) in enumerate(zip(self.problem.trials, self._weights, errors, strict=True)):
-            responses = self.problem.respond(values, trial, self.nuisances.adjust(trial.scenario, error))[0]
-            derived = np.zeros((self.n_unknowns, *responses.shape[1:]))
-            derived[:n] = (responses[:n] - responses[n:]) / (2 * STEP)
+            derived = np.zeros((self.n_unknowns, len(trial.measurement.time), len(trial.channels)))
+            if n:
+                responses = self.respond(trial, values, numbers, error)
+                derived[:n] = (responses[:n] - responses[n:]) / (2 * STEP)
+            for j, item in enumerate(self.shared):
+                step = STEP * item.scale * np.eye(s)[j]
+                ahead, behind = (self.respond(trial, middle, numbers + side, error)[0] for side in (step, -step))
+                derived[n + j] = (ahead - behind) / (2 * STEP)
             for j in range(k):
                 step = STEP * np.eye(k)[j]
-                ahead, behind = (
-                    self.problem.respond(middle, trial, self.nuisances.adjust(trial.scenario, error + side))[0][0] for side in (step, -step)
-                )
-                derived[n + t * k + j] = (ahead - behind) / (2 * STEP)
-            lines = transform(derived, trial.measurement.dt, weight.inside)
-            rows.append(-_flatten(_apply(weight.whitener, lines), first=1).T)
-        prior = np.zeros((self.n_unknowns - n, self.n_unknowns))
-        prior[:, n:] = np.eye(self.n_unknowns - n)
-        return np.vstack([*rows, prior])
+                ahead, behind = (self.respond(trial, middle, numbers, error + side)[0] for side in (step, -step))
+                derived[n + s + t * k + j] = (ahead - behind) / (2 * STEP)
+            found.append(-_apply(weight.whitener, transform(derived, trial.measurement.dt, weight.inside)))
+        return found
+
+    def jacobian(self, x: Array) -> Array:
+        """Return the derivatives of :meth:`residuals`, `shape (n_residuals, n_unknowns)`."""
+        start = self.n_parameters + len(self.shared)
+        prior = np.zeros((self.n_unknowns - start, self.n_unknowns))
+        prior[:, start:] = np.eye(self.n_unknowns - start)
+        return np.vstack([*(flatten(lines, first=1).T for lines in self.white_derivatives(x)), prior])
 
     def draw(self, x: Array, random: np.random.Generator) -> list[Array]:
         """Return measurements as they might have come out: the response plus noise, one array a trial (for a bootstrap)."""
         found = []
         for trial, weight, simulated in zip(self.problem.trials, self._weights, self.simulate(x), strict=True):
             noise = self.noises[trial.channels]
-            lines = np.flatnonzero(weight.inside)
-            found.append(simulated + noise.draw(weight.answer, len(simulated), lines, random))
+            found.append(simulated + noise.draw(weight.answer, len(simulated), np.flatnonzero(weight.inside), random))
         return found
 
 
@@ -166,7 +207,7 @@ def _apply(whitener: Complex, lines: Complex) -> Complex:
     return np.asarray((whitener @ lines[..., None])[..., 0])
 
 
-def _flatten(white: Complex, first: int = 0) -> Array:
+def flatten(white: Complex, first: int = 0) -> Array:
     """Return real and imaginary parts as residuals of unit variance; the axes before `first` are kept."""
     flat = white.reshape(*white.shape[:first], -1) * np.sqrt(2)
     return np.concatenate([flat.real, flat.imag], axis=-1)

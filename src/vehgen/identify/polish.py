@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
 
+from vehgen.identify.adjustments import Adjustment
 from vehgen.identify.facts import Facts
 from vehgen.identify.misfit import Misfit, Noises, Nuisances
 from vehgen.identify.noise import EVEN, Noise, estimate_noise, transform
@@ -65,6 +67,11 @@ def polish(
     start: Array | None = None,
     facts: Facts | None = None,
     max_steps: int = 60,
+    shared: Sequence[Adjustment] = (),
+    numbers: Sequence[float] = (),
+    tolerance: float = FINE,
+    hold: float = HOLD,
+    free: int = 0,
 ) -> Polished:
     """Fit parameters and nuisances by least squares, from a point of the unit cube.
 
@@ -86,19 +93,28 @@ def polish(
         What is known from elsewhere.
     max_steps
         Evaluations of the residuals in one fit.
+    shared, numbers
+        Adjustments fitted along, and the numbers at which they begin (default: neutral).
+    hold, free
+        Standard deviation of the spring that holds parameters to the space's start, in the unit cube; the last `free` of them are held
+        by HOLD only.
+    tolerance
+        Relative change of the sum of squares at which the last fit ends.
     """
     known = noises is not None
+    springs = np.concatenate([np.full(problem.space.size - free, hold), np.full(free, HOLD)])
     noises = noises or first_noises(problem)
     values = problem.space.values(unit)
-    misfit = Misfit(problem, noises, values, nuisances, band)
-    x = np.concatenate([np.clip(unit, 0.0, 1.0), first_delays(misfit, unit) if start is None else start])
-    result = _fit(misfit, x, facts, max_steps, FINE if known else ROUGH)
+    misfit = Misfit(problem, noises, values, nuisances, band, shared)
+    begun = [(value - item.neutral) / item.scale for item, value in zip(shared, numbers, strict=True)] if numbers else [0.0] * len(shared)
+    x = np.concatenate([np.clip(unit, 0.0, 1.0), begun, first_delays(misfit, unit) if start is None else start])
+    result = _fit(misfit, x, facts, max_steps, tolerance if known else ROUGH, springs)
     for left in reversed(range(0 if known else rounds - 1)):
         noises = estimate_noises(misfit, result)
-        misfit = Misfit(problem, noises, problem.space.values(misfit.split(result)[0]), nuisances, band)
-        result = _fit(misfit, result, facts, max_steps, ROUGH if left else FINE)
+        misfit = Misfit(problem, noises, problem.space.values(misfit.split(result)[0]), nuisances, band, shared)
+        result = _fit(misfit, result, facts, max_steps, ROUGH if left else tolerance, springs)
     residuals = misfit.residuals(result)
-    prior = float((result[misfit.n_parameters :] ** 2).sum())
+    prior = float((misfit.split(result)[1] ** 2).sum())
     lines = zip(misfit.problem.trials, misfit.lines(result), strict=True)
     loss = prior + sum(misfit.noises[trial.channels].loss(own, answer) for trial, (own, answer) in lines)
     if facts is not None:
@@ -106,17 +122,17 @@ def polish(
     return Polished(misfit, result, float(np.mean(residuals**2)), loss)
 
 
-def _fit(misfit: Misfit, x: Array, facts: Facts | None, max_steps: int, tolerance: float) -> Array:
-    n, free = misfit.n_parameters, misfit.n_unknowns - misfit.n_parameters
-    low = np.concatenate([np.zeros(n), np.full(free, -np.inf)])
-    high = np.concatenate([np.ones(n), np.full(free, np.inf)])
+def _fit(misfit: Misfit, x: Array, facts: Facts | None, max_steps: int, tolerance: float, springs: Array) -> Array:
+    n, rest = misfit.n_parameters, misfit.n_unknowns - misfit.n_parameters
+    low = np.concatenate([np.zeros(n), np.full(rest, -np.inf)])
+    high = np.concatenate([np.ones(n), np.full(rest, np.inf)])
     inside = np.clip(x, low + 1e-6, high - 1e-6)
     space = misfit.problem.space
     middle = space.unit(space.start)
-    hold = np.hstack([np.eye(n) / HOLD, np.zeros((n, free))])
+    hold = np.hstack([np.diag(1 / springs), np.zeros((n, rest))])
 
     def residuals(x: Array) -> Array:
-        own = np.concatenate([misfit.residuals(x), (x[:n] - middle) / HOLD])
+        own = np.concatenate([misfit.residuals(x), (x[:n] - middle) / springs])
         return own if facts is None else np.concatenate([own, facts.residuals(space.values(x[:n]))])
 
     def jacobian(x: Array) -> Array:
@@ -124,7 +140,7 @@ def _fit(misfit: Misfit, x: Array, facts: Facts | None, max_steps: int, toleranc
         if facts is None:
             return own
         values = space.values(x[:n])
-        return np.vstack([own, np.hstack([facts.jacobian(values) * space.slopes(values), np.zeros((len(facts.facts), free))])])
+        return np.vstack([own, np.hstack([facts.jacobian(values) * space.slopes(values), np.zeros((len(facts.facts), rest))])])
 
     found = scipy.optimize.least_squares(
         residuals, inside, jacobian, (low, high), method="trf", x_scale="jac", xtol=1e-7, ftol=tolerance, gtol=1e-8, max_nfev=max_steps

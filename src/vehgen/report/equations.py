@@ -98,6 +98,7 @@ def law_rows(model: LinearModel) -> list[tuple[str, sp.Expr, list[tuple[str, str
         where = f"{element.kind} of {element.name}" if element.kind in ("suspension", "tyre") else f"{element.kind} {element.name}"
         laws = []
         for term in element.laws:
+            assert element.kind != "bending"
             units = {parameter.name: str(parameter.dimension(element.kind)) for parameter in term.law.parameters}
             parameters = [(key, tidy(value), units[key]) for key, value in term.parameters.items()]
             laws.append((term.law.title, _law_equation(element, term), parameters))

@@ -1,0 +1,133 @@
+"""A candidate: one effect at one place, as something that can be fitted together with the base parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.effects import Effect, Surveyor
+from vehgen.identify.adjustments import Adjustment, Footprint, Gain, HeightScale, SensorDelay, SpeedScale, Tilt
+from vehgen.identify.problem import Problem
+from vehgen.identify.space import SearchSpace
+from vehgen.identify.trial import Trial
+from vehgen.simulate import Simulator
+from vehgen.vehicle import Vehicle
+from vehgen.vehicle.loading import extend_vehicle
+
+Array = NDArray[np.float64]
+MOST_STARTS = 6
+KINDS: dict[str, tuple[type[Adjustment], float, float]] = {
+    "speed": (SpeedScale, 0.01, 1.0),
+    "footprint": (Footprint, 0.05, 0.0),
+    "height": (HeightScale, 0.02, 1.0),
+    "gain": (Gain, 0.05, 1.0),
+    "sensor_delay": (SensorDelay, 0.01, 0.0),
+    "tilt": (Tilt, 0.1, 0.0),
+}
+"""Adjustments by what effects call them: class, scale, neutral number."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect at a place.
+
+    `parameters` are the names its parameters take in the search space; `shared` the adjustment of an effect of runs or sensors.
+    """
+
+    effect: Effect
+    place: str
+    parameters: tuple[str, ...]
+    shared: tuple[Adjustment, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """Its name in words."""
+        return f"{self.effect.name} at {self.place}"
+
+
+def list_candidates(vehicle: Vehicle, trials: Sequence[Trial], effects: Sequence[Effect]) -> list[Candidate]:
+    """Return every effect at every place at which it can live."""
+    sensors = tuple(dict.fromkeys(channel.sensor for trial in trials for channel in trial.measurement.channels))
+    channels = tuple(dict.fromkeys(name for trial in trials for name in trial.channels))
+    found = []
+    for effect in effects:
+        for place in effect.places(vehicle, channels if effect.adjusts == "gain" else sensors):
+            shared: tuple[Adjustment, ...] = ()
+            names: tuple[str, ...] = ()
+            if effect.edit is not None:
+                names = tuple(effect.symbols(place).values())
+            elif effect.adjusts == "position":
+                names = tuple(f"{channel.output.place.name}.shift" for channel in _of_sensor(trials, place)[:1])
+            elif effect.adjusts in KINDS:
+                kind, scale, neutral = KINDS[effect.adjusts]
+                shared = (kind(place, scale, neutral),)
+            else:
+                continue
+            found.append(Candidate(effect, place, names, shared))
+    return found
+
+
+def _of_sensor(trials: Sequence[Trial], sensor: str):  # type: ignore[no-untyped-def]
+    return [channel for trial in trials for channel in trial.measurement.channels if channel.sensor == sensor]
+
+
+def pose(candidate: Candidate, base: Problem, surveyor: Surveyor, simulators: dict[object, Simulator]) -> Problem:
+    """Return the base problem with the candidate's effect added to the vehicle and its parameters to the search.
+
+    Parameters
+    ----------
+    candidate
+        What to add.
+    base
+        The base problem; its space's `start` is where the base parameters begin.
+    surveyor
+        Knows the sizes of places.
+    simulators
+        Compiled simulators to share; filled as needed.
+    """
+    effect = candidate.effect
+    if effect.edit is not None:
+        site = surveyor.site(candidate.place)
+        vehicle = extend_vehicle(base.trials[0].run.vehicle, effect.change(site), candidate.label)
+        trials = [retarget(trial, vehicle, simulators) for trial in base.trials]
+        bounds = [parameter.bounds(site) for parameter in effect.parameters]
+        first = [parameter.first(site)[0] for parameter in effect.parameters]
+    else:
+        trials = list(base.trials)
+        bounds = [(parameter.low, parameter.high) for parameter in effect.parameters][: len(candidate.parameters)]
+        first = [0.0] * len(candidate.parameters)
+    space = SearchSpace(
+        (*base.space.names, *candidate.parameters),
+        np.concatenate([base.space.lower, [low for low, _ in bounds]]),
+        np.concatenate([base.space.upper, [high for _, high in bounds]]),
+        np.concatenate([base.space.start, first]),
+    )
+    return Problem(tuple(trials), space)
+
+
+def starts(candidate: Candidate, surveyor: Surveyor) -> Iterator[tuple[float, ...]]:
+    """Yield where the effect's own parameters begin, at most MOST_STARTS combinations."""
+    if candidate.effect.edit is None:
+        options = [parameter.starts for parameter in candidate.effect.parameters]
+    else:
+        site = surveyor.site(candidate.place)
+        options = [parameter.first(site) for parameter in candidate.effect.parameters]
+    combinations = list(product(*options))
+    stride = -(-len(combinations) // MOST_STARTS)
+    yield from combinations[::stride]
+
+
+def retarget(trial: Trial, vehicle: Vehicle, simulators: dict[object, Simulator]) -> Trial:
+    """Return a trial with another vehicle that has at least its parameters."""
+    run = replace(trial.run, vehicle=vehicle)
+    outputs = tuple(channel.output for channel in trial.measurement.channels)
+    key = (id(vehicle), repr(outputs), repr(run.forces()))
+    if key not in simulators:
+        simulators[key] = Simulator(vehicle, outputs, run.forces())
+    simulator = simulators[key]
+    values = simulator.model.values(overrides=run.values())
+    return replace(trial, run=run, simulator=simulator, values=values)

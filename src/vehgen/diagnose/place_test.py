@@ -1,0 +1,207 @@
+"""The place test: where does the model err, before any law is guessed?
+
+Hypothesis P says that an unknown force history acts at P (or that a channel cannot be used). At every spectral line the columns H_P(f),
+what the sensors show per unit of that force, are projected out of the whitened residual, and the base parameters are refitted to what
+remains (Gauss-Newton, with a prior). Where P is true, noise remains: chi is 1. Needs no law, and leaves base parameters that the effect
+has not biased.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from vehgen.identify.misfit import Misfit, flatten
+from vehgen.mechanics.linear_model import LinearModel
+from vehgen.mechanics.rows import Row
+from vehgen.simulate.frequency import dynamic_stiffness, output_rows
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+ROUNDS = 4
+PRIOR = 0.1
+"""Standard deviation of ln(parameter) about the vehicle file's values."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A hypothesis: unknown forces at `rows` of the coordinates, or `channels` that cannot be used.
+
+    `kind` is suspension, tyre, link, hinge, body or channel; `name` what it is called there.
+    """
+
+    kind: str
+    name: str
+    rows: tuple[Row, ...] = ()
+    channels: tuple[str, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """Its name in words."""
+        return f"{self.kind} {self.name}" if self.kind != "none" else "nowhere"
+
+
+@dataclass(frozen=True)
+class PlaceResult:
+    """How well a hypothesis does: `chi` of what it leaves, `unknowns` a spectral line, and the base fit `x` it leaves."""
+
+    place: Place
+    chi: float
+    unknowns: int
+    x: Array
+
+
+def list_places(misfit: Misfit) -> list[Place]:
+    """Return every place of the vehicle at which an unknown force may act, every unusable channel and sensor, and none at all."""
+    model = misfit.problem.trials[0].simulator.model
+    places = [Place("none", "")]
+    places += [Place(element.kind, element.name, (element.row,)) for element in model.elements]
+    for body in model.vehicle.bodies:
+        heave, pitch = model.motion.heave.get(body, {}), model.motion.pitch.get(body, {})
+        if heave:
+            places.append(Place("body", f"{body} (force at its COG)", (heave,)))
+        if pitch:
+            places.append(Place("body", f"{body} (pitch moment)", (pitch,)))
+        if heave and pitch:
+            places.append(Place("body", body, (heave, pitch)))
+    names = list(dict.fromkeys(name for trial in misfit.problem.trials for name in trial.channels))
+    places += [Place("channel", name, (), (name,)) for name in names]
+    sensors: dict[str, list[str]] = {}
+    for trial in misfit.problem.trials:
+        for channel in trial.measurement.channels:
+            if channel.name not in sensors.setdefault(channel.sensor, []):
+                sensors[channel.sensor].append(channel.name)
+    places += [Place("sensor", name, (), tuple(members)) for name, members in sensors.items() if len(members) > 1]
+    return places
+
+
+def test_places(misfit: Misfit, x: Array, places: Sequence[Place]) -> list[PlaceResult]:
+    """Return each hypothesis with the chi it leaves.
+
+    Parameters
+    ----------
+    misfit
+        The base model's misfit, with the noise floor as its noise.
+    x
+        The base fit.
+    places
+        Hypotheses of :func:`list_places`.
+    """
+    found = []
+    lines, derivatives = misfit.white_lines(x), misfit.white_derivatives(x)
+    for place in places:
+        result = _test(misfit, x, place, lines, derivatives)
+        if result is not None:
+            found.append(result)
+    return found
+
+
+def _test(misfit: Misfit, x: Array, place: Place, lines: list[Complex], derivatives: list[Complex]) -> PlaceResult | None:
+    best, best_chi = x, np.inf
+    unknowns = 0
+    for turn in range(ROUNDS):
+        if turn:
+            lines, derivatives = misfit.white_lines(x), misfit.white_derivatives(x)
+        parts, slopes, count = [], [], 0
+        for t in range(len(misfit.problem.trials)):
+            basis = _basis(misfit, x, place, t)
+            if basis is not None and basis.shape[2] >= lines[t].shape[1]:
+                return None
+            unknowns = max(unknowns, 0 if basis is None else basis.shape[2])
+            parts.append(flatten(_project(lines[t], basis)))
+            slopes.append(flatten(_project(derivatives[t], basis), first=1).T)
+            count += 2 * lines[t].shape[0] * (lines[t].shape[1] - (0 if basis is None else basis.shape[2]))
+        residual, jacobian = np.concatenate(parts), np.vstack(slopes)
+        rows, offset = _prior(misfit, x)
+        effective = min(misfit.n_unknowns, count - 1)
+        chi = float(np.sqrt((residual @ residual) / (count - effective)))
+        if chi < best_chi:
+            best, best_chi = x, chi
+        step = np.linalg.lstsq(np.vstack([jacobian, rows]), -np.concatenate([residual, offset]), rcond=None)[0]
+        new = x + step
+        new[: misfit.n_parameters] = np.clip(new[: misfit.n_parameters], 0.0, 1.0)
+        if np.abs(new - x).max() < 1e-4:
+            break
+        x = new
+    return PlaceResult(place, best_chi, unknowns, best)
+
+
+def _prior(misfit: Misfit, x: Array) -> tuple[Array, Array]:
+    """Return the prior's rows and residuals: parameters about the file's values, nuisances about nothing."""
+    n, total = misfit.n_parameters, misfit.n_unknowns
+    space = misfit.problem.space
+    rows, offset = np.eye(total), x.copy()
+    weight = np.abs(space.slopes(space.start)) / (PRIOR * np.maximum(np.abs(space.start), 1e-9))
+    rows[:n] *= weight[:, None]
+    offset[:n] = weight * (x[:n] - space.unit(space.start))
+    return rows, offset
+
+
+def _basis(misfit: Misfit, x: Array, place: Place, t: int) -> Complex | None:
+    """Return an orthonormal basis of what the hypothesis may explain in trial t's whitened lines, `shape (n, n_channels, n_unknowns)`."""
+    trial = misfit.problem.trials[t]
+    frequency = misfit.frequency(t)
+    if place.channels:
+        columns = [trial.channels.index(name) for name in place.channels if name in trial.channels]
+        if not columns:
+            return None
+        raw = np.zeros((len(frequency), len(trial.channels), len(columns)), dtype=np.complex128)
+        for j, column in enumerate(columns):
+            raw[:, column, j] = 1.0
+    elif place.rows:
+        known = misfit.problem.best_values(misfit.problem.space.values(misfit.split(x)[0]))
+        raw = force_response(trial.simulator.model, trial.values | known, place.rows, frequency)
+    else:
+        return None
+    white = np.stack([misfit.whiten(t, raw[:, :, j]) for j in range(raw.shape[2])], axis=2)
+    return np.asarray(np.linalg.qr(white)[0])
+
+
+def _project(lines: Complex, basis: Complex | None) -> Complex:
+    """Return lines `shape (..., n, n_channels)` without their part in the basis."""
+    if basis is None:
+        return lines
+    inside = np.einsum("nck,...nc->...nk", basis.conj(), lines)
+    return np.asarray(lines - np.einsum("nck,...nk->...nc", basis, inside))
+
+
+def force_response(model: LinearModel, values: dict[str, float], rows: Sequence[Row], frequency: Array) -> Complex:
+    """Return the channels per unit of generalised forces along rows of the coordinates, `shape (n, n_channels, len(rows))`."""
+    omega = 2 * np.pi * frequency
+    numeric = model.numeric(values)
+    entries = {(i, j): value for j, row in enumerate(rows) for i, value in row.items()}
+    loads = np.zeros((model.n_dof, len(rows)))
+    for place, value in model.evaluate(entries, values).items():
+        loads[place] = value
+    states = np.linalg.solve(dynamic_stiffness(numeric, omega), np.repeat(loads[None].astype(np.complex128), len(omega), axis=0))
+    return np.asarray(output_rows(numeric.outputs, omega)[0] @ states)
+
+
+def recover_force(misfit: Misfit, result: PlaceResult, t: int) -> tuple[Array, Array]:
+    """Return the force history that a hypothesis with one force wants in trial t, and its standard deviation [N or N m].
+
+    Least squares line by line: F = (H* H)^-1 H* r with whitened H; lines that see nothing of it are left at zero.
+    """
+    trial = misfit.problem.trials[t]
+    frequency = misfit.frequency(t)
+    known = misfit.problem.best_values(misfit.problem.space.values(misfit.split(result.x)[0]))
+    raw = force_response(trial.simulator.model, trial.values | known, result.place.rows[:1], frequency)
+    white = misfit.whiten(t, raw[:, :, 0])
+    power = (np.abs(white) ** 2).sum(axis=1)
+    lines = (white.conj() * misfit.white_lines(result.x)[t]).sum(axis=1) / power
+    usable = power > 1e-3 * np.median(power)
+    n, dt = len(trial.measurement.time), trial.measurement.dt
+    spectrum = np.zeros(n // 2 + 1, dtype=np.complex128)
+    places = np.flatnonzero((np.fft.rfftfreq(n, dt) >= misfit.band[0]) & (np.fft.rfftfreq(n, dt) <= misfit.band[1]))
+    spectrum[places[usable]] = lines[usable] * np.sqrt(n / (2 * dt))
+    variance = (1 / power[usable]).sum() / (n * dt)
+    return np.asarray(np.fft.irfft(spectrum, n)), np.full(n, float(np.sqrt(variance)))
+
+
+def equivalent(results: Sequence[PlaceResult], best: PlaceResult, slack: float) -> list[PlaceResult]:
+    """Return the hypotheses whose chi is within `slack` of the best and that spend as many unknowns or fewer."""
+    return [item for item in results if item.unknowns <= best.unknowns and item.chi <= best.chi + slack]
