@@ -29,7 +29,22 @@ rate, and forces are moments.
 A parameter of a law may be an expression of the vehicle's parameters, so that calibration can search it;
 its strength at zero gives the linear vehicle.
 
-Your own law is an expression of d, v and its parameters:
+## Where travel counts from
+
+A bump stop, a cubic, quadratic or progressive spring and an own law may say `from: unloaded`: d then counts from the position in which the
+spring carries nothing, as a maker's drawing has it, instead of from static equilibrium (`from: static`, the default).
+
+```yaml
+suspension: {k: k1, c: c1, laws: [{bump_stop: {k: 2 MN/m, clearance: 90 mm, from: unloaded}}]}
+```
+
+Such laws share in carrying the weight. Before a run their equilibrium K q + J^T f(J q) = W is solved for every individual; the kernel then
+applies f(d_static + d) - f(d_static), static loads follow the same solution, and a tyre leaves the road at the load that the laws leave
+it. An individual without a stable equilibrium fails with that reason. Modes and matrices stay those of the linear k and c.
+
+## Your own law
+
+It is an expression of d, v and its parameters:
 
 ```yaml
 suspension: {k: k1, c: c1, laws: [{law: {force: k3*d**3, parameters: {k3: 5e7 N/m^3}}}]}

@@ -18,12 +18,12 @@ from dataclasses import dataclass
 import sympy as sp
 
 from vehgen.codegen.factorisation import Factor, Matrix, factorise
-from vehgen.codegen.program import SAMPLE, STEP, Node, Program
+from vehgen.codegen.program import SAMPLE, SETUP, STEP, Node, Program
 from vehgen.mechanics.energies import Element
-from vehgen.mechanics.laws import LawStep, Motion
+from vehgen.mechanics.law_terms import RATE, REST, STATIC, TRAVEL
+from vehgen.mechanics.law_terms import STEP as TIME_STEP
+from vehgen.mechanics.laws import LawStep
 from vehgen.mechanics.linear_model import LinearModel
-
-_D, _V, _H, _STATIC = (sp.Symbol(name, real=True) for name in ("_d", "_v", "_h", "_static"))
 
 
 @dataclass
@@ -36,6 +36,7 @@ class _Joint:
     input_row: dict[int, Node]
     steps: list[LawStep]
     static: Node | None
+    rest: Node | None
     states: dict[sp.Symbol, str]
     smooth: bool
     bounded: bool
@@ -81,10 +82,11 @@ class Condensation:
         self.half_h = program.multiply(program.number(0.5), h)
         self.factor = factor
         self.joints: list[_Joint] = []
-        static = self._static_displacement(stiffness)
-        for element in model.elements:
+        self.rests: dict[int, Node] = {}
+        static = None if model.is_preloaded else self._static_displacement(stiffness)
+        for place, element in enumerate(model.elements):
             if element.laws:
-                self.joints.append(self._joint(len(self.joints), element, static))
+                self.joints.append(self._joint(len(self.joints), place, element, static))
         columns = [self._column(joint) for joint in self.joints]
         self.reach = [
             [program.label(node, f"W{i}_{joint.number}") for i, node in enumerate(column)]
@@ -97,7 +99,7 @@ class Condensation:
         self.inverse = [program.divide(program.number(1.0), self.compliance[i][i]) for i in range(len(self.joints))]
         self.normalised = [[program.multiply(self.inverse[i], item) for item in row] for i, row in enumerate(self.compliance)]
 
-    def _joint(self, number: int, element: Element, static: list[Node] | None) -> _Joint:
+    def _joint(self, number: int, index: int, element: Element, static: list[Node] | None) -> _Joint:
         program = self.program
         row = {i: program.convert(value, self.symbols, self.memo) for i, value in element.row.items()}
         input_row = {i: program.convert(value, self.symbols, self.memo) for i, value in element.input_row.items()}
@@ -106,10 +108,13 @@ class Condensation:
         for place, term in enumerate(element.laws):
             own = {name: sp.Symbol(f"_{name}{number}_{place}", real=True) for name in term.law.states}
             states |= {symbol: f"s{number}_{place}_{name}" for name, symbol in own.items()}
-            motion = Motion(_D, _V, _H, element.k, element.c, _STATIC, own)
-            steps.append(term.law.write(motion, term.parameters))
-        force = None
-        if static is not None:
+            steps.append(term.step(element.k, element.c, own))
+        force = rest = None
+        if self.model.is_preloaded and any(term.origin == "unloaded" or term.asks_static for term in element.laws):
+            self.rests[index] = rest = program.leaf(f"rest{number}", SETUP)
+            carried = element.k * REST + sp.Add(*(term.preload() for term in element.laws))
+            force = program.label(program.convert(carried, {**self.symbols, REST: rest}), f"static{number}")
+        elif static is not None:
             force = program.label(
                 program.multiply(program.convert(element.k, self.symbols, self.memo), self._times(row, static)), f"static{number}"
             )
@@ -120,6 +125,7 @@ class Condensation:
             input_row,
             steps,
             force,
+            rest,
             states,
             smooth=any(step.force != 0 for step in steps),
             bounded=all(step.slope is not None for step in steps),
@@ -128,15 +134,7 @@ class Condensation:
 
     def _static_displacement(self, stiffness: Matrix) -> list[Node] | None:
         """Solve K q = weight where a law asks for its element's static force."""
-        asked = [
-            _STATIC
-            in term.law.write(
-                Motion(_D, _V, _H, element.k, element.c, _STATIC, dict.fromkeys(term.law.states, _D)), term.parameters
-            ).force.free_symbols
-            for element in self.model.elements
-            for term in element.laws
-        ]
-        if not any(asked):
+        if not any(term.asks_static for element in self.model.elements for term in element.laws):
             return None
         program = self.program
         factor = factorise(program, self.model.n_dof, stiffness, "K_")
@@ -153,9 +151,11 @@ class Condensation:
     def _read(self, joint: _Joint, expression: sp.Expr, d: Node, v: Node, phase: int) -> Node:
         """Convert an expression of a law at a travel and rate."""
         program = self.program
-        symbols = {**self.symbols, _D: d, _V: v, _H: self.h}
+        symbols = {**self.symbols, TRAVEL: d, RATE: v, TIME_STEP: self.h}
         if joint.static is not None:
-            symbols[_STATIC] = joint.static
+            symbols[STATIC] = joint.static
+        if joint.rest is not None:
+            symbols[REST] = joint.rest
         symbols |= {symbol: program.leaf(name, phase) for symbol, name in joint.states.items()}
         return program.convert(expression, symbols)
 
@@ -227,7 +227,7 @@ class Condensation:
         if joint.bounded:
             slope = sp.Add(*(step.slope for step in joint.steps if step.slope is not None)) / 2
         else:
-            slope = sp.diff(smooth, _D) * _H / 2 + sp.diff(smooth, _V)
+            slope = sp.diff(smooth, TRAVEL) * TIME_STEP / 2 + sp.diff(smooth, RATE)
         return self._read(joint, smooth, d, moved, STEP), self._read(joint, slope, d, moved, STEP)
 
     def _relaxation(self, joint: _Joint, slope: Node) -> Node:

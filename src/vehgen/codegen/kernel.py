@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from vehgen.codegen.cache import import_kernel, kernel_name
 from vehgen.codegen.kernel_source import KernelSource, write_kernel
 from vehgen.errors import InputError
+from vehgen.mechanics.equilibrium import equilibria
 from vehgen.mechanics.linear_model import GRAVITY, LinearModel
 
 Array = NDArray[np.float64]
@@ -166,9 +167,16 @@ class Kernel:
         Returns
         -------
         The responses, and which individuals failed and why; a failed individual leaves the others as they are.
+
+        Where laws count their travel from the unloaded position, static equilibrium is solved first, and an individual that has none
+        fails.
         """
         parameters = np.ascontiguousarray(np.atleast_2d(parameters), dtype=np.float64)
         self._check(parameters, drive, keep)
+        columns, unheld = parameters, {}
+        if self.source.rests:
+            rest = equilibria(self.model, parameters)
+            columns, unheld = np.hstack([parameters, rest.travels[:, self.source.rests]]), rest.failures
         n_individuals, lanes = parameters.shape[0], self.source.lanes
         n_samples, n_channels = drive.n_steps // keep + 1, len(self.model.channels)
         responses = np.empty((n_individuals, n_samples, n_channels))
@@ -181,7 +189,7 @@ class Kernel:
             last = min(first + lanes, n_individuals)
             rows = np.minimum(np.arange(first, first + lanes), last - 1)
             work = aligned(module.WORK)
-            work[: parameters.shape[1] * lanes] = np.ascontiguousarray(parameters[rows].T).ravel()
+            work[: columns.shape[1] * lanes] = np.ascontiguousarray(columns[rows].T).ravel()
             state = work[module.STATE : module.KEPT]
             if initial is not None:
                 state[: 2 * n_dof * lanes] = np.ascontiguousarray(initial[rows].T).ravel()
@@ -201,7 +209,7 @@ class Kernel:
         else:
             for first in starts:
                 block(first)
-        return KernelResult(responses, self._failures(parameters, responses, residuals), residuals)
+        return KernelResult(responses, {**self._failures(parameters, responses, residuals), **unheld}, residuals)
 
     def _failures(self, parameters: Array, responses: Array, residuals: Array) -> dict[int, str]:
         failures = find_failures(self.model.parameters, parameters, responses)

@@ -19,7 +19,10 @@ NONLINEAR_LANES = 16
 
 @dataclass(frozen=True)
 class KernelSource:
-    """A kernel's text with what it costs: operations in setup, per step and per sample."""
+    """A kernel's text with what it costs: operations in setup, per step and per sample.
+
+    `rests` are the elements whose travel from the unloaded position to static equilibrium [m] follows the parameters as further columns.
+    """
 
     text: str
     lanes: int
@@ -27,6 +30,7 @@ class KernelSource:
     n_constants: int
     n_states: int
     nonlinear: bool
+    rests: tuple[int, ...] = ()
 
 
 def write_kernel(model: LinearModel, lanes: int | None = None) -> KernelSource:
@@ -38,7 +42,7 @@ def write_kernel(model: LinearModel, lanes: int | None = None) -> KernelSource:
     printer = Printer(step.program, {STEP: [node for _, node in step.states], SAMPLE: step.channels}, step.time_step)
     lines = [_header(model, printer), *_function(model, step, printer, state, lanes)]
     text = _fold("\n".join(lines) + "\n")
-    return KernelSource(text, lanes, printer.operation_counts, len(printer.constants), len(state), nonlinear)
+    return KernelSource(text, lanes, printer.operation_counts, len(printer.constants), len(state), nonlinear, tuple(step.rests))
 
 
 def _header(model: LinearModel, printer: Printer) -> str:
@@ -67,7 +71,7 @@ from vehgen.codegen.selects import lower, sign, step, upper'''
 
 def _function(model: LinearModel, step: StepProgram, printer: Printer, state: list[Node], lanes: int) -> list[str]:
     program = step.program
-    parameter_place = {node: i for i, node in enumerate(step.parameters.values())}
+    parameter_place = {node: i for i, node in enumerate([*step.parameters.values(), *step.rests.values()])}
     state_place = {program.labels[node]: i for i, node in enumerate(state)}
     n_channels = len(step.channels)
 

@@ -24,11 +24,13 @@ from vehgen.mechanics.rows import Entries, Row
 class StepProgram:
     """The program of a step: where its leaves are read from, the states (leaf, value after the step), the channels at a sample.
 
-    The first 2 n_dof states are the displacements and velocities; those of force laws follow.
+    The first 2 n_dof states are the displacements and velocities; those of force laws follow. `rests` are leaves by the number of an
+    element: its travel from the unloaded position to static equilibrium.
     """
 
     program: Program
     parameters: dict[str, Node]
+    rests: dict[int, Node]
     time_step: Node
     drives: list[Node]
     sample_drives: list[Node]
@@ -101,7 +103,7 @@ def write_step(model: LinearModel) -> StepProgram:
     sample_drives = [program.leaf(name, SAMPLE) for name in names]
     channels = _channels(model, program, symbols, memo, (M, C, K, loads), (su, sv, sample_drives), laws)
     states = [*zip(u, next_u, strict=True), *zip(v, next_v, strict=True), *further]
-    return StepProgram(program, parameters, h, drives, sample_drives, states, channels)
+    return StepProgram(program, parameters, laws.rests if laws else {}, h, drives, sample_drives, states, channels)
 
 
 def identifier(name: str) -> str:

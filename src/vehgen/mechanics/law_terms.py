@@ -3,24 +3,61 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
 
 import sympy as sp
 
 from vehgen.errors import InputError, did_you_mean
-from vehgen.mechanics.laws import LAWS, Kind, Law, custom_law
+from vehgen.mechanics.laws import LAWS, Kind, Law, LawStep, Motion, custom_law
 from vehgen.mechanics.symbols import number, to_sympy
 from vehgen.vehicle.expressions import Expression, ExpressionError
 from vehgen.vehicle.model import LawEntry, Spring, Vehicle
 from vehgen.vehicle.units import FORCE, LENGTH, MOMENT, NONE, TIME, Dimension
 
+Origin = Literal["static", "unloaded"]
+"""Where a law's travel counts from: static equilibrium, or the position in which the spring carries nothing."""
+TRAVEL, RATE, STEP, STATIC, REST = (sp.Symbol(name, real=True) for name in ("_d", "_v", "_h", "_static", "_rest"))
+"""Travel from equilibrium and its rate, the time step, the element's static force, its travel from unloaded to static equilibrium."""
+
 
 @dataclass(frozen=True)
 class LawTerm:
-    """A force law with its parameters as expressions of the vehicle's symbols [SI]."""
+    """A force law with its parameters as expressions of the vehicle's symbols [SI], and where its travel counts from."""
 
     law: Law
     parameters: Mapping[str, sp.Expr]
+    origin: Origin = "static"
+
+    def step(self, k: sp.Expr = sp.S.Zero, c: sp.Expr = sp.S.Zero, states: Mapping[str, sp.Symbol] | None = None) -> LawStep:
+        """Return the law over a step as expressions of TRAVEL, RATE, STEP, STATIC, REST and its states.
+
+        A law whose travel counts from the unloaded position adds to the static force: f(REST + TRAVEL) - f(REST).
+
+        Parameters
+        ----------
+        k, c
+            Stiffness [N/m] and damping [N s/m] of the element that carries it.
+        states
+            The symbols of the law's states (default: symbols of their names).
+
+        """
+        states = states if states is not None else {name: sp.Symbol(f"_{name}", real=True) for name in self.law.states}
+        if self.origin == "static":
+            return self.law.write(Motion(TRAVEL, RATE, STEP, k, c, STATIC, states), self.parameters)
+        written = self.law.write(Motion(REST + TRAVEL, RATE, STEP, k, c, STATIC, states), self.parameters)
+        return replace(written, force=written.force - self.preload(), now=written.now - self.preload())
+
+    def preload(self) -> sp.Expr:
+        """Return what the law carries in static equilibrium, an expression of REST [N]: nothing if it counts from there."""
+        if self.origin == "static":
+            return sp.S.Zero
+        return self.law.write(Motion(REST, sp.S.Zero, STEP, sp.S.Zero, sp.S.Zero, STATIC), self.parameters).now
+
+    @property
+    def asks_static(self) -> bool:
+        """Whether the law depends on its element's static force."""
+        return STATIC in self.step().force.free_symbols
 
 
 def read_laws(vehicle: Vehicle, kind: Kind, name: str) -> tuple[LawTerm, ...]:
@@ -60,8 +97,10 @@ def _read(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], name: str, 
         raise InputError(f"{name} belongs on a {' or '.join(law.attaches_to)}, not on a {kind}", vehicle.position(*path, key=True))
     known = {parameter.name: parameter for parameter in law.parameters}
     for key in given:
-        if key not in known:
-            raise InputError(f"{name} has no parameter {key!r}; {did_you_mean(key, known)}", vehicle.position(*path, key, key=True))
+        if key not in known and key != "from":
+            raise InputError(
+                f"{name} has no parameter {key!r}; {did_you_mean(key, [*known, 'from'])}", vehicle.position(*path, key, key=True)
+            )
     values = {}
     for key, parameter in known.items():
         expression = given.get(key)
@@ -74,14 +113,32 @@ def _read(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], name: str, 
             raise InputError(f"{key} is a quantity, not a mapping", vehicle.position(*path, key))
         _expect(vehicle, expression, parameter.dimension(kind), vehicle.dimensions, *path, key)
         values[key] = to_sympy(expression)
-    return LawTerm(law, values)
+    return _with_origin(vehicle, path, given, LawTerm(law, values))
+
+
+def _with_origin(vehicle: Vehicle, path: tuple[str | int, ...], given: LawEntry, term: LawTerm) -> LawTerm:
+    """Read `from`; only a force that travel alone decides can count from the unloaded position."""
+    entry = given.get("from")
+    if entry is None:
+        return term
+    origin: Origin | None = next((item for item in get_args(Origin) if isinstance(entry, Expression) and entry.text.strip() == item), None)
+    if origin is None:
+        found = entry.text if isinstance(entry, Expression) else "a mapping"
+        raise InputError(f"`from` is static or unloaded, found {found}", vehicle.position(*path, "from"))
+    step = term.step()
+    if origin == "unloaded" and (TRAVEL not in step.now.free_symbols or STATIC in step.now.free_symbols or term.law.states):
+        raise InputError(
+            f"{term.law.name} has no force at rest that travel decides, so `from: unloaded` means nothing to it; leave it out",
+            vehicle.position(*path, "from"),
+        )
+    return replace(term, origin=origin)
 
 
 def _read_custom(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], given: LawEntry) -> LawTerm:
     force, own = given.get("force"), given.get("parameters", {})
-    unknown = [key for key in given if key not in ("force", "parameters")]
+    unknown = [key for key in given if key not in ("force", "parameters", "from")]
     if unknown:
-        raise InputError(f"an own law has `force` and `parameters`, not {unknown[0]!r}", vehicle.position(*path, unknown[0], key=True))
+        raise InputError(f"an own law has `force`, `parameters`, `from`, not {unknown[0]!r}", vehicle.position(*path, unknown[0], key=True))
     if not isinstance(force, Expression) or not isinstance(own, dict):
         raise InputError(
             "an own law has `force`, an expression of d, v and its `parameters` {name: value}", vehicle.position(*path, key=True)
@@ -96,7 +153,8 @@ def _read_custom(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], give
     travel, moment = (NONE, MOMENT) if kind == "hinge" else (LENGTH, FORCE)
     dimensions |= {"d": travel, "v": travel / TIME}
     _expect(vehicle, force, moment, dimensions, *path, "force")
-    return LawTerm(custom_law(to_sympy(force), {key: to_sympy(value) for key, value in own.items()}), {})
+    law = custom_law(to_sympy(force), {key: to_sympy(value) for key, value in own.items()})
+    return _with_origin(vehicle, path, given, LawTerm(law, {}))
 
 
 def _expect(vehicle: Vehicle, expression: Expression, expected: Dimension, dimensions: Mapping[str, Dimension], *path: str | int) -> None:

@@ -91,6 +91,11 @@ class LinearModel:
         return self.energies.elements
 
     @property
+    def is_preloaded(self) -> bool:
+        """Whether a force law counts its travel from the unloaded position, so that laws share in carrying the weight."""
+        return any(term.origin == "unloaded" for element in self.elements for term in element.laws)
+
+    @property
     def n_dof(self) -> int:
         """Number of degrees of freedom."""
         return len(self.coordinates)

@@ -10,6 +10,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
+from vehgen.mechanics.equilibrium import equilibria
 from vehgen.mechanics.linear_model import GRAVITY, LinearModel
 from vehgen.vehicle.model import GROUND
 
@@ -29,19 +30,25 @@ class StaticLoads:
 
 
 def static_loads(model: LinearModel, values: Mapping[str, float] | None = None) -> StaticLoads:
-    """Solve K q = weight at the given parameter values (default: the file's).
+    """Solve K q = weight at the given parameter values (default: the file's), with the laws that count from the unloaded position.
 
     Raises
     ------
     InputError
-        When K is singular: part of the vehicle rests on nothing.
+        When K is singular (part of the vehicle rests on nothing), or when those laws cannot carry the weight.
 
     """
     values = values or model.values()
-    numeric = model.numeric(values)
-    displacement = _solve(model, numeric.K, numeric.weight)
-    rows, stiffness = element_rows(model, values)
-    forces = stiffness * (rows @ displacement)
+    if model.is_preloaded:
+        found = equilibria(model, np.array([[values[name] for name in model.parameters]], dtype=np.float64))
+        if found.failures:
+            raise InputError(f"{model.vehicle.name}: {found.failures[0]}")
+        displacement, forces = found.displacement[0], found.forces[0]
+    else:
+        numeric = model.numeric(values)
+        displacement = _solve(model, numeric.K, numeric.weight)
+        rows, stiffness = element_rows(model, values)
+        forces = stiffness * (rows @ displacement)
     elements: dict[tuple[str, str], float] = {
         (element.kind, element.name): float(force) for element, force in zip(model.elements, forces, strict=True)
     }

@@ -108,10 +108,14 @@ def law_rows(model: LinearModel) -> list[tuple[str, sp.Expr, list[tuple[str, str
 
 def _law_equation(element: Element, term: LawTerm) -> str:
     """Return a law's equation; of an own law with its parameters put in."""
+    counted = "" if term.origin == "static" else f"; {UNLOADED_NOTE}"
     if term.law.parameters:
-        return term.law.equation
+        return term.law.equation + counted
     d, v, h, static = (sp.Symbol(name, real=True) for name in ("d", "v", "h", "static"))
-    return f"f = {Plain().doprint(term.law.write(Motion(d, v, h, element.k, element.c, static), term.parameters).now)}"
+    return f"f = {Plain().doprint(term.law.write(Motion(d, v, h, element.k, element.c, static), term.parameters).now)}{counted}"
+
+
+UNLOADED_NOTE = "here d counts from the unloaded position, and n holds what f adds to its static value"
 
 
 LAWS_NOTE = (

@@ -109,7 +109,7 @@ class Simulator:
                 responses[members] = part
         assert responses is not None
         _warn_of(failures, len(parameters))
-        return KernelResult(self._add_static(parameters, responses), failures, residuals)
+        return KernelResult(self._add_static(parameters, responses, failures), failures, residuals)
 
     def jacobian(self, parameters: Array, scenario: Scenario, names: Sequence[str], relative_step: float = 1e-4) -> tuple[Array, Array]:
         """Return one individual's response and its derivatives, by perturbed lanes of one population.
@@ -166,12 +166,12 @@ class Simulator:
             names |= {symbol.name for symbol in sp.expand(distance).free_symbols}
         return [i for i, name in enumerate(self.model.parameters) if name in names]
 
-    def _add_static(self, parameters: Array, responses: Array) -> Array:
-        """Add the static load to channels that ask for the whole tyre load."""
+    def _add_static(self, parameters: Array, responses: Array, failures: Mapping[int, str]) -> Array:
+        """Add the static load to channels that ask for the whole tyre load, except where an individual failed."""
         for column, channel in enumerate(self.model.channels):
             if channel.quantity == "tyre_load":
                 for row, individual in enumerate(parameters):
-                    if not np.isfinite(individual).all():
+                    if row in failures or not np.isfinite(individual).all():
                         continue
                     loads = static_loads(self.model, dict(zip(self.model.parameters, individual, strict=True)))
                     responses[row, :, column] += loads.axles[channel.owner]

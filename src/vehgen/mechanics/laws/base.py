@@ -1,7 +1,8 @@
 """What a force law is: an expression of travel, rate and own states, beside the linear k and c of a suspension, tyre, link or hinge.
 
 A step of the kernels is an implicit midpoint rule, so a law says its mean force over a step from the travel `d` and rate `v` in the
-middle of the step, and how its states move on. Travel and force are positive in compression and count from static equilibrium.
+middle of the step, and how its states move on. Travel and force are positive in compression and count from static equilibrium (travel
+from the unloaded position where the vehicle file says so).
 """
 
 from __future__ import annotations
@@ -46,9 +47,9 @@ class LawParameter:
 class Motion:
     """What a law may use: travel d [m] and rate v [m/s] in mid-step, step h [s], the element's k, c and static force, its states."""
 
-    d: sp.Symbol
-    v: sp.Symbol
-    h: sp.Symbol
+    d: sp.Expr
+    v: sp.Expr
+    h: sp.Expr
     k: sp.Expr
     c: sp.Expr
     static: sp.Expr

@@ -18,7 +18,7 @@ BUMP_STOP = Law(
     name="bump_stop",
     title="Bump and rebound stops",
     equation="f = k*(max(d - clearance, 0) - max(-d - rebound, 0))",
-    meaning="stops that a suspension meets beyond its clearance from static ride height",
+    meaning="stops that a suspension meets beyond its clearance from static ride height (or from where `from` says)",
     source="J. Reimpell, H. Stoll, J. W. Betzler, The Automotive Chassis, 2nd ed., 2001",
     strength="k",
     parameters=(
