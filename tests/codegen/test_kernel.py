@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -177,3 +178,29 @@ def test_a_reduction_keeps_memory_small_and_answers_alike(tractor):
     whole = kernel.run(parameters, drive)
     np.testing.assert_array_equal(peaks, np.abs(whole.responses).max(axis=1))
     assert list(failures) == [150]
+
+
+def test_a_hundred_thousand_individuals_need_the_memory_of_one_block():
+    model = derive(load_vehicle("quarter_car"), (PointOutput("a", Place("s", "body"), "acceleration"),))
+    kernel = Kernel(model)
+    kernel.compile()
+    n, block = 100_000, 1024
+    parameters = np.repeat([list(model.values().values())], n, axis=0)
+    parameters[:, model.parameters.index("kS")] *= np.linspace(0.8, 1.2, n)
+    parameters[70_001, 0] = np.nan
+    inputs = 0.01 * np.sin(np.linspace(0, np.pi, 201))[:, None]
+    drive = Drive(1e-3, inputs, np.gradient(inputs, 1e-3, axis=0), np.zeros((201, 0)))
+
+    def peak(responses):
+        return np.abs(responses).max(axis=(1, 2))
+
+    tracemalloc.start()
+    peaks, failures = kernel.reduce(parameters, drive, peak, keep=2, block=block)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    responses = 8 * 101
+    assert most < 3 * block * responses + 16 * n < 0.1 * n * responses
+    assert peaks.shape == (n,)
+    assert list(failures) == [70_001]
+    some = [0, 1023, 1024, 54_321, n - 1]
+    np.testing.assert_array_equal(peaks[some], peak(kernel.run(parameters[some], drive, 2).responses))
