@@ -42,6 +42,21 @@ Such laws share in carrying the weight. Before a run their equilibrium K q + J^T
 applies f(d_static + d) - f(d_static), static loads follow the same solution, and a tyre leaves the road at the load that the laws leave
 it. An individual without a stable equilibrium fails with that reason. Modes and matrices stay those of the linear k and c.
 
+## Many candidates in one kernel
+
+`vehgen.mechanics.superset.add_laws` adds any number of laws at once, each switched off by its strength, so that hundreds of variants are
+individuals of one population and share one compiled kernel:
+
+```python
+from vehgen.mechanics.superset import add_laws
+
+superset = add_laws(vehicle, [("axle1", "suspension", "dry_friction"), ("axle1", "tyre", "tyre_liftoff")])
+simulator = Simulator(superset.vehicle, outputs)
+population = simulator.parameters([{superset.strength(candidate): 2e3} for candidate in superset.names])
+```
+
+`superset.names[candidate]` names the law's other parameters in the vehicle. [performance.md](performance.md) says when it pays.
+
 ## Your own law
 
 It is an expression of d, v and its parameters:
@@ -64,7 +79,8 @@ def page() -> str:
             optional = "" if item.default is None else f" (default {item.default:g})"
             unit = str(item.dimension("link")).replace("no unit", "–")
             lines.append(f"| `{item.name}`{optional} | {unit} | {item.low:g} to {item.high:g} | {item.meaning} |")
-        lines += ["", f"On: {', '.join(law.attaches_to)}. Source: {law.source}.", ""]
+        neutral = f"Adds nothing at `{law.strength}` = {law.neutral:g}."
+        lines += ["", f"{neutral} On: {', '.join(law.attaches_to)}. Source: {law.source}.", ""]
     return "\n".join(lines).rstrip() + "\n"
 
 

@@ -5,8 +5,8 @@ constant matrix of the linear step and J the elements' travel rows. Each element
     x + G_ll f_l(x) = x_free_l - sum over the others of G_lm f_m,    G = J W,
 whose left side grows with x. Off the diagonal G is small (only the bodies couple the elements), so a few sweeps, started from the forces
 of the last step, converge; all elements step at once in a sweep (Jacobi), because a chain of dependent steps would leave the processor
-waiting. Each step follows a line through the law's present force: its tangent (Newton), or, for a law whose slope has a known bound, half
-of that bound. Such a chord never diverges on a law of bounded slope, and its division is done once per individual. Dry friction is
+waiting. Each step follows a line through the laws' present force: for each law its tangent (Newton), or, where its slope has a known bound,
+half of that bound. Such a chord never diverges on a law of bounded slope, and its division is done once per individual. Dry friction is
 set-valued: the force that would stop the slip at the end of the step (Moreau, doi:10.1007/978-3-7091-2624-0_1), clipped to +-F.
 """
 
@@ -66,6 +66,9 @@ class Condensation:
         The factorised matrix A of the linear step.
     stiffness
         Entries of K, for static forces.
+    sweeps
+        Sweeps per step (default: two where every law is smooth with a bounded slope, whose error shrinks some hundredfold in each, else
+        three).
     """
 
     def __init__(
@@ -77,6 +80,7 @@ class Condensation:
         h: Node,
         factor: Factor,
         stiffness: Matrix,
+        sweeps: int | None = None,
     ) -> None:
         self.model, self.program, self.symbols, self.memo, self.h = model, program, dict(symbols), memo, h
         self.half_h = program.multiply(program.number(0.5), h)
@@ -96,6 +100,7 @@ class Condensation:
             [program.label(self._times(one.row, column), f"G{one.number}_{j}") for j, column in enumerate(self.reach)]
             for one in self.joints
         ]
+        self.sweeps = sweeps or (2 if all(joint.bounded and not joint.friction for joint in self.joints) else 3)
         self.inverse = [program.divide(program.number(1.0), self.compliance[i][i]) for i in range(len(self.joints))]
         self.normalised = [[program.multiply(self.inverse[i], item) for item in row] for i, row in enumerate(self.compliance)]
 
@@ -159,11 +164,6 @@ class Condensation:
         symbols |= {symbol: program.leaf(name, phase) for symbol, name in joint.states.items()}
         return program.convert(expression, symbols)
 
-    @property
-    def sweeps(self) -> int:
-        """Sweeps per step: two where every law is smooth with a bounded slope (the error shrinks some hundredfold in each), else three."""
-        return 2 if all(joint.bounded and not joint.friction for joint in self.joints) else 3
-
     def write(self, free: list[Node], u: list[Node], v: list[Node], drives: list[Node]) -> NonlinearStep:
         """Write the sweeps of a step that would reach the velocity `free` without the laws."""
         program, zero = self.program, self.program.number(0.0)
@@ -224,10 +224,10 @@ class Condensation:
         d = self.program.add(start, self.program.multiply(self.half_h, rate))
         moved = self.program.add(rate, ground)
         smooth = sp.Add(*(step.force for step in joint.steps))
-        if joint.bounded:
-            slope = sp.Add(*(step.slope for step in joint.steps if step.slope is not None)) / 2
-        else:
-            slope = sp.diff(smooth, TRAVEL) * TIME_STEP / 2 + sp.diff(smooth, RATE)
+        slope = sp.Add(*(step.slope for step in joint.steps if step.slope is not None)) / 2
+        for step in joint.steps:
+            if step.slope is None:
+                slope += sp.diff(step.force, TRAVEL) * TIME_STEP / 2 + sp.diff(step.force, RATE)
         return self._read(joint, smooth, d, moved, STEP), self._read(joint, slope, d, moved, STEP)
 
     def _relaxation(self, joint: _Joint, slope: Node) -> Node:

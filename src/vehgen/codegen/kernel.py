@@ -89,12 +89,14 @@ class Kernel:
         A derived model; its channels are what comes out.
     folder
         Where the source and the compiled code are kept (default: the user's cache folder).
+    sweeps
+        How often a step solves for the forces of the laws (default: 2 or 3, as the laws need).
 
     """
 
-    def __init__(self, model: LinearModel, folder: Path | None = None) -> None:
+    def __init__(self, model: LinearModel, folder: Path | None = None, sweeps: int | None = None) -> None:
         self.model = model
-        self.source: KernelSource = write_kernel(model)
+        self.source: KernelSource = write_kernel(model, sweeps=sweeps)
         self._folder = folder
 
     @property

@@ -33,9 +33,20 @@ class KernelSource:
     rests: tuple[int, ...] = ()
 
 
-def write_kernel(model: LinearModel, lanes: int | None = None) -> KernelSource:
-    """Print the Newmark kernel of a linear model."""
-    step = write_step(model)
+def write_kernel(model: LinearModel, lanes: int | None = None, sweeps: int | None = None) -> KernelSource:
+    """Print the Newmark kernel of a model.
+
+    Parameters
+    ----------
+    model
+        A derived model.
+    lanes
+        Individuals side by side (default: LANES, with force laws NONLINEAR_LANES).
+    sweeps
+        How often a step solves for the forces of the laws (default: 2 or 3, as the laws need).
+
+    """
+    step = write_step(model, sweeps)
     nonlinear = any(element.laws for element in model.elements)
     lanes = lanes or (NONLINEAR_LANES if nonlinear else LANES)
     state = [leaf for leaf, _ in step.states]

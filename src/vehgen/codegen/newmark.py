@@ -38,8 +38,8 @@ class StepProgram:
     channels: list[Node]
 
 
-def write_step(model: LinearModel) -> StepProgram:
-    """Write one Newmark step of a linear model as a program.
+def write_step(model: LinearModel, sweeps: int | None = None) -> StepProgram:
+    """Write one Newmark step of a model as a program; `sweeps` as in :class:`vehgen.codegen.condensation.Condensation`.
 
     The drives are, in order: the displacement inputs w, their rates w', the applied forces f; in a step they stand for the mean over
     the step, at a sample for the value at that time.
@@ -91,7 +91,7 @@ def write_step(model: LinearModel) -> StepProgram:
     middle = factor.solve(program, right)
     laws, further = None, []
     if any(element.laws for element in model.elements):
-        laws = Condensation(model, program, symbols, memo, h, factor, K)
+        laws = Condensation(model, program, symbols, memo, h, factor, K, sweeps)
         nonlinear = laws.write(middle, u, v, drives)
         middle, further = nonlinear.middle, nonlinear.states
     middle = [program.label(node, f"vm{i}") for i, node in enumerate(middle)]

@@ -85,7 +85,8 @@ class LawStep:
 class Law:
     """A force law of the library: what it is in words, its parameters and states, and its step.
 
-    `write(motion, parameters)` returns the LawStep; `equation` is plain text; `strength` names the parameter that is 0 without the law.
+    `write(motion, parameters)` returns the LawStep; `equation` is plain text; `strength` names the parameter that switches the law off:
+    at `neutral` the law adds nothing, whatever its other parameters are.
     """
 
     name: str
@@ -98,6 +99,7 @@ class Law:
     write: Callable[[Motion, Mapping[str, sp.Expr]], LawStep]
     states: tuple[str, ...] = ()
     attaches_to: tuple[Kind, ...] = EVERYWHERE
+    neutral: float = 0.0
 
 
 def positive(expression: sp.Expr) -> sp.Expr:

@@ -12,7 +12,8 @@ from vehgen.mechanics.laws.base import Law, LawParameter, LawStep, Motion
 def _write(motion: Motion, p: Mapping[str, sp.Expr]) -> LawStep:
     start = motion.states["s"]
     end = sp.Min(sp.Max(start + p["k"] * motion.h * motion.v, -p["force"]), p["force"])
-    return LawStep(force=(start + end) / 2, states={"s": end}, now=start, slope=p["k"] * motion.h / 2)
+    slope = p["k"] * motion.h / 2 * sp.Heaviside(p["force"])
+    return LawStep(force=(start + end) / 2, states={"s": end}, now=start, slope=slope)
 
 
 ELASTO_PLASTIC = Law(
