@@ -7,7 +7,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from vehgen.codegen import Drive, Kernel, write_kernel
+from vehgen.codegen import Drive, Kernel, compile_all, write_kernel
 from vehgen.errors import InputError
 from vehgen.mechanics import ElementOutput, Place, PointOutput, derive
 from vehgen.road import ConstantSpeed, Hump, Track, wheel_inputs
@@ -204,3 +204,17 @@ def test_a_hundred_thousand_individuals_need_the_memory_of_one_block():
     assert list(failures) == [70_001]
     some = [0, 1023, 1024, 54_321, n - 1]
     np.testing.assert_array_equal(peaks[some], peak(kernel.run(parameters[some], drive, 2).responses))
+
+
+def test_many_kernels_are_compiled_by_several_processes(tmp_path):
+    """The cache is filled by others: this process only loads."""
+    names = ("acceleration", "velocity", "displacement")
+    place = Place("s", "body")
+    kernels = [Kernel(derive(load_vehicle("quarter_car"), (PointOutput(name, place, name),)), tmp_path) for name in names]
+    assert not any(kernel.is_compiled for kernel in kernels)
+    compile_all([*kernels, kernels[0]], 2)
+    for kernel in kernels:
+        assert kernel.is_compiled
+        assert sum(kernel._module.advance.stats.cache_hits.values()) == 1
+        assert not kernel._module.advance.stats.cache_misses
+    compile_all(kernels, 2)

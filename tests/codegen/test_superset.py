@@ -59,7 +59,7 @@ def test_switched_off_it_is_the_linear_vehicle(superset):
 
 @pytest.mark.parametrize("candidate", CANDIDATES, ids=lambda item: item[2])
 def test_one_law_switched_on_is_its_own_kernel(superset, candidate):
-    built, responses = superset
+    _, responses = superset
     alone = add_laws(load_vehicle("sedan2"), [candidate])
     expected = run(alone.vehicle, [{alone.strength(candidate): STRENGTHS[candidate[2]]}], sweeps=3)[0]
     assert difference(responses[1 + CANDIDATES.index(candidate)], expected) < 1e-9

@@ -61,6 +61,12 @@ def write_text(path: Path, text: str) -> None:
         raise
 
 
+def is_compiled(text: str, folder: Path) -> bool:
+    """Whether this process has loaded a kernel, or the folder holds its compiled code."""
+    name = kernel_name(text)
+    return f"vehgen_{name}" in sys.modules or any((folder / "__pycache__").glob(f"{name}.*.nbi"))
+
+
 def import_kernel(text: str, folder: Path | None = None) -> ModuleType:
     """Write a kernel's source into the cache (unless it is there) and import it; importing compiles it or loads what was compiled."""
     name = kernel_name(text)

@@ -13,7 +13,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.codegen.cache import import_kernel, kernel_name
+from vehgen.codegen.cache import cache_folder, import_kernel, is_compiled, kernel_name
 from vehgen.codegen.kernel_source import KernelSource, write_kernel
 from vehgen.errors import InputError
 from vehgen.mechanics.equilibrium import equilibria
@@ -107,6 +107,16 @@ class Kernel:
     def __getstate__(self) -> dict[str, object]:
         """Leave the compiled code behind: who receives a kernel imports it again from the cache, or compiles it."""
         return {key: value for key, value in vars(self).items() if key != "_module"}
+
+    @property
+    def folder(self) -> Path:
+        """Where its source and compiled code are kept."""
+        return self._folder or cache_folder()
+
+    @property
+    def is_compiled(self) -> bool:
+        """Whether its compiled code is at hand, so that the first run need not wait."""
+        return is_compiled(self.source.text, self.folder)
 
     @cached_property
     def _module(self) -> ModuleType:
