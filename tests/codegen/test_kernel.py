@@ -10,6 +10,8 @@ import pytest
 from vehgen.codegen import Drive, Kernel, compile_all, write_kernel
 from vehgen.errors import InputError
 from vehgen.mechanics import ElementOutput, Place, PointOutput, derive
+from vehgen.mechanics.laws import LAWS
+from vehgen.mechanics.superset import add_laws
 from vehgen.road import ConstantSpeed, Hump, Track, wheel_inputs
 from vehgen.simulate import exact_response, newmark_response
 from vehgen.vehicle import bundled_models, load_vehicle
@@ -145,6 +147,31 @@ def test_operation_counts_do_not_rise():
     assert counts.keys() == BASELINE.keys()
     for name, count in counts.items():
         assert count <= BASELINE[name], f"{name}: {count} operations per step, {BASELINE[name]} in the baseline"
+
+
+NONLINEAR_BASELINE = {
+    "asymmetric_damping": 579,
+    "bump_stop": 557,
+    "cubic_stiffness": 667,
+    "dry_friction": 502,
+    "elasto_plastic": 567,
+    "hysteresis": 942,
+    "progressive_stiffness": 517,
+    "quadratic_damping": 664,
+    "quadratic_stiffness": 667,
+    "relaxation": 557,
+    "tyre_liftoff": 496,
+}
+
+
+def test_operation_counts_of_laws_do_not_rise():
+    """Each law on all five suspensions (tyres where it belongs there) of the five-axle vehicle."""
+    assert NONLINEAR_BASELINE.keys() == LAWS.keys()
+    for name, law in LAWS.items():
+        kind = "suspension" if "suspension" in law.attaches_to else "tyre"
+        vehicle = add_laws(load_vehicle("tractor5"), [(f"axle{i}", kind, name) for i in range(1, 6)]).vehicle
+        count = write_kernel(derive(vehicle)).operation_counts["step"]
+        assert count <= NONLINEAR_BASELINE[name], f"{name}: {count} operations per step, {NONLINEAR_BASELINE[name]} in the baseline"
 
 
 def test_perturbed_lanes_and_direct_differentiation_agree():
