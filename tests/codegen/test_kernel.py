@@ -14,7 +14,7 @@ from vehgen.mechanics.laws import LAWS
 from vehgen.mechanics.superset import add_laws
 from vehgen.road import ConstantSpeed, Hump, Track, wheel_inputs
 from vehgen.simulate import exact_response, newmark_response
-from vehgen.vehicle import bundled_models, load_vehicle
+from vehgen.vehicle import bundled_models, load_vehicle, parse_vehicle
 
 OUTPUTS = (
     PointOutput("L1_az", Place("L1", "tractor", behind="axle1", distance=-0.29), "acceleration"),
@@ -245,3 +245,29 @@ def test_many_kernels_are_compiled_by_several_processes(tmp_path):
         assert sum(kernel._module.advance.stats.cache_hits.values()) == 1
         assert not kernel._module.advance.stats.cache_misses
     compile_all(kernels, 2)
+
+
+SINGLE_LAWS = "laws: [{dry_friction: {force: 300 N}}, {bump_stop: {k: 1 MN/m, clearance: 8 mm}}, {quadratic_damping: {c2: 5e3 N s^2/m^2}}]"
+
+
+@pytest.mark.parametrize("name", ["tractor5", "sedan2", "laws"])
+def test_single_precision_errs_below_a_thousandth(name):
+    vehicle = (
+        load_vehicle(name) if name != "laws" else parse_vehicle(f"extends: sedan2\naxles: {{front: {{suspension: {{{SINGLE_LAWS}}}}}}}\n")
+    )
+    body = next(iter(vehicle.bodies))
+    model = derive(vehicle, [PointOutput(kind, Place("s", body), kind) for kind in ("acceleration", "pitch_rate", "displacement")])
+    parameters = np.repeat([list(model.values().values())], 35, axis=0)
+    parameters[:, 0] *= np.linspace(0.95, 1.05, 35)
+    drive = hump_drive(model, 1e-3, 10.0)
+    double = Kernel(model).run(parameters, drive).responses
+    single = Kernel(model, precision="single").run(parameters, drive)
+    assert not single.failures
+    assert single.responses.dtype == np.float64
+    error = np.linalg.norm(single.responses - double, axis=1) / np.linalg.norm(double, axis=1)
+    assert 1e-8 < error.max() < 1e-3
+
+
+def test_an_unknown_precision_is_refused(tractor):
+    with pytest.raises(InputError, match="unknown precision 'singel'; did you mean 'single'"):
+        Kernel(tractor[0], precision="singel")

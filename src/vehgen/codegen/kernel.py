@@ -9,13 +9,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from types import ModuleType
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.codegen.cache import cache_folder, import_kernel, is_compiled, kernel_name
-from vehgen.codegen.kernel_source import KernelSource, write_kernel
-from vehgen.errors import InputError
+from vehgen.codegen.kernel_source import KernelSource, Precision, write_kernel
+from vehgen.errors import InputError, did_you_mean
 from vehgen.mechanics.equilibrium import equilibria
 from vehgen.mechanics.linear_model import GRAVITY, LinearModel
 
@@ -73,10 +74,11 @@ def find_failures(names: tuple[str, ...], parameters: Array, responses: Array) -
     return failures
 
 
-def aligned(size: int) -> Array:
+def aligned(size: int, number: type[np.floating[Any]] = np.float64) -> NDArray[Any]:
     """Return zeros that start on a cache line (64 bytes): vector loads that straddle two lines take twice as long."""
-    raw = np.zeros(size + 8)
-    start = (-raw.ctypes.data // 8) % 8
+    width = np.dtype(number).itemsize
+    raw = np.zeros(size + 64 // width, dtype=number)
+    start = (-raw.ctypes.data // width) % (64 // width)
     return raw[start : start + size]
 
 
@@ -91,12 +93,18 @@ class Kernel:
         Where the source and the compiled code are kept (default: the user's cache folder).
     sweeps
         How often a step solves for the forces of the laws (default: 2 or 3, as the laws need).
+    precision
+        `double`, or `single`: twice the individuals in a vector, with errors of about 1e-4 (docs/performance.md). Differences of
+        nearly equal responses, such as derivatives by small steps, need double.
 
     """
 
-    def __init__(self, model: LinearModel, folder: Path | None = None, sweeps: int | None = None) -> None:
+    def __init__(self, model: LinearModel, folder: Path | None = None, sweeps: int | None = None, precision: Precision = "double") -> None:
+        if precision not in get_args(Precision):
+            raise InputError(f"unknown precision {precision!r}; {did_you_mean(precision, get_args(Precision))}")
         self.model = model
-        self.source: KernelSource = write_kernel(model, sweeps=sweeps)
+        self.source: KernelSource = write_kernel(model, sweeps=sweeps, precision=precision)
+        self._number = np.float32 if precision == "single" else np.float64
         self._folder = folder
 
     @property
@@ -195,20 +203,21 @@ class Kernel:
         residuals = np.zeros(n_individuals)
         module = self._module
         n_dof = self.model.n_dof
-        arrays = tuple(np.ascontiguousarray(item, dtype=np.float64) for item in (drive.inputs, drive.rates, drive.forces))
+        number = self._number
+        arrays = tuple(np.ascontiguousarray(item, dtype=number) for item in (drive.inputs, drive.rates, drive.forces))
 
         def block(first: int) -> None:
             last = min(first + lanes, n_individuals)
             rows = np.minimum(np.arange(first, first + lanes), last - 1)
-            work = aligned(module.WORK)
+            work = aligned(module.WORK, number)
             work[: columns.shape[1] * lanes] = np.ascontiguousarray(columns[rows].T).ravel()
             state = work[module.STATE : module.KEPT]
             if initial is not None:
                 state[: 2 * n_dof * lanes] = np.ascontiguousarray(initial[rows].T).ravel()
-            full = last - first == lanes
-            target = responses[first:last] if full else np.empty((lanes, n_samples, n_channels))
+            direct = last - first == lanes and number is np.float64
+            target = responses[first:last] if direct else np.empty((lanes, n_samples, n_channels), dtype=number)
             module.advance(work, *arrays, drive.dt, keep, target)
-            if not full:
+            if not direct:
                 responses[first:last] = target[: last - first]
             if self.source.nonlinear:
                 residuals[first:last] = state[-lanes:][: last - first]

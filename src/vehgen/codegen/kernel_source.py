@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from typing import Literal
 
 from vehgen.codegen.lane_loops import cut
 from vehgen.codegen.newmark import StepProgram, write_step
@@ -11,6 +12,7 @@ from vehgen.codegen.printing import Printer
 from vehgen.codegen.program import SAMPLE, STEP, Node
 from vehgen.mechanics.linear_model import LinearModel
 
+Precision = Literal["double", "single"]
 LANES = 32
 """Individuals that advance side by side in the innermost loop."""
 NONLINEAR_LANES = 16
@@ -33,7 +35,7 @@ class KernelSource:
     rests: tuple[int, ...] = ()
 
 
-def write_kernel(model: LinearModel, lanes: int | None = None, sweeps: int | None = None) -> KernelSource:
+def write_kernel(model: LinearModel, lanes: int | None = None, sweeps: int | None = None, precision: Precision = "double") -> KernelSource:
     """Print the Newmark kernel of a model.
 
     Parameters
@@ -44,13 +46,15 @@ def write_kernel(model: LinearModel, lanes: int | None = None, sweeps: int | Non
         Individuals side by side (default: LANES, with force laws NONLINEAR_LANES).
     sweeps
         How often a step solves for the forces of the laws (default: 2 or 3, as the laws need).
+    precision
+        Of the arrays and of all arithmetic in the loops; what depends on parameters alone is computed in double and rounded.
 
     """
     step = write_step(model, sweeps)
     nonlinear = any(element.laws for element in model.elements)
     lanes = lanes or (NONLINEAR_LANES if nonlinear else LANES)
     state = [leaf for leaf, _ in step.states]
-    printer = Printer(step.program, {STEP: [node for _, node in step.states], SAMPLE: step.channels}, step.time_step)
+    printer = Printer(step.program, {STEP: [node for _, node in step.states], SAMPLE: step.channels}, step.time_step, precision == "single")
     lines = [_header(model, printer), *_function(model, step, printer, state, lanes)]
     text = _fold("\n".join(lines) + "\n")
     return KernelSource(text, lanes, printer.operation_counts, len(printer.constants), len(state), nonlinear, tuple(step.rests))
@@ -76,7 +80,7 @@ Arithmetic operations: {counts["setup"]} once per individual, {counts["step"]} p
 import math
 
 import numba
-
+{"from numba import float32, float64" if printer.single else ""}
 from vehgen.codegen.selects import lower, sign, step, upper'''
 
 
@@ -88,7 +92,7 @@ def _function(model: LinearModel, step: StepProgram, printer: Printer, state: li
 
     def load_setup(node: Node) -> str | None:
         if node in parameter_place:
-            return f"work[PARAMETERS + {parameter_place[node] * lanes} + j]"
+            return wide.format(f"work[PARAMETERS + {parameter_place[node] * lanes} + j]")
         return None
 
     def load_loop(node: Node) -> str | None:
@@ -99,6 +103,7 @@ def _function(model: LinearModel, step: StepProgram, printer: Printer, state: li
             return f"work[STATE + {state_place[name] * lanes} + j]"
         return None
 
+    wide = "float64({})" if printer.single else "{}"
     constants = list(printer.constants)
     setup = printer.statements(printer.setup, constants, load_setup)
     stores = [
@@ -113,7 +118,7 @@ def _function(model: LinearModel, step: StepProgram, printer: Printer, state: li
     sample = printer.statements(printer.needed[SAMPLE], step.channels, load_loop)
     stores = [f"work[KEPT + {i * lanes} + j] = {printer.texts[node]}" for i, node in enumerate(step.channels)]
     sample_bodies, sample_scratch = cut(sample, stores, lanes)
-    means = _drive_reads(printer, step.drives, STEP, "0.5*({array}[n, {i}] + {array}[n + 1, {i}])", model)
+    means = _drive_reads(printer, step.drives, STEP, f"{printer.number(0.5)}*({{array}}[n, {{i}}] + {{array}}[n + 1, {{i}}])", model)
     values = _drive_reads(printer, step.sample_drives, SAMPLE, "{array}[n, {i}]", model)
 
     sections = _sections(len(parameter_place), len(constants), len(state), n_channels, max(setup_scratch, advance_scratch, sample_scratch))
@@ -132,7 +137,7 @@ def _function(model: LinearModel, step: StepProgram, printer: Printer, state: li
         "",
         "",
         "@numba.njit(",
-        '    "void(f8[::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], f8, i8, f8[:, :, ::1])",',
+        '    "void(f8[::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], f8, i8, f8[:, :, ::1])",'.replace("f8", "f4" if printer.single else "f8"),
         '    nogil=True, cache=True, fastmath={"contract", "nsz"}, error_model="numpy",',
         ")",
         "def advance(work, inputs, rates, forces, dt, keep, responses):",

@@ -23,11 +23,13 @@ class Printer:
         The nodes wanted, by phase (STEP: the new state; SAMPLE: the channels).
     scalar
         A leaf that is the same for all lanes and stays a plain variable: the time step.
+    single
+        Whether the loops' numbers are of single precision (a plain one would make its expression double); SETUP stays double.
 
     """
 
-    def __init__(self, program: Program, results: dict[int, list[Node]], scalar: Node) -> None:
-        self.scalar = scalar
+    def __init__(self, program: Program, results: dict[int, list[Node]], scalar: Node, single: bool = False) -> None:
+        self.scalar, self.single = scalar, single
         self.program = program
         self.results = results
         self.needed = {phase: self._reach(phase) for phase in (STEP, SAMPLE)}
@@ -74,6 +76,10 @@ class Printer:
     def _count(self, nodes: Iterable[Node]) -> int:
         return sum(self.program.operations[node] not in ("leaf", "number") for node in nodes)
 
+    def number(self, value: float) -> str:
+        """Return a constant as it stands in the loops."""
+        return f"float32({value!r})" if self.single else repr(value)
+
     def name(self, node: Node) -> str:
         """Return a node's name in the source."""
         return self.program.labels.get(node, f"x{node}")
@@ -92,6 +98,7 @@ class Printer:
 
         """
         own = set(nodes)
+        in_loop = any(self.program.phases[node] != SETUP for node in nodes)
         uses: Counter[Node] = Counter()
         for node in nodes:
             uses.update(dict.fromkeys(self.program.arguments[node], 0))
@@ -106,7 +113,8 @@ class Printer:
                 return texts[node]
             value = self.program.value(node)
             if value is not None:
-                texts[node] = (repr(value), 9) if value >= 0 else (f"({value!r})", 9)
+                number = self.number(value) if in_loop else repr(value)
+                texts[node] = (number if value >= 0 else f"({number})", 9)
                 return texts[node]
             source = load(node)
             if source is not None and uses[node] > 1:

@@ -13,13 +13,20 @@ from numba.core import types
 from numba.extending import intrinsic
 
 
+def _kind(*arguments: Any) -> tuple[Any, Any]:
+    """Return the type that a choice works in and its type in the intermediate code: single precision where all arguments have it."""
+    single = all(argument == types.float32 for argument in arguments)
+    return (types.float32, ir.FloatType()) if single else (types.float64, ir.DoubleType())
+
+
 def _binary(compare: str) -> Any:
     def choose(context: Any, left: Any, right: Any) -> Any:
         def code(_context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
             first, second = arguments
             return builder.select(builder.fcmp_ordered(compare, first, second), first, second)
 
-        return types.float64(types.float64, types.float64), code
+        kind, _ = _kind(left, right)
+        return kind(kind, kind), code
 
     return intrinsic(choose)
 
@@ -33,21 +40,23 @@ upper = _binary(">")
 @intrinsic
 def step(context: Any, value: Any) -> Any:
     """step(a): 1 where a > 0, else 0."""
+    kind, machine = _kind(value)
 
     def code(_context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
-        one, zero = (ir.Constant(ir.DoubleType(), number) for number in (1.0, 0.0))
+        one, zero = (ir.Constant(machine, number) for number in (1.0, 0.0))
         return builder.select(builder.fcmp_ordered(">", arguments[0], zero), one, zero)
 
-    return types.float64(types.float64), code
+    return kind(kind), code
 
 
 @intrinsic
 def sign(context: Any, value: Any) -> Any:
     """sign(a): 1, 0 or -1."""
+    kind, machine = _kind(value)
 
     def code(_context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
-        one, zero, minus = (ir.Constant(ir.DoubleType(), number) for number in (1.0, 0.0, -1.0))
+        one, zero, minus = (ir.Constant(machine, number) for number in (1.0, 0.0, -1.0))
         below = builder.select(builder.fcmp_ordered("<", arguments[0], zero), minus, zero)
         return builder.select(builder.fcmp_ordered(">", arguments[0], zero), one, below)
 
-    return types.float64(types.float64), code
+    return kind(kind), code
