@@ -126,9 +126,16 @@ def judge(candidate: Candidate | None, fit: Polished, held_out: Sequence[Trial],
 
         trials = [retarget(trial, vehicle, shared) for trial in held_out]
         numbers = fit.misfit.adjusted(fit.x)
-        frozen = Problem(tuple(replace(t, values=t.values | {k: v for k, v in fixed.items() if k not in t.fixed}) for t in trials), _nothing())
+        frozen = Problem(
+            tuple(replace(t, values=t.values | {k: v for k, v in fixed.items() if k not in t.fixed}) for t in trials), _nothing()
+        )
         again = polish(
-            frozen, np.zeros(0), NUISANCES, fit.misfit.band, noises=noises, shared=tuple(_Frozen(item, value) for item, value in zip(fit.misfit.shared, numbers, strict=True)),
+            frozen,
+            np.zeros(0),
+            NUISANCES,
+            fit.misfit.band,
+            noises=noises,
+            shared=tuple(_Frozen(item, value) for item, value in zip(fit.misfit.shared, numbers, strict=True)),
             tolerance=FINE,
         )
         own, own_counts = _by_run(again.misfit, again.x)

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.optimize
 from numpy.typing import NDArray
 
 from vehgen.identify.misfit import Noises
@@ -28,49 +29,81 @@ MARGIN = 0.1
 TOP = (41.0, 47.0)
 """The top of the band [Hz]."""
 DIFFERENT = 1.3
+LARGEST = 4.0
+"""The top of the band of a loud run may hold its motion too: it counts at most this much more than the lead-in's variance."""
 
 
 @dataclass(frozen=True)
 class NoiseFloor:
-    """Noise by set of channels, the lead-in's `sigma` before the top of the band corrected it, and the channels where it did."""
+    """Noise by run, what the lead-in (`lead`) and the top of the band (`top`) say of each `run: channel`, and where they disagree."""
 
     noises: Noises
-    lead_in: dict[str, float]
+    lead: dict[str, float]
     top: dict[str, float]
     corrected: tuple[str, ...]
 
 
 def find_noise_floor(trials: Sequence[Trial], band: tuple[float, float] = BAND) -> NoiseFloor:
-    """Return the noise of all channels."""
+    """Return the noise of all runs.
+
+    A channel's variance is taken as a + b rms^2 over the runs, a >= 0 and b >= 0: what a phone adds by itself, and what grows with what
+    it records. One run alone has the variance that it shows.
+    """
     noises: Noises = {}
-    lead, top, corrected = {}, {}, []
+    lead: dict[str, float] = {}
+    top: dict[str, float] = {}
+    corrected: list[str] = []
     for channels in dict.fromkeys(trial.channels for trial in trials):
         group = [trial for trial in trials if trial.channels == channels]
         quiet = [part for trial in group if (part := lead_in(trial)) is not None]
-        loud = np.array([top_of_band(part) for part in (quiet or group)])
-        weight = np.array([len(part.measurement.time) for part in (quiet or group)], dtype=np.float64)
-        sigma = np.sqrt((loud**2 * weight[:, None]).sum(axis=0) / weight.sum())
-        noise = Noise(EVEN, sigma)
-        if quiet:
-            noise = _from_lead_in(quiet, sigma, band)
-            for i, channel in enumerate(channels):
-                lead[channel] = float(noise.sigma[i])
-                if noise.sigma[i] > DIFFERENT * sigma[i]:
-                    corrected.append(channel)
-            noise = Noise(noise.levels, np.where(noise.sigma > DIFFERENT * sigma, sigma, noise.sigma))
-        noises[channels] = noise
-        top |= {channel: float(value) for channel, value in zip(channels, sigma, strict=True)}
+        rough = np.sqrt(np.mean([top_of_band(part) ** 2 for part in (quiet or group)], axis=0))
+        shared = _from_lead_in(quiet, rough, band) if quiet else Noise(EVEN, rough)
+        variance, weight = np.zeros((len(group), len(channels))), np.zeros((len(group), len(channels)))
+        for i, trial in enumerate(group):
+            high = top_of_band(trial)
+            part = lead_in(trial)
+            low = None if part is None else _from_lead_in([part], high, band, shared.levels).sigma
+            for j, channel in enumerate(channels):
+                name = f"{trial.name}: {channel}"
+                top[name] = float(high[j])
+                variance[i, j], weight[i, j] = high[j] ** 2, (TOP[1] - TOP[0]) * trial.measurement.dt * len(trial.measurement.time) / 2
+                if low is not None and part is not None:
+                    lead[name] = float(low[j])
+                    if low[j] > DIFFERENT * high[j]:
+                        corrected.append(name)
+                    else:
+                        lines = (band[1] - band[0]) * part.measurement.dt * len(part.measurement.time)
+                        both = weight[i, j] + lines
+                        variance[i, j] = (min(variance[i, j], LARGEST * low[j] ** 2) * weight[i, j] + low[j] ** 2 * lines) / both
+                        weight[i, j] = both
+        power = np.array([np.mean(trial.measurement.values**2, axis=0) for trial in group])
+        sigma = np.sqrt(_smooth(variance, weight, power))
+        for i, trial in enumerate(group):
+            noises[trial.name] = Noise(shared.levels, sigma[i])
     return NoiseFloor(noises, lead, top, tuple(corrected))
 
 
-def _from_lead_in(quiet: Sequence[Trial], sigma: Array, band: tuple[float, float]) -> Noise:
+def _smooth(variance: Array, weight: Array, power: Array) -> Array:
+    """Return variances a + b power, both coefficients non-negative, by least squares of relative errors, all `shape (n_runs, n_channels)`."""
+    if len(variance) < 3:
+        return variance
+    found = np.empty_like(variance)
+    for j in range(variance.shape[1]):
+        scale = np.sqrt(weight[:, j]) / variance[:, j]
+        columns = np.column_stack([np.ones(len(variance)), power[:, j]])
+        coefficients, _ = scipy.optimize.nnls(columns * scale[:, None], variance[:, j] * scale)
+        found[:, j] = columns @ coefficients
+    return found
+
+
+def _from_lead_in(quiet: Sequence[Trial], sigma: Array, band: tuple[float, float], levels: Array | None = None) -> Noise:
     residuals = []
     for part in quiet:
         frequency = np.asarray(np.fft.rfftfreq(len(part.measurement.time), part.measurement.dt), dtype=np.float64)
         inside = (frequency >= max(band[0], 1.0)) & (frequency <= band[1])
         lines = transform(part.measurement.values - part.measurement.values.mean(axis=0), part.measurement.dt, inside)
         residuals.append((lines, road_answer(part, frequency[inside], part.values)))
-    return estimate_noise(residuals, Noise(np.full(len(EVEN), 100 * SMALLEST_LEVEL), sigma))
+    return estimate_noise(residuals, Noise(np.full(len(EVEN), 100 * SMALLEST_LEVEL) if levels is None else levels, sigma))
 
 
 def lead_in(trial: Trial) -> Trial | None:

@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
 from vehgen.identify.misfit import Misfit, flatten
@@ -22,7 +21,7 @@ from vehgen.simulate.frequency import dynamic_stiffness, output_rows
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-ROUNDS = 4
+ROUNDS = 7
 PRIOR = 0.1
 """Standard deviation of ln(parameter) about the vehicle file's values."""
 

@@ -22,7 +22,8 @@ from vehgen.simulate import Scenario
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-Noises = dict[tuple[str, ...], Noise]
+Noises = dict[str, Noise]
+"""Noise by name of the trial."""
 STEP = 1e-4
 """Half step of the central differences, in the unit cube and in units of a nuisance's uncertainty."""
 
@@ -69,7 +70,7 @@ class Misfit:
     problem
         Trials and searched parameters.
     noises
-        One noise per distinct set of channels.
+        One noise a trial.
     reference
         Searched values `shape (n_parameters,)` [SI] at which the road's part of the noise is computed: weights must not chase the fit.
     nuisances
@@ -102,7 +103,7 @@ class Misfit:
         inside = (frequency >= self.band[0]) & (frequency <= self.band[1])
         own = {name: value for name, value in reference.items() if name not in trial.fixed}
         answer = road_answer(trial, frequency[inside], trial.values | own)
-        return _Weight(inside, answer, self.noises[trial.channels].whitener(answer))
+        return _Weight(inside, answer, self.noises[trial.name].whitener(answer))
 
     @property
     def n_parameters(self) -> int:
@@ -198,7 +199,7 @@ class Misfit:
         """Return measurements as they might have come out: the response plus noise, one array a trial (for a bootstrap)."""
         found = []
         for trial, weight, simulated in zip(self.problem.trials, self._weights, self.simulate(x), strict=True):
-            noise = self.noises[trial.channels]
+            noise = self.noises[trial.name]
             found.append(simulated + noise.draw(weight.answer, len(simulated), np.flatnonzero(weight.inside), random))
         return found
 

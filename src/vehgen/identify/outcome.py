@@ -282,8 +282,8 @@ def _noise(result: StepResult) -> list[dict[str, Any]]:
     if not result.fits:
         return []
     return [
-        {"channels": list(channels), "sigma": noise.sigma.tolist(), "road_level_m3": noise.levels.tolist()}
-        for channels, noise in result.fits[0].misfit.noises.items()
+        {"run": name, "sigma": noise.sigma.tolist(), "road_level_m3": noise.levels.tolist()}
+        for name, noise in result.fits[0].misfit.noises.items()
     ]
 
 

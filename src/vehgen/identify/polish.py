@@ -116,7 +116,7 @@ def polish(
     residuals = misfit.residuals(result)
     prior = float((misfit.split(result)[1] ** 2).sum())
     lines = zip(misfit.problem.trials, misfit.lines(result), strict=True)
-    loss = prior + sum(misfit.noises[trial.channels].loss(own, answer) for trial, (own, answer) in lines)
+    loss = prior + sum(misfit.noises[trial.name].loss(own, answer) for trial, (own, answer) in lines)
     if facts is not None:
         loss += float((facts.residuals(misfit.problem.space.values(misfit.split(result)[0])) ** 2).sum())
     return Polished(misfit, result, float(np.mean(residuals**2)), loss)
@@ -149,21 +149,23 @@ def _fit(misfit: Misfit, x: Array, facts: Facts | None, max_steps: int, toleranc
 
 
 def first_noises(problem: Problem) -> Noises:
-    """Return noise to begin with: white, a share of each channel's RMS."""
+    """Return noise to begin with, by trial: white, a share of each channel's RMS."""
     found: Noises = {}
     for trial in problem.trials:
         rms = np.sqrt(np.mean(trial.measurement.values**2, axis=0))
-        found.setdefault(trial.channels, Noise(EVEN, FIRST_NOISE * rms))
+        found[trial.name] = Noise(EVEN, FIRST_NOISE * rms)
     return found
 
 
 def estimate_noises(misfit: Misfit, x: Array) -> Noises:
-    """Return the noise that the residuals show."""
+    """Return the noise that the residuals show: one for all trials with the same channels."""
     found: Noises = {}
-    lines = misfit.lines(x)
-    for channels, old in misfit.noises.items():
-        group = [item for trial, item in zip(misfit.problem.trials, lines, strict=True) if trial.channels == channels]
-        found[channels] = estimate_noise(group, Noise(np.maximum(old.levels, FIRST_LEVEL), old.sigma / 2))
+    lines = dict(zip((trial.name for trial in misfit.problem.trials), misfit.lines(x), strict=True))
+    for channels in dict.fromkeys(trial.channels for trial in misfit.problem.trials):
+        names = [trial.name for trial in misfit.problem.trials if trial.channels == channels]
+        old = misfit.noises[names[0]]
+        shared = estimate_noise([lines[name] for name in names], Noise(np.maximum(old.levels, FIRST_LEVEL), old.sigma / 2))
+        found |= dict.fromkeys(names, shared)
     return found
 
 
