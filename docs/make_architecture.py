@@ -19,6 +19,7 @@ ROOMS = [
     "codegen",
     "road",
     "simulate",
+    "cargo",
     "measure",
     "effects",
     "identify",

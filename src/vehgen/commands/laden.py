@@ -1,0 +1,83 @@
+"""Put a cargo on a vehicle: write the laden vehicle and show what the cargo changes."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from vehgen.commands.terminal import add_json, console, print_json, print_table
+
+if TYPE_CHECKING:
+    from vehgen.vehicle import Vehicle
+
+EXAMPLE = "python -m vehgen laden tractor5.yaml bananas.yaml --out laden.yaml"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.add_argument("vehicle", metavar="VEHICLE", help="the unladen vehicle: a file, for example a calibrated one, or a bundled model")
+    parser.add_argument("cargo", metavar="CARGO", help="a cargo file")
+    parser.add_argument("--out", metavar="FILE", type=Path, help="where to write the laden vehicle (default: VEHICLE_laden.yaml here)")
+    parser.add_argument("--set", metavar="NAME", dest="parameter_set", help="compare at a named parameter set of the vehicle")
+    add_json(parser)
+
+
+def run(options: argparse.Namespace) -> None:
+    """Write the laden vehicle and print the comparison."""
+    from vehgen.cargo import compare_laden, laden_text, load_cargo
+    from vehgen.errors import InputError
+    from vehgen.vehicle import load_vehicle
+
+    vehicle, cargo = load_vehicle(options.vehicle), load_cargo(options.cargo)
+    vehicle.values(options.parameter_set)
+    path: Path = options.out or Path(f"{vehicle.name}_laden.yaml")
+    if any(path.resolve() == other.resolve() for other in (*vehicle.files, cargo.path)):
+        raise InputError(f"{path} is a file that the laden vehicle is made from; choose another for --out")
+    laden = _write(path, laden_text(vehicle, cargo, path.parent, path.stem))
+    found = compare_laden(vehicle, laden, cargo.file.on, options.parameter_set)
+    (before, after), (forward, up) = found.carrier, found.cog_shift
+    if options.json:
+        data = {
+            "cargo_mass": after.mass - before.mass,
+            "carrier": cargo.file.on,
+            "carrier_mass": [before.mass, after.mass],
+            "cog_shift": {"forward": forward, "up": up},
+            "axles": {name: list(loads) for name, loads in found.axles.items()},
+            "modes": [{"name": name, "unladen_hz": light, "laden_hz": heavy} for name, light, heavy in found.modes],
+        }
+        print_json({**data, "files": [str(path)]})
+        return
+    rows = [
+        ("mass", f"{before.mass:,.1f} kg", f"{after.mass:,.1f} kg", f"{after.mass - before.mass:+,.1f} kg"),
+        ("COG ahead of the empty body's", f"{before.x:.4f} m", f"{after.x:.4f} m", f"{forward:+.4f} m"),
+        ("COG above the empty body's", f"{before.z:.4f} m", f"{after.z:.4f} m", f"{up:+.4f} m"),
+    ]
+    print_table(f"{cargo.file.on} with what it carries", ("", "unladen", "laden", "change"), rows, right=(1, 2, 3))
+    loads = [(name, *pair) for name, pair in found.axles.items()]
+    loads.append(("all", sum(item[1] for item in loads), sum(item[2] for item in loads)))
+    axle_rows = [(name, f"{light:,.1f}", f"{heavy:,.1f}", f"{heavy - light:+,.1f}") for name, light, heavy in loads]
+    print_table("Static axle loads, N", ("axle", "unladen", "laden", "change"), axle_rows, right=(1, 2, 3))
+    mode_rows = [(name, "" if light is None else f"{light:.4f}", f"{heavy:.4f}") for name, light, heavy in found.modes]
+    print_table("Undamped natural frequencies, Hz", ("mode", "unladen", "laden"), mode_rows, right=(1, 2))
+    console().print(f"wrote {path}", highlight=False, markup=False)
+
+
+def _write(path: Path, text: str) -> Vehicle:
+    """Write a vehicle file and read it back; nothing is left behind when it cannot be read."""
+    from vehgen.codegen import write_text
+    from vehgen.errors import InputError
+    from vehgen.vehicle import load_vehicle
+
+    draft = path.with_name(f".{path.name}.draft")
+    write_text(draft, text)
+    try:
+        laden = load_vehicle(draft)
+        draft.replace(path)
+    except InputError as error:
+        raise InputError(f"the laden vehicle would not be valid: {error.message}") from error
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror}") from error
+    finally:
+        draft.unlink(missing_ok=True)
+    return laden
