@@ -1,0 +1,210 @@
+"""The frame file: a building module as a box of frame members and panels."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from vehgen.cargo.panels import Layer, equivalent_layer
+from vehgen.cargo.quantities import DampingRatio, Density, Distance, Frequency, Modulus, Poisson, PositiveLength
+from vehgen.cargo.sections import SectionEntry
+from vehgen.errors import InputError, did_you_mean
+from vehgen.vehicle.document import Located, read_document
+from vehgen.vehicle.loading import validate
+from vehgen.vehicle.model import Noun
+
+MIN_SIDE, MAX_SIDE = 0.1, 100.0
+
+
+class BoxSize(Noun):
+    """Length, width and height between the middle surfaces of opposite panels [m]."""
+
+    length: PositiveLength = Field(ge=MIN_SIDE, le=MAX_SIDE)
+    width: PositiveLength = Field(ge=MIN_SIDE, le=MAX_SIDE)
+    height: PositiveLength = Field(ge=MIN_SIDE, le=MAX_SIDE)
+
+
+class Material(Noun):
+    """An isotropic material; E may be 0 for what only weighs or keeps distance."""
+
+    E: Modulus
+    nu: Poisson
+    density: Density
+
+
+class Member(Noun):
+    """Beams of one kind: their material and section, the section's height being vertical (along the length for posts and studs)."""
+
+    material: str
+    section: str
+
+
+class SpacedMember(Member):
+    """Members at equal distances, at most `spacing` apart."""
+
+    spacing: PositiveLength = Field(ge=0.05)
+
+
+class Frame(Noun):
+    """The members: rails round the floor and the roof, four posts; joists across the width, studs in the walls."""
+
+    bottom_rails: Member | None = None
+    top_rails: Member | None = None
+    posts: Member | None = None
+    floor_joists: SpacedMember | None = None
+    roof_joists: SpacedMember | None = None
+    studs: SpacedMember | None = None
+
+    def members(self) -> Iterator[tuple[str, Member]]:
+        """Yield the declared kinds of members by name."""
+        for name in Frame.model_fields:
+            if (member := getattr(self, name)) is not None:
+                yield name, member
+
+
+class LayerEntry(Noun):
+    """A layer of a panel."""
+
+    material: str
+    thickness: PositiveLength = Field(le=1.0)
+
+
+class Panel(Noun):
+    """A panel of layers, from the inside out."""
+
+    layers: tuple[LayerEntry, ...] = Field(min_length=1)
+    bonded: bool = Field(True, description="false: the layers slide on each other")
+
+
+class Panels(Noun):
+    """The panels; `walls` stands for those of the four walls that are not named."""
+
+    floor: Panel | None = None
+    roof: Panel | None = None
+    walls: Panel | None = None
+    front: Panel | None = None
+    rear: Panel | None = None
+    left: Panel | None = None
+    right: Panel | None = None
+
+    def faces(self) -> Iterator[tuple[str, str, Panel]]:
+        """Yield each panel that stands: the face it covers, its key in the file, itself."""
+        for face in ("floor", "roof", "front", "rear", "left", "right"):
+            own: Panel | None = getattr(self, face)
+            if own is not None:
+                yield face, face, own
+            elif self.walls is not None and face not in ("floor", "roof"):
+                yield face, "walls", self.walls
+
+
+class DampingPoint(Noun):
+    """A damping ratio at a frequency."""
+
+    frequency: Frequency
+    ratio: DampingRatio
+
+
+class MeshEntry(Noun):
+    """How finely the box is divided."""
+
+    size: PositiveLength = Field(ge=0.01)
+
+
+class FrameFile(Noun):
+    """A building module as its file declares it, quantities in SI units."""
+
+    name: str | None = None
+    title: str = ""
+    source: str = ""
+    on: str
+    behind: str
+    front: Distance
+    base: Distance = 0.0
+    size: BoxSize
+    materials: dict[str, Material]
+    sections: dict[str, SectionEntry] = Field(default_factory=dict)
+    frame: Frame = Field(default_factory=Frame)
+    panels: Panels = Field(default_factory=Panels)
+    mesh: MeshEntry
+    damping: tuple[DampingPoint, DampingPoint]
+    mass: Literal["total", "effective"] = "total"
+
+    @model_validator(mode="after")
+    def _two_frequencies(self) -> FrameFile:
+        first, second = self.damping
+        if math.isclose(first.frequency, second.frequency):
+            raise PydanticCustomError("joint", "Rayleigh damping needs ratios at two different frequencies")
+        alpha, beta = rayleigh(first, second)
+        if min(alpha, beta) < 0:
+            reason = "no Rayleigh damping has these two ratios: mass or stiffness damping would be negative; choose ratios nearer to each other"
+            raise PydanticCustomError("joint", "{reason}", {"reason": reason})
+        return self
+
+
+def rayleigh(first: DampingPoint, second: DampingPoint) -> tuple[float, float]:
+    """Return alpha [1/s] and beta [s] of C = alpha M + beta K with zeta = (alpha/w + beta w)/2 at two points."""
+    w1, w2 = 2 * math.pi * first.frequency, 2 * math.pi * second.frequency
+    alpha = 2 * w1 * w2 * (first.ratio * w2 - second.ratio * w1) / (w2**2 - w1**2)
+    beta = 2 * (second.ratio * w2 - first.ratio * w1) / (w2**2 - w1**2)
+    tiny = 1e-12 * max(first.ratio, second.ratio)
+    return (0.0 if abs(alpha) < tiny * w1 else alpha), (0.0 if abs(beta) < tiny / w1 else beta)
+
+
+@dataclass(frozen=True)
+class FrameModule:
+    """A checked frame file with the places of its values."""
+
+    file: FrameFile
+    path: Path
+    document: Located
+
+    def layer(self, panel: Panel) -> Layer:
+        """Return a panel's equivalent single layer."""
+        found = (self.file.materials[entry.material] for entry in panel.layers)
+        layers = [Layer(entry.thickness, item.E, item.nu, item.density) for entry, item in zip(panel.layers, found, strict=True)]
+        return equivalent_layer(layers, panel.bonded)
+
+
+def load_frame(path: str | Path) -> FrameModule:
+    """Read and check a frame file.
+
+    Raises
+    ------
+    InputError
+        With file, line and column, what is wrong and what would be right.
+
+    """
+    path = Path(path)
+    document = read_document(path)
+    if not isinstance(document.value, dict):
+        raise InputError("a file of `key: value` lines was expected", document.position)
+    frame = FrameModule(validate(FrameFile, document.plain(), document), path, document)
+    _check(frame)
+    return frame
+
+
+def _check(frame: FrameModule) -> None:
+    file, document = frame.file, frame.document
+
+    def known(kind: str, name: str, allowed: dict[str, Material] | dict[str, SectionEntry], *place: str | int) -> None:
+        if name not in allowed:
+            raise InputError(f"no {kind} {name!r}; {did_you_mean(name, allowed)}", document.find(place))
+
+    for name, member in file.frame.members():
+        known("material", member.material, file.materials, "frame", name, "material")
+        known("section", member.section, file.sections, "frame", name, "section")
+        if file.materials[member.material].E == 0:
+            raise InputError(f"a frame member needs a material with E above 0; {member.material!r} has none", document.find(("frame", name)))
+    for _, key, panel in file.panels.faces():
+        for index, layer in enumerate(panel.layers):
+            known("material", layer.material, file.materials, "panels", key, "layers", index, "material")
+        if not any(file.materials[layer.material].E > 0 for layer in panel.layers):
+            raise InputError("a panel needs a layer with E above 0", document.find(("panels", key)))
+    if not any(True for _ in file.panels.faces()) and not any(True for _ in file.frame.members()):
+        raise InputError("a module needs frame members or panels", document.position)
