@@ -83,13 +83,18 @@ def box_mesh(frame: FrameModule, size: float) -> tuple[Mesh, Indices]:
     def node(point: GridPoint) -> int:
         return numbers.setdefault(point, len(numbers))
 
-    quads, quad_kinds, layers = [], [], []
+    quads: list[list[int]] = []
+    quad_kinds: list[int] = []
+    layers: list[Layer] = []
     for face, _, panel in frame.file.panels.faces():
-        for corners in _face_quads(face, grid):
-            quads.append([node(point) for point in corners])
+        for rectangle in _face_quads(face, grid):
+            quads.append([node(point) for point in rectangle])
             quad_kinds.append(len(layers))
         layers.append(frame.layer(panel))
-    beams, beam_kinds, beam_up, kinds = [], [], [], []
+    beams: list[list[int]] = []
+    beam_kinds: list[int] = []
+    beam_up: list[tuple[float, float, float]] = []
+    kinds: list[BeamKind] = []
     for name, member in frame.file.frame.members():
         material = frame.file.materials[member.material]
         for axis, points in _member_lines(name, member, grid):

@@ -103,7 +103,9 @@ def _match(
         for j, other in enumerate(light):
             shape = np.zeros(len(names))
             shape[shared] = other.shape
-            likeness[i, j] = _assurance(mode.shape, shape, M) - 0.1 * abs(np.log(max(mode.undamped_hz, 1e-9) / max(other.undamped_hz, 1e-9)))
+            likeness[i, j] = _assurance(mode.shape, shape, M) - 0.1 * abs(
+                np.log(max(mode.undamped_hz, 1e-9) / max(other.undamped_hz, 1e-9))
+            )
     rows, columns = scipy.optimize.linear_sum_assignment(-likeness)
     partner = {int(i): int(j) for i, j in zip(rows, columns, strict=True) if likeness[i, j] > _MIN_LIKENESS}
     return [(mode.name, light[partner[i]].undamped_hz if i in partner else None, mode.undamped_hz) for i, mode in enumerate(heavy)]

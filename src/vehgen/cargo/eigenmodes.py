@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse
 from numpy.typing import NDArray
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh, splu
 
@@ -19,6 +18,8 @@ SPURIOUS = 0.5
 """A mode with a larger share of its strain energy in hourglass control is an artefact."""
 ZERO_HZ = 1e-3
 """Below it a mode is a mechanism."""
+BAND_HZ = 25.0
+"""Modes are sought up to here at least: what vehicles excite."""
 FIRST_COUNT, MOST = 16, 256
 
 
@@ -87,7 +88,7 @@ def eigenmodes(matrices: ElementMatrices, held: NDArray[np.int64], count: int | 
     held
         Degrees of freedom that cannot move (six a node).
     count
-        How many modes; None: as many as it takes to be sure of the largest effective mass, at most MOST.
+        How many modes; None: as many as it takes to pass BAND_HZ or to be sure of the largest effective mass, at most MOST.
 
     Raises
     ------
@@ -115,7 +116,7 @@ def eigenmodes(matrices: ElementMatrices, held: NDArray[np.int64], count: int | 
         frequency = np.sqrt(np.maximum(squares, 0.0)) / (2 * math.pi)
         genuine = np.where(hourglass <= SPURIOUS, effective, 0.0)
         complete = bool(total - effective.sum() <= genuine.max())
-        if count is not None or complete or wanted >= min(MOST, len(free) - 1):
+        if count is not None or complete or frequency[-1] > BAND_HZ or wanted >= min(MOST, len(free) - 1):
             by_node = shapes.T.reshape(wanted, -1, 6)
             return Eigenmodes(frequency, by_node, effective, hourglass, complete)
         wanted *= 2
@@ -137,7 +138,7 @@ def _solve(K: Sparse, M: Sparse, solve: LinearOperator, count: int) -> tuple[Arr
     """Return (2 pi f)^2 `shape (count,)` in ascending order and vectors `shape (n_free, count)` of unit modal mass."""
     start = np.random.default_rng(1).standard_normal(K.shape[0])
     try:
-        squares, vectors = eigsh(K, count, M=M, sigma=0.0, OPinv=solve, which="LM", v0=start)
+        squares, vectors = eigsh(K, count, M=M, sigma=0.0, OPinv=solve, which="LM", v0=start, tol=1e-9)
     except ArpackNoConvergence as error:
         raise InputError(f"only {len(error.eigenvalues)} of {count} eigenmodes were found; choose another mesh size") from error
     order = np.argsort(squares)

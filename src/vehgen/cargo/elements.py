@@ -8,7 +8,7 @@ panels they share nodes with.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import scipy.sparse
@@ -18,7 +18,7 @@ from vehgen.cargo.box_mesh import BeamKind, Mesh
 from vehgen.errors import InputError
 
 Array = NDArray[np.float64]
-Sparse = scipy.sparse.csc_matrix
+Sparse: TypeAlias = scipy.sparse.csc_matrix
 SHEAR_FACTOR = 5 / 6
 """Shear correction of plates and of every section."""
 

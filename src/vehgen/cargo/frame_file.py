@@ -142,7 +142,9 @@ class FrameFile(Noun):
             raise PydanticCustomError("joint", "Rayleigh damping needs ratios at two different frequencies")
         alpha, beta = rayleigh(first, second)
         if min(alpha, beta) < 0:
-            reason = "no Rayleigh damping has these two ratios: mass or stiffness damping would be negative; choose ratios nearer to each other"
+            reason = (
+                "no Rayleigh damping has these two ratios: mass or stiffness damping would be negative; choose ratios nearer to each other"
+            )
             raise PydanticCustomError("joint", "{reason}", {"reason": reason})
         return self
 
@@ -200,7 +202,9 @@ def _check(frame: FrameModule) -> None:
         known("material", member.material, file.materials, "frame", name, "material")
         known("section", member.section, file.sections, "frame", name, "section")
         if file.materials[member.material].E == 0:
-            raise InputError(f"a frame member needs a material with E above 0; {member.material!r} has none", document.find(("frame", name)))
+            raise InputError(
+                f"a frame member needs a material with E above 0; {member.material!r} has none", document.find(("frame", name))
+            )
     for _, key, panel in file.panels.faces():
         for index, layer in enumerate(panel.layers):
             known("material", layer.material, file.materials, "panels", key, "layers", index, "material")

@@ -157,7 +157,13 @@ def _rigid_bodies(prefix: str, body: str, title: str, on: str, x: str, z: str, h
 def _module_bodies(prefix: str, body: str, title: str, on: str, x: str, z: str, has_fixed: bool) -> list[str]:
     behind = f"{x} - {prefix}front - {prefix}cog_behind_front"
     carried = f"    carried_by: {{body: {on}, x: '{behind}', z: '{z} + {prefix}base + {prefix}cog_above_floor'}}"
-    lines = ["bodies:", f"  {body}:", f"    title: {_quoted(title)}", f"    mass: {prefix}mass", f"    pitch_inertia: {prefix}pitch_inertia"]
+    lines = [
+        "bodies:",
+        f"  {body}:",
+        f"    title: {_quoted(title)}",
+        f"    mass: {prefix}mass",
+        f"    pitch_inertia: {prefix}pitch_inertia",
+    ]
     lines += ["    motions: [heave]", carried]
     if has_fixed:
         fixed_title = f"{title}, fixed part"

@@ -19,9 +19,9 @@ from vehgen.cargo.elements import assemble
 from vehgen.cargo.frame_file import FrameModule, rayleigh
 from vehgen.errors import InputError
 
-BYTES_PER_NODE = 25_000
-"""Memory that assembly and factorisation take at 20 000 nodes; it grows a little faster than the number of nodes."""
-MOST_NODES = 120_000
+BYTES_PER_NODE = 80_000
+"""Memory that assembly and factorisation take (about 50 kB a node at 13 000 nodes), with room for growth."""
+MOST_NODES = 50_000
 DOUBTFUL_SHARE = 0.5
 COARSE_HOURGLASS = 0.05
 
@@ -178,9 +178,11 @@ def _doubts(modes: Eigenmodes, body: RigidBody) -> list[str]:
             else f"the principal vertical mode moves {share:.0%} of the mass"
         )
     if modes.hourglass[principal] > COARSE_HOURGLASS:
-        found.append(f"{modes.hourglass[principal]:.0%} of the principal mode's strain energy is hourglass control: choose a smaller mesh size")
+        found.append(
+            f"{modes.hourglass[principal]:.0%} of the principal mode's strain energy is hourglass control: choose a smaller mesh size"
+        )
     if not modes.complete:
-        found.append(f"among more than {len(modes.frequency)} modes another may move more mass vertically")
+        found.append(f"modes were sought up to {modes.frequency[-1]:.3g} Hz; a higher one may move more mass vertically")
     return found
 
 

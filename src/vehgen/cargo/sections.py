@@ -46,7 +46,9 @@ class Walled(Noun):
     @model_validator(mode="after")
     def _hollow(self) -> Walled:
         if 2 * self.thickness >= min(self.height, self.width):
-            raise PydanticCustomError("joint", "a wall is less than half as thick as the section is high and wide; use `bar` for a full one")
+            raise PydanticCustomError(
+                "joint", "a wall is less than half as thick as the section is high and wide; use `bar` for a full one"
+            )
         return self
 
 

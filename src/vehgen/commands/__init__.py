@@ -9,10 +9,10 @@ import warnings
 from collections.abc import Sequence
 from typing import TextIO
 
-from vehgen.commands import bench, build, calibrate, laden, models, modes, schema, sensitivity, sensors, simulate, static, validate
+from vehgen.commands import bench, build, calibrate, laden, models, modes, module, schema, sensitivity, sensors, simulate, static, validate
 from vehgen.errors import InputError, ModelWarning
 
-COMMANDS = (build, modes, static, simulate, calibrate, validate, sensitivity, sensors, laden, models, schema, bench)
+COMMANDS = (build, modes, static, simulate, calibrate, validate, sensitivity, sensors, laden, module, models, schema, bench)
 
 
 def make_parser() -> argparse.ArgumentParser:
