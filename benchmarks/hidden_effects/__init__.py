@@ -1,0 +1,1 @@
+"""Blind trials: recordings of vehicles with a hidden effect, made by a simulator that shares no code with vehgen."""
