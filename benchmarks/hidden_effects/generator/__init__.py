@@ -7,6 +7,7 @@ Runge-Kutta integrates it (integrate.py), and phones sample it with noise (simul
 from benchmarks.hidden_effects.generator.cases import (
     REFERENCE_RUN,
     SENSORS,
+    SHARP_RUN,
     SILENT,
     Case,
     Effect,
@@ -27,6 +28,7 @@ __all__ = [
     "EFFECTS",
     "REFERENCE_RUN",
     "SENSORS",
+    "SHARP_RUN",
     "SILENT",
     "Case",
     "Effect",

@@ -94,13 +94,19 @@ REFERENCE_RUN: dict[str, RunSpec] = {
 }
 """The hump run of a vehicle on which effects are scaled and tested."""
 
+SHARP_RUN: dict[str, RunSpec] = {
+    "sedan2": RunSpec((Hump(0.4, 0.06, 3.0),), 5.0, 4.0, "sharp"),
+    "tractor5": RunSpec((Hump(0.4, 0.05, 4.0),), 2.5, 10.0, "sharp"),
+}
+"""A hump run that lifts tyres off the road."""
+
 
 @dataclass(frozen=True)
 class Case:
     """A trial. `parameters` None: nominal ones with every calibratable one off by a random 5 %, from the seed.
 
     `sampling`: "point" keeps the value at every 10 ms; "filtered" passes a zero-phase low-pass (flat to 40 Hz) first. `step` [s]
-    None: 0.1 ms, with dry friction 0.05 ms.
+    None: 0.1 ms, with dry friction or free play 0.05 ms.
     """
 
     vehicle: str

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from benchmarks.hidden_effects.generator.cases import REFERENCE_RUN, Case, Effect
+from benchmarks.hidden_effects.generator.cases import REFERENCE_RUN, SHARP_RUN, Case, Effect, RunSpec
 from benchmarks.hidden_effects.generator.effects import EFFECTS
 from benchmarks.hidden_effects.generator.integrate import OutputRow, assemble, integrate
 from benchmarks.hidden_effects.generator.setup import Reading, Setup
@@ -21,7 +21,8 @@ Range = tuple[float, float]
 @dataclass(frozen=True)
 class EffectOption:
     """An effect at a place: ranges of every value, SI units, for a weak and a visible effect. `listed`: whether a library of candidates
-    should hold it."""
+    should hold it; `run`: a run on which it shows (lift-off needs a sharper hump than the others).
+    """
 
     name: str
     place: str
@@ -30,6 +31,7 @@ class EffectOption:
     weak: dict[str, Range]
     visible: dict[str, Range]
     neutral: dict[str, float]
+    run: RunSpec
 
     def draw(self, rng: np.random.Generator, level: str = "visible") -> Effect:
         """Return the effect with values drawn from the ranges of a level, "weak" or "visible": logarithmically where both ends are
@@ -50,13 +52,14 @@ def list_effects(vehicle: str) -> list[EffectOption]:
     scales = Scales(vehicle)
     options = []
     for kind in EFFECTS.values():
+        run = (SHARP_RUN if kind.name == "tyre_liftoff" else REFERENCE_RUN)[vehicle]
         for place in kind.places(vehicle):
             size = {value.name: scales.scale(value.scale, place) for value in kind.values}
             weak, visible = (
                 {v.name: (getattr(v, level)[0] * size[v.name], getattr(v, level)[1] * size[v.name]) for v in kind.values}
                 for level in ("weak", "visible")
             )
-            options.append(EffectOption(kind.name, place, kind.listed, kind.equation, weak, visible, kind.neutral))
+            options.append(EffectOption(kind.name, place, kind.listed, kind.equation, weak, visible, kind.neutral, run))
     return options
 
 
@@ -80,7 +83,8 @@ class Scales:
 
     def scale(self, name: str, place: str) -> float:
         """Return the size called `name` at a place, SI units. Raises KeyError for an unknown one."""
-        plain = {"one": lambda: 1.0, "wheel": lambda: 0.6 if self.vehicle == "sedan2" else 1.0}
+        sedan = self.vehicle == "sedan2"
+        plain = {"one": lambda: 1.0, "bending": lambda: 2.2 if sedan else 1.0, "wheel": lambda: 0.6 if sedan else 1.0}
         at_axle = {
             "load": lambda: self.static[f"tyre:{place}"],
             "k": lambda: self.layout.axles[place].k,

@@ -11,6 +11,7 @@ from scipy import signal
 from benchmarks.hidden_effects.generator.cases import SENSORS, Case, Hump, Recording, RunSpec, SensorSpec
 from benchmarks.hidden_effects.generator.effects import EFFECTS
 from benchmarks.hidden_effects.generator.integrate import Assembled, OutputRow, assemble, integrate
+from benchmarks.hidden_effects.generator.laws import FREE_PLAY
 from benchmarks.hidden_effects.generator.roads import HalfSine, Points, Road, random_road
 from benchmarks.hidden_effects.generator.setup import Reading, Setup
 from benchmarks.hidden_effects.generator.system import GRAVITY, System, Term, base_system
@@ -54,7 +55,7 @@ def simulate_case(case: Case) -> list[Recording]:
     """Return what the phones record on every run of a case."""
     setup = prepare(case)
     model = assemble(setup.system, [terms for terms, _ in setup.forces])
-    step = case.step or (0.5e-4 if np.any(model.dry > 0) else 1e-4)
+    step = case.step or (0.5e-4 if np.any(model.dry > 0) or np.any(model.kind == FREE_PLAY) else 1e-4)
     outputs = [row for sensor in sensors_of(case) for row in sensor_rows(setup.system, setup.readings[sensor.name], sensor)]
     return [_simulate_run(case, setup, model, outputs, run, number, step) for number, run in enumerate(case.runs)]
 

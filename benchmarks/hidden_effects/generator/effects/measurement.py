@@ -30,7 +30,7 @@ def _speed(setup: Setup, place: str, p: Values) -> None:
 MEASUREMENT = (
     EffectKind(
         "sensor_gain", "the channel reads (1 + error) times what it should", channels,
-        (Value("error", "-", "relative error of the gain", (0.03, 0.06), (0.15, 0.3), neutral=0.0),), _gain,
+        (Value("error", "-", "relative error of the gain", (0.05, 0.1), (0.15, 0.3), neutral=0.0),), _gain,
     ),
     EffectKind(
         "sensor_position", "the phone sits `shift` further ahead than noted", sensors,
@@ -39,7 +39,7 @@ MEASUREMENT = (
     EffectKind(
         "sensor_tilt", "the phone is tilted nose-down by `angle`: it reads z'' cos(angle) + x'' sin(angle) - g theta sin(angle) "
         "(its reading at rest taken off)", sensors,
-        (Value("angle", "rad", "tilt about the pitch axis, nose-down positive", (0.05, 0.1), (0.3, 0.6), neutral=0.0),), _tilt,
+        (Value("angle", "rad", "tilt about the pitch axis, nose-down positive", (0.1, 0.2), (0.35, 0.6), neutral=0.0),), _tilt,
     ),
     EffectKind(
         "sensor_delay", "the phone's clock is late: both channels read what was `time` earlier", sensors,
@@ -47,6 +47,6 @@ MEASUREMENT = (
     ),
     EffectKind(
         "speed_error", "the vehicle is faster than noted by the share `error`", everywhere,
-        (Value("error", "-", "relative error of the speed", (0.005, 0.01), (0.03, 0.06), neutral=0.0),), _speed,
+        (Value("error", "-", "relative error of the speed", (0.003, 0.006), (0.02, 0.06), neutral=0.0),), _speed,
     ),
 )  # fmt: skip

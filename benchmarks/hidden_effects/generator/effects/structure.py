@@ -120,7 +120,7 @@ STRUCTURE = (
         "phones feel it",
         long_body,
         (
-            Value("frequency", "Hz", "of the body alone", (8.0, 12.0), (4.0, 7.0)),
+            Value("frequency", "Hz", "of the body alone", (8.0, 12.0), (4.0, 7.0), "bending"),
             Value("damping", "-", "damping ratio", (0.01, 0.03), (0.01, 0.03)),
             Value("modal_mass_share", "-", "modal mass over the body's (uniform beam: 0.8)", (0.6, 1.0), (0.6, 1.0)),
             Value("participation", "-", "size of the shape", (1.0, 1.0), (1.0, 1.0), neutral=0.0),
@@ -151,7 +151,7 @@ STRUCTURE = (
         "engine_harmonic", "F = amplitude sin(2 pi (f t + drift f t^2/(2 T)) + random phase) upwards at x, running before the "
         "recording starts", front_body,
         (
-            Value("amplitude", "N", "of the force", (0.003, 0.006), (0.02, 0.06), "weight", 0.0),
+            Value("amplitude", "N", "of the force", (0.006, 0.012), (0.02, 0.06), "weight", 0.0),
             Value("frequency", "Hz", "at the start", (18.0, 30.0), (18.0, 30.0)),
             Value("drift", "-", "relative change of the frequency over the run", (-0.02, 0.02), (-0.02, 0.02)),
             Value("x", "m", "ahead of the body's COG", (0.1, 0.3), (0.1, 0.3), "length"),

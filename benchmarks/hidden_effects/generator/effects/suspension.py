@@ -60,8 +60,8 @@ SUSPENSION = (
         "bump_stop", "f = k (max(d - clearance, 0) - max(-d - rebound, 0))", suspensions,
         (
             Value("k", "N/m", "stiffness of the stops", (3.0, 8.0), (3.0, 8.0), "k", 0.0),
-            Value("clearance", "m", "travel to the stop in bump", (0.8, 0.92), (0.35, 0.65), "d"),
-            Value("rebound", "m", "travel to the stop in rebound", (0.9, 1.5), (0.5, 1.0), "d"),
+            Value("clearance", "m", "travel to the stop in bump", (0.6, 0.75), (0.3, 0.55), "d"),
+            Value("rebound", "m", "travel to the stop in rebound", (0.8, 1.0), (0.4, 0.8), "d"),
         ), _stop,
     ),
     EffectKind(

@@ -40,7 +40,7 @@ TYRE_AND_HINGE = (
     ),
     EffectKind(
         "tyre_damping", "f = ct v, ct = ratio 2 sqrt(kt m_axle)", axles_and_all,
-        (Value("ratio", "-", "damping ratio of the axle on its tyre", (0.005, 0.015), (0.03, 0.08), neutral=0.0),), _damping,
+        (Value("ratio", "-", "damping ratio of the axle on its tyre", (0.015, 0.03), (0.06, 0.15), neutral=0.0),), _damping,
     ),
     EffectKind(
         "tyre_footprint", "the tyre sees the mean of the road over the contact length, centred under the axle", everywhere,

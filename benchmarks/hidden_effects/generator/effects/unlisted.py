@@ -122,7 +122,7 @@ UNLISTED = (
         "brake_pulses", "half-sine moments on the body, nose-down, at random times, of random size up to `moment`: a driver who "
         "dabs the brakes", front_body,
         (
-            Value("moment", "N m", "of the largest pulse", (0.004, 0.01), (0.03, 0.08), "weight length", 0.0),
+            Value("moment", "N m", "of the largest pulse", (0.008, 0.015), (0.04, 0.12), "weight length", 0.0),
             Value("length", "s", "of a pulse", (0.3, 0.6), (0.3, 0.6)),
             Value("pulses", "-", "in a run", (2.0, 5.0), (2.0, 5.0)),
         ), _brakes, listed=False,

@@ -1,0 +1,1 @@
+"""Tests of the trials with hidden effects."""
