@@ -1,1 +1,1 @@
-"""Tests of the trials with hidden effects."""
+"""Trials with hidden effects."""

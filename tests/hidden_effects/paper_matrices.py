@@ -1,4 +1,5 @@
-"""M, C, K and P of the two vehicles as Wu & Li 2023 print them (doi:10.3390/s23249691; signs restored, nose-down), and their exact solution."""
+"""M, C, K and P of the two vehicles as Wu & Li 2023 print them (doi:10.3390/s23249691; signs restored, nose-down),
+and their exact solution."""
 
 from __future__ import annotations
 

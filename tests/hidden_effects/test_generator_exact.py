@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
-from scipy.linalg import eigh
-
 from benchmarks.hidden_effects.generator import SILENT, Case, Effect, Hump, RunSpec, nominal, perturbed, simulate_case
 from benchmarks.hidden_effects.generator.integrate import OutputRow, assemble, integrate
 from benchmarks.hidden_effects.generator.laws import CUBIC
 from benchmarks.hidden_effects.generator.system import Law, base_system
 from benchmarks.hidden_effects.generator.vehicles import layout
+from scipy.integrate import solve_ivp
+from scipy.linalg import eigh
+
 from tests.hidden_effects import paper_matrices
 
 HUMP = RunSpec((Hump(0.5, 0.03, 0.6),), 3.0, 3.0)
@@ -32,7 +32,8 @@ def sedan_road(p, run=HUMP):
 
 
 @pytest.mark.parametrize(
-    ("vehicle", "matrices", "wheels"), [("sedan2", paper_matrices.sedan, [0.0, 2.8]), ("tractor5", paper_matrices.tractor, [0.0, 3.46, 4.8, 12.25, 13.48])]
+    ("vehicle", "matrices", "wheels"),
+    [("sedan2", paper_matrices.sedan, [0.0, 2.8]), ("tractor5", paper_matrices.tractor, [0.0, 3.46, 4.8, 12.25, 13.48])],
 )
 def test_linear_vehicle_is_the_exact_solution(vehicle, matrices, wheels):
     p = perturbed(vehicle, 4)
@@ -77,7 +78,9 @@ def test_static_loads_carry_the_weight():
         static = base_system(layout(vehicle, p)).static_forces()
         tyres = sum(force for name, force in static.items() if name.startswith("tyre"))
         assert tyres == pytest.approx(9.81 * sum(p[name] for name in masses), rel=1e-9)
-    assert base_system(layout("sedan2", nominal("sedan2"))).static_forces()["tyre:front"] == pytest.approx(9.81 * (1500 * 1.62 / 2.8 + 90), rel=1e-9)
+    assert base_system(layout("sedan2", nominal("sedan2"))).static_forces()["tyre:front"] == pytest.approx(
+        9.81 * (1500 * 1.62 / 2.8 + 90), rel=1e-9
+    )
 
 
 def sedan_rates(p, force):
@@ -124,7 +127,7 @@ def test_laws_against_scipy(name):
 
 
 def friction_with_events(p, F):
-    """Return t and velocities of the sedan with Coulomb friction in front: modes stick, slip up and slip down, switched at events of scipy."""
+    """Return t and velocities of the sedan with Coulomb friction in front: modes stick, slip up and down, switched at events of scipy."""
     M, C, K, P = paper_matrices.sedan(p)
     g = np.array([-1.0, p["Lf"], 1.0, 0.0])
     road = sedan_road(p)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -76,6 +77,19 @@ class Road:
         return out
 
 
+@njit(cache=True)
+def _waves(start, spacing, count, w, a, b):
+    """Return the sum of a cos(w s) + b sin(w s) at `count` points, every wave turned on from point to point."""
+    out = np.zeros(count)
+    for i in range(w.size):
+        cos, sin = np.cos(w[i] * start), np.sin(w[i] * start)
+        turn_cos, turn_sin = np.cos(w[i] * spacing), np.sin(w[i] * spacing)
+        for j in range(count):
+            out[j] += a[i] * cos + b[i] * sin
+            cos, sin = cos * turn_cos - sin * turn_sin, sin * turn_cos + cos * turn_sin
+    return out
+
+
 def random_road(roughness: str, start: float, end: float, rng: np.random.Generator, taper: bool, scale: float = 1.0) -> Points:
     """Return a random road with Gd(n) = Gd(n0) (n/n0)^-2 between 0.011 and 2.83 cycles/m from `start` to `end` [m], points every 10 mm.
 
@@ -87,10 +101,7 @@ def random_road(roughness: str, start: float, end: float, rng: np.random.Generat
     sigma = np.sqrt(ROUGHNESS[roughness] * (n / 0.1) ** -2.0 * np.diff(edges))
     a, b = rng.standard_normal((2, 500)) * sigma
     s = SPACING * np.arange(np.floor(start / SPACING), np.ceil(end / SPACING) + 1)
-    height = np.zeros_like(s)
-    for block in np.array_split(np.arange(500), 10):
-        phase = 2.0 * np.pi * np.outer(s, n[block])
-        height += np.cos(phase) @ a[block] + np.sin(phase) @ b[block]
+    height = _waves(s[0], SPACING, len(s), 2.0 * np.pi * n, a, b)
     if taper:
         height *= 0.5 - 0.5 * np.cos(np.pi * np.clip(s / TAPER, 0.0, 1.0))
     return Points(s, scale * height)
