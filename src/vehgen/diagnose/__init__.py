@@ -1,0 +1,1 @@
+"""What is missing? Detect, localise, name, add, verify."""

@@ -1,0 +1,23 @@
+"""The numbers by which a diagnosis decides; set on cases made for developing, and not moved afterwards.
+
+chi is the root of the mean square of the whitened residuals: 1 is noise alone. An excess is chi^2 - 1.
+"""
+
+NOISE_FLOOR = 1.06
+"""At or below this chi nothing is missing."""
+WEAK = 1.12
+"""Up to this chi something is there, but too weak to be named."""
+PLACE_PASSES = 1.10
+"""A place passes below this chi."""
+PLACE_SHARE = 0.03
+"""A place also passes when it leaves no more than this share of the excess without any unknown."""
+MOST_PLACES = 4
+"""So many places at most go on to the laws."""
+LAW_PASSES = 0.10
+"""A law passes when it leaves no more than this share of the excess, on the training runs and on untouched ones."""
+LAW_CHI = 1.15
+"""A law also passes below this chi."""
+TIE = 3.0
+"""Candidates whose excess is within this factor of the best one's (and of the noise floor's) are tied with it."""
+SIGNIFICANT = 0.01
+"""Largest p-value, times the number of candidates tried, at which an effect counts as there."""
