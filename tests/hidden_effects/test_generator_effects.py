@@ -192,10 +192,11 @@ def test_free_play_against_events_of_scipy():
 
 
 def test_air_spring_against_scipy_and_its_limits():
-    p, kappa, p0, A = nominal("sedan2"), 1.4, 6e5, 0.04
+    p, kappa, p0, height = nominal("sedan2"), 1.4, 6e5, 0.12
     k, ratio, flow_time, heat_time = 5e4, 2.0, 0.3, 0.8
-    V, tank = kappa * p0 * A**2 / k, ratio * kappa * p0 * A**2 / k
-    values = {"stiffness": k, "volume_ratio": ratio, "flow_time": flow_time, "heat_time": heat_time}
+    A = k * height / (kappa * p0)
+    V, tank = A * height, ratio * A * height
+    values = {"stiffness": k, "height": height, "volume_ratio": ratio, "flow_time": flow_time, "heat_time": heat_time}
     run = RunSpec((Hump(0.5, 0.03, 0.6),), 3.0, 3.0)
     found = clean("sedan2", Effect("two_chamber_air_spring", "front", values), run=run)
 
@@ -212,7 +213,7 @@ def test_air_spring_against_scipy_and_its_limits():
 
     answer = solve_ivp(sedan_rates(p, force), (0, 3), np.zeros(11), "DOP853", 0.01 * np.arange(301), rtol=1e-8, atol=1e-11, max_step=2e-3)
     assert np.linalg.norm(found["F_q"] - answer.y[5]) < 1e-5 * np.linalg.norm(answer.y[5])
-    closed = {"stiffness": 1e3, "volume_ratio": 1.0, "flow_time": 1e6, "heat_time": 1e6}
+    closed = {"stiffness": 1e3, "height": 50.0, "volume_ratio": 1.0, "flow_time": 1e6, "heat_time": 1e6}
     stiffer = simulate_case(Case("sedan2", {**p, "kf": p["kf"] + 1e3}, (), (run,), noise=SILENT))[0].clean
     assert distance(clean("sedan2", Effect("two_chamber_air_spring", "front", closed), run=run), stiffer) < 1e-5
 

@@ -13,7 +13,7 @@ from benchmarks.hidden_effects.generator.setup import Setup
 from benchmarks.hidden_effects.generator.system import Element, Term
 
 Array = NDArray[np.float64]
-AIR_PRESSURE, AIR_AREA = 6e5, 0.04
+AIR_PRESSURE = 6e5
 
 
 def _free_play(setup: Setup, place: str, p: Values) -> None:
@@ -38,8 +38,9 @@ def _position_damping(setup: Setup, place: str, p: Values) -> None:
 def _air_spring(setup: Setup, place: str, p: Values) -> None:
     if p["stiffness"] == 0.0:
         return
-    volume = laws.KAPPA * AIR_PRESSURE * AIR_AREA**2 / p["stiffness"]
-    parameters = (AIR_AREA, AIR_PRESSURE, volume, volume * p["volume_ratio"], p["flow_time"], p["heat_time"])
+    area = p["stiffness"] * p["height"] / (laws.KAPPA * AIR_PRESSURE)
+    volume = area * p["height"]
+    parameters = (area, AIR_PRESSURE, volume, volume * p["volume_ratio"], p["flow_time"], p["heat_time"])
     setup.add_law(place, laws.AIR_SPRING, *parameters, states=(AIR_PRESSURE, AIR_PRESSURE, 0.0))
 
 
@@ -109,10 +110,11 @@ UNLISTED = (
         "two_chamber_air_spring",
         "an air spring and a tank joined by an orifice, both exchanging heat with their walls: f = A (P1 - p0), gas laws in "
         "laws.py, flow with the root of the pressure difference; "
-        f"p0 = {AIR_PRESSURE:g} Pa, A = {AIR_AREA} m^2",
+        f"p0 = {AIR_PRESSURE:g} Pa, A = stiffness height/(1.4 p0)",
         suspensions,
         (
             Value("stiffness", "N/m", "fast (adiabatic, closed orifice) stiffness", (0.15, 0.3), (0.8, 2.0), "k", 0.0),
+            Value("height", "m", "of the spring's air column, volume over area", (4.0, 8.0), (4.0, 8.0), "d"),
             Value("volume_ratio", "-", "tank over spring volume", (1.0, 4.0), (1.0, 4.0)),
             Value("flow_time", "s", "time scale of the orifice", (0.1, 0.6), (0.1, 0.6)),
             Value("heat_time", "s", "time scale of the heat exchange", (0.3, 1.5), (0.3, 1.5)),
