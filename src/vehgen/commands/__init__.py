@@ -9,10 +9,42 @@ import warnings
 from collections.abc import Sequence
 from typing import TextIO
 
-from vehgen.commands import bench, build, calibrate, laden, models, modes, module, schema, sensitivity, sensors, simulate, static, validate
+from vehgen.commands import (
+    bench,
+    build,
+    calibrate,
+    diagnose,
+    effects,
+    laden,
+    models,
+    modes,
+    module,
+    schema,
+    sensitivity,
+    sensors,
+    simulate,
+    static,
+    validate,
+)
 from vehgen.errors import InputError, ModelWarning
 
-COMMANDS = (build, modes, static, simulate, calibrate, validate, sensitivity, sensors, laden, module, models, schema, bench)
+COMMANDS = (
+    build,
+    modes,
+    static,
+    simulate,
+    calibrate,
+    validate,
+    sensitivity,
+    sensors,
+    diagnose,
+    effects,
+    laden,
+    module,
+    models,
+    schema,
+    bench,
+)
 
 
 def make_parser() -> argparse.ArgumentParser:

@@ -10,6 +10,7 @@ from vehgen.commands.terminal import add_json, console, print_json, print_table,
 from vehgen.errors import InputError
 
 if TYPE_CHECKING:
+    from vehgen.identify.calibration import Settings
     from vehgen.identify.outcome import Outcome
 
 EXAMPLE = "python -m vehgen calibrate tractor5.yaml hump_2ms.yaml hump_3ms.yaml --method joint --out calibrated"
@@ -80,7 +81,7 @@ def run(options: argparse.Namespace) -> None:
         raise KeyboardInterrupt
 
 
-def _settings(options: argparse.Namespace):  # type: ignore[no-untyped-def]
+def _settings(options: argparse.Namespace) -> Settings:
     from vehgen.identify.calibration import Settings
     from vehgen.identify.genetic import GeneticSearch
     from vehgen.identify.misfit import Nuisances

@@ -14,6 +14,7 @@ from vehgen.identify.adjustments import Adjustment, Footprint, Gain, HeightScale
 from vehgen.identify.problem import Problem
 from vehgen.identify.space import SearchSpace
 from vehgen.identify.trial import Trial
+from vehgen.measure import MeasuredChannel
 from vehgen.simulate import Simulator
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.loading import extend_vehicle
@@ -71,7 +72,7 @@ def list_candidates(vehicle: Vehicle, trials: Sequence[Trial], effects: Sequence
     return found
 
 
-def _of_sensor(trials: Sequence[Trial], sensor: str):  # type: ignore[no-untyped-def]
+def _of_sensor(trials: Sequence[Trial], sensor: str) -> list[MeasuredChannel]:
     return [channel for trial in trials for channel in trial.measurement.channels if channel.sensor == sensor]
 
 

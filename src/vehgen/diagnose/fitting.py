@@ -9,7 +9,7 @@ import numpy as np
 import scipy.stats
 from numpy.typing import NDArray
 
-from vehgen.diagnose.candidate import Candidate, pose, starts
+from vehgen.diagnose.candidate import Candidate, pose, retarget, starts
 from vehgen.effects import Surveyor
 from vehgen.identify.misfit import Misfit, Noises, Nuisances
 from vehgen.identify.polish import Polished, polish
@@ -122,31 +122,20 @@ def judge(candidate: Candidate | None, fit: Polished, held_out: Sequence[Trial],
             (id(vehicle), repr(tuple(c.output for c in trial.measurement.channels)), repr(trial.run.forces())): trial.simulator
             for trial in problem.trials
         }
-        from vehgen.diagnose.candidate import retarget
-
         trials = [retarget(trial, vehicle, shared) for trial in held_out]
         numbers = fit.misfit.adjusted(fit.x)
         frozen = Problem(
             tuple(replace(t, values=t.values | {k: v for k, v in fixed.items() if k not in t.fixed}) for t in trials), _nothing()
         )
-        again = polish(
-            frozen,
-            np.zeros(0),
-            NUISANCES,
-            fit.misfit.band,
-            noises=noises,
-            shared=tuple(_Frozen(item, value) for item, value in zip(fit.misfit.shared, numbers, strict=True)),
-            tolerance=FINE,
+        frozen_shared = tuple(
+            replace(item, neutral=float(value), scale=1e-12) for item, value in zip(fit.misfit.shared, numbers, strict=True)
         )
+        again = polish(frozen, np.zeros(0), NUISANCES, fit.misfit.band, noises=noises, shared=frozen_shared, tolerance=FINE)
         own, own_counts = _by_run(again.misfit, again.x)
         later = _pooled(own, own_counts)
         runs |= own
         counts |= own_counts
     return Fit(candidate, fit, train, later, runs, counts)
-
-
-def _Frozen(item, value):  # type: ignore[no-untyped-def]
-    return replace(item, neutral=float(value), scale=1e-12)
 
 
 def _nothing() -> SearchSpace:

@@ -84,7 +84,7 @@ def find_noise_floor(trials: Sequence[Trial], band: tuple[float, float] = BAND) 
 
 
 def _smooth(variance: Array, weight: Array, power: Array) -> Array:
-    """Return variances a + b power, both coefficients non-negative, by least squares of relative errors, all `shape (n_runs, n_channels)`."""
+    """Return variances a + b power, a, b >= 0, by least squares of relative errors; all `shape (n_runs, n_channels)`."""
     if len(variance) < 3:
         return variance
     found = np.empty_like(variance)

@@ -25,6 +25,7 @@ BAND = (0.5, 40.0)
 """Frequencies compared [Hz]."""
 Progress = Callable[[str, int, int, str], None]
 """Called with the stage, how many of how many, and the best so far."""
+APART = "a run with another hump height and speed tells them apart"
 GLOBAL = ("speed_error", "tyre_footprint", "tyre_damping", "tyre_liftoff", "frame_bending", "suspended_cab", "cargo_module", "walking_beam")
 """Effects that no single place explains, or that reach several: they are tried whatever the place test says."""
 
@@ -96,15 +97,32 @@ def localise(detection: Detection) -> tuple[list[PlaceResult], list[PlaceResult]
     return results, [item for item in reached if item.unknowns == fewest]
 
 
-def shortlist(candidates: Sequence[Candidate], passed: Sequence[PlaceResult], everything: bool = False) -> list[Candidate]:
-    """Return the candidates worth fitting: those that live at the places left, sensor and run effects, and global ones."""
-    if everything or not passed:
+def shortlist(candidates: Sequence[Candidate], places: Sequence[PlaceResult], passed: Sequence[PlaceResult]) -> list[Candidate]:
+    """Return the candidates worth fitting: those that live at the places left, and those that no single force explains.
+
+    A sensor's effects are tried where leaving out the sensor or one of its channels helps; effects of the whole vehicle where one unknown
+    force at one place does not suffice.
+    """
+    if not passed:
         return list(candidates)
-    names = {_owner(item.place) for item in passed} | {name for item in passed for name in item.place.channels}
+    names = {_owner(item.place) for item in passed if item.place.rows}
+    excess = max(max(item.chi for item in places) ** 2 - 1, 1e-9)
+    silenced = {
+        part
+        for item in places
+        if item.place.channels and (item.chi <= limit.PLACE_PASSES or item.chi**2 - 1 <= limit.PLACE_SHARE * excess)
+        for part in (item.place.name, *item.place.channels)
+    }
+    single = bool(names) and passed[0].unknowns == 1
     found = []
     for candidate in candidates:
-        here = any(part in names for part in candidate.place.split("+"))
-        if here or candidate.effect.name in GLOBAL or candidate.effect.attaches == "sensor":
+        if candidate.effect.attaches == "sensor":
+            wanted = candidate.place in silenced or any(part.rpartition("_")[0] == candidate.place for part in silenced)
+        elif candidate.effect.name in GLOBAL:
+            wanted = not single
+        else:
+            wanted = any(part in names for part in candidate.place.split("+"))
+        if wanted:
             found.append(candidate)
     return found
 
@@ -130,9 +148,16 @@ def name(
     fits: list[Fit] = []
     for done, candidate in enumerate(candidates, start=1):
         fit = fit_candidate(
-            candidate, detection.problem, detection.held_out, detection.floor.noises, BAND, surveyor, np.clip(unit, 0.01, 0.99), errors.ravel(),
+            candidate,
+            detection.problem,
+            detection.held_out,
+            detection.floor.noises,
+            BAND,
+            surveyor,
+            np.clip(unit, 0.01, 0.99),
+            errors.ravel(),
             simulators,
-        )  # fmt: skip
+        )
         fits.append(fit)
         if tell is not None:
             best = min(fits, key=_merit)
@@ -196,7 +221,7 @@ def diagnose(
     places, passed = localise(detection)
     say("localise", 1, 1, passed[0].place.label if passed else "no single place")
     candidates = list_candidates(trials[0].run.vehicle, ordered, list(effects if effects is not None else library().values()))
-    chosen = shortlist(candidates, passed, everything)
+    chosen = candidates if everything else shortlist(candidates, places, passed)
     if not chosen:
         raise InputError("no effect of the library can live on this vehicle")
     fits = name(detection, passed, places, chosen, tell)
@@ -212,7 +237,7 @@ def _judge(
     tried: int,
     gap: Gap,
 ) -> Diagnosis:
-    """Stages 4 and 5: is the best effect good enough on untouched runs, alone, and significant?"""
+    """Stages 4 and 5: whether the best effect is good enough on untouched runs, alone in that, and significant."""
     base, best = detection.base, fits[0]
     assert best.candidate is not None
     before = max(base.train - 1, 1e-9), max(base.held_out - 1, 1e-9)
@@ -224,7 +249,10 @@ def _judge(
         after[1] <= limit.LAW_PASSES * before[1] or np.sqrt(max(best.held_out, 0.0)) <= limit.LAW_CHI
     )
     ties = [item for item in fits[1:] if _tied(item, best, before[0])]
-    finish = lambda verdict, chosen=(): Diagnosis(ordered, detection, tuple(places), tuple(passed), tuple(fits), chosen, verdict)  # noqa: E731
+
+    def finish(verdict: Verdict, chosen: tuple[Fit, ...] = ()) -> Diagnosis:
+        return Diagnosis(ordered, detection, tuple(places), tuple(passed), tuple(fits), chosen, verdict)
+
     if p > limit.SIGNIFICANT or (detection.chi <= limit.WEAK and not good):
         return finish(
             Verdict(
@@ -234,19 +262,18 @@ def _judge(
                 gap,
                 labels,
                 next_experiment="a higher hump or a higher speed makes the effect larger",
-            )  # fmt: skip
+            )
         )
     if not good:
         where = sentence([label for label, _ in labels[:3]]) if passed else "no single place"
-        reason = f"the best of {len(fits)} candidates, {best.label}, leaves chi {np.sqrt(best.train):.2f} ({np.sqrt(best.held_out):.2f} untouched)"
+        left = f"chi {np.sqrt(best.train):.2f} ({np.sqrt(best.held_out):.2f} untouched)"
+        reason = f"the best of {len(fits)} candidates, {best.label}, leaves {left}"
         return finish(Verdict("not_in_library", f"{reason}; the residual wants an unknown force at {where}", (), fitted, labels))
     effects = tuple(_named(item, base, fits, p) for item in (best, *ties[:2]))
     if ties:
         reason = f"{sentence([item.label for item in (best, *ties)])} explain the runs equally well"
         return finish(
-            Verdict(
-                "ambiguous", reason, effects, fitted, labels, next_experiment="a run with another hump height and speed tells them apart"
-            ),
+            Verdict("ambiguous", reason, effects, fitted, labels, next_experiment=APART),
             (best,),
         )
     reason = f"{best.label} closes {100 * effects[0].held_out_gain:.1f} % of the excess on untouched runs"

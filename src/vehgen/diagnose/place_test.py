@@ -1,4 +1,4 @@
-"""The place test: where does the model err, before any law is guessed?
+"""The place test: where the model errs, before any law is guessed.
 
 Hypothesis P says that an unknown force history acts at P (or that a channel cannot be used). At every spectral line the columns H_P(f),
 what the sensors show per unit of that force, are projected out of the whitened residual, and the base parameters are refitted to what

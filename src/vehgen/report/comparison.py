@@ -24,6 +24,7 @@ UNITS = {
     "pitch": "rad",
     "pitch_acceleration": "rad/s²",
 }
+LABELS = ("measured", "simulated")
 DECADES = 5
 """What lies further below the peak of a PSD is cut off."""
 
@@ -40,7 +41,12 @@ class Curve:
     simulated: Array
 
 
-def plot_psds(curves: Sequence[Curve], band: tuple[float, float], reference: tuple[str, Curve] | None = None) -> Figure:
+def plot_psds(
+    curves: Sequence[Curve],
+    band: tuple[float, float],
+    reference: tuple[str, Curve] | None = None,
+    labels: tuple[str, str] = LABELS,
+) -> Figure:
     """Plot PSDs on a logarithmic scale, measured broad and grey, simulated thin and blue.
 
     Parameters
@@ -51,12 +57,14 @@ def plot_psds(curves: Sequence[Curve], band: tuple[float, float], reference: tup
         Frequencies shown [Hz].
     reference
         A further PSD for the panels of accelerations, with its name.
+    labels
+        What the two curves are called.
     """
     figure, panels = _grid(len(curves))
     for axes, curve in zip(panels, curves, strict=False):
         inside = (curve.x >= band[0]) & (curve.x <= band[1])
-        axes.semilogy(curve.x[inside], curve.measured[inside], color=MEASURED, lw=2.4, label="measured")
-        axes.semilogy(curve.x[inside], curve.simulated[inside], color=SIMULATED, lw=1.1, label="simulated")
+        axes.semilogy(curve.x[inside], curve.measured[inside], color=MEASURED, lw=2.4, label=labels[0])
+        axes.semilogy(curve.x[inside], curve.simulated[inside], color=SIMULATED, lw=1.1, label=labels[1])
         top = max(curve.measured[inside].max(), curve.simulated[inside].max())
         if reference is not None and curve.quantity == "acceleration":
             axes.semilogy(reference[1].x, reference[1].measured, color=REFERENCE, lw=1.1, ls=(0, (4, 2)), label=reference[0])
@@ -70,12 +78,12 @@ def plot_psds(curves: Sequence[Curve], band: tuple[float, float], reference: tup
     return figure
 
 
-def plot_histories(curves: Sequence[Curve]) -> Figure:
+def plot_histories(curves: Sequence[Curve], labels: tuple[str, str] = LABELS) -> Figure:
     """Plot time histories; `x` is time [s]."""
     figure, panels = _grid(len(curves))
     for axes, curve in zip(panels, curves, strict=False):
-        axes.plot(curve.x, curve.measured, color=MEASURED, lw=2.2, label="measured")
-        axes.plot(curve.x, curve.simulated, color=SIMULATED, lw=0.9, label="simulated")
+        axes.plot(curve.x, curve.measured, color=MEASURED, lw=2.2, label=labels[0])
+        axes.plot(curve.x, curve.simulated, color=SIMULATED, lw=0.9, label=labels[1])
         axes.set_xlim(*_busy(curve))
         axes.set_ylabel(f"{curve.quantity.replace('_', ' ')} [{UNITS.get(curve.quantity, '')}]", color=INK)
         axes.set_xlabel("time [s]", color=INK)

@@ -1,0 +1,98 @@
+"""Find which effect a vehicle's model lacks: where, what, how sure, and what to measure next."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from vehgen.commands.terminal import add_json, console, print_json, print_table
+
+EXAMPLE = "python -m vehgen diagnose tractor5.yaml hump_2ms.yaml hump_3ms.yaml high_2ms.yaml --out diagnosis"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.add_argument("vehicle", metavar="VEHICLE", help="a vehicle file whose `range`s say what may be recalibrated")
+    parser.add_argument("runs", metavar="RUN", nargs="+", help="run files with recordings; three or more, at two hump heights or speeds")
+    parser.add_argument("--effects", metavar="A,B", help="try these effects only (default: the whole library)")
+    parser.add_argument("--everywhere", action="store_true", help="try every effect at every place, whatever the place test says")
+    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for report and files (default: VEHICLE_diagnosis)")
+    add_json(parser)
+
+
+def run(options: argparse.Namespace) -> None:
+    """Diagnose, write the report and the vehicle file, and print the verdict."""
+    import json
+    from dataclasses import replace
+
+    from vehgen.codegen import write_text
+    from vehgen.diagnose.pipeline import diagnose
+    from vehgen.diagnose.writing import effect_file
+    from vehgen.effects import library
+    from vehgen.errors import InputError, did_you_mean
+    from vehgen.identify.trial import load_trials
+    from vehgen.report.diagnosis_page import write_diagnosis_page
+    from vehgen.vehicle import load_vehicle
+
+    known = library()
+    chosen = None
+    if options.effects:
+        names = [part.strip() for part in options.effects.split(",")]
+        for name in names:
+            if name not in known:
+                raise InputError(f"no effect {name!r}; {did_you_mean(name, known)}")
+        chosen = [known[name] for name in names]
+    vehicle = load_vehicle(options.vehicle)
+    trials = load_trials(options.runs, vehicle)
+    folder: Path = options.out or Path(f"{Path(options.vehicle).stem}_diagnosis")
+    folder.mkdir(parents=True, exist_ok=True)
+    status = None if options.json else console().status("detect")
+    if status is not None:
+        status.start()
+
+    def tell(stage: str, done: int, total: int, best: str) -> None:
+        if status is not None:
+            status.update(f"{stage} {done}/{total}  {best}")
+
+    try:
+        found = diagnose(trials, chosen, options.everywhere, tell)
+    finally:
+        if status is not None:
+            status.stop()
+    files = [folder / "diagnosis.json", folder / "report.html"]
+    if found.chosen:
+        name = f"{vehicle.name}_with_{found.chosen[0].candidate.effect.name if found.chosen[0].candidate else 'effect'}"
+        path = folder / f"{name}.yaml"
+        write_text(path, effect_file(found.chosen[0], found.detection.problem, found.verdict, folder, name))
+        found = replace(found, verdict=replace(found.verdict, vehicle_file=str(path)))
+        files.append(path)
+    data = found.verdict.to_dict()
+    write_text(files[0], json.dumps(data, indent=1))
+    write_diagnosis_page(found, files[1])
+    if options.json:
+        print_json({**data, "files": [str(path) for path in files]})
+        return
+    verdict = found.verdict
+    console().print(f"[bold]{verdict.verdict.replace('_', ' ')}[/bold]: {verdict.reason}", highlight=False)
+    effect_rows = [
+        (
+            effect.name,
+            effect.place,
+            name,
+            f"{item.value:.4g} {item.unit}",
+            "" if item.interval is None else f"{item.interval[0]:.4g} to {item.interval[1]:.4g}",
+        )
+        for effect in verdict.effects
+        for name, item in effect.parameters.items()
+    ]
+    if effect_rows:
+        print_table("what is missing", ("effect", "place", "parameter", "value", "90 % interval"), effect_rows, right=(3,))
+    rows = [
+        (run["run"], "checking" if run["untouched"] else "fitting", f"{run['before']:.3f}", f"{run['after']:.3f}")
+        for run in verdict.gap.runs
+    ]
+    print_table("chi (1 is noise alone)", ("run", "used for", "before", "after"), rows, right=(2, 3))
+    if verdict.next_experiment:
+        console().print(f"measure next: {verdict.next_experiment}", highlight=False, markup=False)
+    for path in files:
+        console().print(f"wrote {path}", highlight=False, markup=False)

@@ -1,0 +1,104 @@
+"""Figures of a diagnosis: places, recovered force, what each step closes."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from vehgen.diagnose.pipeline import Diagnosis
+from vehgen.diagnose.place_test import PlaceResult, recover_force
+from vehgen.measure import record_psd
+from vehgen.mechanics.outputs import ElementOutput
+from vehgen.report.canvas import INK
+from vehgen.report.comparison import MEASURED, REFERENCE, SIMULATED, Curve
+from vehgen.simulate import Simulator
+
+MOST = 16
+"""So many places are drawn at most."""
+
+
+def plot_places(results: tuple[PlaceResult, ...], passed: tuple[PlaceResult, ...]) -> Figure:
+    """Plot the chi that an unknown force at each place leaves; those that pass are blue."""
+    shown = sorted(results, key=lambda item: item.chi)[:MOST]
+    figure = Figure(figsize=(7.5, 0.9 + 0.26 * len(shown)), layout="constrained")
+    axes = figure.subplots()
+    names = {item.place.label for item in passed}
+    colours = [SIMULATED if item.place.label in names else "#c3ccd3" for item in shown]
+    axes.barh(range(len(shown)), [item.chi for item in shown], color=colours)
+    axes.axvline(1.0, color=INK, lw=0.9, ls=(0, (4, 2)))
+    for row, item in enumerate(shown):
+        axes.text(item.chi * 1.03, row, f"{item.chi:.2f}", va="center", fontsize=8.5, color=INK)
+    axes.set_yticks(range(len(shown)), [item.place.label for item in shown], fontsize=8.5)
+    axes.set_ylim(len(shown) - 0.4, -0.6)
+    axes.set_xscale("log")
+    axes.set_xlim(0.8, max(item.chi for item in shown) * 1.6)
+    axes.set_xlabel("chi that remains (1: noise alone, dashed)", color=INK)
+    axes.spines[["top", "right"]].set_visible(False)
+    return figure
+
+
+def plot_force(diagnosis: Diagnosis, result: PlaceResult) -> Figure | None:
+    """Plot the force that the data want at a suspension or tyre over travel and rate of the base model, in the loudest training run."""
+    misfit = diagnosis.detection.base.polished.misfit
+    if result.place.kind not in ("suspension", "tyre") or len(result.place.rows) != 1:
+        return None
+    loudest = int(np.argmax([np.mean(trial.measurement.values**2) for trial in misfit.problem.trials]))
+    trial = misfit.problem.trials[loudest]
+    axle = result.place.name
+    output = ElementOutput("travel", axle, "suspension_travel" if trial.run.vehicle.axles[axle].suspension else "tyre_force")
+    simulator = Simulator(trial.run.vehicle, [output], trial.run.forces())
+    unit, errors = misfit.split(result.x)
+    values = trial.values | misfit.problem.best_values(misfit.problem.space.values(unit))
+    population = np.array([[values.get(name, 0.0) for name in simulator.model.parameters]])
+    travel = simulator.run(population, misfit.nuisances.adjust(trial.scenario, errors[loudest])).responses[0, :, 0]
+    rate = np.gradient(travel, trial.measurement.dt)
+    force = -recover_force(misfit, result, loudest)[0]
+    figure = Figure(figsize=(9.6, 3.2), layout="constrained")
+    panels = figure.subplots(1, 3)
+    for axes, x, label in (
+        (panels[0], 1e3 * travel, "travel [mm]"),
+        (panels[1], rate, "rate [m/s]"),
+        (panels[2], trial.measurement.time, "time [s]"),
+    ):
+        axes.plot(x, force, color=SIMULATED, lw=0.7 if axes is panels[2] else 0.0, marker=None if axes is panels[2] else ".", ms=2.5)
+        axes.set_xlabel(label, color=INK)
+        axes.grid(color="#e3e7ea", lw=0.6)
+        axes.spines[["top", "right"]].set_visible(False)
+    panels[0].set_ylabel("unknown force [N]", color=INK)
+    figure.suptitle(f"{trial.name}, {result.place.label}", x=0.01, ha="left", fontsize=10, color=INK, parse_math=False)
+    return figure
+
+
+def plot_waterfall(diagnosis: Diagnosis) -> Figure:
+    """Plot chi of every run: before, after the effect was added, and the noise floor."""
+    runs = diagnosis.verdict.gap.runs
+    figure = Figure(figsize=(7.5, 3.0), layout="constrained")
+    axes = figure.subplots()
+    place = np.arange(len(runs))
+    axes.bar(place - 0.2, [run["before"] for run in runs], 0.38, color=MEASURED, label="recalibrated base")
+    axes.bar(place + 0.2, [run["after"] for run in runs], 0.38, color=SIMULATED, label="with the effect")
+    axes.axhline(1.0, color=REFERENCE, lw=1.1, ls=(0, (4, 2)), label="noise floor")
+    axes.set_yscale("log")
+    axes.set_ylim(0.7, 2.0 * max(run["before"] for run in runs))
+    axes.set_xticks(place, [f"{run['run']}{' (untouched)' if run['untouched'] else ''}" for run in runs], fontsize=8.5)
+    axes.set_ylabel("chi", color=INK)
+    axes.spines[["top", "right"]].set_visible(False)
+    figure.legend(loc="outside upper right", ncols=3, frameon=False, fontsize=9)
+    return figure
+
+
+def curves(diagnosis: Diagnosis) -> tuple[list[Curve], list[Curve]]:
+    """Return PSDs and histories of the residual before (as measured) and after (as simulated), of the loudest training run's channels."""
+    if not diagnosis.chosen:
+        return [], []
+    base, after = diagnosis.detection.base.polished, diagnosis.chosen[0].polished
+    loudest = int(np.argmax([np.mean(trial.measurement.values**2) for trial in base.misfit.problem.trials]))
+    trial = base.misfit.problem.trials[loudest]
+    old, new = (trial.measurement.values - fit.misfit.simulate(fit.x)[loudest] for fit in (base, after))
+    densities, histories = [], []
+    for i, channel in enumerate(trial.measurement.channels):
+        frequency, before = record_psd(old[:, i], trial.measurement.dt)
+        later = record_psd(new[:, i], trial.measurement.dt)[1]
+        densities.append(Curve(trial.name, channel.name, channel.quantity, frequency, before, later))
+        histories.append(Curve(trial.name, channel.name, channel.quantity, trial.measurement.time, old[:, i], new[:, i]))
+    return densities, histories
