@@ -20,7 +20,7 @@ from vehgen.vehicle import Vehicle
 from vehgen.vehicle.loading import extend_vehicle
 
 Array = NDArray[np.float64]
-MOST_STARTS = 6
+MOST_STARTS = 4
 KINDS: dict[str, tuple[type[Adjustment], float, float]] = {
     "speed": (SpeedScale, 0.01, 1.0),
     "footprint": (Footprint, 0.05, 0.0),

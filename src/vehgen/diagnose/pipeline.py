@@ -157,6 +157,7 @@ def name(
             np.clip(unit, 0.01, 0.99),
             errors.ravel(),
             simulators,
+            detection.base.train,
         )
         fits.append(fit)
         if tell is not None:
@@ -245,8 +246,10 @@ def _judge(
     p = min(1.0, tried * p_value(base, best, len(best.candidate.parameters) + len(best.candidate.shared)))
     labels = tuple((item.place.label, item.chi) for item in (passed or places)[:5])
     fitted = replace(gap, after=_chi(best), runs=_runs(base, best, detection.held_out))
-    good = (after[0] <= limit.LAW_PASSES * before[0] or np.sqrt(best.train) <= limit.LAW_CHI) and (
-        after[1] <= limit.LAW_PASSES * before[1] or np.sqrt(max(best.held_out, 0.0)) <= limit.LAW_CHI
+    good = (
+        np.isfinite(best.held_out)
+        and (after[0] <= limit.LAW_PASSES * before[0] or np.sqrt(best.train) <= limit.LAW_CHI)
+        and (after[1] <= limit.LAW_PASSES * before[1] or np.sqrt(max(best.held_out, 0.0)) <= limit.LAW_CHI)
     )
     ties = [item for item in fits[1:] if _tied(item, best, before[0])]
 
@@ -342,7 +345,12 @@ def _chi(fit: Fit) -> float:
 def _runs(base: Fit, fit: Fit, held_out: Sequence[Trial]) -> tuple[dict[str, object], ...]:
     later = {trial.name for trial in held_out}
     return tuple(
-        {"run": item, "untouched": item in later, "before": float(np.sqrt(base.runs[item])), "after": float(np.sqrt(fit.runs[item]))}
+        {
+            "run": item,
+            "untouched": item in later,
+            "before": float(np.sqrt(base.runs[item])),
+            "after": float(np.sqrt(fit.runs.get(item, base.runs[item]))),
+        }
         for item in base.runs
     )
 

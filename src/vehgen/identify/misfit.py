@@ -79,6 +79,8 @@ class Misfit:
         Frequencies compared [Hz].
     shared
         What may be wrong with runs or sensors, fitted along.
+    renew
+        Every how many calls the derivatives by nuisances are computed anew; in between the last ones serve, which change little.
     """
 
     def __init__(
@@ -89,12 +91,16 @@ class Misfit:
         nuisances: Nuisances | None = None,
         band: tuple[float, float] = BAND,
         shared: Sequence[Adjustment] = (),
+        renew: int = 1,
     ) -> None:
         self.problem = problem
         self.noises = noises
         self.nuisances = nuisances or Nuisances()
         self.band = band
         self.shared = tuple(shared)
+        self._renew = renew
+        self._calls = 0
+        self._kept: list[Array] = []
         self._weights = [self._weight(trial, problem.best_values(reference)) for trial in problem.trials]
 
     def _weight(self, trial: Trial, reference: Mapping[str, float]) -> _Weight:
@@ -172,6 +178,12 @@ class Misfit:
         values = self.problem.space.values(unit + np.vstack([np.eye(n), -np.eye(n)]) * STEP)
         middle = self.problem.space.values(unit)[None]
         found = []
+        fresh = self._calls % self._renew == 0
+        self._calls += 1
+        if fresh:
+            self._kept = [
+                self._nuisance_derivatives(trial, middle, numbers, error) for trial, error in zip(self.problem.trials, errors, strict=True)
+            ]
         for t, (trial, weight, error) in enumerate(zip(self.problem.trials, self._weights, errors, strict=True)):
             derived = np.zeros((self.n_unknowns, len(trial.measurement.time), len(trial.channels)))
             if n:
@@ -181,11 +193,16 @@ class Misfit:
                 step = STEP * item.scale * np.eye(s)[j]
                 ahead, behind = (self.respond(trial, middle, numbers + side, error)[0] for side in (step, -step))
                 derived[n + j] = (ahead - behind) / (2 * STEP)
-            for j in range(k):
-                step = STEP * np.eye(k)[j]
-                ahead, behind = (self.respond(trial, middle, numbers, error + side)[0] for side in (step, -step))
-                derived[n + s + t * k + j] = (ahead - behind) / (2 * STEP)
+            derived[n + s + t * k : n + s + (t + 1) * k] = self._kept[t]
             found.append(-_apply(weight.whitener, transform(derived, trial.measurement.dt, weight.inside)))
+        return found
+
+    def _nuisance_derivatives(self, trial: Trial, values: Array, numbers: Array, error: Array) -> Array:
+        """Return the derivatives of a trial's response by its nuisances, `shape (len(names), n_samples, n_channels)`."""
+        found = np.zeros((len(error), len(trial.measurement.time), len(trial.channels)))
+        for j, step in enumerate(STEP * np.eye(len(error))):
+            ahead, behind = (self.respond(trial, values, numbers, error + side)[0] for side in (step, -step))
+            found[j] = (ahead - behind) / (2 * STEP)
         return found
 
     def jacobian(self, x: Array) -> Array:

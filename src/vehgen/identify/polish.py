@@ -72,6 +72,7 @@ def polish(
     tolerance: float = FINE,
     hold: float = HOLD,
     free: int = 0,
+    renew: int = 1,
 ) -> Polished:
     """Fit parameters and nuisances by least squares, from a point of the unit cube.
 
@@ -98,6 +99,8 @@ def polish(
     hold, free
         Standard deviation of the spring that holds parameters to the space's start, in the unit cube; the last `free` of them are held
         by HOLD only.
+    renew
+        As in :class:`Misfit`.
     tolerance
         Relative change of the sum of squares at which the last fit ends.
     """
@@ -105,13 +108,13 @@ def polish(
     springs = np.concatenate([np.full(problem.space.size - free, hold), np.full(free, HOLD)])
     noises = noises or first_noises(problem)
     values = problem.space.values(unit)
-    misfit = Misfit(problem, noises, values, nuisances, band, shared)
+    misfit = Misfit(problem, noises, values, nuisances, band, shared, renew)
     begun = [(value - item.neutral) / item.scale for item, value in zip(shared, numbers, strict=True)] if numbers else [0.0] * len(shared)
     x = np.concatenate([np.clip(unit, 0.0, 1.0), begun, first_delays(misfit, unit) if start is None else start])
     result = _fit(misfit, x, facts, max_steps, tolerance if known else ROUGH, springs)
     for left in reversed(range(0 if known else rounds - 1)):
         noises = estimate_noises(misfit, result)
-        misfit = Misfit(problem, noises, problem.space.values(misfit.split(result)[0]), nuisances, band, shared)
+        misfit = Misfit(problem, noises, problem.space.values(misfit.split(result)[0]), nuisances, band, shared, renew)
         result = _fit(misfit, result, facts, max_steps, ROUGH if left else tolerance, springs)
     residuals = misfit.residuals(result)
     prior = float((misfit.split(result)[1] ** 2).sum())

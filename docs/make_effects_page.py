@@ -1,0 +1,113 @@
+"""Write effects.md from the library of effects, with a picture of each: a hump run without and with it.
+
+Run it after changing the library: `python docs/make_effects_page.py`. A test fails while the page and the library differ.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from vehgen.effects import EFFECTS, Effect
+
+HERE = Path(__file__).parent
+PAGE = HERE / "effects.md"
+IMAGES = HERE / "images" / "effects"
+RUN = """vehicle: tractor5.yaml
+speed: 2.5 m/s
+duration: 9 s
+road: [{hump: {shape: half_sine, length: 0.5 m, height: 0.05 m, at: 2 m}}]
+sensors:
+  L1: {body: tractor, behind: axle1, distance: -0.29 m, channels: {acceleration: L1_az, pitch_rate: L1_q}}
+  L2: {body: semitrailer, behind: fifth_wheel, distance: 9.115 m, channels: {acceleration: L2_az, pitch_rate: L2_q}}
+recording: nothing.csv
+"""
+SHOWN = {"hinge_friction": "L2_q", "hinge_stiffness": "L2_q", "walking_beam": "L2_az", "cargo_module": "L2_az", "sensor_delay": "L2_az"}
+"""The channel that shows an effect best; L1_az otherwise."""
+PLACES = {"walking_beam": "axle4+axle5", "cargo_module": "semitrailer", "frame_bending": "semitrailer", "sensor_delay": "L2"}
+
+
+def page() -> str:
+    """Return the page's text."""
+    lines = [
+        "# Effects",
+        "",
+        "Made by `python docs/make_effects_page.py` from the library.",
+        "",
+        "What `python -m vehgen diagnose` can name. Ranges are what it searches, as multiples of the place's own size where it has one",
+        "(static load, stiffness, typical travel). Every picture shows the tractor-semitrailer over a hump of 50 mm at 2.5 m/s, without the",
+        "effect (grey) and with it (blue), at the strength at which a search begins.",
+        "",
+        "An effect of your own is an `Effect` object in any installed package that names it under the entry point group `vehgen.effects`.",
+        "",
+    ]
+    for effect in EFFECTS.values():
+        lines += [f"## {effect.name}", "", f"**{effect.title}**: {effect.meaning}.", "", f"    {effect.equation}", ""]
+        lines += [f"Lives at: {effect.attaches}. Looks like: {effect.signature}.", ""]
+        if effect.parameters:
+            lines += ["| parameter | unit | searched | meaning |", "|---|---|---|---|"]
+            lines += [f"| `{item.name}` | {item.unit} | {item.low:g} to {item.high:g} | {item.meaning} |" for item in effect.parameters]
+            lines.append("")
+        if effect.name != "engine_harmonic":
+            lines += [f"![{effect.title}, before and after](images/effects/{effect.name}.svg)", ""]
+        lines += [f"Source: {effect.source}.", ""]
+    return "\n".join(lines)
+
+
+def draw() -> None:
+    """Draw every effect."""
+    from vehgen.diagnose.candidate import list_candidates, pose, starts
+    from vehgen.effects import Surveyor
+    from vehgen.identify.misfit import Misfit
+    from vehgen.identify.noise import EVEN, Noise
+    from vehgen.identify.problem import make_problem
+    from vehgen.identify.trial import load_trials
+    from vehgen.report import save_figure
+
+    IMAGES.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "run.yaml").write_text(RUN, encoding="utf-8")
+        t = np.arange(901) * 0.01
+        noise = np.random.default_rng(0).standard_normal((901, 4))
+        np.savetxt(folder / "nothing.csv", np.column_stack([t, noise]), delimiter=",", header="t,L1_az,L1_q,L2_az,L2_q", comments="")
+        problem = make_problem(load_trials([folder / "run.yaml"]))
+    trial = problem.trials[0]
+    surveyor = Surveyor(trial.run.vehicle, dict(trial.values))
+    base = problem.respond(problem.space.start[None], trial)[0][0]
+    for effect in EFFECTS.values():
+        candidates = list_candidates(trial.run.vehicle, problem.trials, [effect])
+        if not candidates:
+            continue
+        wanted = PLACES.get(effect.name)
+        candidate = next((item for item in candidates if item.place == wanted), candidates[0])
+        posed = pose(candidate, problem, surveyor, {})
+        combination = list(starts(candidate, surveyor))[-1]
+        values = posed.space.start.copy()
+        if candidate.parameters:
+            values[problem.space.size :] = combination[: len(candidate.parameters)]
+        noises = {trial.name: Noise(EVEN, np.ones(4))}
+        misfit = Misfit(posed, noises, values, shared=candidate.shared)
+        numbers = np.array(combination[:1]) if candidate.shared else np.zeros(0)
+        changed = misfit.respond(posed.trials[0], values[None], numbers, np.zeros(2))[0]
+        save_figure(_figure(effect, t, base, changed, list(trial.channels)), IMAGES / f"{effect.name}.svg")
+
+
+def _figure(effect: Effect, t: np.ndarray, base: np.ndarray, changed: np.ndarray, channels: list[str]):  # type: ignore[no-untyped-def]
+    from vehgen.measure import record_psd
+    from vehgen.report.comparison import Curve, plot_pair
+
+    channel = SHOWN.get(effect.name, "L1_az")
+    i = channels.index(channel)
+    quantity = "acceleration" if channel.endswith("az") else "pitch_rate"
+    frequency, before = record_psd(base[:, i], 0.01)
+    after = record_psd(changed[:, i], 0.01)[1]
+    history = Curve("", channel, quantity, t, base[:, i], changed[:, i])
+    return plot_pair(history, Curve("", channel, quantity, frequency, before, after), (0.5, 25.0), ("without", "with"))
+
+
+if __name__ == "__main__":
+    draw()
+    PAGE.write_text(page(), encoding="utf-8")
