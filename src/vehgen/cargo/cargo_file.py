@@ -91,19 +91,13 @@ class ModuleCargo(Noun):
 class CargoFile(Noun):
     """A cargo as its file declares it, quantities in SI units."""
 
-    name: str | None = Field(None, description="of the body it becomes (default: cargo, or module)")
+    name: str | None = Field(None, pattern=r"^[A-Za-z][A-Za-z0-9_]*$", description="of the body it becomes (default: cargo, or module)")
     title: str = ""
     source: str = ""
     on: str = Field(description="the body that carries it")
     behind: str = Field(description="a hinge or axle of that body, or the body itself (its COG)")
     rigid: RigidCargo | None = None
     module: ModuleCargo | None = None
-
-    @model_validator(mode="after")
-    def _one_kind(self) -> CargoFile:
-        if (self.rigid is None) == (self.module is None):
-            raise PydanticCustomError("joint", "a cargo is either `rigid` or a `module`")
-        return self
 
 
 @dataclass(frozen=True)
@@ -135,4 +129,7 @@ def load_cargo(path: str | Path) -> Cargo:
     document = read_document(path)
     if not isinstance(document.value, dict):
         raise InputError("a file of `key: value` lines was expected", document.position)
-    return Cargo(validate(CargoFile, document.plain(), document), path, document)
+    file = validate(CargoFile, document.plain(), document)
+    if (file.rigid is None) == (file.module is None):
+        raise InputError("a cargo is either `rigid` or a `module`", document.position)
+    return Cargo(file, path, document)

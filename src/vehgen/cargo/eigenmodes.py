@@ -20,6 +20,8 @@ ZERO_HZ = 1e-3
 """Below it a mode is a mechanism."""
 BAND_HZ = 25.0
 """Modes are sought up to here at least: what vehicles excite."""
+ENOUGH = 0.25
+"""And until one of them moves this share of the mass."""
 FIRST_COUNT, MOST = 16, 256
 
 
@@ -88,7 +90,7 @@ def eigenmodes(matrices: ElementMatrices, held: NDArray[np.int64], count: int | 
     held
         Degrees of freedom that cannot move (six a node).
     count
-        How many modes; None: as many as it takes to pass BAND_HZ or to be sure of the largest effective mass, at most MOST.
+        How many modes; None: as many as it takes to be sure of the largest effective mass, or to pass BAND_HZ and ENOUGH; at most MOST.
 
     Raises
     ------
@@ -116,7 +118,8 @@ def eigenmodes(matrices: ElementMatrices, held: NDArray[np.int64], count: int | 
         frequency = np.sqrt(np.maximum(squares, 0.0)) / (2 * math.pi)
         genuine = np.where(hourglass <= SPURIOUS, effective, 0.0)
         complete = bool(total - effective.sum() <= genuine.max())
-        if count is not None or complete or frequency[-1] > BAND_HZ or wanted >= min(MOST, len(free) - 1):
+        enough = frequency[-1] > BAND_HZ and genuine.max() > ENOUGH * total
+        if count is not None or complete or enough or wanted >= min(MOST, len(free) - 1):
             by_node = shapes.T.reshape(wanted, -1, 6)
             return Eigenmodes(frequency, by_node, effective, hourglass, complete)
         wanted *= 2

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from pydantic import Field, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Field
 
 from vehgen.cargo.panels import Layer, equivalent_layer
 from vehgen.cargo.quantities import DampingRatio, Density, Distance, Frequency, Modulus, Poisson, PositiveLength
@@ -119,7 +118,7 @@ class MeshEntry(Noun):
 class FrameFile(Noun):
     """A building module as its file declares it, quantities in SI units."""
 
-    name: str | None = None
+    name: str | None = Field(None, pattern=r"^[A-Za-z][A-Za-z0-9_]*$")
     title: str = ""
     source: str = ""
     on: str
@@ -134,19 +133,6 @@ class FrameFile(Noun):
     mesh: MeshEntry
     damping: tuple[DampingPoint, DampingPoint]
     mass: Literal["total", "effective"] = "total"
-
-    @model_validator(mode="after")
-    def _two_frequencies(self) -> FrameFile:
-        first, second = self.damping
-        if math.isclose(first.frequency, second.frequency):
-            raise PydanticCustomError("joint", "Rayleigh damping needs ratios at two different frequencies")
-        alpha, beta = rayleigh(first, second)
-        if min(alpha, beta) < 0:
-            reason = (
-                "no Rayleigh damping has these two ratios: mass or stiffness damping would be negative; choose ratios nearer to each other"
-            )
-            raise PydanticCustomError("joint", "{reason}", {"reason": reason})
-        return self
 
 
 def rayleigh(first: DampingPoint, second: DampingPoint) -> tuple[float, float]:
@@ -198,6 +184,13 @@ def _check(frame: FrameModule) -> None:
         if name not in allowed:
             raise InputError(f"no {kind} {name!r}; {did_you_mean(name, allowed)}", document.find(place))
 
+    first, second = file.damping
+    place = document.find(("damping",))
+    if math.isclose(first.frequency, second.frequency):
+        raise InputError("Rayleigh damping needs ratios at two different frequencies", place)
+    if min(rayleigh(first, second)) < 0:
+        reason = "mass or stiffness damping would be negative; choose ratios nearer to each other"
+        raise InputError(f"no Rayleigh damping has these two ratios: {reason}", place)
     for name, member in file.frame.members():
         known("material", member.material, file.materials, "frame", name, "material")
         known("section", member.section, file.sections, "frame", name, "section")
