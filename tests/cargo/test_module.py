@@ -179,3 +179,24 @@ def test_without_the_package(read, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyfe3d", None)
     with pytest.raises(InputError, match=r"finite elements need the package pyfe3d: pip install 'vehgen\[fe\]'"):
         module_model(read())
+
+
+def test_another_shell_element_finds_the_same_mode(read, monkeypatch):
+    """Quad4 integrates fully and needs no hourglass control; both converge to the same frequency."""
+    fe = pytest.importorskip("pyfe3d")
+    frame = read(FRAME.replace("  floor_joists: {material: steel, section: joist, spacing: 0.65 m}\n", ""))
+    found = module_model(frame, 0.12)
+
+    class Quad(fe.Quad4):
+        def update_KC0(self, rows, columns, values, prop, *options):
+            if not options:
+                super().update_KC0(rows, columns, values, prop)
+
+    for name, other in (("Quad4R", Quad), ("Quad4RData", fe.Quad4Data), ("Quad4RProbe", fe.Quad4Probe)):
+        monkeypatch.setattr(fe, name, other)
+    monkeypatch.setattr("vehgen.cargo.eigenmodes.SPURIOUS", 2.0)  # all of its stiffness counts as hourglass control here
+    monkeypatch.setattr("vehgen.cargo.module_model.COARSE_HOURGLASS", 2.0)
+    other = module_model(frame, 0.12)
+    assert other.frequency == pytest.approx(found.frequency, rel=0.03)
+    assert other.body.mass == pytest.approx(found.body.mass, rel=1e-12)
+    assert other.effective_share == pytest.approx(found.effective_share, rel=0.03)
