@@ -37,7 +37,7 @@ def page() -> str:
         "Made by `python docs/make_effects_page.py` from the library.",
         "",
         "What `python -m vehgen diagnose` can name. Ranges are what it searches, as multiples of the place's own size where it has one",
-        "(static load, stiffness, typical travel). Every picture shows the tractor-semitrailer over a hump of 50 mm at 2.5 m/s, without the",
+        "(static load, stiffness, typical travel). Every picture shows tractor5 over a hump of 50 mm at 2.5 m/s, without the",
         "effect (grey) and with it (blue), at the strength at which a search begins.",
         "",
         "An effect of your own is an `Effect` object in any installed package that names it under the entry point group `vehgen.effects`.",

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.candidate import Candidate, list_candidates
@@ -196,6 +197,11 @@ def diagnose(
     InputError
         For trials that do not belong together.
     """
+    with threadpool_limits(1, user_api="blas"):
+        return _diagnose(trials, effects, everything, tell)
+
+
+def _diagnose(trials: Sequence[Trial], effects: Sequence[Effect] | None, everything: bool, tell: Progress | None) -> Diagnosis:
     say = tell or (lambda stage, done, total, best: None)
     say("detect", 0, 1, "")
     detection = detect(trials)

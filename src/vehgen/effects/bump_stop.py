@@ -10,10 +10,8 @@ BUMP_STOP = suspension_law(
     "bump_stop",
     "sharp peaks of acceleration when travel passes a threshold; nothing below it",
     (
-        EffectParameter("k", "N/m", "stiffness of the stops", 0.5, 30.0, (3.0, 10.0), lambda site: site.k),
-        EffectParameter(
-            "clearance", "m", "travel to either side before a stop is met", 0.05, 4.0, (0.5, 1.2, 2.0), lambda site: site.travel
-        ),
+        EffectParameter("k", "N/m", "stiffness of the stops", 0.5, 30.0, (6.0,), lambda site: site.k),
+        EffectParameter("clearance", "m", "travel in bump before the stop is met", 0.05, 4.0, (0.5, 1.2, 2.0), lambda site: site.travel),
+        EffectParameter("rebound", "m", "travel in rebound before the stop is met", 0.05, 6.0, (1.5,), lambda site: site.travel),
     ),
-    lambda site, symbols: {"k": symbols["k"], "clearance": symbols["clearance"], "rebound": symbols["clearance"]},
 )

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from vehgen.identify.adjustments import Adjustment
 from vehgen.identify.facts import Facts
@@ -145,9 +146,10 @@ def _fit(misfit: Misfit, x: Array, facts: Facts | None, max_steps: int, toleranc
         values = space.values(x[:n])
         return np.vstack([own, np.hstack([facts.jacobian(values) * space.slopes(values), np.zeros((len(facts.facts), rest))])])
 
-    found = scipy.optimize.least_squares(
-        residuals, inside, jacobian, (low, high), method="trf", x_scale="jac", xtol=1e-7, ftol=tolerance, gtol=1e-8, max_nfev=max_steps
-    )
+    with threadpool_limits(1, user_api="blas"):  # tall and thin matrices: more threads only wait for one another
+        found = scipy.optimize.least_squares(
+            residuals, inside, jacobian, (low, high), method="trf", x_scale="jac", xtol=1e-7, ftol=tolerance, gtol=1e-8, max_nfev=max_steps
+        )
     return np.asarray(found.x)
 
 
