@@ -62,9 +62,9 @@ class Diagnosis:
 
 
 def split_runs(trials: Sequence[Trial]) -> tuple[list[Trial], list[Trial]]:
-    """Return training runs and untouched ones: of three runs or more every third, in the order of speed and road, is left untouched."""
+    """Return training runs and untouched ones: of three runs or more, every second one between the gentlest and the roughest."""
     ordered = sorted(trials, key=_kind)
-    held = ordered[1::3] if len(ordered) > 2 else []
+    held = ordered[1:-1:2]
     return [trial for trial in ordered if trial not in held], held
 
 
@@ -216,7 +216,7 @@ def _diagnose(trials: Sequence[Trial], effects: Sequence[Effect] | None, everyth
     places: list[PlaceResult] = []
     passed: list[PlaceResult] = []
     fits: list[Fit] = []
-    if detection.chi <= limit.NOISE_FLOOR:
+    if max(detection.chi, float(np.sqrt(detection.base.train))) <= limit.NOISE_FLOOR:
         return conclude("no_missing_effect", f"the recalibrated model is at the noise floor: chi {detection.chi:.3f}")
     if not detection.held_out:
         return conclude(

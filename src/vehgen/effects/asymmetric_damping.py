@@ -2,15 +2,31 @@
 
 from __future__ import annotations
 
-from vehgen.effects.base import EffectParameter
-from vehgen.effects.law_effect import suspension_law
+from vehgen.effects.base import Change, Effect, EffectParameter
+from vehgen.effects.law_effect import Given
+from vehgen.effects.places import suspensions
+from vehgen.effects.site import Site
+from vehgen.mechanics.laws import LAWS
 
-ASYMMETRIC_DAMPING = suspension_law(
+
+def _edit(site: Site, symbols: Given) -> Change:
+    suspension = site.vehicle.axles[site.place].suspension
+    assert suspension is not None
+    ratio, c = symbols["ratio"], suspension.c.text
+    bump, more = f"2*({c})*{ratio}/(1 + {ratio})", f"2*({c})*(1 - {ratio})/(1 + {ratio})"
+    law = {"asymmetric_damping": {"c": more, "ratio": "0"}}
+    return {"axles": {site.place: {"suspension": {"c": bump, "laws": [*site.laws("suspension", site.place), law]}}}}
+
+
+ASYMMETRIC_DAMPING = Effect(
     "asymmetric_damping",
-    "asymmetric_damping",
+    LAWS["asymmetric_damping"].title,
+    "f = 2 c ratio/(1 + ratio)*v in bump, 2 c/(1 + ratio)*v in rebound",
+    LAWS["asymmetric_damping"].meaning,
     "the body rises faster than it falls: even harmonics that follow the rate, a mean that sinks over rough roads",
-    (
-        EffectParameter("c", "N s/m", "damping in rebound, beside the linear damper", 0.05, 3.0, (0.4, 1.2), lambda site: site.c),
-        EffectParameter("ratio", "", "damping in bump over that in rebound", 0.02, 1.0, (0.3,)),
-    ),
+    LAWS["asymmetric_damping"].source,
+    "suspension",
+    (EffectParameter("ratio", "", "damping in bump over that in rebound, their mean kept", 0.05, 1.0, (0.3, 0.6)),),
+    suspensions,
+    _edit,
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from vehgen.effects.base import Effect
 from vehgen.effects.mounted_mass import mass_edit, mass_parameters
-from vehgen.effects.places import pitching_bodies
+from vehgen.effects.places import loading_bodies
 
 CARGO_MODULE = Effect(
     "cargo_module",
@@ -15,6 +15,6 @@ CARGO_MODULE = Effect(
     "Wu & Li 2023, Sect. 2.5, doi:10.3390/s23249691",
     "body",
     mass_parameters((3.0, 6.0), (0.15,)),
-    pitching_bodies,
+    loading_bodies,
     mass_edit("module"),
 )

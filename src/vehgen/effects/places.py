@@ -37,8 +37,14 @@ def pitching_bodies(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ..
 
 
 def front_body(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the body of the first axle: the one that may carry a cab."""
-    return tuple(dict.fromkeys(axle.body for axle in list(vehicle.axles.values())[:1]))
+    """Return the body of the first axle of a vehicle of three axles or more: the one that may carry a cab."""
+    return (next(iter(vehicle.axles.values())).body,) if len(vehicle.axles) > 2 else ()
+
+
+def loading_bodies(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the bodies that may carry a load: all that pitch but the one with the cab, or that one where there is no other."""
+    every = pitching_bodies(vehicle, sensors)
+    return tuple(name for name in every if name not in front_body(vehicle, sensors)) or every
 
 
 def long_bodies(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
