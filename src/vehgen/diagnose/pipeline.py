@@ -135,7 +135,6 @@ def _owner(place: Place) -> str:
 def name(
     detection: Detection,
     passed: Sequence[PlaceResult],
-    places: Sequence[PlaceResult],
     candidates: Sequence[Candidate],
     tell: Progress | None = None,
 ) -> list[Fit]:
@@ -143,9 +142,11 @@ def name(
     trial = detection.problem.trials[0]
     surveyor = Surveyor(trial.run.vehicle, dict(trial.values))
     simulators: dict[object, Simulator] = {}
-    begin = (passed or places)[0]
     misfit = detection.base.polished.misfit
-    unit, errors = misfit.split(begin.x)
+    space = detection.problem.space
+    nominal = space.unit(space.start), np.zeros(len(misfit.problem.trials) * len(NUISANCES.names))
+    single = passed and passed[0].place.rows and passed[0].unknowns == 1
+    unit, errors = misfit.split(passed[0].x) if single else nominal
     fits: list[Fit] = []
     for done, candidate in enumerate(candidates, start=1):
         fit = fit_candidate(
@@ -155,8 +156,8 @@ def name(
             detection.floor.noises,
             BAND,
             surveyor,
-            np.clip(unit, 0.01, 0.99),
-            errors.ravel(),
+            np.clip(nominal[0] if candidate.effect.attaches == "run" else unit, 0.01, 0.99),
+            (nominal[1] if candidate.effect.attaches == "run" else errors).ravel(),
             simulators,
             detection.base.train,
         )
@@ -231,7 +232,7 @@ def _diagnose(trials: Sequence[Trial], effects: Sequence[Effect] | None, everyth
     chosen = candidates if everything else shortlist(candidates, places, passed)
     if not chosen:
         raise InputError("no effect of the library can live on this vehicle")
-    fits = name(detection, passed, places, chosen, tell)
+    fits = name(detection, passed, chosen, tell)
     return _judge(detection, ordered, places, passed, fits, len(candidates), gap)
 
 
