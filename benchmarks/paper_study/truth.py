@@ -131,9 +131,7 @@ def sedan(p: dict[str, float]) -> System:
 
 def drawn(kind: str, seed: int, spread: float = 0.1) -> dict[str, float]:
     """Return a true vehicle [SI]: the DHCM row of `truck` or `sedan`, every parameter but the scale times exp(spread N(0, 1))."""
-    table, distances, mass = (
-        (DHCM_TRUCK, DHCM_DISTANCES, TRACTOR_MASS) if kind == "truck" else (DHCM_SEDAN, {"Lf": 1.18}, BODY_MASS)
-    )
+    table, distances, mass = (DHCM_TRUCK, DHCM_DISTANCES, TRACTOR_MASS) if kind == "truck" else (DHCM_SEDAN, {"Lf": 1.18}, BODY_MASS)
     random = np.random.default_rng(seed)
     values = {name: value * mass for name, value in table.items()} | distances
     return {"mT" if kind == "truck" else "mH": mass} | {
