@@ -24,7 +24,7 @@ GENERATIONS = 300
 
 @dataclass(frozen=True)
 class Method:
-    """One way to calibrate: its name in tables, the calibration's method and sensors, populations, polish, and how many runs it is given."""
+    """One way to calibrate: its name in tables, the method and sensors, how many populations, whether polished, and how many runs."""
 
     name: str
     method: str
