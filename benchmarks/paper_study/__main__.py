@@ -9,6 +9,7 @@ import platform
 import tempfile
 from pathlib import Path
 
+from benchmarks.pages import ROOT, fill
 from benchmarks.paper_study import figures
 from benchmarks.paper_study.fits import GENERATIONS, fit_all
 from benchmarks.paper_study.judging import judge
@@ -29,7 +30,6 @@ from benchmarks.paper_study.tables import (
 from benchmarks.paper_study.truth import drawn
 from vehgen.codegen import write_text
 
-ROOT = Path(__file__).parents[2]
 UNSEEN_DURATION = 60.0
 """Of the drive over the unseen road [s]."""
 
@@ -43,16 +43,6 @@ def make_case(rig: Rig, number: int, generations: int, folder: Path) -> Case:
     unseen = cruise_run(folder, f"{name}_b", rig, truth, "B", UNSEEN_DURATION, 200 + number)
     fits = fit_all(rig, runs, truth, generations, seed=number)
     return Case(rig, truth, fits, judge(rig, fits, truth, unseen))
-
-
-def fill(page: Path, blocks: dict[str, str]) -> None:
-    """Put tables between a page's markers `<!-- NAME: start -->` and `<!-- NAME: end -->`."""
-    text = page.read_text(encoding="utf-8")
-    for name, block in blocks.items():
-        head, rest = text.split(f"<!-- {name}: start -->")
-        tail = rest.split(f"<!-- {name}: end -->")[1]
-        text = f"{head}<!-- {name}: start -->\n\n{block}\n\n<!-- {name}: end -->{tail}"
-    write_text(page, text)
 
 
 def main() -> None:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.pages import table
 from benchmarks.paper_study.figures import MODES
 from benchmarks.paper_study.fits import Fit
 from benchmarks.paper_study.judging import Judgement, frequency_errors
@@ -37,11 +38,6 @@ class Case:
             "hop": max(value for name, value in hertz.items() if name.startswith("hop")),
             "invariants": float(np.median(np.abs(list(item.invariants.values())))),
         }
-
-
-def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return a Markdown table."""
-    return "\n".join(f"| {' | '.join(row)} |" for row in [header, ["---"] * len(header), *rows])
 
 
 def _percent(value: float) -> str:
