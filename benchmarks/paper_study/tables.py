@@ -44,11 +44,12 @@ def _percent(value: float) -> str:
     return f"{100 * value:.1f}"
 
 
-def cost_table(case: Case) -> str:
-    """Return what each method evaluated, how long it took and where Eq. 5 ended."""
+def cost_table(cases: Sequence[Case]) -> str:
+    """Return what each method evaluated, the shortest time it took, and where Eq. 5 ended for the first vehicle."""
     rows = []
-    for fit in case.fits:
-        times = (f"{fit.search_s:.1f}", f"{fit.polish_s:.1f}" if fit.method.polish else "")
+    for i, fit in enumerate(cases[0].fits):
+        search, polish = (min(getattr(case.fits[i], name) for case in cases) for name in ("search_s", "polish_s"))
+        times = (f"{search:.1f}", f"{polish:.1f}" if fit.method.polish else "")
         rows.append((fit.method.name, str(fit.method.runs), f"{fit.evaluations:,}", *times, f"{fit.eq5:.3f}", f"{fit.eq5_truth:.3f}"))
     return table(("method", "runs", "evaluations", "search [s]", "polish [s]", "Eq. 5 a channel", "at the truth"), rows)
 
