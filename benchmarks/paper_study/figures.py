@@ -21,6 +21,8 @@ from vehgen.report.files import save_figure
 from vehgen.report.response_plot import COLOURS, STYLES
 
 INK, GRID = "#1b2733", "#e3e7ea"
+MODELS = (*COLOURS, "#c2185b")
+"""A colour for each model."""
 MODES = {
     "truck": {"body1": "body 1", "body2": "body 2", "body3": "body 3", **{f"hop{i}": f"hop {i}" for i in range(1, 6)}},
     "sedan": {"body1": "body 1", "body2": "body 2", "hop1": "hop front", "hop2": "hop rear"},
@@ -61,9 +63,7 @@ def plot_frequencies(judged: dict[str, Sequence[Judgement]]) -> Figure:
             for j, item in enumerate(found[1:]):
                 places = np.arange(len(modes)) + 0.66 * (j / max(len(found) - 2, 1) - 0.5)
                 heights = [item.frequencies[mode] for mode in modes]
-                axes.plot(
-                    places, heights, "osD^vPX"[j], color=COLOURS[j % len(COLOURS)], ms=5, mfc="none" if j % 2 else None, label=item.name
-                )
+                axes.plot(places, heights, "osD^vPX"[j], color=MODELS[j], ms=5, mfc="none" if j % 2 else None, label=item.name)
             axes.set_xticks(range(len(modes)), [MODES[kind][mode] for mode in modes])
             axes.set_ylabel("undamped frequency [Hz]", color=INK)
             _title(axes, f"{kind}, {'bodies' if part == 'body' else 'axle hop'}")
@@ -72,30 +72,25 @@ def plot_frequencies(judged: dict[str, Sequence[Judgement]]) -> Figure:
     return figure
 
 
-def plot_fits(rig: Rig, fits: Sequence[Fit]) -> Figure:
-    """Plot PSDs of the hump run that was fitted, a column a method, a row a channel (Figs. 11 and 13)."""
+def plot_fits(fits: Sequence[Fit]) -> Figure:
+    """Plot PSDs of the hump run that was fitted, a column a method, a row a channel of its sensors (Figs. 11 and 13)."""
     shown = [item for item in fits if item.method.runs == 1]
-    sensors = [name for name in rig.sensors if any(f"{name}_az" in item.psd for item in shown)]
-    channels = [f"{name}_{quantity}" for name in sensors for quantity in ("az", "q")]
-    figure, panels = _grid(len(channels), len(shown), 2.5, 1.7)
-    for row, channel in enumerate(channels):
-        for column, item in enumerate(shown):
-            axes = panels[row * len(shown) + column]
-            if channel not in item.psd:
-                axes.set_axis_off()
-                continue
-            if channel == next(name for name in channels if name in item.psd):
-                _title(axes, item.method.name)
-            frequency, measured, simulated = item.psd[channel]
+    rows = max(len(item.psd) for item in shown)
+    figure, panels = _grid(rows, len(shown), 2.5, 1.7)
+    for column, item in enumerate(shown):
+        column_axes = panels[column :: len(shown)]
+        _title(column_axes[0], item.method.name)
+        for axes in column_axes[len(item.psd) :]:
+            axes.set_axis_off()
+        for axes, (channel, (frequency, measured, simulated)) in zip(column_axes, item.psd.items(), strict=False):
             inside = (frequency >= 0.3) & (frequency <= 25)
             axes.semilogy(frequency[inside], measured[inside], color=MEASURED, lw=2.2, label="recorded")
             axes.semilogy(frequency[inside], simulated[inside], color=COLOURS[0], lw=1.0, label="calibrated")
             axes.set_ylim(measured.max() * 1e-5, measured.max() * 3)
             axes.set_ylabel(f"{channel.partition('_')[0]} {'acceleration' if channel.endswith('az') else 'pitch rate'}", fontsize=8.5)
             axes.tick_params(labelsize=8)
-    for axes in panels[-len(shown) :]:
-        axes.set_xlabel("frequency [Hz]", color=INK, fontsize=8.5)
-    _legend(figure, panels[-1])
+        column_axes[len(item.psd) - 1].set_xlabel("frequency [Hz]", color=INK, fontsize=8.5)
+    _legend(figure, panels[0])
     return figure
 
 
@@ -128,7 +123,7 @@ def plot_bands(rig: Rig, judged: Sequence[Judgement]) -> Figure:
     place, width = np.arange(len(bands)), 0.8 / len(judged)
     top.bar(place - 0.4 + width / 2, judged[0].channel(channel).measured_rms, width, color=MEASURED, label="recorded")
     for j, item in enumerate(judged[1:], start=1):
-        found, colour = item.channel(channel), COLOURS[(j - 1) % len(COLOURS)]
+        found, colour = item.channel(channel), MODELS[j - 1]
         style = {"color": colour, "alpha": 0.45, "hatch": "///", "edgecolor": colour} if j % 2 else {"color": colour}
         top.bar(place - 0.4 + (j + 0.5) * width, found.simulated_rms, width, label=item.name, **style)
         bottom.bar(place - 0.4 + (j + 0.5) * width, 100 * found.errors, width, **style)
@@ -139,7 +134,7 @@ def plot_bands(rig: Rig, judged: Sequence[Judgement]) -> Figure:
     for axes in (top, bottom):
         axes.set_xticks(place, [f"{low:g}-{high:g}" for low, high in bands])
         axes.grid(visible=False, axis="x")
-    _legend(figure, top, 8)
+    _legend(figure, top, 4)
     return figure
 
 
