@@ -1,4 +1,4 @@
-"""Run the whole study: `python -m benchmarks.paper_study [--quick | --first]`; writes figures, results.json and the tables of docs/paper.md."""
+"""Run the whole study: `python -m benchmarks.paper_study [--quick | --first]`; writes figures, results.json and docs/paper.md's tables."""
 
 from __future__ import annotations
 

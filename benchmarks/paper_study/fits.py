@@ -14,7 +14,7 @@ from vehgen.identify.calibration import Settings, calibrate
 from vehgen.identify.genetic import GeneticSearch
 from vehgen.identify.objective import PsdObjective
 from vehgen.identify.problem import Problem, make_problem
-from vehgen.identify.trial import Trial, load_trials
+from vehgen.identify.trial import load_trials
 from vehgen.measure import record_psd
 
 Array = np.ndarray
@@ -99,7 +99,7 @@ def fit(problem: Problem, method: Method, truth: dict[str, float], generations: 
     terms = objective.terms(points).mean(axis=1)
     return Fit(
         method,
-        trials_values(problem.trials[0], found.values),
+        problem.trials[0].values | found.values,
         spent["search"],
         spent["polish"],
         search.evaluations * len(found.steps),
@@ -107,11 +107,6 @@ def fit(problem: Problem, method: Method, truth: dict[str, float], generations: 
         float(terms[1]),
         spectra(used, found.values),
     )
-
-
-def trials_values(trial: Trial, values: dict[str, float]) -> dict[str, float]:
-    """Return all free parameters of a trial's vehicle with some of them replaced."""
-    return trial.values | values
 
 
 def spectra(problem: Problem, values: dict[str, float]) -> dict[str, tuple[Array, Array, Array]]:
