@@ -16,6 +16,7 @@ from vehgen.diagnose.noise_floor import NoiseFloor, find_noise_floor
 from vehgen.diagnose.place_test import Place, PlaceResult, list_places, test_places
 from vehgen.diagnose.verdict import Gap, NamedEffect, NamedParameter, Verdict, VerdictName, sentence
 from vehgen.effects import Effect, Surveyor, library
+from vehgen.effects.places import ALL_TYRES
 from vehgen.errors import InputError
 from vehgen.identify.problem import Problem, make_problem
 from vehgen.identify.trial import Trial
@@ -119,7 +120,9 @@ def shortlist(candidates: Sequence[Candidate], places: Sequence[PlaceResult], pa
     for candidate in candidates:
         if candidate.effect.attaches == "sensor":
             wanted = candidate.place in silenced or any(part.rpartition("_")[0] == candidate.place for part in silenced)
-        elif candidate.effect.name in GLOBAL:
+        elif candidate.place == ALL_TYRES:
+            wanted = not single or any(item.place.kind == "tyre" for item in passed)
+        elif candidate.effect.name in GLOBAL and candidate.place not in names:
             wanted = not single
         else:
             wanted = any(part in names for part in candidate.place.split("+"))
@@ -291,10 +294,13 @@ def _judge(
 
 
 def _tied(item: Fit, best: Fit, before: float) -> bool:
+    assert item.candidate is not None
+    assert best.candidate is not None
+    if item.candidate.effect.name == best.candidate.effect.name and ALL_TYRES in (item.candidate.place, best.candidate.place):
+        return False  # all tyres hold the one axle that matters
     floor = limit.NOISE_FLOOR**2 - 1
-    return bool(
-        item.train - 1 <= limit.TIE * max(best.train - 1, 0.25 * floor) and item.train - best.train <= max(0.02 * before, 0.5 * floor)
-    )
+    near = item.train - best.train <= max(0.02 * before, 0.5 * floor)
+    return bool(near and item.train - 1 <= limit.TIE * max(best.train - 1, 0.25 * floor))
 
 
 def _named(fit: Fit, base: Fit, fits: Sequence[Fit], p: float) -> NamedEffect:

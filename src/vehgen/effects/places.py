@@ -25,6 +25,11 @@ def all_tyres(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
     return (ALL_TYRES,) if vehicle.axles else ()
 
 
+def tyres(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+    """Return all tyres as one place, then every axle's."""
+    return (ALL_TYRES, *vehicle.axles) if vehicle.axles else ()
+
+
 def hinges(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
     """Return every hinge."""
     return tuple(vehicle.hinges)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from vehgen.effects.base import Change, Effect
 from vehgen.effects.law_effect import Given, law_edit
-from vehgen.effects.places import all_tyres
+from vehgen.effects.places import tyres
 from vehgen.effects.site import Site
 from vehgen.mechanics.laws import LAWS
 
@@ -24,6 +24,6 @@ TYRE_LIFTOFF = Effect(
     LAWS["tyre_liftoff"].source,
     "tyre",
     (),
-    all_tyres,
+    tyres,
     _edit,
 )
