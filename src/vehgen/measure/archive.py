@@ -1,0 +1,125 @@
+"""The files of an export, from a zip, a folder or a single file, read into memory and never unpacked to disk."""
+
+from __future__ import annotations
+
+import lzma
+import struct
+import zipfile
+import zlib
+from collections.abc import Iterator
+from pathlib import Path, PurePosixPath
+from typing import IO
+
+from vehgen.errors import InputError
+
+MAX_FILE = 64 * 2**20
+"""Largest file of an export [bytes]: two hours of three axes at 200 Hz."""
+MAX_TOTAL = 256 * 2**20
+"""Largest export [bytes], unpacked."""
+MAX_FILES = 500
+MAX_RATIO = 200
+"""Numbers as text shrink to a third; what shrinks to less than 1/200 of 1 MB or more is a bomb."""
+OLE = bytes.fromhex("d0cf11e0a1b11ae1")
+"""The first bytes of a legacy Excel file."""
+TEXT_SUFFIXES = (".csv", ".txt", ".tsv")
+EXCEL = "is an Excel file; export again as CSV (in phyphox: Export data, then CSV with a decimal point; in Sensor Logger: Zipped CSV)"
+
+
+def read_members(path: Path) -> dict[str, bytes]:
+    """Return the text files of an export by their names inside it.
+
+    Raises
+    ------
+    InputError
+        For a missing, damaged, encrypted, oversized or hostile archive, an Excel file, and an export without a CSV file.
+    """
+    try:
+        members = _folder(path) if path.is_dir() else _file(path)
+    except FileNotFoundError as error:
+        raise InputError(f"no file or folder {path}") from error
+    except (OSError, ValueError) as error:
+        raise InputError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from error
+    if not members:
+        raise InputError(f"{path} holds no CSV file; a phone's export as zip, folder or CSV file was expected")
+    return members
+
+
+def _file(path: Path) -> dict[str, bytes]:
+    with path.open("rb") as stream:
+        start = stream.read(8)
+        if start == OLE:
+            raise InputError(f"{path} {EXCEL}")
+        stream.seek(0)
+        if start.startswith(b"PK"):
+            return _zip(path, stream)
+        return {path.name: _bounded(stream, str(path), MAX_FILE)}
+
+
+def _folder(path: Path) -> dict[str, bytes]:
+    found: dict[str, bytes] = {}
+    total = 0
+    for count, file in enumerate(_walk(path, 3)):
+        if count >= MAX_FILES:
+            raise InputError(f"{path} holds more than {MAX_FILES} files; the folder of one export was expected")
+        if file.suffix.lower() in (".xls", ".xlsx"):
+            raise InputError(f"{file} {EXCEL}")
+        if file.suffix.lower() in TEXT_SUFFIXES:
+            with file.open("rb") as stream:
+                data = _bounded(stream, str(file), MAX_FILE)
+            total += len(data)
+            if total > MAX_TOTAL:
+                raise InputError(f"{path} holds more than {MAX_TOTAL >> 20} MB")
+            found[file.relative_to(path).as_posix()] = data
+    return found
+
+
+def _walk(folder: Path, depth: int) -> Iterator[Path]:
+    """Yield the plain files of a folder; links are passed over, since they may lead anywhere."""
+    for item in sorted(folder.iterdir()):
+        if item.name.startswith((".", "__MACOSX")) or item.is_symlink():
+            continue
+        if item.is_dir() and depth > 0:
+            yield from _walk(item, depth - 1)
+        elif item.is_file():
+            yield item
+
+
+def _zip(path: Path, stream: IO[bytes]) -> dict[str, bytes]:
+    found: dict[str, bytes] = {}
+    try:
+        with zipfile.ZipFile(stream) as archive:
+            entries = archive.infolist()
+            _check_entries(path, entries)
+            for entry in entries:
+                if PurePosixPath(entry.filename).suffix.lower() in TEXT_SUFFIXES and not entry.filename.startswith("__MACOSX"):
+                    if entry.filename in found:
+                        raise InputError(f"{path} holds {entry.filename!r} twice")
+                    with archive.open(entry) as member:
+                        found[entry.filename] = _bounded(member, f"{path}: {entry.filename}", entry.file_size)
+    except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, struct.error, NotImplementedError, RuntimeError) as error:
+        raise InputError(f"{path} is a damaged zip file ({error}); export again") from error
+    return found
+
+
+def _check_entries(path: Path, entries: list[zipfile.ZipInfo]) -> None:
+    if len(entries) > MAX_FILES:
+        raise InputError(f"{path} holds {len(entries)} files; at most {MAX_FILES} were expected")
+    if sum(entry.file_size for entry in entries) > MAX_TOTAL:
+        raise InputError(f"{path} would unpack to more than {MAX_TOTAL >> 20} MB")
+    for entry in entries:
+        name = entry.filename
+        if name.startswith(("/", "\\")) or ".." in PurePosixPath(name.replace("\\", "/")).parts or ":" in name.partition("/")[0]:
+            raise InputError(f"{path} holds the name {name!r}, which leads out of the archive")
+        if name == "[Content_Types].xml" or name.lower().endswith((".xls", ".xlsx")):
+            raise InputError(f"{path} {'' if name == '[Content_Types].xml' else f'holds {name!r}, which '}{EXCEL}")
+        if entry.flag_bits & 1:
+            raise InputError(f"{path} is encrypted; export without a password")
+        if entry.file_size > MAX_FILE or entry.file_size > 2**20 + MAX_RATIO * max(entry.compress_size, 1):
+            raise InputError(f"{path}: {name!r} would unpack to {entry.file_size} bytes, far more than a recording")
+
+
+def _bounded(stream: IO[bytes], name: str, limit: int) -> bytes:
+    data = stream.read(limit + 1)
+    if len(data) > limit:
+        raise InputError(f"{name} is larger than {limit} bytes")
+    return data

@@ -1,0 +1,197 @@
+"""Tables of numbers as text in the dialects that phones and people write: separators , ; and tab, decimal point or decimal comma.
+
+A plain CSV of columns that are already in the vehicle's axes is read here too, with a map from quantities to columns.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.errors import InputError, Position, did_you_mean
+from vehgen.measure.export import PITCH_RATE, SPEED, VERTICAL, PhoneExport, Stream
+from vehgen.vehicle.units import ACCELERATION, FREQUENCY, TIME, Dimension, parse_unit
+from vehgen.vehicle.units import SPEED as SPEED_DIMENSION
+
+Array = NDArray[np.float64]
+MAX_COLUMNS = 200
+_DECIMAL_COMMA = re.compile(r'^"?[+-]?\d*,\d+(?:[eE][+-]?\d+)?"?$')
+_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+_MISSING = {"", "nan", "null", "na", "n/a", "-"}
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of text: `name` for errors, `header`, and `rows` of cells; numbers are read when they are asked for."""
+
+    name: str
+    header: tuple[str, ...]
+    rows: list[list[str]]
+    decimal_comma: bool = False
+
+    def column(self, index: int) -> Array:
+        """Return a column as numbers `shape (n,)`; missing ones are NaN.
+
+        Raises
+        ------
+        InputError
+            At the line and column of a text that is no number.
+        """
+        found = np.full(len(self.rows), np.nan)
+        for i, row in enumerate(self.rows):
+            text = row[index].strip() if index < len(row) else ""
+            if self.decimal_comma:
+                text = text.replace(",", ".")
+            if _NUMBER.fullmatch(text):
+                found[i] = float(text)
+            elif text.lower() not in _MISSING:
+                raise InputError(
+                    f"expected a number in column {self.header[index]!r}, found {text[:40]!r}", Position(self.name, i + 2, index + 1)
+                )
+        found[np.isinf(found)] = np.nan
+        return found
+
+    def text(self, index: int) -> list[str]:
+        """Return a column as text."""
+        return [row[index].strip() if index < len(row) else "" for row in self.rows]
+
+    def find(self, name: str) -> int:
+        """Return the index of a column by its name, capitals aside; raises InputError naming the nearest."""
+        lower = [item.lower() for item in self.header]
+        if name.lower() not in lower:
+            raise InputError(f"{self.name} has no column {name!r}; {did_you_mean(name, self.header)}")
+        return lower.index(name.lower())
+
+
+def read_table(data: bytes, name: str) -> Table:
+    """Read the text of a table with a header line.
+
+    Raises
+    ------
+    InputError
+        For bytes that are no text, no header line, no row, or no table.
+    """
+    for encoding in ("utf-8-sig", "utf-16") if data[:2] in (b"\xff\xfe", b"\xfe\xff") else ("utf-8-sig", "cp1252"):
+        try:
+            text = data.decode(encoding)
+            break
+        except UnicodeDecodeError:
+            continue
+    else:
+        raise InputError(f"{name} is not text; a CSV file was expected")
+    if "\0" in text:
+        raise InputError(f"{name} is not text; a CSV file was expected")
+    first = text.lstrip("\r\n").partition("\n")[0]
+    bare = re.sub(r'"[^"]*"', "", first)
+    delimiter = next((sign for sign in ("\t", ";") if sign in bare), ",")
+    try:
+        rows = [row for row in csv.reader(io.StringIO(text, newline=""), delimiter=delimiter) if any(cell.strip() for cell in row)]
+    except csv.Error as error:
+        raise InputError(f"{name} is not a table: {error}") from error
+    if not rows:
+        raise InputError(f"{name} is empty; a header line and rows of numbers were expected")
+    header = tuple(cell.strip() for cell in rows[0])
+    if len(header) > MAX_COLUMNS:
+        raise InputError(f"{name} has {len(header)} columns; at most {MAX_COLUMNS} were expected")
+    decimal_comma = delimiter != "," and any(_DECIMAL_COMMA.match(cell.strip()) for row in rows[1:50] for cell in row)
+    return Table(name, header, rows[1:], decimal_comma)
+
+
+@dataclass(frozen=True)
+class ColumnMap:
+    """Which columns of a plain CSV hold what, in which units; a column written `-name` counts with its sign reversed."""
+
+    time: str
+    acceleration: str
+    pitch_rate: str | None = None
+    speed: str | None = None
+    time_unit: str = "s"
+    acceleration_unit: str = "m/s^2"
+    pitch_rate_unit: str = "rad/s"
+    speed_unit: str = "m/s"
+
+
+def read_column_map(text: str) -> ColumnMap:
+    """Read `time=t,time_unit=ms,acceleration=az,pitch_rate=-gy,...`, the keys being those of ColumnMap.
+
+    Raises
+    ------
+    InputError
+        For an unknown, repeated or missing key.
+    """
+    found = split_pairs(text, "--columns", tuple(ColumnMap.__dataclass_fields__))
+    for key in ("time", "acceleration"):
+        if key not in found:
+            raise InputError(f"--columns lacks {key}=COLUMN; expected e.g. time=t,acceleration=az,pitch_rate=q")
+    return ColumnMap(**found)
+
+
+def split_pairs(text: str, option: str, known: tuple[str, ...]) -> dict[str, str]:
+    """Split `key=value,key=value` of a command-line option; raises InputError for what is not such a pair, unknown or repeated."""
+    found: dict[str, str] = {}
+    for part in text.split(","):
+        key, sign, value = (item.strip() for item in part.partition("="))
+        if not sign or not value:
+            raise InputError(f"{option}: expected key=value pairs joined by commas, found {part!r}")
+        if key not in known:
+            raise InputError(f"{option}: unknown key {key!r}; {did_you_mean(key, known)}")
+        if key in found:
+            raise InputError(f"{option}: {key} is given twice")
+        found[key] = value
+    return found
+
+
+def read_plain(table: Table, columns: ColumnMap | None) -> PhoneExport:
+    """Read a plain CSV whose columns are named by a map.
+
+    Raises
+    ------
+    InputError
+        Without a map, for missing columns, and for units that do not fit.
+    """
+    if columns is None:
+        shown = ", ".join(repr(item) for item in table.header[:12])
+        raise InputError(
+            f"{table.name} is of no app that vehgen knows (its columns: {shown}); say which columns are which: "
+            "--columns time=...,acceleration=...,pitch_rate=..."
+        )
+    time = _column(table, columns.time) * unit_factor(columns.time_unit, TIME, "--columns time_unit")
+    wanted = (
+        (VERTICAL, columns.acceleration, columns.acceleration_unit, ACCELERATION, "m/s^2"),
+        (PITCH_RATE, columns.pitch_rate, columns.pitch_rate_unit, FREQUENCY, "rad/s"),
+        (SPEED, columns.speed, columns.speed_unit, SPEED_DIMENSION, "m/s"),
+    )
+    streams = {}
+    for name, column, unit, dimension, si in wanted:
+        if column is not None:
+            values = _column(table, column) * unit_factor(unit, dimension, "--columns")
+            streams[name] = Stream(time, values[:, None], (column,), si)
+    return PhoneExport("plain CSV", streams)
+
+
+def _column(table: Table, name: str) -> Array:
+    if name.startswith("-") and name not in table.header:
+        return -table.column(table.find(name[1:]))
+    return table.column(table.find(name))
+
+
+def unit_factor(unit: str, dimension: Dimension, where: str) -> float:
+    """Return the factor from a unit to SI; `g` is the standard acceleration where an acceleration is asked for, `ns` a nanosecond."""
+    extra = {("g", ACCELERATION): 9.80665, ("ns", TIME): 1e-9, ("us", TIME): 1e-6}
+    if (unit, dimension) in extra:
+        return extra[unit, dimension]
+    factor, found = parse_unit(unit)
+    if found != dimension:
+        raise InputError(f"{where}: expected a unit of {dimension}, found {unit!r}")
+    return factor
+
+
+def display_name(path: Path | str, member: str) -> str:
+    """Return what errors call a file of an export."""
+    return member if str(path).endswith(member) else f"{path}: {member}"

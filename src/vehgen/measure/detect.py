@@ -1,0 +1,49 @@
+"""Which app an export came from, told by its headers and first bytes, never by file names: those of the apps collide."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from vehgen.errors import InputError
+from vehgen.measure.archive import read_members
+from vehgen.measure.csv_table import ColumnMap, Table, display_name, read_plain, read_table
+from vehgen.measure.export import PhoneExport
+from vehgen.measure.matlab import is_matlab, read_matlab
+from vehgen.measure.phyphox import is_phyphox, read_phyphox
+from vehgen.measure.sensor_logger import is_sensor_logger, read_sensor_logger
+
+
+def read_export(path: str | Path, columns: ColumnMap | None = None) -> PhoneExport:
+    """Read what a phone exported: a zip, a folder, a CSV file or a MATLAB file.
+
+    Parameters
+    ----------
+    path
+        The export.
+    columns
+        Which columns are which, for a plain CSV file of no known app.
+
+    Raises
+    ------
+    InputError
+        For what cannot be read, and for what is of no known app where `columns` does not help.
+    """
+    path = Path(path)
+    if path.is_file() and is_matlab(path):
+        return read_matlab(path)
+    tables: list[Table] = []
+    refused: list[InputError] = []
+    for name, data in read_members(path).items():
+        try:
+            tables.append(read_table(data, display_name(path, name)))
+        except InputError as error:
+            refused.append(error)
+    if not tables:
+        raise refused[0]
+    if any(is_sensor_logger(table) for table in tables):
+        return read_sensor_logger([table for table in tables if is_sensor_logger(table)])
+    if any(is_phyphox(table) for table in tables):
+        return read_phyphox([table for table in tables if is_phyphox(table)])
+    if len(tables) > 1 and columns is not None:
+        raise InputError(f"{path} holds {len(tables)} tables; with --columns, give the one CSV file")
+    return read_plain(tables[0], columns)

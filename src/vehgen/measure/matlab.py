@@ -1,0 +1,89 @@
+"""Logs of MATLAB Mobile: sensorlog_*.mat with the timetables Acceleration, AngularVelocity (X, Y, Z) and Position (speed).
+
+MATLAB stores timetables in a way that scipy.io cannot read; the optional package mat-io can (`pip install 'vehgen[matlab]'`).
+"""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.errors import InputError
+from vehgen.measure.archive import MAX_FILE
+from vehgen.measure.export import ROTATION, SPEED, EpochMap, PhoneExport, Stream, acceleration_kind
+
+_MARKS = (b"MATLAB 5.0 MAT-file", b"MATLAB 7.3 MAT-file", b"\x89HDF")
+_TABLES = ("Acceleration", "AngularVelocity", "Position")
+
+
+def is_matlab(path: Path) -> bool:
+    """Say whether a file begins as MATLAB's files do."""
+    try:
+        with path.open("rb") as stream:
+            return stream.read(19).startswith(_MARKS)
+    except OSError:
+        return False
+
+
+def read_matlab(path: Path) -> PhoneExport:
+    """Read a log of MATLAB Mobile.
+
+    Raises
+    ------
+    InputError
+        Without mat-io, for a file that it cannot read, and for one without acceleration.
+    """
+    if path.stat().st_size > MAX_FILE:
+        raise InputError(f"{path} is larger than {MAX_FILE} bytes")
+    try:
+        from matio import load_from_mat
+    except ImportError as error:
+        raise InputError(f"reading {path} needs mat-io: pip install 'vehgen[matlab]'") from error
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found: dict[str, Any] = load_from_mat(str(path), variable_names=list(_TABLES))
+    except MemoryError:
+        raise
+    except Exception as error:  # a damaged file fails in mat-io, h5py or zlib in ways that none of them lists
+        raise InputError(f"{path} cannot be read as a MATLAB file: {error}") from error
+    tables = {name: found[name] for name in _TABLES if hasattr(found.get(name), "columns")}
+    if "Acceleration" not in tables:
+        raise InputError(f"{path} holds no timetable Acceleration; turn the sensor on in MATLAB Mobile and log again")
+    clocks = {name: _clock(table, f"{path}: {name}") for name, table in tables.items()}
+    zero = min(float(clock[0]) for clock in clocks.values())
+    values = _columns(tables["Acceleration"], ("X", "Y", "Z"), f"{path}: Acceleration")
+    streams = {acceleration_kind(values): Stream(clocks["Acceleration"] - zero, values, ("x", "y", "z"), "m/s^2")}
+    if "AngularVelocity" in tables:
+        rates = _columns(tables["AngularVelocity"], ("X", "Y", "Z"), f"{path}: AngularVelocity")
+        streams[ROTATION] = Stream(clocks["AngularVelocity"] - zero, rates, ("x", "y", "z"), "rad/s")
+    if "Position" in tables:
+        speed = _columns(tables["Position"], ("speed",), f"{path}: Position")
+        streams[SPEED] = Stream(clocks["Position"] - zero, speed, ("speed",), "m/s")
+    epoch = EpochMap(np.array([0.0]), np.array([zero])) if zero > 1e9 else None
+    note = "MATLAB Mobile stamps without a time zone: clocks of phones in different zones differ by hours"
+    return PhoneExport("MATLAB Mobile", streams, epoch, (note,) if epoch else ())
+
+
+def _clock(table: Any, name: str) -> NDArray[np.float64]:
+    stamps = np.asarray(table.index)
+    if stamps.dtype.kind not in "mM" or not len(stamps):  # mat-io may hand the row times on as the first column
+        stamps = np.asarray(table.iloc[:, 0])
+    if stamps.dtype.kind not in "mM" or not len(stamps):
+        raise InputError(f"{name} has no row times; a timetable was expected")
+    return np.asarray(stamps.astype(stamps.dtype.str[:2] + "8[ns]").astype(np.int64) * 1e-9)
+
+
+def _columns(table: Any, names: tuple[str, ...], where: str) -> NDArray[np.float64]:
+    known = {str(column).lower(): column for column in table.columns}
+    for name in names:
+        if name.lower() not in known:
+            raise InputError(f"{where} lacks the column {name}; found {', '.join(map(str, table.columns))}")
+    try:
+        return np.column_stack([np.asarray(table[known[name.lower()]], dtype=np.float64) for name in names])
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{where} holds what is no number") from error

@@ -1,0 +1,93 @@
+"""Exports of phyphox (phyphox.org): zip or folder, one experiment's `Raw Data.csv` or a file a sensor.
+
+The app translates its headers, so columns are told by their units: `Time (s)`, then `... x (m/s^2)`, `... x (rad/s)`, `... (m/s)`.
+On iOS, too, phyphox writes accelerations as Android does: flat and face up, z reads +9.8 m/s^2.
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from vehgen.errors import InputError
+from vehgen.measure.csv_table import Table
+from vehgen.measure.export import ACCELERATION, LINEAR_ACCELERATION, ROTATION, SPEED, EpochMap, PhoneExport, Stream, acceleration_kind
+
+_HEAD = re.compile(r"(?P<words>.*?)\s*\((?P<unit>[^()]*)\)\s*\Z")
+_AXIS = re.compile(r"(?:.*\s)?([xyz])\Z", re.IGNORECASE)
+_UNITS = {"m/s^2": "m/s^2", "m/s²": "m/s^2", "rad/s": "rad/s", "m/s": "m/s", "s": "s", "°": "deg"}
+_EVENTS = ("event", "experiment time", "system time")
+
+
+def is_phyphox(table: Table) -> bool:
+    """Say whether a header is one that phyphox writes: all columns with units, the first a time."""
+    return _is_clock(table) or (
+        len(table.header) > 1
+        and (first := _HEAD.match(table.header[0])) is not None
+        and first["unit"] == "s"
+        and all(_HEAD.match(item) for item in table.header)
+    )
+
+
+def read_phyphox(tables: list[Table]) -> PhoneExport:
+    """Read the tables of a phyphox export.
+
+    Raises
+    ------
+    InputError
+        Without acceleration, and for what is not a number.
+    """
+    streams: dict[str, Stream] = {}
+    notes: list[str] = []
+    epoch = None
+    for table in tables:
+        if _is_clock(table):
+            epoch = _read_clock(table, notes)
+        elif is_phyphox(table):
+            for name, stream in _read_sensors(table):
+                if name in streams:
+                    notes.append(f"{table.name}: a second {name.replace('_', ' ')} was passed over")
+                else:
+                    streams[name] = stream
+    if not {ACCELERATION, LINEAR_ACCELERATION} & set(streams):
+        raise InputError(f"{tables[0].name}: this phyphox export holds no acceleration; record with the experiment 'Acceleration (with g)'")
+    return PhoneExport("phyphox", streams, epoch, tuple(notes), acceleration_sign=1)
+
+
+def _is_clock(table: Table) -> bool:
+    return tuple(item.lower() for item in table.header[:3]) == _EVENTS
+
+
+def _read_clock(table: Table, notes: list[str]) -> EpochMap | None:
+    events, moments, epochs = table.text(0), table.column(1), table.column(2)
+    starts = [i for i, event in enumerate(events) if event.upper() == "START" and np.isfinite([moments[i], epochs[i]]).all()]
+    if not starts or (np.diff(moments[starts]) < 0).any():
+        notes.append(f"{table.name} has no usable START row; the clock of this phone is unknown")
+        return None
+    if len(starts) > 1:
+        notes.append(f"recording was paused {len(starts) - 1} times")
+    return EpochMap(moments[starts], epochs[starts])
+
+
+def _read_sensors(table: Table) -> list[tuple[str, Stream]]:
+    heads = [_HEAD.match(item) for item in table.header]
+    units = [_UNITS.get(head["unit"], "") if head else "" for head in heads]
+    found = []
+    for unit in ("m/s^2", "rad/s"):
+        axes: dict[str, int] = {}
+        for i, head in enumerate(heads):
+            axis = _AXIS.match(head["words"]) if head and units[i] == unit else None
+            if axis:
+                axes.setdefault(axis[1].lower(), i)
+        if len(axes) == 3:
+            values = np.column_stack([table.column(axes[axis]) for axis in "xyz"])
+            try:
+                name = acceleration_kind(values) if unit == "m/s^2" else ROTATION
+            except InputError as error:
+                raise InputError(f"{table.name}: {error.message}") from error
+            found.append((name, Stream(table.column(0), values, ("x", "y", "z"), unit)))
+    if "m/s" in units and units.count("deg") >= 2:
+        values = table.column(units.index("m/s"))[:, None]
+        found.append((SPEED, Stream(table.column(0), values, ("speed",), "m/s")))
+    return found

@@ -1,0 +1,160 @@
+"""Uneven clocks put on an even one without adding or losing anything within the band.
+
+A phone's samples come when its scheduler lets them. Between uneven samples the signal is predicted by the best linear estimate from the
+nearest ones (simple kriging; Rasmussen & Williams, Gaussian Processes for Machine Learning, 2006, Eq. 2.25), whose prior is a band-limited
+spectrum: most of the power below 0.4 of the sampling rate, a little up to the Nyquist frequency, none above. The prediction meets every
+sample, is exact for band-limited signals up to the number of neighbours, and keeps the noise's level close to the Nyquist frequency.
+A sensor faster than the grid wants is predicted on a finer grid first, then filtered by a zero-phase FIR low-pass and decimated.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import scipy.signal
+from numpy.typing import NDArray
+
+from vehgen.errors import InputError
+from vehgen.measure.export import Stream
+
+Array = NDArray[np.float64]
+NEIGHBOURS = 40
+"""Samples that each value is predicted from."""
+INNER = 0.4
+"""Share of the sampling rate below which the prior has its power."""
+OUTER_POWER = 1e-4
+"""Power density of the prior from there to the Nyquist frequency, over that below."""
+NUGGET = 1e-9
+"""Share of the power added to the diagonal, for samples that nearly coincide."""
+MAX_DISORDER = 0.01
+"""Share of samples that may be out of order or repeated."""
+TRANSITION = 4.0
+"""Width of the low-pass's transition [Hz] per 100 Hz of the grid, centred on the grid's Nyquist frequency."""
+STOP_BAND = 60.0
+"""Attenuation beyond it [dB]."""
+
+
+def clean(stream: Stream, name: str) -> tuple[Stream, tuple[str, ...]]:
+    """Return a stream without missing samples and with ascending times, and what was done, in words.
+
+    Raises
+    ------
+    InputError
+        For fewer than 2 samples, values beyond all reason, and a clock that runs backwards too often.
+    """
+    notes = []
+    finite = np.isfinite(stream.time) & np.isfinite(stream.values).all(axis=1)
+    last = int(np.flatnonzero(finite)[-1]) + 1 if finite.any() else 0
+    missing = int((~finite[:last]).sum())
+    if missing:
+        notes.append(f"{name}: {missing} missing samples were dropped")
+    time, values = stream.time[finite], stream.values[finite]
+    if len(time) < 2:
+        raise InputError(f"{name} holds {len(time)} samples; a recording has thousands")
+    if np.abs(values).max() > 1e6 or np.abs(time).max() > 1e12:
+        raise InputError(f"{name} holds values up to {np.abs(values).max():.3g} at times up to {np.abs(time).max():.3g} s: not a recording")
+    order = np.argsort(time, kind="stable")
+    disorder = int((np.diff(time) < 0).sum())
+    time, values = time[order], values[order]
+    fresh = np.concatenate([[True], np.diff(time) > 0])
+    repeated = int((~fresh).sum())
+    if disorder + repeated:
+        if disorder + repeated > max(2, MAX_DISORDER * len(time)):
+            raise InputError(f"{name}: {disorder} times run backwards and {repeated} are repeated, of {len(time)}: is it the time column?")
+        notes.append(f"{name}: {disorder} samples were out of order and {repeated} repeated; sorted, the first of each kept")
+    if fresh.sum() < 2:
+        raise InputError(f"{name}: all samples have one time")
+    return replace(stream, time=time[fresh], values=values[fresh]), tuple(notes)
+
+
+def sampling_rate(time: Array) -> float:
+    """Return the median rate of samples at ascending times `shape (n,)` [s], in Hz."""
+    return float(1 / np.median(np.diff(time)))
+
+
+def check_rate(time: Array, top: float, name: str) -> float:
+    """Return the sampling rate [Hz], refusing one below twice the top of the band [Hz]."""
+    rate = sampling_rate(time)
+    if rate < 2 * top * 0.99:
+        raise InputError(
+            f"{name} was logged at {rate:.3g} Hz; at least {2 * top:g} Hz is needed to see up to {top:g} Hz (100 Hz is usual): set the app "
+            "to its fastest rate and record again"
+        )
+    return rate
+
+
+def gaps(time: Array, longest: float = 3.5) -> list[tuple[float, float]]:
+    """Return where samples at ascending times lack for more than `longest` periods, as (start [s], length [s])."""
+    steps = np.diff(time)
+    wide = np.flatnonzero(steps > longest * np.median(steps))
+    return [(float(time[i]), float(steps[i])) for i in wide]
+
+
+def resample(time: Array, values: Array, grid: Array) -> Array:
+    """Return the values on an even grid.
+
+    Parameters
+    ----------
+    time
+        Ascending times of the samples `shape (n,)` [s].
+    values
+        `shape (n, k)`.
+    grid
+        Evenly spaced times `shape (m,)` [s] within the samples' (a step beyond either end is allowed).
+
+    Returns
+    -------
+    `shape (m, k)`, band-limited to the lower of the two Nyquist frequencies.
+
+    Raises
+    ------
+    InputError
+        For a grid that reaches beyond the samples.
+    """
+    rate, step = sampling_rate(time), float(grid[1] - grid[0])
+    if grid[0] < time[0] - 1 / rate or grid[-1] > time[-1] + 1 / rate:
+        raise InputError(
+            f"samples from {time[0]:.3f} to {time[-1]:.3f} s were asked for values from {grid[0]:.3f} to {grid[-1]:.3f} s; "
+            "a longer recording is needed"
+        )
+    finer = int(np.ceil(rate * step / 1.04))
+    if finer < 2:
+        return _predict(time, values, grid, rate)
+    taps = _low_pass(1 / step, finer)
+    half = len(taps) // 2
+    inner = grid[0] + step / finer * np.arange(-half, (len(grid) - 1) * finer + half + 1)
+    inside = np.clip(inner, time[0], time[-1])  # beyond its ends the signal is held
+    fine = _predict(time, values, inside, rate)
+    return np.asarray(scipy.signal.oaconvolve(fine, taps[:, None], mode="valid", axes=0)[::finer])
+
+
+def _low_pass(grid_rate: float, finer: int) -> Array:
+    """Return the symmetric taps of a low-pass at half of `grid_rate` for a grid `finer` times as fine (Kaiser's window)."""
+    width = TRANSITION / 100 * grid_rate
+    count, beta = scipy.signal.kaiserord(STOP_BAND, width / (0.5 * finer * grid_rate))
+    return np.asarray(scipy.signal.firwin(count | 1, 0.5 * grid_rate, window=("kaiser", beta), fs=finer * grid_rate))
+
+
+def _predict(time: Array, values: Array, at: Array, rate: float) -> Array:
+    """Return the best linear estimate at times `at` from the nearest samples."""
+    count = min(NEIGHBOURS, len(time))
+    first = np.clip(np.searchsorted(time, at) - count // 2, 0, len(time) - count)
+    found = np.empty((len(at), values.shape[1]))
+    level = values.mean(axis=0)
+    for begin in range(0, len(at), 1000):
+        part = slice(begin, begin + 1000)
+        index = first[part, None] + np.arange(count)
+        near = time[index] * rate
+        matrix = _covariance(near[:, :, None] - near[:, None, :])
+        matrix[:, np.arange(count), np.arange(count)] *= 1 + NUGGET
+        toward = _covariance(near - (at[part] * rate)[:, None])
+        weights = np.linalg.solve(matrix, toward[:, :, None])[:, :, 0]
+        found[part] = level + np.einsum("ij,ijk->ik", weights, values[index] - level)
+    return found
+
+
+def _covariance(lag: Array) -> Array:
+    """Return the prior's covariance at lags in sampling periods: the Fourier transform of its two-level spectrum."""
+    outer = np.sinc(lag)
+    return np.asarray((1 - OUTER_POWER) * 2 * INNER * np.sinc(2 * INNER * lag) + OUTER_POWER * outer)
