@@ -1,11 +1,11 @@
 """Make the phone exports of this folder: `python docs/examples/phones/make_exports.py`.
 
 Two phones lie in a five-axle tractor-semitrailer like the bundled tractor5, whose calibratable parameters are all a few percent off (OFF
-below), so that a calibration has something to find. It crosses a half-sine hump of 0.5 m x 0.03 m at 2.0 and at 3.0 m/s, tyres touching the
-road in a point, and then drives over a class B road at 3.0 m/s whose profile was measured (road.csv).
+below), so that a calibration has something to find. It crosses a half-sine hump of 0.5 m x 0.03 m at 2.0 and at 3.0 m/s, tyres touching
+the road in a point, and then drives over a class B road at 3.0 m/s whose profile was measured (road.csv).
 
-The motion is integrated here by scipy's DOP853 from the equations of the vehicle as they stand in print (Wu & Li, Sensors 23(24), 9691, 2023,
-doi:10.3390/s23249691, with their signs put right), not by vehgen. Then the phones get what phones have: gravity, a tilt of a few degrees,
+The motion is integrated here by scipy's DOP853 from the equations of the vehicle as they stand in print (Wu & Li, Sensors 23(24), 9691,
+2023, doi:10.3390/s23249691, with their signs put right), not by vehgen. Then the phones get what phones have: gravity, a tilt,
 biases, noise, rounding, clocks of their own that jitter, and a GPS that is a little wrong.
 
 | | phone 1 | phone 2 |
@@ -170,9 +170,7 @@ def phyphox_files(reading: tuple, gps: Array, start: float, duration: float) -> 
     return {
         "Accelerometer.csv": table('"Time (s)","X (m/s^2)","Y (m/s^2)","Z (m/s^2)"', np.column_stack([ta, force]), number),
         "Gyroscope.csv": table('"Time (s)","X (rad/s)","Y (rad/s)","Z (rad/s)"', np.column_stack([tg, rotation]), number),
-        "Location.csv": table(
-            '"Time (s)","Latitude (°)","Longitude (°)","Height (m)","Velocity (m/s)","Direction (°)"', place, number
-        ),
+        "Location.csv": table('"Time (s)","Latitude (°)","Longitude (°)","Height (m)","Velocity (m/s)","Direction (°)"', place, number),
         "meta/time.csv": '"event","experiment time","system time","system time text"\n'
         f'"START",0.000000000E0,{start:.3f},""\n"PAUSE",{number(duration)},{start + duration:.3f},""\n',
     }
@@ -221,10 +219,11 @@ def main() -> None:
     for name, road, speed, duration, late in (
         ("hump_2ms", hump, 2.0, 20.0, 0.18),
         ("hump_3ms", hump, 3.0, 16.0, -0.35),
-        ("road_3ms", measured, 3.0, 20.0, 0.05),
+        ("road_3ms", measured, 3.0, 21.0, 0.05),
     ):
         motion = drive(road, speed, duration + 0.5)
-        began = (0.0, 1.7)  # phone 2 was started earlier: at its time 1.7 s phone 1 begins
+        before = 3.0 if name == "road_3ms" else 0.0
+        began = (before, before + 1.7)  # on each phone's clock; phone 2 was started 1.7 s earlier
         epoch += 600.0
         for phone, (place, frame) in enumerate(zip(("L1", "L2"), frames, strict=True)):
             shifted = {key: _later(spline, began[phone]) for key, spline in motion[place].items()}
@@ -234,7 +233,7 @@ def main() -> None:
             if phone == 0:
                 write_zip(HERE / f"{name}_phone1.zip", phyphox_files(reading, gps, epoch, duration))
             else:
-                write_zip(HERE / f"{name}_phone2.zip", sensor_logger_files(reading, gps, epoch - began[1] + late))
+                write_zip(HERE / f"{name}_phone2.zip", sensor_logger_files(reading, gps, epoch - 1.7 + late))
 
 
 def _later(spline: CubicSpline, delay: float) -> Callable[[Array], Array]:

@@ -15,6 +15,7 @@ from vehgen.commands import (
     calibrate,
     diagnose,
     effects,
+    import_,
     laden,
     models,
     modes,
@@ -33,6 +34,7 @@ COMMANDS = (
     modes,
     static,
     simulate,
+    import_,
     calibrate,
     validate,
     sensitivity,
@@ -57,7 +59,7 @@ def make_parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="store_true", help="print the version and leave")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND")
     for command in COMMANDS:
-        name = command.__name__.rpartition(".")[2]
+        name = getattr(command, "NAME", command.__name__.rpartition(".")[2])
         summary = (command.__doc__ or "").strip().splitlines()[0]
         sub = commands.add_parser(
             name,

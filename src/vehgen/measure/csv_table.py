@@ -9,7 +9,6 @@ import csv
 import io
 import re
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,9 +27,10 @@ _MISSING = {"", "nan", "null", "na", "n/a", "-"}
 
 @dataclass(frozen=True)
 class Table:
-    """A table of text: `name` for errors, `header`, and `rows` of cells; numbers are read when they are asked for."""
+    """A table of text: `name` for errors, `file` within its export, `header`, `rows` of cells; numbers are read when asked for."""
 
     name: str
+    file: str
     header: tuple[str, ...]
     rows: list[list[str]]
     decimal_comma: bool = False
@@ -69,14 +69,15 @@ class Table:
         return lower.index(name.lower())
 
 
-def read_table(data: bytes, name: str) -> Table:
-    """Read the text of a table with a header line.
+def read_table(data: bytes, file: str, export: str = "") -> Table:
+    """Read the text of a table with a header line; `file` is its name within an `export`.
 
     Raises
     ------
     InputError
         For bytes that are no text, no header line, no row, or no table.
     """
+    name = f"{export}: {file}" if export and not export.endswith(file) else export or file
     for encoding in ("utf-8-sig", "utf-16") if data[:2] in (b"\xff\xfe", b"\xfe\xff") else ("utf-8-sig", "cp1252"):
         try:
             text = data.decode(encoding)
@@ -100,7 +101,7 @@ def read_table(data: bytes, name: str) -> Table:
     if len(header) > MAX_COLUMNS:
         raise InputError(f"{name} has {len(header)} columns; at most {MAX_COLUMNS} were expected")
     decimal_comma = delimiter != "," and any(_DECIMAL_COMMA.match(cell.strip()) for row in rows[1:50] for cell in row)
-    return Table(name, header, rows[1:], decimal_comma)
+    return Table(name, file, header, rows[1:], decimal_comma)
 
 
 @dataclass(frozen=True)
@@ -190,8 +191,3 @@ def unit_factor(unit: str, dimension: Dimension, where: str) -> float:
     if found != dimension:
         raise InputError(f"{where}: expected a unit of {dimension}, found {unit!r}")
     return factor
-
-
-def display_name(path: Path | str, member: str) -> str:
-    """Return what errors call a file of an export."""
-    return member if str(path).endswith(member) else f"{path}: {member}"

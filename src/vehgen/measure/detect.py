@@ -6,7 +6,7 @@ from pathlib import Path
 
 from vehgen.errors import InputError
 from vehgen.measure.archive import read_members
-from vehgen.measure.csv_table import ColumnMap, Table, display_name, read_plain, read_table
+from vehgen.measure.csv_table import ColumnMap, Table, read_plain, read_table
 from vehgen.measure.export import PhoneExport
 from vehgen.measure.matlab import is_matlab, read_matlab
 from vehgen.measure.phyphox import is_phyphox, read_phyphox
@@ -35,7 +35,7 @@ def read_export(path: str | Path, columns: ColumnMap | None = None) -> PhoneExpo
     refused: list[InputError] = []
     for name, data in read_members(path).items():
         try:
-            tables.append(read_table(data, display_name(path, name)))
+            tables.append(read_table(data, name, str(path)))
         except InputError as error:
             refused.append(error)
     if not tables:

@@ -1,9 +1,9 @@
 """Uneven clocks put on an even one without adding or losing anything within the band.
 
 A phone's samples come when its scheduler lets them. Between uneven samples the signal is predicted by the best linear estimate from the
-nearest ones (simple kriging; Rasmussen & Williams, Gaussian Processes for Machine Learning, 2006, Eq. 2.25), whose prior is a band-limited
+ones around (simple kriging; Rasmussen & Williams, Gaussian Processes for Machine Learning, 2006, Eq. 2.25), whose prior is a band-limited
 spectrum: most of the power below 0.4 of the sampling rate, a little up to the Nyquist frequency, none above. The prediction meets every
-sample, is exact for band-limited signals up to the number of neighbours, and keeps the noise's level close to the Nyquist frequency.
+sample, is exact for band-limited signals up to the number of samples around, and keeps the noise's level close to the Nyquist frequency.
 A sensor faster than the grid wants is predicted on a finer grid first, then filtered by a zero-phase FIR low-pass and decimated.
 """
 
@@ -19,8 +19,10 @@ from vehgen.errors import InputError
 from vehgen.measure.export import Stream
 
 Array = NDArray[np.float64]
-NEIGHBOURS = 40
-"""Samples that each value is predicted from."""
+MARGIN = 80
+"""Samples beyond a block of values, on either side, that it is predicted from."""
+BLOCK = 400
+"""Values predicted together."""
 INNER = 0.4
 """Share of the sampling rate below which the prior has its power."""
 OUTER_POWER = 1e-4
@@ -137,20 +139,18 @@ def _low_pass(grid_rate: float, finer: int) -> Array:
 
 
 def _predict(time: Array, values: Array, at: Array, rate: float) -> Array:
-    """Return the best linear estimate at times `at` from the nearest samples."""
-    count = min(NEIGHBOURS, len(time))
-    first = np.clip(np.searchsorted(time, at) - count // 2, 0, len(time) - count)
+    """Return the best linear estimate at ascending times `at`, block by block, each from its own samples and MARGIN on either side."""
     found = np.empty((len(at), values.shape[1]))
     level = values.mean(axis=0)
-    for begin in range(0, len(at), 1000):
-        part = slice(begin, begin + 1000)
-        index = first[part, None] + np.arange(count)
-        near = time[index] * rate
-        matrix = _covariance(near[:, :, None] - near[:, None, :])
-        matrix[:, np.arange(count), np.arange(count)] *= 1 + NUGGET
-        toward = _covariance(near - (at[part] * rate)[:, None])
-        weights = np.linalg.solve(matrix, toward[:, :, None])[:, :, 0]
-        found[part] = level + np.einsum("ij,ijk->ik", weights, values[index] - level)
+    for begin in range(0, len(at), BLOCK):
+        wanted = at[begin : begin + BLOCK]
+        first = max(int(np.searchsorted(time, wanted[0])) - MARGIN, 0)
+        last = min(int(np.searchsorted(time, wanted[-1])) + MARGIN, len(time))
+        near = time[first:last] * rate
+        matrix = _covariance(near[:, None] - near[None, :])
+        matrix[np.arange(len(near)), np.arange(len(near))] *= 1 + NUGGET
+        weights = np.linalg.solve(matrix, values[first:last] - level)
+        found[begin : begin + BLOCK] = level + _covariance(wanted[:, None] * rate - near[None, :]) @ weights
     return found
 
 

@@ -1,7 +1,7 @@
 """Exports of Sensor Logger (tszheichoi.com/sensorlogger): zip or folder, a file a sensor.
 
-The files of all sensors have one header, `time,seconds_elapsed,z,y,x` (z first), with `time` in ns since 1970; only the file's name says which
-sensor it is of. `Accelerometer` is without gravity, `TotalAcceleration` with. iPhones read accelerations with the opposite sign unless
+The files of all sensors have one header, `time,seconds_elapsed,z,y,x` (z first), with `time` in ns since 1970; only the file's name says
+which sensor it is of. `Accelerometer` is without gravity, `TotalAcceleration` with. iPhones read accelerations the other way round unless
 "Standardise Units & Frames" was on; `Metadata.csv` tells (github.com/tszheichoi/awesome-sensor-logger, COORDINATES.md).
 """
 
@@ -45,7 +45,7 @@ def read_sensor_logger(tables: list[Table]) -> PhoneExport:
             sign = _sign(table, notes)
         if not {"time", "seconds_elapsed"} <= set(table.header):
             continue
-        stem = PurePosixPath(table.name.replace("\\", "/")).stem.lower()
+        stem = PurePosixPath(table.file).stem.lower()
         elapsed = table.column(table.find("seconds_elapsed"))
         if stem in _SENSORS and {"x", "y", "z"} <= set(table.header):
             name, unit = _SENSORS[stem]

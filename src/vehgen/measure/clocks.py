@@ -1,0 +1,119 @@
+"""When the front wheel reached the road's begin, on the clock of each phone, by what the vehicle should do at each phone's place.
+
+The vehicle of the file drives over the road at several speeds; where its answer lies best over a recording, the clock is known. Every axle
+that crosses is a mark, so the distance between the marks tells the speed too, and two phones far apart need not see the same thing to be
+put on one clock. A vehicle whose parameters are a few percent wrong does well enough; how well they fit is reported.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.signal
+from numpy.typing import NDArray
+
+from vehgen.measure.export import PhoneExport
+from vehgen.simulate import Scenario, Simulator
+
+Array = NDArray[np.float64]
+Answer = Callable[[float], Array]
+COARSE = np.arange(0.88, 1.1201, 0.01)
+"""Speeds tried, over the one that was told or measured ..."""
+FINE = np.arange(-0.01, 0.01001, 0.001)
+"""... and then around the best of them."""
+TRUSTED = 0.6
+"""Least correlation of a match that is believed."""
+HIGHEST = 20.0
+"""Above this frequency [Hz] the vehicle's answer is not compared."""
+
+
+@dataclass(frozen=True)
+class Match:
+    """Where the answer's t = 0 lies on a recording's clock (`shift` [s]), their `correlation`, and the best `scale` of the speed."""
+
+    shift: float
+    correlation: float
+    scale: float
+
+
+def predictor(simulator: Simulator, parameters: Array, scenario: Scenario) -> Answer:
+    """Return a function from a factor on the scenario's speed to the vehicle's answer `shape (n_samples, n_channels)`."""
+    return lambda scale: simulator.run(parameters[None, :], scenario.adjusted(speed=scale)).responses[0]
+
+
+def match(
+    recordings: Sequence[tuple[Array, Array]], answer: Answer, columns: Sequence[slice], step: float, near: Sequence[tuple[float, float]]
+) -> list[Match]:
+    """Lay the vehicle's answer over recordings.
+
+    Parameters
+    ----------
+    recordings
+        For each phone evenly spaced times `shape (n,)` [s] and channels `shape (n, k)`.
+    answer
+        The vehicle's answer at a factor on its speed, all channels of all phones.
+    columns
+        For each phone which of them are its own.
+    step
+        Spacing of the samples of recordings and answer [s].
+    near
+        For each phone the earliest and latest shift allowed [s].
+
+    Returns
+    -------
+    One match a phone, all at the speed that suits them best together.
+    """
+    low_pass = scipy.signal.butter(4, HIGHEST, fs=1 / step, output="sos")
+    smooth = [scipy.signal.sosfiltfilt(low_pass, values - values.mean(axis=0), axis=0) for _, values in recordings]
+
+    def scan(scales: Array) -> Array:
+        """Return shift and correlation, `shape (n_scales, n_phones, 2)`."""
+        table = np.empty((len(scales), len(recordings), 2))
+        for i, scale in enumerate(scales):
+            expected = scipy.signal.sosfiltfilt(low_pass, answer(float(scale)), axis=0)
+            for j, (time, _) in enumerate(recordings):
+                table[i, j] = _lay(smooth[j], expected[:, columns[j]], time, step, near[j])
+        return table
+
+    rough = float(COARSE[np.argmax(scan(COARSE)[:, :, 1].mean(axis=1))])
+    scales = rough + FINE
+    table = scan(scales)
+    together = table[:, :, 1].mean(axis=1)
+    best = int(np.argmax(together))
+    return [Match(float(table[best, j, 0]), float(table[best, j, 1]), float(scales[best])) for j in range(len(recordings))]
+
+
+def _lay(values: Array, template: Array, time: Array, step: float, near: tuple[float, float]) -> tuple[float, float]:
+    """Return the shift at which a prediction correlates best with a recording, and that correlation."""
+    n = len(template)
+    pad = np.zeros((n, values.shape[1]))
+    longer = np.vstack([pad, values, pad])
+    total = np.zeros(len(longer) - n + 1)
+    for channel, expected in zip(longer.T, template.T, strict=True):
+        dot = scipy.signal.oaconvolve(channel, expected[::-1], mode="valid")
+        energy = np.concatenate([[0.0], np.cumsum(channel**2)])
+        local = energy[n:] - energy[:-n]
+        total += dot / np.sqrt(np.maximum(local, 1e-3 * local.max() + 1e-30) * max(float((expected**2).sum()), 1e-30))
+    total /= values.shape[1]
+    shifts = time[0] + step * (np.arange(len(total)) - n)
+    inside = np.flatnonzero((shifts >= near[0]) & (shifts <= near[1]))
+    if not len(inside):
+        return float(np.mean(near)), 0.0
+    best = int(inside[np.argmax(total[inside])])
+    bend = _vertex(total[best - 1 : best + 2]) if 0 < best < len(total) - 1 else 0.0
+    return float(shifts[best] + bend * step), float(total[best])
+
+
+def _vertex(three: Array) -> float:
+    """Return where a parabola through three samples has its top, in steps from the middle one."""
+    curve = three[0] - 2 * three[1] + three[2]
+    return float(np.clip(0.5 * (three[0] - three[2]) / curve, -0.5, 0.5)) if curve < 0 else 0.0
+
+
+def epoch_disagreement(first: PhoneExport, moment: float, other: PhoneExport, other_moment: float) -> float | None:
+    """Return how much later [s] the world's clock of the other phone says one event was, None where either phone does not know it."""
+    if first.epoch is None or other.epoch is None:
+        return None
+    return other.epoch.at(other_moment) - first.epoch.at(moment)

@@ -1,0 +1,47 @@
+"""The speed of a crossing from a phone's GPS."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vehgen.errors import InputError
+from vehgen.measure.export import Stream
+
+SLOWEST = 0.3
+"""A GPS cannot tell slower speeds from standing still [m/s]."""
+
+
+@dataclass(frozen=True)
+class CrossingSpeed:
+    """The median of `count` readings, the lowest and the highest [m/s]."""
+
+    median: float
+    low: float
+    high: float
+    count: int
+
+    def __str__(self) -> str:
+        return f"median {self.median:.3f} m/s of {self.count} GPS readings, {self.low:.3f} to {self.high:.3f} m/s"
+
+
+def crossing_speed(stream: Stream | None, start: float, end: float, name: str) -> CrossingSpeed:
+    """Return the speed between two moments [s] of the phone's clock; negative readings are the apps' way to say that there is none.
+
+    Raises
+    ------
+    InputError
+        Where no speed was recorded, or none worth the name.
+    """
+    hint = "give --speed"
+    if stream is None:
+        raise InputError(f"{name} recorded no GPS speed; {hint}, e.g. --speed 2.0")
+    part = stream.between(start, end).values[:, 0]
+    part = part[np.isfinite(part) & (part >= 0)]
+    if not len(part):
+        raise InputError(f"{name} has no valid GPS speed from {start:.1f} to {end:.1f} s; {hint}, e.g. --speed 2.0")
+    median = float(np.median(part))
+    if not SLOWEST <= median <= 60.0:
+        raise InputError(f"{name}: the GPS speed over the crossing is {median:.2f} m/s, which cannot be; {hint}, e.g. --speed 2.0")
+    return CrossingSpeed(median, float(part.min()), float(part.max()), len(part))

@@ -1,0 +1,224 @@
+"""From phone exports of one pass to a run file and the recording that it names.
+
+clean -> orientation -> hump -> speed -> the vehicle's answer laid over each recording -> quiet stretch -> even grid -> noise floor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.errors import InputError
+from vehgen.measure.clocks import TRUSTED, Match, epoch_disagreement
+from vehgen.measure.detect import read_export
+from vehgen.measure.export import Stream
+from vehgen.measure.hump_event import HumpEvent
+from vehgen.measure.locating import CLOCK_DOUBT, find_speed, locate
+from vehgen.measure.noise import NoiseFloor, clipped, noise_floor
+from vehgen.measure.options import PhoneSensor, Plan
+from vehgen.measure.orientation import Orientation
+from vehgen.measure.phone import MARGIN, QUIET, Phone, make_phone
+from vehgen.simulate import Simulator
+
+Array = NDArray[np.float64]
+LEAD_TIME = 3.0
+"""Seconds before the hump with which a run begins, where there are so many."""
+LEAST_LEAD = 0.5
+"""Seconds that there must be."""
+SPEED_DOUBT = 0.01
+"""Relative difference of speeds that deserves a warning."""
+
+
+@dataclass(frozen=True)
+class ImportedPhone:
+    """One phone of an import, on its own clock: the run's t = 0 at `zero` [s], how that was found, and what the phone recorded."""
+
+    phone: Phone
+    zero: float
+    arrival: float
+    found_by: str
+    quiet: tuple[float, float]
+    upward: Stream
+    pitch: Stream | None
+    orientation: Orientation | None
+    event: HumpEvent | None
+    match: Match
+    noise: tuple[tuple[str, NoiseFloor], ...]
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Imported:
+    """An import: `time shape (n,)` [s], `values shape (n, n_channels)` of `channels` [m/s^2, rad/s], and all that was assumed.
+
+    `at` [m] is where the hump begins (None for a measured profile), `fitted_speed` [m/s] what the axles' marks say, `wheels` the distance
+    of every axle behind the front wheel [m].
+    """
+
+    plan: Plan
+    phones: tuple[ImportedPhone, ...]
+    time: Array
+    values: Array
+    channels: tuple[str, ...]
+    speed: float
+    speed_source: str
+    fitted_speed: float | None
+    at: float | None
+    wheels: dict[str, float]
+    warnings: tuple[str, ...]
+
+
+def import_phones(exports: Sequence[str | Path], plan: Plan) -> Imported:
+    """Turn the exports of the phones in one vehicle, one pass, into channels on one even clock.
+
+    Parameters
+    ----------
+    exports
+        One per sensor of the plan, in its order.
+    plan
+        Vehicle, road and phones.
+
+    Raises
+    ------
+    InputError
+        For exports that cannot be read or used; it says what would help.
+    """
+    if len(exports) != len(plan.sensors) or not exports:
+        raise InputError(f"{len(exports)} exports and {len(plan.sensors)} sensors: give one --sensor for each export, in the same order")
+    if not 2 * plan.top <= plan.rate <= 1000.0 or abs(1000 / plan.rate - round(1000 / plan.rate)) > 1e-9:
+        raise InputError(f"the rate must be from {2 * plan.top:g} to 1000 Hz with a step of whole milliseconds, found {plan.rate:g} Hz")
+    names = [sensor.name for sensor in plan.sensors]
+    if len(set(names)) < len(names):
+        raise InputError(f"two sensors have one name ({', '.join(names)}); each needs its own")
+    phones = [
+        make_phone(read_export(path, plan.columns), sensor, Path(path).name, plan.top)
+        for path, sensor in zip(exports, plan.sensors, strict=True)
+    ]
+    outputs = [output for phone in phones for output in phone.sensor.outputs(phone.rotation is not None)]
+    simulator = Simulator(plan.vehicle, outputs)
+    values = plan.vehicle.values(plan.parameter_set)
+    offsets = simulator.model.wheel_offsets(simulator.model.values(overrides=values))
+    wheels = dict(zip(plan.vehicle.axles, map(float, offsets), strict=True))
+    distance = max(wheels.values()) + plan.road.length
+    speed, source, events = find_speed(phones, plan, distance)
+    matches, arrivals = locate(phones, plan, simulator, simulator.parameters(values)[0], speed, distance, events)
+    if plan.by_axles:
+        if min(item.correlation for item in matches) < TRUSTED:
+            raise InputError("the vehicle's answer fits too badly to tell the speed by its axles; give --speed in m/s")
+        speed, source = speed * matches[0].scale, f"by the axles' marks; {source}"
+        matches = [replace(item, scale=1.0) for item in matches]
+    return _assemble(phones, plan, speed, source, events, matches, arrivals, distance, wheels)
+
+
+def _assemble(
+    phones: list[Phone],
+    plan: Plan,
+    speed: float,
+    source: str,
+    events: list[HumpEvent | None],
+    matches: list[Match],
+    arrivals: list[tuple[float, str]],
+    distance: float,
+    wheels: dict[str, float],
+) -> Imported:
+    """Choose t = 0, sample every channel, and say what deserves doubt."""
+    is_hump = plan.road.hump is not None
+    lead = _lead(phones, plan, speed, [moment for moment, _ in arrivals]) if is_hump else 0.0
+    zeros = [moment - lead / speed for moment, _ in arrivals]
+    available = min(phone.end - zero for phone, zero in zip(phones, zeros, strict=True))
+    crossing = (lead + distance) / speed
+    if is_hump and available < crossing + 0.5:
+        raise InputError(
+            f"the recording ends {available:.1f} s after t = 0, before the last wheel has crossed ({crossing:.1f} s); record longer"
+        )
+    wanted = crossing + plan.after if is_hump else min(crossing, plan.road.length / speed)
+    count = int(min(wanted, available - 0.05) * plan.rate)
+    time = np.arange(count + 1) / plan.rate
+    done, columns, channels, warnings = [], [], [], []
+    for phone, zero, (arrival, found_by), event, item in zip(phones, zeros, arrivals, events, matches, strict=True):
+        quiet = (max(phone.begin, arrival - QUIET), arrival - MARGIN)
+        if quiet[1] - quiet[0] < LEAST_LEAD:
+            quiet = (zero, zero + float(time[-1]))
+        upward, pitch, orientation = phone.turned(*quiet)
+        columns.append(phone.sampled((upward, pitch), time + zero))
+        names = [output.name for output in phone.sensor.outputs(pitch is not None)]
+        channels += names
+        noise = _noise(phone, (upward, pitch), names, quiet, plan.rate) if quiet[1] < arrival else ()
+        notes = [*phone.notes, *phone.short_gaps(zero, zero + float(time[-1])), *(orientation.notes if orientation else ())]
+        used = phone.acceleration.between(zero, zero + float(time[-1]))
+        for axis, extreme, moment in clipped(used):
+            warnings.append(
+                f"{phone.name}: acceleration {axis} is clipped at {extreme:.4g} m/s^2 from {moment:.2f} s: take a phone of larger range, "
+                "a lower speed or a lower hump"
+            )
+        if is_hump and item.correlation < TRUSTED:
+            warnings.append(
+                f"{phone.name}: the vehicle's answer fits badly (correlation {item.correlation:.2f}), so its clock is set by {found_by}: "
+                "check vehicle, place and forward axis"
+            )
+        for channel, floor in noise:
+            if quiet[1] - quiet[0] > 3.0 and floor.sigma > 1.3 * floor.band_sigma:
+                notes.append(
+                    f"{channel}: the lead-in is {floor.sigma / floor.band_sigma:.1f} times as loud as the top of its band: road or engine"
+                )
+        done.append(ImportedPhone(phone, zero, arrival, found_by, quiet, upward, pitch, orientation, event, item, noise, tuple(notes)))
+    fitted = speed * matches[0].scale if all(item.correlation >= TRUSTED for item in matches) else None
+    if fitted is not None and abs(fitted / speed - 1) > SPEED_DOUBT:
+        warnings.append(f"the axles' marks fit {fitted:.3f} m/s better than {speed:.3f} m/s ({source}); --speed axles takes that")
+    warnings += _clock_warnings(done)
+    at = lead if is_hump else None
+    return Imported(plan, tuple(done), time, np.column_stack(columns), tuple(channels), speed, source, fitted, at, wheels, tuple(warnings))
+
+
+def _lead(phones: list[Phone], plan: Plan, speed: float, arrivals: list[float]) -> float:
+    available = min(arrival - phone.begin for phone, arrival in zip(phones, arrivals, strict=True))
+    if plan.lead is not None:
+        if not LEAST_LEAD * speed <= plan.lead <= available * speed:
+            raise InputError(
+                f"the lead must be {LEAST_LEAD * speed:.2f} to {available * speed:.2f} m in this recording, found {plan.lead:g} m"
+            )
+        return plan.lead
+    lead = float(np.floor(10 * min(LEAD_TIME, available - 0.05) * speed) / 10)
+    if lead < LEAST_LEAD * speed:
+        raise InputError(
+            f"only {available:.2f} s were recorded before the hump; at least {LEAST_LEAD:g} s are needed: start recording earlier"
+        )
+    return lead
+
+
+def _noise(
+    phone: Phone, streams: tuple[Stream | None, Stream | None], names: list[str], quiet: tuple[float, float], rate: float
+) -> tuple[tuple[str, NoiseFloor], ...]:
+    present = [stream for stream in streams if stream is not None]
+    grid = np.arange(quiet[0], quiet[1], 1 / rate)
+    values = phone.sampled(streams, grid)
+    return tuple(
+        (name, noise_floor(values[:, i], 1 / rate, sampling))
+        for i, (name, sampling) in enumerate(zip(names, phone.rates[: len(present)], strict=True))
+    )
+
+
+def _clock_warnings(done: list[ImportedPhone]) -> list[str]:
+    found = []
+    for other in done[1:]:
+        late = clock_difference(done[0], other)
+        if late is not None and abs(late) > CLOCK_DOUBT:
+            found.append(
+                f"by the apps' clocks {other.phone.name} crossed {late:+.2f} s after {done[0].phone.name}; the road was believed: are "
+                "both of one pass?"
+            )
+    return found
+
+
+def clock_difference(first: ImportedPhone, other: ImportedPhone) -> float | None:
+    """Return how much later [s] the other phone's world clock says the front wheel reached the hump, None where one does not know."""
+    return epoch_disagreement(first.phone.export, first.arrival, other.phone.export, other.arrival)
+
+
+def with_forward(sensors: Sequence[PhoneSensor], forward: str | None) -> tuple[PhoneSensor, ...]:
+    """Return sensors with the forward axis of those that name none."""
+    return tuple(sensor if sensor.forward else replace(sensor, forward=forward) for sensor in sensors)

@@ -1,0 +1,104 @@
+"""When and how fast the vehicle crossed, as the phones of one pass saw it together."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.errors import InputError
+from vehgen.measure.clocks import COARSE, TRUSTED, Match, epoch_disagreement, match, predictor
+from vehgen.measure.gps import CrossingSpeed, crossing_speed
+from vehgen.measure.hump_event import HumpEvent, expected_onset, find_hump
+from vehgen.measure.options import Plan
+from vehgen.measure.phone import Phone, speed_stream
+from vehgen.road import ConstantSpeed, Track
+from vehgen.simulate import Scenario, Simulator
+
+Array = NDArray[np.float64]
+CLOCK_DOUBT = 0.5
+"""Difference of two phones' world clocks over one event [s] that deserves a warning."""
+
+
+def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[float, str, list[HumpEvent | None]]:
+    """Return the speed, where it is from, and the hump as every phone saw it."""
+    told: CrossingSpeed | None = None
+    teller = next((phone for phone in phones if speed_stream(phone.export) is not None), phones[0])
+    speed = plan.speed
+    if speed is None:
+        speed = crossing_speed(speed_stream(teller.export), teller.begin, teller.end, teller.name).median
+    if plan.road.hump is None:
+        source = (
+            "given"
+            if plan.speed is not None
+            else f"{teller.name}: " + str(crossing_speed(speed_stream(teller.export), teller.begin, teller.end, teller.name))
+        )
+        return speed, source, [None] * len(phones)
+    events: list[HumpEvent | None] = [_event(phone, distance / speed) for phone in phones]
+    event = events[phones.index(teller)]
+    assert event is not None
+    if speed_stream(teller.export) is not None:
+        try:
+            told = crossing_speed(speed_stream(teller.export), event.onset - 0.5, event.onset + distance / speed + 0.5, teller.name)
+        except InputError:
+            if plan.speed is None:
+                raise
+    if plan.speed is not None:
+        return plan.speed, "given" + (f"; {teller.name}: {told}" if told else ""), events
+    assert told is not None
+    return told.median, f"{teller.name}: {told}", events
+
+
+def _event(phone: Phone, crossing: float) -> HumpEvent:
+    upward, _, _ = phone.turned(phone.begin, phone.end)
+    grid = np.arange(phone.begin, phone.end, 0.01)
+    return find_hump(grid, np.interp(grid, upward.time, upward.values[:, 0]), crossing, phone.name)
+
+
+def locate(
+    phones: list[Phone], plan: Plan, simulator: Simulator, parameters: Array, speed: float, distance: float, events: list[HumpEvent | None]
+) -> tuple[list[Match], list[tuple[float, str]]]:
+    """Return for each phone how the vehicle's answer lies over its recording, and when the front wheel reached the road's begin."""
+    step = 1 / plan.rate
+    lead = 1.0 * speed if plan.road.hump else 0.0
+    track = Track((plan.road.at(lead),), plan.footprint)
+    length = (lead + distance) / (speed * COARSE[0]) + 1.5
+    answer = predictor(simulator, parameters, Scenario(track, ConstantSpeed(speed), length, 1e-3, round(1000 * step)))
+    recordings, near, columns, first = [], [], [], 0
+    for phone, event in zip(phones, events, strict=True):
+        upward, pitch, _ = phone.turned(phone.begin, phone.end)
+        grid = np.arange(phone.begin, phone.end, step)
+        if event is not None:
+            grid = np.arange(max(phone.begin, event.onset - distance / speed - 4.0), min(phone.end, event.onset + length + 2.0), step)
+        recorded = [np.interp(grid, item.time, item.values[:, 0]) for item in (upward, pitch) if item is not None]
+        recordings.append((grid, np.column_stack(recorded)))
+        columns.append(slice(first, first + len(recorded)))
+        first += len(recorded)
+        lead_time = lead / speed
+        near.append(
+            (event.onset - distance / speed - lead_time - 1.0, event.onset - lead_time + 0.4) if event else (phone.begin, phone.end)
+        )
+    found = match(recordings, answer, columns, step, near)
+    arrivals: list[tuple[float, str]] = []
+    for i, (item, event) in enumerate(zip(found, events, strict=True)):
+        if item.correlation >= TRUSTED:
+            arrivals.append(
+                (item.shift + lead / (speed * item.scale), f"the vehicle's answer laid over it (correlation {item.correlation:.2f})")
+            )
+        elif event is None:
+            raise InputError(
+                f"{phones[i].name} fits the answer of {plan.vehicle.name} to the road badly (correlation {item.correlation:.2f}): are "
+                "vehicle, sensor, road and speed those of this recording?"
+            )
+        else:
+            expected = expected_onset(answer(1.0)[:, columns[i].start], step, event.contrast) - lead / speed
+            arrivals.append(_fallback(phones, i, event.onset - expected, arrivals))
+    return found, arrivals
+
+
+def _fallback(phones: list[Phone], i: int, picked: float, arrivals: list[tuple[float, str]]) -> tuple[float, str]:
+    """Return the arrival of a phone that the vehicle's answer does not fit: by the world's clock, else by when its energy set in."""
+    if i:
+        late = epoch_disagreement(phones[0].export, arrivals[0][0], phones[i].export, picked)
+        if late is not None and abs(late) < CLOCK_DOUBT:
+            return picked - late, "the world's clock of the apps"
+    return picked, "when its energy set in, less the time that the vehicle's answer takes to reach it"

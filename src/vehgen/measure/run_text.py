@@ -1,0 +1,165 @@
+"""The run file and recording of an import as text; every assumption stands in the run file as a comment."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+from vehgen.codegen import write_text
+from vehgen.errors import InputError
+from vehgen.measure.importing import Imported, ImportedPhone, clock_difference
+from vehgen.simulate import load_run
+from vehgen.vehicle.loading import find_vehicle_file, models_folder
+
+
+def write_import(imported: Imported, vehicle: str, out: Path) -> tuple[Path, Path]:
+    """Write the run file `out` and its recording beside it, and read the run file back.
+
+    Parameters
+    ----------
+    imported
+        What the phones recorded.
+    vehicle
+        The vehicle file as it was given: a path, or the name of a bundled model.
+    out
+        The run file.
+
+    Returns
+    -------
+    The run file and the recording.
+
+    Raises
+    ------
+    InputError
+        When the folder cannot be written to.
+    """
+    if out.suffix.lower() not in (".yaml", ".yml"):
+        raise InputError(f"--out names the run file to write, e.g. run.yaml; found {out.name!r}")
+    recording = out.with_suffix(".csv")
+    write_text(recording, recording_text(imported))
+    write_text(out, run_text(imported, vehicle, out))
+    load_run(out)
+    return out, recording
+
+
+def recording_text(imported: Imported) -> str:
+    """Return the recording as CSV: t [s] and one column per channel [m/s^2, rad/s]."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["t", *imported.channels])
+    for t, row in zip(imported.time, imported.values, strict=True):
+        writer.writerow([f"{t:.9g}", *(f"{value:.9g}" for value in row)])
+    return text.getvalue()
+
+
+def run_text(imported: Imported, vehicle: str, out: Path) -> str:
+    """Return the run file of an import."""
+    plan, folder = imported.plan, out.parent
+    lines = ["# Made by `python -m vehgen import`; what was found and assumed stands beside what it led to."]
+    lines += [f"# warning: {_plain(text)}" for text in imported.warnings]
+    lines.append(f"vehicle: {_scalar(_vehicle(vehicle, folder))}")
+    if plan.parameter_set is not None:
+        lines.append(f"set: {_scalar(plan.parameter_set)}")
+    fitted = "" if imported.fitted_speed is None else f"; the axles' marks fit {imported.fitted_speed:.3f} m/s best"
+    lines.append(f"speed: {imported.speed:.6g} m/s  # {_plain(imported.speed_source)}{fitted}")
+    lines.append(f"duration: {imported.time[-1]:.6g} s")
+    lines.append(f"sample: {1000 / plan.rate:.6g} ms")
+    entry: dict[str, Any] = dict(plan.road.entry)
+    if "file" in entry:
+        entry["file"] = _relative(Path(entry["file"]), folder)
+    if imported.at is not None:
+        entry["at"] = f"{imported.at:.6g} m"
+    pairs = ", ".join(f"{key}: {_scalar(value)}" for key, value in entry.items())
+    where = "at: front wheel at t = 0 to the hump" if imported.at is not None else "the front wheel is at its begin at t = 0"
+    lines.append(f"road: [{{{plan.road.kind}: {{{pairs}}}}}]  # {where}")
+    if plan.footprint:
+        lines.append(f"footprint: {plan.footprint:.6g} m")
+    lines.append(f"recording: {_scalar(out.with_suffix('.csv').name)}")
+    lines.append("sensors:")
+    for phone in imported.phones:
+        lines += [f"  # {_plain(text)}" for text in phone_notes(imported, phone)]
+        lines.append(f"  {phone.phone.sensor.name}: {{{_place(phone)}, channels: {{{_channels(phone)}}}}}")
+    return "\n".join(lines) + "\n"
+
+
+def phone_notes(imported: Imported, item: ImportedPhone) -> list[str]:
+    """Return what was found out and assumed about one phone, in words."""
+    phone = item.phone
+    rates = " and ".join(f"{rate:.2f} Hz" for rate in phone.rates)
+    notes = [f"{phone.name} ({phone.export.app}): sampled at {rates}, put on {imported.plan.rate:g} Hz"]
+    if item.orientation is not None:
+        sensor, orientation = phone.sensor, item.orientation
+        up = " {:+.4f} {:+.4f} {:+.4f}".format(*orientation.up)
+        notes.append(f"up is{up} in its axes, tilted {orientation.tilt:.2f} deg; forward: {sensor.forward or 'not said'}")
+    notes.append(f"t = 0 is {item.zero:.4f} s on its clock, found by {item.found_by}")
+    if item.event is not None:
+        late = item.event.onset - item.arrival
+        notes.append(f"energy sets in {late:+.3f} s after the front wheel's arrival, {item.event.contrast:.0f} times as loud")
+    if item is not imported.phones[0]:
+        difference = clock_difference(imported.phones[0], item)
+        offset = item.arrival - imported.phones[0].arrival
+        world = (
+            "the apps' clocks cannot be compared"
+            if difference is None
+            else f"by the apps' own clocks it crossed {difference:+.3f} s after {first_name(imported)}"
+        )
+        notes.append(f"its clock is {offset:+.4f} s ahead of that of {first_name(imported)}; {world}")
+    for channel, floor in item.noise:
+        low, high = floor.band
+        notes.append(
+            f"{channel}: noise sigma {floor.sigma:.3g} in the quiet lead-in, {floor.band_sigma:.3g} by its {low:.0f}-{high:.0f} Hz band"
+        )
+    return [*notes, *item.notes]
+
+
+def first_name(imported: Imported) -> str:
+    """Return the name of the phone that the others' clocks are compared with."""
+    return imported.phones[0].phone.name
+
+
+def _place(item: ImportedPhone) -> str:
+    place = item.phone.sensor.place
+    parts = [f"body: {_scalar(place.body)}"]
+    if place.x is not None:
+        parts.append(f"x: {_scalar(place.x.text)}")
+    if place.behind is not None:
+        parts += [f"behind: {_scalar(place.behind)}", f"distance: {place.distance:.6g} m"]
+    return ", ".join(parts)
+
+
+def _channels(item: ImportedPhone) -> str:
+    return ", ".join(f"{output.quantity}: {output.name}" for output in item.phone.sensor.outputs(item.pitch is not None))
+
+
+def _vehicle(given: str, folder: Path) -> str:
+    path = find_vehicle_file(given)
+    return Path(given).name if path.parent == models_folder() else _relative(path, folder)
+
+
+def _relative(path: Path, folder: Path) -> str:
+    return Path(os.path.relpath(path, folder)).as_posix()
+
+
+def _scalar(value: Any) -> str:
+    """Write a value so that YAML reads it back as it is: plain words stand bare, all else is quoted as JSON does, which YAML includes."""
+    text = str(value)
+    is_number = isinstance(value, (int, float))
+    return (
+        text
+        if is_number or (text.replace("_", "").replace(".", "").isalnum() and not text[0].isdigit()) or _is_quantity(text)
+        else json.dumps(text)
+    )
+
+
+def _is_quantity(text: str) -> bool:
+    number, _, unit = text.partition(" ")
+    return unit in ("m", "s", "m/s") and number.replace(".", "").replace("-", "").replace("e", "").replace("+", "").isdigit()
+
+
+def _plain(text: str) -> str:
+    """Return a text that stays within its comment."""
+    return "".join(character if character.isprintable() else "?" for character in text)
