@@ -56,6 +56,7 @@ def run(options: argparse.Namespace) -> None:
                 "quantity": item.quantity,
                 "measured_rms": item.measured_rms.tolist(),
                 "simulated_rms": item.simulated_rms.tolist(),
+                "above_noise": item.audible.tolist(),
                 "relative_errors": [None if error != error else float(error) for error in item.errors],
             }
             for item in found.channels
@@ -70,8 +71,10 @@ def run(options: argparse.Namespace) -> None:
         return
     for item in found.channels:
         rows = [
-            (f"{low:g}-{high:g}", f"{measured:.4g}", f"{simulated:.4g}", f"{100 * error:+.1f}")
-            for (low, high), measured, simulated, error in zip(found.bands, item.measured_rms, item.simulated_rms, item.errors, strict=True)
+            (f"{low:g}-{high:g}", f"{measured:.4g}", f"{simulated:.4g}", f"{100 * error:+.1f}" if audible else "noise")
+            for (low, high), measured, simulated, error, audible in zip(
+                found.bands, item.measured_rms, item.simulated_rms, item.errors, item.audible, strict=True
+            )
         ]
         print_table(f"{item.run}: {item.channel}", ("band [Hz]", "measured rms", "simulated rms", "error [%]"), rows, right=(1, 2, 3))
     for path in files:

@@ -67,6 +67,7 @@ def plot_psds(
         axes.semilogy(curve.x[inside], curve.simulated[inside], color=SIMULATED, lw=1.1, label=labels[1])
         top = max(curve.measured[inside].max(), curve.simulated[inside].max())
         if reference is not None and curve.quantity == "acceleration":
+            top = max(top, float(np.nanmax(reference[1].measured)))
             axes.semilogy(reference[1].x, reference[1].measured, color=REFERENCE, lw=1.1, ls=(0, (4, 2)), label=reference[0])
         axes.set_ylim(top * 10.0**-DECADES, 3 * top)
         axes.set_xlim(*band)

@@ -52,8 +52,10 @@ def plot_band_rms(validation: Validation) -> Figure:
         axes.bar(place - 0.2, item.measured_rms, 0.38, color=MEASURED, label="measured")
         axes.bar(place + 0.2, item.simulated_rms, 0.38, color=SIMULATED, label="simulated")
         top = max(item.measured_rms.max(), item.simulated_rms.max())
-        for x, (measured, simulated, error) in enumerate(zip(item.measured_rms, item.simulated_rms, item.errors, strict=True)):
-            axes.text(x, max(measured, simulated) + 0.02 * top, f"{100 * error:+.0f} %", ha="center", fontsize=8.5, color=INK)
+        pairs = zip(item.measured_rms, item.simulated_rms, item.errors, item.audible, strict=True)
+        for x, (measured, simulated, error, audible) in enumerate(pairs):
+            text = f"{100 * error:+.0f} %" if audible else "noise"
+            axes.text(x, max(measured, simulated) + 0.02 * top, text, ha="center", fontsize=8.5, color=INK)
         axes.set_ylim(0, 1.15 * top)
         axes.set_xticks(place, [f"{low:g}-{high:g}" for low, high in validation.bands])
         axes.set_xlabel("band [Hz]", color=INK)
