@@ -66,6 +66,7 @@ def make_parser() -> argparse.ArgumentParser:
             help=summary,
             description=summary,
             epilog=f"example: {command.EXAMPLE}",
+            formatter_class=argparse.RawDescriptionHelpFormatter,  # an example is copied from one line
         )
         command.add_arguments(sub)
         sub.set_defaults(run=command.run)
