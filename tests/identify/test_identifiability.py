@@ -5,6 +5,9 @@ import pytest
 
 from tests.identify.recordings import sedan_truth, write_run
 from vehgen.identify.identifiability import find_structure
+from vehgen.identify.intervals import Uncertainty
+from vehgen.identify.misfit import Misfit
+from vehgen.identify.polish import Polished, first_noises
 from vehgen.identify.problem import make_problem
 from vehgen.identify.trial import load_trials
 
@@ -34,6 +37,20 @@ def test_a_tractor_semitrailer_has_two_gauges_whatever_the_sensors(truck):
     assert truck.space.size == 27
     assert structure.rank == 25
     assert structure.singular_values[24] > 1e6 * structure.singular_values[25]
+
+
+@pytest.mark.parametrize("truck", ["both"], indirect=True)
+@pytest.mark.parametrize("kt3", [4600.0, 4605.0, 4610.0])
+def test_frequencies_of_modes_that_almost_coincide_have_intervals_too(truck, kt3):
+    values = truck.space.start.copy()
+    values[truck.space.names.index("kt3")] = kt3 * 8000
+    noises = first_noises(truck)
+    misfit = Misfit(truck, noises, values)
+    fit = Polished(misfit, np.concatenate([truck.space.unit(values), np.zeros(2)]), 1.0, 0.0)
+    known = Uncertainty(fit, find_structure(truck, values))
+    hertz = np.array([hz.value for hz, _ in known.frequencies()])
+    assert np.diff(hertz).min() < 0.02
+    assert all(hz.low is not None for hz, _ in known.frequencies())
 
 
 def first_gauge(p: dict[str, float], mS: float) -> dict[str, float]:

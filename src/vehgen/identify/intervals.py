@@ -157,10 +157,9 @@ class Uncertainty:
         space = self.fit.misfit.problem.space
         unit = self.fit.misfit.split(self.fit.x)[0]
         middle = self.mode_table(self.values)
-        step = 10 * _DIFFERENCE
-        steps = np.eye(space.size) * step
+        steps = np.eye(space.size) * _DIFFERENCE
         derived = np.array(
-            [(self.mode_table(space.values(unit + s)) - self.mode_table(space.values(unit - s))) / (2 * step) for s in steps]
+            [(self.mode_table(space.values(unit + s)) - self.mode_table(space.values(unit - s))) / (2 * _DIFFERENCE) for s in steps]
         )
         labels = [mode.name for mode in self._modes(self.values)]
         pairs = []
