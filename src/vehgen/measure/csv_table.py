@@ -97,7 +97,7 @@ def read_table(data: bytes, file: str, export: str = "") -> Table:
         raise InputError(f"{name} is not a table: {error}") from error
     if not rows:
         raise InputError(f"{name} is empty; a header line and rows of numbers were expected")
-    header = tuple(cell.strip() for cell in rows[0])
+    header = tuple("".join(sign if sign.isprintable() else " " for sign in cell).strip() for cell in rows[0])
     if len(header) > MAX_COLUMNS:
         raise InputError(f"{name} has {len(header)} columns; at most {MAX_COLUMNS} were expected")
     decimal_comma = delimiter != "," and any(_DECIMAL_COMMA.match(cell.strip()) for row in rows[1:50] for cell in row)

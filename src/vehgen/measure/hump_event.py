@@ -57,6 +57,9 @@ def find_hump(time: Array, upward: Array, crossing: float, name: str) -> HumpEve
     level = upward - np.median(upward)
     running = np.sqrt(np.convolve(level**2, np.ones(width) / width, mode="same"))
     loudest = int(np.argmax(running))
+    peak = float(running[loudest])
+    if peak < max(SMALLEST_CONTRAST * float(np.percentile(running, 25)), 1e-3):
+        raise _no_hump(name, time[loudest], "hardly louder than the rest")
     first = max(0, loudest - round((crossing + BEFORE) / step))
     split = first + _split(level[first : loudest + 1])
     onset = float(time[split])
@@ -66,14 +69,17 @@ def find_hump(time: Array, upward: Array, crossing: float, name: str) -> HumpEve
             f"{name}: no {QUIET_NEEDED:g} s of quiet before {onset:.2f} s, where the loudest burst begins: start recording earlier, "
             "or cut what is not the crossing with from= and to="
         )
-    floor = float(np.sqrt(np.mean(quiet**2)))
-    contrast = float(running[loudest]) / max(floor, 1e-12)
+    contrast = peak / max(float(np.sqrt(np.mean(quiet**2))), 1e-12)
+    if contrast < SMALLEST_CONTRAST:
+        raise _no_hump(name, time[loudest], f"only {contrast:.1f} times as loud as the driving before")
     late = running[min(split + round((crossing + AFTER) / step), len(running) - 1) : -width]
-    settled = not len(late) or float(np.median(late)) < UNSETTLED * float(running[loudest])
-    if contrast < SMALLEST_CONTRAST or not settled or running[loudest] < 1e-3:
-        why = f"only {contrast:.1f} times as loud as the driving before" if contrast < SMALLEST_CONTRAST else "followed by no rest"
-        raise InputError(f"{name} shows no hump: its loudest moment, at {time[loudest]:.2f} s, is {why}")
+    if len(late) and float(np.median(late)) > UNSETTLED * peak:
+        raise _no_hump(name, time[loudest], "followed by no rest")
     return HumpEvent(onset, float(time[loudest]), contrast)
+
+
+def _no_hump(name: str, moment: float, why: str) -> InputError:
+    return InputError(f"{name} shows no hump: its loudest moment, at {moment:.2f} s, is {why}")
 
 
 def expected_onset(upward: Array, step: float, contrast: float) -> float:

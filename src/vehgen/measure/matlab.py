@@ -39,18 +39,19 @@ def read_matlab(path: Path) -> PhoneExport:
     """
     if path.stat().st_size > MAX_FILE:
         raise InputError(f"{path} is larger than {MAX_FILE} bytes")
-    try:
-        from matio import load_from_mat
-    except ImportError as error:
-        raise InputError(f"reading {path} needs mat-io: pip install 'vehgen[matlab]'") from error
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # what mat-io and pandas have to tell each other is not for the user
+        try:
+            from matio import load_from_mat
+        except ImportError as error:
+            raise InputError(f"reading {path} needs mat-io: pip install 'vehgen[matlab]'") from error
+        try:
             found: dict[str, Any] = load_from_mat(str(path), variable_names=list(_TABLES))
-    except MemoryError:
-        raise
-    except Exception as error:  # a damaged file fails in mat-io, h5py or zlib in ways that none of them lists
-        raise InputError(f"{path} cannot be read as a MATLAB file: {error}") from error
+        except MemoryError:
+            raise
+        except Exception as error:  # a damaged file fails in mat-io, h5py or zlib in ways that none of them lists
+            message = " ".join(str(error).split()) or type(error).__name__
+            raise InputError(f"{path} cannot be read as a MATLAB file: {message}") from error
     tables = {name: found[name] for name in _TABLES if hasattr(found.get(name), "columns")}
     if "Acceleration" not in tables:
         raise InputError(f"{path} holds no timetable Acceleration; turn the sensor on in MATLAB Mobile and log again")

@@ -1,0 +1,89 @@
+"""Humps found and refused, GPS speeds, clipping, noise floors."""
+
+import numpy as np
+import pytest
+
+from vehgen.errors import InputError
+from vehgen.measure.export import Stream
+from vehgen.measure.gps import crossing_speed
+from vehgen.measure.hump_event import find_hump
+from vehgen.measure.noise import clipped, noise_floor
+
+T = np.arange(0, 25, 0.01)
+
+
+def crossing(noise=0.05, seed=0, axles=(8.0, 9.7, 10.4, 12.0)):
+    values = np.random.default_rng(seed).normal(0, noise, len(T))
+    for start in axles:
+        late = np.maximum(T - start, 0)
+        values += 2.0 * np.exp(-2 * late) * np.sin(2 * np.pi * 3 * late) * (T > start)
+    return values
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_onset_is_the_first_axle(seed):
+    event = find_hump(T, crossing(seed=seed), 4.5, "phone")
+    assert event.onset == pytest.approx(8.0, abs=0.03)
+    assert event.contrast > 10
+
+
+def test_handling_the_phone_long_before_is_passed_over():
+    values = crossing()
+    values[50:150] += np.random.default_rng(1).normal(0, 1.0, 100)
+    assert find_hump(T, values, 4.5, "phone").onset == pytest.approx(8.0, abs=0.03)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_rough_road_without_a_hump_is_refused(seed):
+    with pytest.raises(InputError, match="shows no hump: its loudest moment"):
+        find_hump(T, np.random.default_rng(seed).normal(0, 0.3, len(T)), 4.5, "phone")
+
+
+def test_driving_off_without_a_hump_is_refused():
+    values = np.random.default_rng(0).normal(0, 1, len(T)) * np.where(T > 6, 1.0, 0.01)
+    with pytest.raises(InputError, match="shows no hump"):
+        find_hump(T, values, 4.5, "phone")
+
+
+def test_a_recording_that_begins_on_the_hump_is_refused():
+    late = T > 7.8
+    with pytest.raises(InputError, match=r"no 1 s of quiet before|shows no hump"):
+        find_hump(T[late], crossing()[late], 4.5, "phone")
+
+
+def gps(values):
+    values = np.asarray(values, dtype=float)
+    return Stream(np.arange(len(values)) + 0.5, values[:, None], ("speed",), "m/s")
+
+
+def test_gps_speed_is_the_median_of_valid_readings_in_the_crossing():
+    found = crossing_speed(gps([0, 0, -1, 2.0, 2.1, 1.9, np.nan, 9.0]), 2.0, 7.0, "phone")
+    assert (found.median, found.low, found.high, found.count) == (2.0, 1.9, 2.1, 3)
+
+
+@pytest.mark.parametrize(
+    ("values", "message"), [(None, "recorded no GPS speed"), ([-1, -1, -1], "no valid GPS speed"), ([0, 0, 0.1], "cannot be"), ([900, 900], "cannot be")]
+)
+def test_no_speed_asks_for_one(values, message):
+    with pytest.raises(InputError, match=rf"{message}.*give --speed"):
+        crossing_speed(None if values is None else gps(values), 0.0, 5.0, "phone")
+
+
+def test_clipping_is_found_at_the_extreme_only():
+    values = np.column_stack([crossing(), crossing(seed=1)])
+    values[:, 1] = np.clip(values[:, 1], -5.0, 1.5)
+    found = clipped(Stream(T, values, ("x", "z"), "m/s^2"))
+    assert [(axis, extreme) for axis, extreme, _ in found] == [("z", 1.5)]
+    assert found[0][2] == pytest.approx(8.1, abs=0.2)
+
+
+def test_noise_floor_of_white_noise_and_of_an_engine():
+    noise = np.random.default_rng(2).normal(0, 0.02, 1500)
+    t = np.arange(1500) * 0.01
+    quiet, engine = noise_floor(noise, 0.01, 100.0), noise_floor(noise + 0.1 * np.sin(2 * np.pi * 27 * t), 0.01, 100.0)
+    assert quiet.sigma == pytest.approx(0.02, rel=0.06)
+    assert quiet.band_sigma == pytest.approx(0.02, rel=0.2)
+    assert quiet.band == (47.0, 50.0)
+    assert engine.sigma > 3 * engine.band_sigma
+    assert engine.band_sigma == pytest.approx(0.02, rel=0.2)
+    assert noise_floor(noise, 0.01, 60.0).band == (27.0, 30.0)

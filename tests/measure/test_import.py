@@ -1,0 +1,221 @@
+"""Phone exports of known passes, made by scipy alone (docs/examples/phones/make_exports.py), imported whole."""
+
+import importlib.util
+import json
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from vehgen.commands import main
+from vehgen.measure import read_measurement
+from vehgen.simulate import Simulator, load_run, make_scenario
+
+from .exports import write_zip
+
+FOLDER = Path(__file__).parents[2] / "docs" / "examples" / "phones"
+L1 = "L1:body=tractor,behind=axle1,distance=-0.29,forward=y"
+L2 = "L2:body=semitrailer,behind=fifth_wheel,distance=9.115,forward=x"
+HUMP = ("--hump", "half_sine,length=0.5,height=0.03")
+
+
+def command(out, exports, *options, sensors=(L1, L2), road=HUMP):
+    places = [word for sensor in sensors for word in ("--sensor", sensor)]
+    return main(["import", *map(str, exports), "--vehicle", "tractor5.yaml", *places, *road, "--out", str(out), *options])
+
+
+def both(name):
+    return [FOLDER / f"{name}_phone1.zip", FOLDER / f"{name}_phone2.zip"]
+
+
+def facts(capsys, *arguments, **more):
+    assert command(*arguments, "--json", **more) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def refusal(capsys, *arguments, **more):
+    assert command(*arguments, **more) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("error: ")
+    assert error.count("\n") == 1
+    return error
+
+
+def changed(path, source, change):
+    """Write a zip whose files are those of another, each text put through `change(name, text)`; None leaves it out."""
+    with zipfile.ZipFile(source) as archive:
+        files = {name: change(name, archive.read(name).decode()) for name in archive.namelist()}
+    return write_zip(path, {name: text for name, text in files.items() if text is not None})
+
+
+def rows(change):
+    """Return a change of the data lines of an acceleration file."""
+
+    def apply(name, text):
+        if "Acceler" not in name:
+            return text
+        head, *lines = text.splitlines()
+        return "\n".join([head, *change(lines)]) + "\n"
+
+    return apply
+
+
+@pytest.mark.parametrize(
+    ("name", "road", "arrivals"),
+    [
+        ("hump_2ms", HUMP, (6.0, 7.7)),
+        ("hump_3ms", HUMP, (4.0, 5.7)),
+        ("road_3ms", ("--profile", str(FOLDER / "road.csv")), (3.0, 4.7)),
+    ],
+)
+def test_clocks_speed_tilt_and_noise_are_found(tmp_path, capsys, name, road, arrivals):
+    """The numbers of make_exports.py: phone 2 was started 1.7 s earlier, tilts of 3.6 and 4.3 deg, noise of 0.012 m/s^2 and 0.0007 rad/s."""
+    found = facts(capsys, tmp_path / "run.yaml", both(name), "--speed", "axles", road=road)
+    speed = 3.0 if "3ms" in name else 2.0
+    assert found["speed"] == pytest.approx(speed, rel=0.003)
+    assert found["warnings"] == []
+    for phone, arrival, tilt in zip(found["phones"], arrivals, (3.6, 4.27), strict=True):
+        assert phone["zero"] + (found["at"] or 0.0) / found["speed"] == pytest.approx(arrival, abs=0.008)
+        assert phone["tilt"] == pytest.approx(tilt, abs=0.35)
+        for channel, sigma in phone["noise"].items():
+            assert sigma["sigma"] == pytest.approx(0.0125 if channel.endswith("az") else 0.00072, rel=0.15)
+    assert "by the apps' own clocks it crossed" in "".join(found["phones"][1]["notes"])
+    run = load_run(tmp_path / "run.yaml")
+    measurement = read_measurement(run)
+    assert measurement.time[0] == 0.0
+    assert measurement.dt == pytest.approx(0.01)
+    assert [item.name for item in measurement.channels] == ["L1_az", "L1_q", "L2_az", "L2_q"]
+    assert (tmp_path / "run.png").stat().st_size > 10_000
+
+
+def test_the_recording_is_the_true_vehicles_answer(tmp_path, capsys):
+    """With the true parameters and each phone's last milliseconds adjusted, nothing is left but noise: signs, axes and scales are right."""
+    assert command(tmp_path / "run.yaml", both("hump_2ms"), "--speed", "2.0") == 0
+    capsys.readouterr()
+    specification = importlib.util.spec_from_file_location("make_exports", FOLDER / "make_exports.py")
+    script = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(script)
+    _, _, _, _, true = script.matrices()
+    run = load_run(tmp_path / "run.yaml")
+    measured = read_measurement(run)
+    simulator = Simulator(run.vehicle, run.outputs())
+    values = {**run.values(), **true}
+    scenario = make_scenario(run, simulator.model, simulator.model.values(overrides=values))
+    parameters = simulator.parameters(values)
+    residuals = []
+    for delay in np.arange(-0.008, 0.00801, 0.0005):
+        response = simulator.run(parameters, scenario.adjusted(delay=float(delay))).responses[0]
+        residuals.append((measured.values - response[: len(measured.time)]).std(axis=0))
+    best = np.min(residuals, axis=0)
+    assert best == pytest.approx([0.012, 0.0007, 0.012, 0.0007], rel=0.2)
+    assert (np.abs(measured.values).max(axis=0) > 40 * best).all()  # so the agreement is not for want of a signal
+
+
+def test_clocks_without_metadata_minutes_apart(tmp_path, capsys):
+    """Phone 2's stamps are no epoch and its clock begins 300 s later."""
+
+    def without_epoch(name, text):
+        head, *lines = text.splitlines()
+        if "seconds_elapsed" not in head:
+            return None if "Metadata" in name else text
+        cells = [line.split(",") for line in lines]
+        return "\n".join([head, *(",".join(["0", f"{float(c[1]) + 300:.6f}", *c[2:]]) for c in cells)]) + "\n"
+
+    other = changed(tmp_path / "b.zip", both("hump_2ms")[1], without_epoch)
+    sensors = (L1, L2 + ",up=z")
+    found = facts(capsys, tmp_path / "run.yaml", [both("hump_2ms")[0], other], sensors=sensors)
+    assert found["phones"][1]["zero"] - found["phones"][0]["zero"] == pytest.approx(301.7, abs=0.008)
+    assert "the apps' clocks cannot be compared" in "".join(found["phones"][1]["notes"])
+
+
+def test_clocks_that_disagree_are_reported(tmp_path, capsys):
+    late = changed(tmp_path / "a.zip", both("hump_2ms")[0], lambda name, text: text.replace("179000", "179001") if "time" in name else text)
+    found = facts(capsys, tmp_path / "run.yaml", [late, both("hump_2ms")[1]])
+    assert "are both of one pass?" in found["warnings"][0]
+
+
+def test_a_vehicle_that_does_not_fit_falls_back_to_the_onset(tmp_path, capsys):
+    """A phone said to lie backwards does not fit, and the warning says where to look."""
+    sensors = (L1.replace("forward=y", "forward=-y"), L2)
+    found = facts(capsys, tmp_path / "run.yaml", both("hump_2ms"), sensors=sensors)
+    assert "check vehicle, place and forward axis" in found["warnings"][0]
+    assert found["phones"][0]["zero"] + found["at"] / found["speed"] == pytest.approx(6.0, abs=0.05)
+
+
+def test_clipping_is_reported(tmp_path, capsys):
+    def clip(lines):
+        return [",".join([*cells[:3], "1.250000E1" if float(cells[3]) > 12.5 else cells[3]]) for cells in (line.split(",") for line in lines)]
+
+    found = facts(capsys, tmp_path / "run.yaml", [changed(tmp_path / "a.zip", both("hump_2ms")[0], rows(clip))], sensors=(L1,))
+    assert "acceleration z is clipped at 12.5 m/s^2" in found["warnings"][0]
+
+
+@pytest.mark.parametrize(
+    ("change", "options", "message"),
+    [
+        (rows(lambda lines: lines[::40]), (), "was logged at 2.51 Hz; at least 50 Hz is needed"),
+        (rows(lambda lines: lines[:700] + lines[760:]), (), "samples for 0.6"),
+        (rows(lambda lines: lines[:590]), (), "shows no hump"),
+        (rows(lambda lines: lines[:1000]), (), "the recording ends"),
+        (rows(lambda lines: lines[560:]), (), "no 1 s of quiet before"),
+        (rows(lambda lines: [",".join([*line.split(",")[:3], f"-{line.split(',')[3]}"]) for line in lines]), (), "2%"),
+        (lambda name, text: None if "Location" in name else text, (), "recorded no GPS speed; give --speed"),
+        (lambda name, text: text, ("--lead", "40"), "the lead must be"),
+        (lambda name, text: text, ("--rate", "30"), "the rate must be"),
+        (lambda name, text: text, ("--speed", "fast"), "--speed: expected a number in m/s"),
+        (lambda name, text: text, ("--speed", "0"), "--speed must be a positive number"),
+    ],
+)
+def test_recordings_that_cannot_be_used(tmp_path, capsys, change, options, message):
+    export = changed(tmp_path / "a.zip", both("hump_2ms")[0], change)
+    if message == "2%":  # z reads -9.8: phyphox is known to write +9.8 face up, so the phone is taken to lie face down, and fits badly
+        found = facts(capsys, tmp_path / "run.yaml", [export], sensors=(L1,))
+        assert "check vehicle, place and forward axis" in found["warnings"][0]
+        return
+    assert message in refusal(capsys, tmp_path / "run.yaml", [export], *options, sensors=(L1,))
+    assert not (tmp_path / "run.yaml").exists()
+
+
+@pytest.mark.parametrize(
+    ("sensors", "road", "message"),
+    [
+        (("L1:body=tractor",), HUMP, "say which of its axes pointed forward, e.g. --forward y"),
+        ((L1, L2), HUMP, "1 exports and 2 sensors"),
+        (("L1:body=tracter",), HUMP, "tractor5 has no body 'tracter'; did you mean 'tractor'?"),
+        (("L1:body=tractor,behind=axle9",), HUMP, "did you mean"),
+        (("L1:bdy=tractor",), HUMP, "unknown key 'bdy'; did you mean 'body'?"),
+        (("L1:body=tractor,x=abc",), HUMP, "--sensor L1: x=abc"),
+        (("tractor",), HUMP, "expected NAME:body=BODY"),
+        ((L1,), ("--hump", "half_sin,length=0.5,height=0.03"), "did you mean 'half_sine'?"),
+        ((L1,), ("--hump", "half_sine,length=0.5"), "a half_sine hump lacks the key height"),
+        ((L1,), ("--hump", "half_sine,length=5 kg,height=0.03"), "--hump length: expected a finite number in m"),
+        ((L1,), ("--profile", "none.csv"), "no file none.csv"),
+    ],
+)
+def test_options_that_cannot_be_used(tmp_path, capsys, sensors, road, message):
+    assert message in refusal(capsys, tmp_path / "run.yaml", both("hump_2ms")[:1], sensors=sensors, road=road)
+
+
+def test_a_plain_csv_in_the_vehicles_axes(tmp_path, capsys):
+    """What an import wrote can be imported again, and stays what it was."""
+    assert command(tmp_path / "run.yaml", both("hump_2ms")[:1], sensors=(L1,)) == 0
+    columns = ("--columns", "time=t,acceleration=L1_az,pitch_rate=L1_q", "--speed", "2")
+    assert command(tmp_path / "again.yaml", [tmp_path / "run.csv"], *columns, sensors=("L1:body=tractor,behind=axle1,distance=-0.29 m",)) == 0
+    capsys.readouterr()
+    first, again = (np.loadtxt(tmp_path / f"{name}.csv", delimiter=",", skiprows=1) for name in ("run", "again"))
+    late = load_run(tmp_path / "run.yaml").file.road[0].hump.at - load_run(tmp_path / "again.yaml").file.road[0].hump.at
+    shifted = np.interp(again[:, 0] + late / 2.0, first[:, 0], first[:, 1])
+    assert np.corrcoef(shifted[:900], again[:900, 1])[0, 1] > 0.995
+    assert "plain CSV" in (tmp_path / "again.yaml").read_text(encoding="utf-8")
+
+
+def test_the_run_file_says_what_was_assumed(tmp_path, capsys):
+    assert command(tmp_path / "deep" / "run.yaml", both("hump_2ms"), "--footprint", "0.2") == 0
+    text = (tmp_path / "deep" / "run.yaml").read_text(encoding="utf-8")
+    for words in (
+        "readings, ", "the axles' marks fit", "put on 100 Hz", "tilted 3.", "sign reversed by the app", "noise sigma", "47-50 Hz band",
+        "ahead of that of", "footprint: 0.2 m", "vehicle: tractor5.yaml",
+    ):  # fmt: skip
+        assert words in text
+    assert "hump_2ms_phone2.zip (Sensor Logger)" in capsys.readouterr().out

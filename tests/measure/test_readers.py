@@ -1,0 +1,207 @@
+"""Exports come back as the arrays they were written from, whatever the dialect and the file names."""
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from vehgen.errors import InputError
+from vehgen.measure import ColumnMap, EpochMap, read_column_map, read_export
+
+from .exports import SEPARATORS, SHARED, phyphox, sensor_logger, still, table, write_folder, write_zip
+
+
+@pytest.mark.parametrize("dialect", SEPARATORS)
+def test_phyphox_dialects(tmp_path, dialect):
+    t, force, rotation = still()
+    export = read_export(write_zip(tmp_path / "a.zip", phyphox(t, force, rotation, dialect, speed=2.5)))
+    assert export.app == "phyphox"
+    assert export.streams["acceleration"].values == pytest.approx(force, abs=1e-8)
+    assert export.streams["rotation"].values == pytest.approx(rotation, abs=1e-8)
+    assert export.streams["acceleration"].time == pytest.approx(t)
+    assert export.streams["speed"].values == pytest.approx(2.5)
+    assert export.epoch.at(1.5) == pytest.approx(1_700_000_001.5)
+
+
+@pytest.mark.parametrize("dialect", SEPARATORS)
+@pytest.mark.parametrize(("words", "level", "kind"), [("Linear Acceleration", 0.0, "linear_acceleration"), ("Beschleunigung", 9.8, "acceleration")])
+def test_phyphox_single_experiment_padded_with_nan(tmp_path, dialect, words, level, kind):
+    t, force, _ = still()
+    force = force - [0, 0, 9.81 - level]
+    t[-5:] = force[-5:] = np.nan
+    header = ["Time (s)", *(f"{words} {axis} (m/s^2)" for axis in "xyz"), "Absolute acceleration (m/s^2)"]
+    text = table(header, [t, force, np.linalg.norm(force, axis=1)], dialect)
+    export = read_export(write_folder(tmp_path, {"Raw Data.csv": text}))
+    assert list(export.streams) == [kind]
+    assert export.streams[kind].values[:-5] == pytest.approx(force[:-5], abs=1e-8)
+    assert np.isnan(export.streams[kind].values[-5:]).all()
+
+
+def test_pauses_shift_the_epoch():
+    clock = EpochMap(np.array([0.0, 10.0]), np.array([100.0, 150.0]))
+    assert [clock.at(t) for t in (-1.0, 9.0, 10.0, 12.0)] == [99.0, 109.0, 150.0, 152.0]
+
+
+def test_sensor_logger_columns_are_z_first(tmp_path):
+    t, force, rotation = still()
+    export = read_export(write_zip(tmp_path / "a.zip", sensor_logger(t, force, rotation)))
+    assert export.app == "Sensor Logger"
+    assert export.streams["acceleration"].values == pytest.approx(force, abs=1e-6)
+    assert export.streams["rotation"].values == pytest.approx(rotation, abs=1e-6)
+    assert export.epoch.at(0.25) == pytest.approx(1_700_000_000.25, abs=1e-6)
+    assert export.acceleration_sign is None
+
+
+@pytest.mark.parametrize(("metadata", "sign"), [(("android", "false"), 1), (("ios", "true"), 1), (("ios", "false"), -1), (("web", ""), None)])
+def test_sensor_logger_metadata_tells_the_sign(tmp_path, metadata, sign):
+    export = read_export(write_zip(tmp_path / "a.zip", sensor_logger(*still(), metadata=metadata)))
+    assert export.acceleration_sign == sign
+
+
+def test_sensor_logger_without_gravity(tmp_path):
+    t, force, rotation = still()
+    files = sensor_logger(t, force - [0, 0, 9.81], rotation, names=("Accelerometer", "Gyroscope"))
+    assert set(read_export(write_folder(tmp_path, files)).streams) == {"linear_acceleration", "rotation"}
+
+
+def test_apps_are_told_by_header_not_by_name(tmp_path):
+    t, force, rotation = still()
+    files = phyphox(t, force, rotation)
+    renamed = {"TotalAcceleration.csv": files["Accelerometer.csv"], "Metadata.csv": files["Gyroscope.csv"]}
+    export = read_export(write_zip(tmp_path / "sensorlogger.zip", renamed))
+    assert export.app == "phyphox"
+    assert set(export.streams) == {"acceleration", "rotation"}
+
+
+def test_plain_csv_with_a_column_map(tmp_path):
+    t, force, rotation = still()
+    path = tmp_path / "log.csv"
+    path.write_text(table(["ms", "up", "pitch", "v"], [1000 * t, force[:, 2] / 9.80665, np.degrees(rotation[:, 1]), 7.2 + 0 * t], quote=""))
+    columns = read_column_map("time=ms,time_unit=ms,acceleration=up,acceleration_unit=g,pitch_rate=-pitch,pitch_rate_unit=deg/s,speed=v,speed_unit=km/h")
+    export = read_export(path, columns)
+    assert export.streams["vertical_acceleration"].time == pytest.approx(t)
+    assert export.streams["vertical_acceleration"].values[:, 0] == pytest.approx(force[:, 2])
+    assert export.streams["pitch_rate"].values[:, 0] == pytest.approx(-rotation[:, 1])
+    assert export.streams["speed"].values == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "columns", "message"),
+    [
+        ("a,b\n1,2\n", None, "of no app that vehgen knows (its columns: 'a', 'b')"),
+        ("a,b\n1,2\n", ColumnMap("a", "c"), "has no column 'c'"),
+        ("a,b\n1,2\n3,four\n", ColumnMap("a", "b"), "log.csv:3:2: expected a number in column 'b', found 'four'"),
+        ("a,b\n1,2\n", ColumnMap("a", "b", time_unit="kg"), "expected a unit of s, found 'kg'"),
+        ("", None, "is empty"),
+    ],
+)
+def test_plain_csv_errors(tmp_path, text, columns, message):
+    (tmp_path / "log.csv").write_text(text)
+    with pytest.raises(InputError) as caught:
+        read_export(tmp_path / "log.csv", columns)
+    assert message in str(caught.value)
+
+
+def test_excel_is_refused_with_what_to_do(tmp_path):
+    (tmp_path / "a.xls").write_bytes(bytes.fromhex("d0cf11e0a1b11ae1") + bytes(600))
+    with pytest.raises(InputError, match="is an Excel file; export again as CSV"):
+        read_export(tmp_path / "a.xls")
+    write_zip(tmp_path / "a.xlsx", {"[Content_Types].xml": "<x/>"})
+    with pytest.raises(InputError, match="is an Excel file; export again as CSV"):
+        read_export(tmp_path / "a.xlsx")
+
+
+@pytest.mark.parametrize("name", ["../evil.csv", "/etc/evil.csv", "a/../../evil.csv", "..\\evil.csv", "C:/evil.csv"])
+def test_names_that_lead_out_are_refused(tmp_path, name):
+    files = {**phyphox(*still()), name: "x"}
+    with pytest.raises(InputError, match="leads out of the archive"):
+        read_export(write_zip(tmp_path / "a.zip", files))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.zip"]
+
+
+def test_bombs_are_refused(tmp_path):
+    with pytest.raises(InputError, match="far more than a recording"):
+        read_export(write_zip(tmp_path / "a.zip", {"Accelerometer.csv": "0" * 30_000_000}))
+    with pytest.raises(InputError, match="holds 501 files"):
+        read_export(write_zip(tmp_path / "b.zip", {f"{i}.csv": "a" for i in range(501)}))
+
+
+def test_a_size_that_lies_is_refused(tmp_path):
+    path = write_zip(tmp_path / "a.zip", {"Accelerometer.csv": "1,2,3\n" * 1000}, zipfile.ZIP_STORED)
+    data = path.read_bytes().replace((6000).to_bytes(4, "little") * 2, (6000).to_bytes(4, "little") + (10).to_bytes(4, "little"))
+    path.write_bytes(data)
+    with pytest.raises(InputError):
+        read_export(path)
+
+
+def test_encrypted_zip_is_refused(tmp_path):
+    path = write_zip(tmp_path / "a.zip", {"Accelerometer.csv": "abc"})
+    data = bytearray(path.read_bytes())
+    for mark, flag in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
+        data[data.index(mark) + flag] |= 1
+    path.write_bytes(data)
+    with pytest.raises(InputError, match="encrypted"):
+        read_export(path)
+
+
+def test_links_in_folders_are_passed_over(tmp_path):
+    outside = tmp_path / "outside.csv"
+    outside.write_text("a,b\n1,2\n")
+    folder = tmp_path / "export"
+    folder.mkdir()
+    (folder / "link.csv").symlink_to(outside)
+    with pytest.raises(InputError, match="holds no CSV file"):
+        read_export(folder)
+
+
+def test_units_that_cannot_be_are_refused(tmp_path):
+    t, force, rotation = still()
+    with pytest.raises(InputError, match="is its unit m/s"):
+        read_export(write_zip(tmp_path / "a.zip", phyphox(t, force * 5, rotation)))
+
+
+def test_missing_export(tmp_path):
+    with pytest.raises(InputError, match="no file or folder"):
+        read_export(tmp_path / "none.zip")
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_matlab_mobile(tmp_path):
+    matio = pytest.importorskip("matio")
+    pandas = pytest.importorskip("pandas")
+    t, force, rotation = still()
+    index = pandas.DatetimeIndex(pandas.Timestamp("2026-01-01") + pandas.to_timedelta(t, unit="s"), name="Timestamp")
+    tables = {"Acceleration": force, "AngularVelocity": rotation}
+    frames = {name: pandas.DataFrame(values, columns=["X", "Y", "Z"], index=index) for name, values in tables.items()}
+    frames["Position"] = pandas.DataFrame({"latitude": 48.0 + 0 * t, "speed": 2.0 + 0 * t}, index=index)
+    path = tmp_path / "sensorlog_20260101.mat"
+    matio.save_to_mat(str(path), frames)
+    export = read_export(path)
+    assert export.app == "MATLAB Mobile"
+    assert export.streams["acceleration"].values == pytest.approx(force)
+    assert export.streams["rotation"].time == pytest.approx(t, abs=1e-6)
+    assert export.streams["speed"].values == pytest.approx(2.0)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_damaged_matlab_file(tmp_path):
+    pytest.importorskip("matio")
+    path = tmp_path / "a.mat"
+    path.write_bytes(b"MATLAB 5.0 MAT-file, broken".ljust(124) + b"\x00\x01IM" + b"\x0e\x00\x00\x00\xff\xff\x00\x00garbage")
+    with pytest.raises(InputError):
+        read_export(path)
+
+
+def test_the_real_sample():
+    folder = next((parent / SHARED for parent in Path(__file__).parents if (parent / SHARED).is_dir()), None)
+    if folder is None:
+        pytest.skip("no real sample here")
+    export = read_export(folder)
+    assert export.app == "phyphox"
+    assert set(export.streams) == {"acceleration", "rotation", "speed"}
+    acceleration = export.streams["acceleration"]
+    assert acceleration.values[0] == pytest.approx([-0.4806504822, 1.707798615, 9.449848938])
+    assert len(acceleration.time) == 2000
+    assert 1 / np.median(np.diff(acceleration.time)) == pytest.approx(100.7, abs=0.1)
+    assert export.streams["speed"].values[0, 0] == -1.0

@@ -1,0 +1,92 @@
+"""Uneven clocks against signals known in closed form."""
+
+import numpy as np
+import pytest
+import scipy.signal
+
+from vehgen.errors import InputError
+from vehgen.measure.export import Stream
+from vehgen.measure.resampling import check_rate, clean, gaps, resample
+
+TONES = [(1.0, 1.3, 0.1), (0.7, 4.7, 1.0), (1.0, 11.9, 2.0), (0.5, 17.3, 0.4), (1.0, 20.0, 0.9)]
+
+
+def signal(t):
+    return sum(a * np.sin(2 * np.pi * f * t + p) for a, f, p in TONES)
+
+
+def clock(rate, jitter, seconds=8.0, seed=1):
+    n = int(seconds * rate)
+    return (np.arange(n) + jitter * np.random.default_rng(seed).uniform(-0.5, 0.5, n)) / rate
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.3, 0.8])
+@pytest.mark.parametrize("rate", [59.4, 100.0, 100.7, 208.0, 400.0])
+def test_pass_band_error_is_far_below_one_percent(rate, jitter):
+    t = clock(rate, jitter)
+    grid = np.arange(1.0, 7.0, 0.01)
+    found = resample(t, signal(t)[:, None], grid)[:, 0]
+    assert np.abs(found - signal(grid)).max() < 5e-4 * np.abs(signal(grid)).max()
+
+
+def test_channels_are_independent():
+    t, grid = clock(100.0, 0.3), np.arange(1.0, 3.0, 0.01)
+    both = resample(t, np.column_stack([signal(t), 5 + 0 * t]), grid)
+    assert both[:, 0] == pytest.approx(resample(t, signal(t)[:, None], grid)[:, 0], abs=1e-9)
+    assert both[:, 1] == pytest.approx(5.0)
+
+
+def test_what_the_grid_cannot_hold_does_not_fold_into_it():
+    t = clock(400.0, 0.2)
+    grid = np.arange(2.0, 6.0, 0.01)
+    for tone in (53.0, 80.0, 130.0):
+        found = resample(t, np.sin(2 * np.pi * tone * t)[:, None], grid)[:, 0]
+        assert found.std() < 2e-3, tone
+
+
+def test_white_noise_keeps_its_level_up_to_the_nyquist_frequency():
+    t = clock(100.0, 0.15, 100.0)
+    noise = np.random.default_rng(3).normal(0, 1, len(t))
+    grid = np.arange(2.0, 98.0, 0.01)
+    frequency, density = scipy.signal.welch(resample(t, noise[:, None], grid)[:, 0], 100.0, nperseg=200)
+    for low, high in ((5, 20), (20, 40), (47, 49.5)):
+        assert density[(frequency > low) & (frequency < high)].mean() == pytest.approx(0.02, rel=0.2)
+
+
+def test_a_grid_beyond_the_samples_is_refused():
+    t = clock(100.0, 0.0, 5.0)
+    with pytest.raises(InputError, match="a longer recording is needed"):
+        resample(t, t[:, None], np.arange(0.0, 6.0, 0.01))
+
+
+def test_cleaning_drops_sorts_and_says_so():
+    t = np.arange(400) * 0.01
+    values = np.sin(t)[:, None].copy()
+    values[[3, 4]] = np.nan
+    t[[10, 11]] = t[[11, 10]]
+    t[20] = t[19]
+    padded = Stream(np.append(t, [np.nan] * 3), np.vstack([values, np.full((3, 1), np.nan)]), ("x",), "m/s^2")
+    found, notes = clean(padded, "phone")
+    assert notes == (
+        "phone: 2 missing samples were dropped",
+        "phone: 1 samples were out of order and 1 repeated; sorted, the first of each kept",
+    )
+    assert len(found.time) == 397
+    assert (np.diff(found.time) > 0).all()
+
+
+def test_a_clock_that_runs_backwards_is_refused():
+    t = np.arange(200)[::-1] * 0.01
+    with pytest.raises(InputError, match="is it the time column"):
+        clean(Stream(t, t[:, None], ("x",), "m/s^2"), "phone")
+
+
+def test_slow_logs_are_refused_with_the_rate_needed():
+    with pytest.raises(InputError, match=r"logged at 2.5 Hz; at least 50 Hz is needed to see up to 25 Hz"):
+        check_rate(np.arange(100) / 2.5, 25.0, "phone")
+    assert check_rate(clock(59.4, 0.4), 25.0, "phone") == pytest.approx(59.4, rel=0.02)
+
+
+def test_gaps_are_found():
+    t = np.delete(np.arange(500) * 0.01, range(200, 230))
+    assert gaps(t) == [pytest.approx((1.99, 0.31))]
