@@ -48,7 +48,9 @@ def sensor_logger(t, force, rotation, start=1_700_000_000.0, names=("TotalAccele
     files = {}
     for name, values in zip(names, (force, rotation), strict=True):
         lines = ["time,seconds_elapsed,z,y,x"]
-        lines += [f"{round((start + moment) * 1e9)},{moment:.6f},{z:.6f},{y:.6f},{x:.6f}" for moment, (x, y, z) in zip(t, values, strict=True)]
+        lines += [
+            f"{round((start + moment) * 1e9)},{moment:.6f},{z:.6f},{y:.6f},{x:.6f}" for moment, (x, y, z) in zip(t, values, strict=True)
+        ]
         files[f"{name}.csv"] = "\n".join(lines) + "\n"
     if metadata is not None:
         files["Metadata.csv"] = f"version,device name,platform,standardisation\n1,phone,{metadata[0]},{metadata[1]}\n"

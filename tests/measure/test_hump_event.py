@@ -16,7 +16,7 @@ def crossing(noise=0.05, seed=0, axles=(8.0, 9.7, 10.4, 12.0)):
     values = np.random.default_rng(seed).normal(0, noise, len(T))
     for start in axles:
         late = np.maximum(T - start, 0)
-        values += 2.0 * np.exp(-2 * late) * np.sin(2 * np.pi * 3 * late) * (T > start)
+        values += 2.0 * np.exp(-2 * late) * np.sin(2 * np.pi * 3 * late) * (start < T)
     return values
 
 
@@ -62,7 +62,8 @@ def test_gps_speed_is_the_median_of_valid_readings_in_the_crossing():
 
 
 @pytest.mark.parametrize(
-    ("values", "message"), [(None, "recorded no GPS speed"), ([-1, -1, -1], "no valid GPS speed"), ([0, 0, 0.1], "cannot be"), ([900, 900], "cannot be")]
+    ("values", "message"),
+    [(None, "recorded no GPS speed"), ([-1, -1, -1], "no valid GPS speed"), ([0, 0, 0.1], "cannot be"), ([900, 900], "cannot be")],
 )
 def test_no_speed_asks_for_one(values, message):
     with pytest.raises(InputError, match=rf"{message}.*give --speed"):

@@ -25,7 +25,9 @@ def test_phyphox_dialects(tmp_path, dialect):
 
 
 @pytest.mark.parametrize("dialect", SEPARATORS)
-@pytest.mark.parametrize(("words", "level", "kind"), [("Linear Acceleration", 0.0, "linear_acceleration"), ("Beschleunigung", 9.8, "acceleration")])
+@pytest.mark.parametrize(
+    ("words", "level", "kind"), [("Linear Acceleration", 0.0, "linear_acceleration"), ("Beschleunigung", 9.8, "acceleration")]
+)
 def test_phyphox_single_experiment_padded_with_nan(tmp_path, dialect, words, level, kind):
     t, force, _ = still()
     force = force - [0, 0, 9.81 - level]
@@ -53,7 +55,9 @@ def test_sensor_logger_columns_are_z_first(tmp_path):
     assert export.acceleration_sign is None
 
 
-@pytest.mark.parametrize(("metadata", "sign"), [(("android", "false"), 1), (("ios", "true"), 1), (("ios", "false"), -1), (("web", ""), None)])
+@pytest.mark.parametrize(
+    ("metadata", "sign"), [(("android", "false"), 1), (("ios", "true"), 1), (("ios", "false"), -1), (("web", ""), None)]
+)
 def test_sensor_logger_metadata_tells_the_sign(tmp_path, metadata, sign):
     export = read_export(write_zip(tmp_path / "a.zip", sensor_logger(*still(), metadata=metadata)))
     assert export.acceleration_sign == sign
@@ -78,7 +82,9 @@ def test_plain_csv_with_a_column_map(tmp_path):
     t, force, rotation = still()
     path = tmp_path / "log.csv"
     path.write_text(table(["ms", "up", "pitch", "v"], [1000 * t, force[:, 2] / 9.80665, np.degrees(rotation[:, 1]), 7.2 + 0 * t], quote=""))
-    columns = read_column_map("time=ms,time_unit=ms,acceleration=up,acceleration_unit=g,pitch_rate=-pitch,pitch_rate_unit=deg/s,speed=v,speed_unit=km/h")
+    columns = read_column_map(
+        "time=ms,time_unit=ms,acceleration=up,acceleration_unit=g,pitch_rate=-pitch,pitch_rate_unit=deg/s,speed=v,speed_unit=km/h"
+    )
     export = read_export(path, columns)
     assert export.streams["vertical_acceleration"].time == pytest.approx(t)
     assert export.streams["vertical_acceleration"].values[:, 0] == pytest.approx(force[:, 2])

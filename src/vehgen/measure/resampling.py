@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import scipy.linalg
 import scipy.signal
 from numpy.typing import NDArray
 
@@ -19,9 +20,9 @@ from vehgen.errors import InputError
 from vehgen.measure.export import Stream
 
 Array = NDArray[np.float64]
-MARGIN = 80
+MARGIN = 40
 """Samples beyond a block of values, on either side, that it is predicted from."""
-BLOCK = 400
+BLOCK = 40
 """Values predicted together."""
 INNER = 0.4
 """Share of the sampling rate below which the prior has its power."""
@@ -146,11 +147,11 @@ def _predict(time: Array, values: Array, at: Array, rate: float) -> Array:
         wanted = at[begin : begin + BLOCK]
         first = max(int(np.searchsorted(time, wanted[0])) - MARGIN, 0)
         last = min(int(np.searchsorted(time, wanted[-1])) + MARGIN, len(time))
-        near = time[first:last] * rate
+        near = (time[first:last] - wanted[0]) * rate
         matrix = _covariance(near[:, None] - near[None, :])
         matrix[np.arange(len(near)), np.arange(len(near))] *= 1 + NUGGET
-        weights = np.linalg.solve(matrix, values[first:last] - level)
-        found[begin : begin + BLOCK] = level + _covariance(wanted[:, None] * rate - near[None, :]) @ weights
+        weights = scipy.linalg.solve(matrix, values[first:last] - level, assume_a="pos")
+        found[begin : begin + BLOCK] = level + _covariance((wanted[:, None] - wanted[0]) * rate - near[None, :]) @ weights
     return found
 
 
