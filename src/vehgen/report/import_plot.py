@@ -46,7 +46,8 @@ def plot_import(panels: Sequence[ImportPanel], arrival: float | None, crossings:
     figure = Figure(figsize=(11.0, 1.1 + 2.1 * len(panels)), layout="constrained")
     rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
     for axes, panel in zip(rows, panels, strict=True):
-        axes.axvspan(*panel.quiet, color="#e8f0e4", lw=0, label="quiet stretch")
+        if panel.quiet[1] > panel.quiet[0]:
+            axes.axvspan(*panel.quiet, color="#e8f0e4", lw=0, label="quiet stretch")
         axes.plot(panel.raw_time, panel.raw, ".", color="#d55e00", ms=2.2, label="samples of the phone, turned upright")
         axes.plot(panel.time, panel.values, color="#0b5fa5", lw=0.9, label="recording of the run")
         for _, moment in crossings:
