@@ -21,6 +21,8 @@ DEVELOP_SEED, SCORED_SEED = 20, 4711
 """The scored set's seed was chosen before any threshold; nothing is tuned on its cases."""
 VISIBLE = 1.5
 """A hidden effect counts as visible when it lifts chi at least this far before any refit."""
+NONSENSE = {("sedan2", "suspended_cab")}
+"""A sedan has no suspended cab."""
 DRAWS = 12
 
 
@@ -64,7 +66,7 @@ def draw_cases(
     cases: list[HiddenCase] = []
     for vehicle in vehicles:
         options = [option for option in list_effects(vehicle) if option.listed]
-        for name in dict.fromkeys(option.name for option in options):
+        for name in dict.fromkeys(option.name for option in options if (vehicle, option.name) not in NONSENSE):
             places = [option for option in options if option.name == name]
             cases.append(_draw(f"{vehicle}_{name}", "listed", vehicle, [places], random, "visible"))
     for kind, count, listed in (("null", nulls, True), ("weak", weak, True), ("two", pairs, True), ("outside", outside, False)):

@@ -207,6 +207,7 @@ def diagnose(
 
 def _diagnose(trials: Sequence[Trial], effects: Sequence[Effect] | None, everything: bool, tell: Progress | None) -> Diagnosis:
     say = tell or (lambda stage, done, total, best: None)
+    trials = sorted(trials, key=_kind)  # whatever order they came in
     say("detect", 0, 1, "")
     detection = detect(trials)
     say("detect", 1, 1, f"chi {detection.chi:.3f}")

@@ -9,19 +9,23 @@ from vehgen.effects.site import Site
 
 
 def _edit(site: Site, symbols: Given) -> Change:
-    stiffness = {name: axle.tyre.k.text for name, axle in site.vehicle.axles.items() if site.place in (ALL_TYRES, name)}
-    return {"axles": {name: {"tyre": {"c": f"{symbols['time']}*({k})"}} for name, k in stiffness.items()}}
+    change: Change = {}
+    for name, axle in site.vehicle.axles.items():
+        if site.place in (ALL_TYRES, name):
+            mass = axle.mass.text if axle.mass is not None else site.vehicle.bodies[axle.body].mass.text
+            change[name] = {"tyre": {"c": f"2*{symbols['ratio']}*sqrt(({axle.tyre.k.text})*({mass}))"}}
+    return {"axles": change}
 
 
 TYRE_DAMPING = Effect(
     "tyre_damping",
     "Tyre damping",
-    "f = time*k_t*v",
-    "rubber that loses energy as the tyre is pressed; the same loss factor in all tyres",
+    "f = 2*ratio*sqrt(k_t*m)*v",
+    "rubber that loses energy as the tyre is pressed",
     "axle hops decay faster and the road's high frequencies pass more strongly, at every amplitude",
     "H. B. Pacejka, Tire and Vehicle Dynamics, 3rd ed., 2012, doi:10.1016/C2010-0-68548-8",
     "tyre",
-    (EffectParameter("time", "s", "damping over stiffness of every tyre", 1e-5, 0.01, (3e-4, 2e-3)),),
+    (EffectParameter("ratio", "", "damping ratio of the unsprung mass on its tyres alone", 1e-3, 0.5, (0.02, 0.1)),),
     tyres,
     _edit,
 )

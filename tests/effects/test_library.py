@@ -1,0 +1,104 @@
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from vehgen.effects import EFFECTS, Surveyor
+from vehgen.mechanics import derive
+from vehgen.simulate import natural_modes
+from vehgen.vehicle import load_vehicle, parse_vehicle
+from vehgen.vehicle.loading import extend_vehicle
+
+ASKED = {
+    "dry_friction", "cubic_stiffness", "progressive_stiffness", "bump_stop", "asymmetric_damping", "quadratic_damping", "hysteresis",
+    "relaxation", "tyre_liftoff", "tyre_damping", "tyre_footprint", "hinge_friction", "hinge_stiffness", "suspended_cab",
+    "frame_bending", "walking_beam", "cargo_module", "engine_harmonic", "sensor_gain", "sensor_position", "sensor_tilt", "sensor_delay",
+    "speed_error",
+}  # fmt: skip
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+def test_the_library_holds_every_effect():
+    assert set(EFFECTS) == ASKED
+
+
+@pytest.mark.parametrize("effect", EFFECTS.values(), ids=list(EFFECTS))
+def test_every_effect_says_what_it_is_and_begins_within_its_range(effect):
+    assert all((effect.title, effect.equation, effect.meaning, effect.signature, effect.source, effect.attaches))
+    for parameter in effect.parameters:
+        assert parameter.low < parameter.high
+        assert all(parameter.low <= start <= parameter.high for start in parameter.starts)
+        assert parameter.meaning
+
+
+@pytest.mark.parametrize("name", ["sedan2.yaml", "tractor5.yaml", "road_train.yaml", "truck_dolly_trailer.yaml"])
+def test_every_edit_gives_a_vehicle_that_vehgen_accepts(name):
+    vehicle = load_vehicle(name)
+    surveyor = Surveyor(vehicle, vehicle.values())
+    for effect in EFFECTS.values():
+        if effect.edit is not None:
+            for place in effect.places(vehicle, ())[:2]:
+                changed = extend_vehicle(vehicle, effect.change(surveyor.site(place)))
+                assert set(effect.symbols(place).values()) <= set(changed.ranges())
+                assert derive(changed).n_dof >= derive(vehicle).n_dof
+
+
+def frequencies(vehicle):
+    return np.array([mode.undamped_hz for mode in natural_modes(derive(vehicle))])
+
+
+def test_a_walking_beam_leaves_the_tandem_its_heave_and_takes_its_pitch_stiffness():
+    vehicle = load_vehicle("tractor5.yaml")
+    site = Surveyor(vehicle, vehicle.values()).site("axle4+axle5")
+    changed = derive(extend_vehicle(vehicle, EFFECTS["walking_beam"].change(site)))
+    K = changed.numeric().K
+    beam = [item.name for item in changed.coordinates]
+    pitch = beam.index("pitch.beam_axle4_axle5")
+    kt, half, m4, m5 = (2689.24 * 8000, 808.0 * 8000), 0.615, 0.57, 0.34
+    offset = half * (m4 - m5) / (m4 + m5)
+    springs = kt[0] * (half - offset) ** 2 + kt[1] * (half + offset) ** 2 + site.k * offset**2
+    assert K[pitch, pitch] == pytest.approx(springs, rel=1e-9)
+
+
+def test_a_light_load_leaves_the_body_modes_nearly_alone():
+    vehicle = load_vehicle("sedan2.yaml")
+    site = Surveyor(vehicle, vehicle.values()).site("body")
+    values = {"mass": 15.0, "frequency": 12.0, "damping_ratio": 0.02, "x": 0.0}
+    changed = extend_vehicle(vehicle, EFFECTS["cargo_module"].change(site, values))
+    found = frequencies(changed)
+    assert np.delete(found, np.abs(found - 12.0).argmin()) == pytest.approx(frequencies(vehicle), rel=0.02)
+
+
+BEAM = """
+parameters: {mB: {value: 1000 kg}, IB: {value: 8333.333333333334 kg m^2}}
+bodies: {beam: {mass: mB, pitch_inertia: IB, bending: {length: 10 m, frequency: %s Hz, damping_ratio: 0.01}}}
+links:
+  a: {beam: {x: 5 m}, ground: {x: 5 m}, k: %s N/m}
+  b: {beam: {x: -5 m}, ground: {x: -5 m}, k: %s N/m}
+"""
+
+
+def test_a_free_beam_bends_at_its_frequency():
+    assert frequencies(parse_vehicle(BEAM % (5, 1, 1)))[-1] == pytest.approx(5.0, rel=1e-4)
+
+
+def test_bending_follows_the_hand_calculation_of_two_degrees_of_freedom():
+    k, m, w = 4e5, 1000.0, 2 * np.pi * 5
+    M, K = np.diag([m, m / 5]), np.array([[2 * k, 2 * k], [2 * k, 2 * k + w**2 * m / 5]])
+    by_hand = np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(M, K)).real)) / (2 * np.pi)
+    found = frequencies(parse_vehicle(BEAM % (5, k, k)))
+    assert all(np.abs(found - hz).min() < 1e-8 for hz in by_hand)
+
+
+def test_a_stiff_frame_is_a_rigid_one():
+    change = {"bodies": {"semitrailer": {"bending": {"length": "12 m", "frequency": "3000 Hz"}}}}
+    vehicle = load_vehicle("tractor5.yaml")
+    assert frequencies(extend_vehicle(vehicle, change))[:-1] == pytest.approx(frequencies(vehicle), rel=1e-5)
+
+
+def test_the_page_shows_the_library_as_it_is():
+    spec = importlib.util.spec_from_file_location("make_effects_page", DOCS / "make_effects_page.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    assert module.page() == (DOCS / "effects.md").read_text(encoding="utf-8")
