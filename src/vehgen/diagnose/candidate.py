@@ -20,7 +20,6 @@ from vehgen.vehicle import Vehicle
 from vehgen.vehicle.loading import extend_vehicle
 
 Array = NDArray[np.float64]
-MOST_STARTS = 4
 KINDS: dict[str, tuple[type[Adjustment], float, float]] = {
     "speed": (SpeedScale, 0.01, 1.0),
     "footprint": (Footprint, 0.05, 0.0),
@@ -111,15 +110,13 @@ def pose(candidate: Candidate, base: Problem, surveyor: Surveyor, simulators: di
 
 
 def starts(candidate: Candidate, surveyor: Surveyor) -> Iterator[tuple[float, ...]]:
-    """Yield where the effect's own parameters begin, at most MOST_STARTS combinations."""
+    """Yield where the effect's own parameters may begin."""
     if candidate.effect.edit is None:
         options = [parameter.starts for parameter in candidate.effect.parameters]
     else:
         site = surveyor.site(candidate.place)
         options = [parameter.first(site) for parameter in candidate.effect.parameters]
-    combinations = list(product(*options))
-    stride = -(-len(combinations) // MOST_STARTS)
-    yield from combinations[::stride]
+    yield from product(*options)
 
 
 def retarget(trial: Trial, vehicle: Vehicle, simulators: dict[object, Simulator]) -> Trial:

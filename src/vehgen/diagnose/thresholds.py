@@ -9,7 +9,7 @@ WEAK = 1.12
 """Up to this chi something is there, but too weak to be named."""
 PLACE_PASSES = 1.10
 """A place passes below this chi."""
-PLACE_SHARE = 0.03
+PLACE_SHARE = 0.10
 """A place also passes when it leaves no more than this share of the excess without any unknown."""
 MOST_PLACES = 4
 """So many places at most go on to the laws."""

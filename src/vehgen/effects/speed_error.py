@@ -13,7 +13,11 @@ SPEED_ERROR = Effect(
     "axles arrive too early or late one after the other; the delay grows with the axle distance",
     "Wu & Li 2023, Sect. 3, doi:10.3390/s23249691",
     "run",
-    (EffectParameter("scale", "", "true speed over that of the run file", 0.85, 1.15, (0.94, 0.97, 1.03, 1.06)),),
+    (
+        EffectParameter(
+            "scale", "", "true speed over that of the run file", 0.85, 1.15, tuple(round(0.9 + 0.01 * i, 2) for i in range(21) if i != 10)
+        ),
+    ),
     runs,
     adjusts="speed",
 )
