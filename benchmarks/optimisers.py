@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 import scipy.optimize
 
-from benchmarks.pages import ROOT, fill, table
+from benchmarks.pages import ROOT, table
 from benchmarks.paper_study.judging import errors
 from benchmarks.paper_study.recordings import RIGS, hump_run
 from benchmarks.paper_study.truth import drawn
@@ -281,8 +281,7 @@ def main() -> None:
                 print(kind, name, *values, f"{np.median([item.seconds for item in found[kind][name]]):.0f} s", flush=True)
     text = tables(found)
     print(text)
-    draw(found, ROOT / "docs" / "images" / "optimisers.png")
-    fill(ROOT / "docs" / "accuracy.md", {"optimisers": text})
+    draw(found, ROOT / "build" / "optimisers.png")
 
 
 if __name__ == "__main__":

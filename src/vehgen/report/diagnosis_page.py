@@ -63,7 +63,7 @@ def _figures(diagnosis: Diagnosis) -> tuple[dict[str, Markup], str]:
     force_place = ""
     if diagnosis.places:
         found["places"] = plot_places(diagnosis.places, diagnosis.passed)
-    for result in diagnosis.passed:
+    for result in sorted(diagnosis.passed, key=lambda item: item.place.kind != "suspension"):
         found["force"] = plot_force(diagnosis, result)
         force_place = result.place.label
         if found["force"] is not None:

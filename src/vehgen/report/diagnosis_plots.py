@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from vehgen.diagnose.pipeline import Diagnosis
 from vehgen.diagnose.place_test import PlaceResult, recover_force
+from vehgen.identify.trial import Trial
 from vehgen.measure import record_psd
 from vehgen.mechanics.outputs import ElementOutput
 from vehgen.report.canvas import INK
@@ -37,12 +38,18 @@ def plot_places(results: tuple[PlaceResult, ...], passed: tuple[PlaceResult, ...
     return figure
 
 
+def _loudest(trials: tuple[Trial, ...]) -> int:
+    """Return the number of the loudest hump run, or of the loudest run where there is no hump."""
+    humps = [any(entry.hump is not None for entry in trial.run.file.road) for trial in trials]
+    return max(range(len(trials)), key=lambda t: (humps[t], float(np.mean(trials[t].measurement.values ** 2))))
+
+
 def plot_force(diagnosis: Diagnosis, result: PlaceResult) -> Figure | None:
     """Plot the force that the data want at a suspension or tyre over travel and rate of the base model, in the loudest training run."""
     misfit = diagnosis.detection.base.polished.misfit
     if result.place.kind not in ("suspension", "tyre") or len(result.place.rows) != 1:
         return None
-    loudest = int(np.argmax([np.mean(trial.measurement.values**2) for trial in misfit.problem.trials]))
+    loudest = _loudest(misfit.problem.trials)
     trial = misfit.problem.trials[loudest]
     axle = result.place.name
     output = ElementOutput("travel", axle, "suspension_travel" if trial.run.vehicle.axles[axle].suspension else "tyre_force")
@@ -92,7 +99,7 @@ def curves(diagnosis: Diagnosis) -> tuple[list[Curve], list[Curve]]:
     if not diagnosis.chosen:
         return [], []
     base, after = diagnosis.detection.base.polished, diagnosis.chosen[0].polished
-    loudest = int(np.argmax([np.mean(trial.measurement.values**2) for trial in base.misfit.problem.trials]))
+    loudest = _loudest(base.misfit.problem.trials)
     trial = base.misfit.problem.trials[loudest]
     old, new = (trial.measurement.values - fit.misfit.simulate(fit.x)[loudest] for fit in (base, after))
     densities, histories = [], []
