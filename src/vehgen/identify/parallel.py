@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any, TypeVar
 
 from vehgen.errors import InputError
@@ -58,11 +59,11 @@ def runner_at(scheduler: str | None) -> Iterator[Runner]:
         yield Runner()
         return
     try:
-        from distributed import Client
+        connect: Any = import_module("distributed").Client
     except ImportError as error:
         raise InputError("--scheduler needs Dask: pip install 'vehgen[cluster]'") from error
     try:
-        client: Any = Client(scheduler, timeout=10)  # type: ignore[no-untyped-call]
+        client = connect(scheduler, timeout=10)
     except (OSError, ValueError) as error:
         raise InputError(f"no Dask scheduler answers at {scheduler}: {error or type(error).__name__}") from error
     try:
