@@ -214,13 +214,10 @@ def _diagnose(trials: Sequence[Trial], effects: Sequence[Effect] | None, everyth
     ordered = (*detection.problem.trials, *detection.held_out)
     gap = Gap(detection.chi, detection.chi, 1.0, _runs(detection.base, detection.base, detection.held_out))
 
-    def conclude(verdict: VerdictName, reason: str, **more: object) -> Diagnosis:
-        found = Verdict(verdict, reason, (), gap, **{key: more[key] for key in ("places", "next_experiment", "notes") if key in more})  # type: ignore[arg-type]
-        return Diagnosis(ordered, detection, tuple(places), tuple(passed), tuple(fits), (), found)
+    def conclude(verdict: VerdictName, reason: str, next_experiment: str | None = None) -> Diagnosis:
+        found = Verdict(verdict, reason, (), gap, next_experiment=next_experiment)
+        return Diagnosis(ordered, detection, (), (), (), (), found)
 
-    places: list[PlaceResult] = []
-    passed: list[PlaceResult] = []
-    fits: list[Fit] = []
     if max(detection.chi, float(np.sqrt(detection.base.train))) <= limit.NOISE_FLOOR:
         return conclude("no_missing_effect", f"the recalibrated model is at the noise floor: chi {detection.chi:.3f}")
     if not detection.held_out:

@@ -199,8 +199,3 @@ def recover_force(misfit: Misfit, result: PlaceResult, t: int) -> tuple[Array, A
     spectrum[places[usable]] = lines[usable] * np.sqrt(n / (2 * dt))
     variance = (1 / power[usable]).sum() / (n * dt)
     return np.asarray(np.fft.irfft(spectrum, n)), np.full(n, float(np.sqrt(variance)))
-
-
-def equivalent(results: Sequence[PlaceResult], best: PlaceResult, slack: float) -> list[PlaceResult]:
-    """Return the hypotheses whose chi is within `slack` of the best and that spend as many unknowns or fewer."""
-    return [item for item in results if item.unknowns <= best.unknowns and item.chi <= best.chi + slack]

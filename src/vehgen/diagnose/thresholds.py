@@ -11,8 +11,6 @@ PLACE_PASSES = 1.10
 """A place passes below this chi."""
 PLACE_SHARE = 0.10
 """A place also passes when it leaves no more than this share of the excess without any unknown."""
-MOST_PLACES = 4
-"""So many places at most go on to the laws."""
 LAW_PASSES = 0.10
 """A law passes when it leaves no more than this share of the excess, on the training runs and on untouched ones."""
 LAW_CHI = 1.15

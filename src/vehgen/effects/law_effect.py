@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from vehgen.effects.base import Change, Effect, EffectParameter
-from vehgen.effects.places import ALL_TYRES, axles, hinges, suspensions
+from vehgen.effects.places import ALL_TYRES, hinges, suspensions
 from vehgen.effects.site import Site
 from vehgen.mechanics.laws import LAWS
 
@@ -58,11 +58,3 @@ def hinge_law(name: str, law: str, title: str, meaning: str, signature: str, par
     """Return the effect of a law of the library on a hinge."""
     known = LAWS[law]
     return Effect(name, title, known.equation, meaning, signature, known.source, "hinge", parameters, hinges, law_edit("hinge", law))
-
-
-def tyre_law(name: str, law: str, signature: str, parameters: tuple[EffectParameter, ...]) -> Effect:
-    """Return the effect of a law of the library on one axle's tyres."""
-    known = LAWS[law]
-    return Effect(
-        name, known.title, known.equation, known.meaning, signature, known.source, "tyre", parameters, axles, law_edit("tyre", law)
-    )

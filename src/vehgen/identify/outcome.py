@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import platform
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -323,8 +322,3 @@ def _plain(settings: Settings) -> dict[str, Any]:
 
 def _pair(estimate: Estimate | None) -> list[float] | None:
     return None if estimate is None or estimate.low is None or estimate.high is None else [estimate.low, estimate.high]
-
-
-def file_name(text: str) -> str:
-    """Return a name that is safe for a file."""
-    return re.sub(r"[^A-Za-z0-9_.-]+", "_", text)

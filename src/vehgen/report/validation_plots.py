@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from vehgen.identify.validation import Validation
 from vehgen.measure import SPECTRA
+from vehgen.measure.astm import NOTE
 from vehgen.report.canvas import INK
 from vehgen.report.comparison import MEASURED, SIMULATED, UNITS, Curve, plot_histories, plot_psds
 from vehgen.report.files import save_figure
@@ -27,7 +28,7 @@ def save_validation_figures(validation: Validation, folder: Path, astm: str | No
     if astm is not None:
         frequency = np.geomspace(1.0, HIGHEST, 200)
         spectrum = SPECTRA[astm].at(frequency)
-        reference = (SPECTRA[astm].name, Curve("", astm, "acceleration", frequency, spectrum, spectrum))
+        reference = (f"{SPECTRA[astm].name} ({NOTE})", Curve("", astm, "acceleration", frequency, spectrum, spectrum))
     figures = {
         "validation_psd.png": plot_psds(densities, (0.3, HIGHEST), reference),
         "validation_histories.png": plot_histories(histories),
