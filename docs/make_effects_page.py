@@ -50,8 +50,7 @@ def page() -> str:
             lines += ["| parameter | unit | searched | meaning |", "|---|---|---|---|"]
             lines += [f"| `{item.name}` | {item.unit} | {item.low:g} to {item.high:g} | {item.meaning} |" for item in effect.parameters]
             lines.append("")
-        if effect.name != "engine_harmonic":
-            lines += [f"![{effect.title}, before and after](images/effects/{effect.name}.svg)", ""]
+        lines += [f"![{effect.title}, before and after](images/effects/{effect.name}.svg)", ""]
         lines += [f"Source: {effect.source}.", ""]
     return "\n".join(lines)
 
@@ -60,6 +59,7 @@ def draw() -> None:
     """Draw every effect."""
     from vehgen.diagnose.candidate import list_candidates, pose, starts
     from vehgen.effects import Surveyor
+    from vehgen.identify.harmonic import Harmonic
     from vehgen.identify.misfit import Misfit
     from vehgen.identify.noise import EVEN, Noise
     from vehgen.identify.problem import make_problem
@@ -90,8 +90,13 @@ def draw() -> None:
             values[problem.space.size :] = combination[: len(candidate.parameters)]
         noises = {trial.name: Noise(EVEN, np.ones(4))}
         misfit = Misfit(posed, noises, values, shared=candidate.shared)
-        numbers = np.array(combination[:1]) if candidate.shared else np.zeros(0)
-        changed = misfit.respond(posed.trials[0], values[None], numbers, np.zeros(2))[0]
+        line = candidate.shared[0] if candidate.shared else None
+        if isinstance(line, Harmonic):
+            size = surveyor.site(candidate.place).load
+            changed = base + 0.02 * size * line.columns(trial, 25.0, 0.01, trial.values)[0]
+        else:
+            numbers = np.array(combination[:1]) if candidate.shared else np.zeros(0)
+            changed = misfit.respond(posed.trials[0], values[None], numbers, np.zeros(2))[0]
         save_figure(_figure(effect, t, base, changed, list(trial.channels)), IMAGES / f"{effect.name}.svg")
 
 

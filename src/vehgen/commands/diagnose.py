@@ -27,7 +27,7 @@ def run(options: argparse.Namespace) -> None:
 
     from vehgen.codegen import write_text
     from vehgen.diagnose.pipeline import diagnose
-    from vehgen.diagnose.writing import effect_file
+    from vehgen.diagnose.writing import effect_file, file_name
     from vehgen.effects import library
     from vehgen.errors import InputError, did_you_mean
     from vehgen.identify.trial import load_trials
@@ -61,9 +61,9 @@ def run(options: argparse.Namespace) -> None:
             status.stop()
     files = [folder / "diagnosis.json", folder / "report.html"]
     if found.chosen:
-        name = f"{vehicle.name}_with_{found.chosen[0].candidate.effect.name if found.chosen[0].candidate else 'effect'}"
+        name = file_name(vehicle.name, found.chosen[-1])
         path = folder / f"{name}.yaml"
-        write_text(path, effect_file(found.chosen[0], found.detection.problem, found.verdict, folder, name))
+        write_text(path, effect_file(found.chosen[-1], found.detection.problem, found.verdict, folder, name))
         found = replace(found, verdict=replace(found.verdict, vehicle_file=str(path)))
         files.append(path)
     data = found.verdict.to_dict()

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from vehgen.effects import Effect, Surveyor
 from vehgen.identify.adjustments import Adjustment, Footprint, Gain, HeightScale, SensorDelay, SpeedScale, Tilt
+from vehgen.identify.harmonic import line_numbers
+from vehgen.identify.misfit import Noises
 from vehgen.identify.problem import Problem
 from vehgen.identify.space import SearchSpace
 from vehgen.identify.trial import Trial
@@ -49,8 +51,9 @@ class Candidate:
         return f"{self.effect.name} at {self.place}"
 
 
-def list_candidates(vehicle: Vehicle, trials: Sequence[Trial], effects: Sequence[Effect]) -> list[Candidate]:
-    """Return every effect at every place at which it can live."""
+def list_candidates(vehicle: Vehicle, trials: Sequence[Trial], effects: Sequence[Effect], noises: Noises | None = None) -> list[Candidate]:
+    """Return every effect at every place at which it can live; the noise of the runs weighs channels where an effect needs it."""
+    sigma = {name: noise.sigma for name, noise in (noises or {}).items()}
     sensors = tuple(dict.fromkeys(channel.sensor for trial in trials for channel in trial.measurement.channels))
     channels = tuple(dict.fromkeys(name for trial in trials for name in trial.channels))
     found = []
@@ -65,6 +68,8 @@ def list_candidates(vehicle: Vehicle, trials: Sequence[Trial], effects: Sequence
             elif effect.adjusts in KINDS:
                 kind, scale, neutral = KINDS[effect.adjusts]
                 shared = (kind(place, scale, neutral),)
+            elif effect.adjusts == "harmonic":
+                shared = tuple(line_numbers(place, sigma))
             else:
                 continue
             found.append(Candidate(effect, place, names, shared))

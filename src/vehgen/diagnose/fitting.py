@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.stats
 from numpy.typing import NDArray
 
 from vehgen.diagnose.candidate import Candidate, pose, retarget, starts
 from vehgen.effects import Surveyor
+from vehgen.identify.adjustments import Adjustment
 from vehgen.identify.misfit import Misfit, Noises, Nuisances
 from vehgen.identify.polish import Polished, polish
 from vehgen.identify.problem import Problem
@@ -36,22 +36,66 @@ FINE = 1e-6
 
 @dataclass(frozen=True)
 class Fit:
-    """A fitted model: `candidate` None for the base; `train` and `held_out` mean squares of whitened residuals (1 is noise alone).
+    """A fitted model: the base with `effects`; `train` and `held_out` mean squares of whitened residuals (1 is noise alone).
 
-    `runs` are the mean squares run by run, training runs first; `counts` how many residuals stand behind each.
+    `runs` are the mean squares run by run, training runs first; `counts` how many residuals stand behind each; `powers` the mean squares
+    line by line and channel by channel, `shape (n_lines, n_channels)`; `checks` the misfit and nuisances of the untouched runs.
     """
 
-    candidate: Candidate | None
+    effects: tuple[Candidate, ...]
     polished: Polished
     train: float
     held_out: float
     runs: dict[str, float]
     counts: dict[str, int]
+    powers: dict[str, Array]
+    checks: Polished | None = None
 
     @property
     def label(self) -> str:
         """Its name in words."""
-        return "base" if self.candidate is None else self.candidate.label
+        return " and ".join(item.label for item in self.effects) or "base"
+
+    @property
+    def last(self) -> Candidate:
+        """The effect added last."""
+        return self.effects[-1]
+
+    @property
+    def chi(self) -> float:
+        """Its chi over all runs."""
+        return float(np.sqrt(_pooled(self.runs, self.counts)))
+
+
+@dataclass(frozen=True)
+class Footing:
+    """What candidates are added to: the base or what has been found so far.
+
+    `problem` begins at that fit's parameters, of which the last `free` are the effects'; `shared` are its adjustments, whose neutral
+    numbers are the fitted ones; `unit` and `errors` are where parameters and nuisances begin; `train` is the mean square it leaves.
+    """
+
+    effects: tuple[Candidate, ...]
+    problem: Problem
+    shared: tuple[Adjustment, ...]
+    free: int
+    unit: Array
+    errors: Array
+    train: float
+
+    @classmethod
+    def of(cls, fit: Fit) -> Footing:
+        """Return a fit as what further effects are added to."""
+        misfit = fit.polished.misfit
+        free = sum(len(item.parameters) for item in fit.effects)
+        unit, errors = misfit.split(fit.polished.x)
+        numbers = misfit.adjusted(fit.polished.x)
+        shared = tuple(replace(item, neutral=float(value)) for item, value in zip(misfit.shared, numbers, strict=True))
+        space = misfit.problem.space
+        if free:
+            start = np.concatenate([space.start[: space.size - free], fit.polished.values[space.size - free :]])
+            space = replace(space, start=start)
+        return cls(fit.effects, Problem(misfit.problem.trials, space), shared, free, unit, errors.ravel(), fit.train)
 
 
 def narrow(problem: Problem, start: Array | None = None) -> Problem:
@@ -67,48 +111,47 @@ def narrow(problem: Problem, start: Array | None = None) -> Problem:
 def fit_base(problem: Problem, held_out: Sequence[Trial], noises: Noises, band: tuple[float, float]) -> Fit:
     """Fit the base model."""
     fit = polish(problem, problem.space.unit(problem.space.start), NUISANCES, band, noises=noises, hold=HOLD, tolerance=FINE, renew=RENEW)
-    return judge(None, fit, held_out, noises)
+    return judge((), fit, held_out, noises)
 
 
 def fit_candidate(
     candidate: Candidate,
-    base: Problem,
+    footing: Footing,
     held_out: Sequence[Trial],
     noises: Noises,
     band: tuple[float, float],
     surveyor: Surveyor,
-    unit: Array,
-    errors: Array,
     simulators: dict[object, Simulator],
-    worst: float,
+    begin: Sequence[tuple[float, ...]] | None = None,
 ) -> Fit:
-    """Fit a candidate's effect together with the base parameters: roughly from every start, finely from the best.
+    """Fit a candidate's effect together with what it is added to: roughly from its most promising starts, finely from the best.
 
     Parameters
     ----------
-    candidate, base, held_out, noises, band, surveyor, simulators
+    candidate, footing
+        What to add, and to what. A candidate that leaves HOPELESS of the footing's excess after the rough fits is not refined.
+    held_out, noises, band, surveyor, simulators
         As elsewhere.
-    unit
-        Base parameters in the unit cube to begin with, e.g. those of the place test.
-    errors
-        Nuisances to begin with.
-    worst
-        The base model's mean square: a candidate that leaves HOPELESS of its excess after the rough fits is not refined.
+    begin
+        Where the effect's own numbers begin (default: its own starts).
     """
-    problem = pose(candidate, base, surveyor, simulators)
+    problem = pose(candidate, footing.problem, surveyor, simulators)
+    shared = (*footing.shared, *candidate.shared)
+    free = footing.free + len(candidate.parameters)
+    neutral = tuple(item.neutral for item in footing.shared)
     best: Polished | None = None
-    for begin, combination in _promising(candidate, problem, noises, band, surveyor, unit, errors):
+    for point, combination in _promising(candidate, footing, problem, noises, band, begin or list(starts(candidate, surveyor))):
         fit = polish(
             problem,
-            begin,
+            point,
             NUISANCES,
             band,
             noises=noises,
-            start=errors,
+            start=footing.errors,
             hold=HOLD,
-            free=len(candidate.parameters),
-            shared=candidate.shared,
-            numbers=combination if candidate.shared else (),
+            free=free,
+            shared=shared,
+            numbers=(*neutral, *combination) if candidate.shared else neutral,
             max_steps=8,
             tolerance=ROUGH,
             renew=RENEW,
@@ -116,8 +159,9 @@ def fit_candidate(
         if best is None or fit.loss < best.loss:
             best = fit
     assert best is not None
-    if best.chi2 - 1 > HOPELESS * max(worst - 1, 0.0):
-        return judge(candidate, best, (), noises)
+    effects = (*footing.effects, candidate)
+    if best.chi2 - 1 > HOPELESS * max(footing.train - 1, 0.0):
+        return judge(effects, best, (), noises)
     misfit = best.misfit
     fine = polish(
         problem,
@@ -127,40 +171,48 @@ def fit_candidate(
         noises=noises,
         start=misfit.split(best.x)[1].ravel(),
         hold=HOLD,
-        free=len(candidate.parameters),
-        shared=candidate.shared,
+        free=free,
+        shared=shared,
         numbers=tuple(misfit.adjusted(best.x)),
         max_steps=25,
         tolerance=FINE,
         renew=RENEW,
     )
-    return judge(candidate, fine, held_out, noises)
+    return judge(effects, fine, held_out, noises)
 
 
 def _promising(
-    candidate: Candidate, problem: Problem, noises: Noises, band: tuple[float, float], surveyor: Surveyor, unit: Array, errors: Array
+    candidate: Candidate,
+    footing: Footing,
+    problem: Problem,
+    noises: Noises,
+    band: tuple[float, float],
+    begin: Sequence[tuple[float, ...]],
 ) -> list[tuple[Array, tuple[float, ...]]]:
-    """Return the MOST_STARTS starts that fit best before any fitting: points of the unit cube, with the numbers of an adjustment."""
-    n, own = len(unit), len(candidate.parameters)
-    misfit = Misfit(problem, noises, problem.space.start, NUISANCES, band, candidate.shared)
+    """Return the MOST_STARTS starts that fit best before any fitting: points of the unit cube, with the numbers of adjustments."""
+    n, own = len(footing.unit), len(candidate.parameters)
+    misfit = Misfit(problem, noises, problem.space.start, NUISANCES, band, (*footing.shared, *candidate.shared))
     ranked = []
-    for combination in starts(candidate, surveyor):
+    for combination in begin:
         point = problem.space.start.copy()
         if own:
             point[n:] = combination[:own]
-        begin = np.concatenate([unit, problem.space.unit(point)[n:]])
+        unit = np.concatenate([footing.unit, problem.space.unit(point)[n:]])
         numbers = [(value - item.neutral) / item.scale for item, value in zip(candidate.shared, combination, strict=False)]
-        loss = float((misfit.residuals(np.concatenate([begin, numbers, errors])) ** 2).sum())
-        ranked.append((loss if np.isfinite(loss) else np.inf, begin, combination))
+        x = np.concatenate([unit, np.zeros(len(footing.shared)), numbers, footing.errors])
+        loss = float((misfit.residuals(x) ** 2).sum())
+        ranked.append((loss if np.isfinite(loss) else np.inf, unit, combination))
     ranked.sort(key=lambda item: item[0])
-    return [(begin, combination) for _, begin, combination in ranked[:MOST_STARTS]]
+    return [(unit, combination) for _, unit, combination in ranked[:MOST_STARTS]]
 
 
-def judge(candidate: Candidate | None, fit: Polished, held_out: Sequence[Trial], noises: Noises) -> Fit:
+def judge(effects: tuple[Candidate, ...], fit: Polished, held_out: Sequence[Trial], noises: Noises) -> Fit:
     """Simulate a fitted model on untouched runs, of which only the clock, speed and road height are fitted."""
-    runs, counts = _by_run(fit.misfit, fit.x)
+    powers = _powers(fit)
+    runs, counts = _by_run(powers)
     train = _pooled(runs, counts)
     later = float("nan")
+    again: Polished | None = None
     if held_out:
         problem = fit.misfit.problem
         fixed = problem.best_values(fit.values)
@@ -178,33 +230,27 @@ def judge(candidate: Candidate | None, fit: Polished, held_out: Sequence[Trial],
             replace(item, neutral=float(value), scale=1e-12) for item, value in zip(fit.misfit.shared, numbers, strict=True)
         )
         again = polish(frozen, np.zeros(0), NUISANCES, fit.misfit.band, noises=noises, shared=frozen_shared, tolerance=FINE, renew=RENEW)
-        own, own_counts = _by_run(again.misfit, again.x)
+        checked = _powers(again)
+        own, own_counts = _by_run(checked)
         later = _pooled(own, own_counts)
-        runs |= own
-        counts |= own_counts
-    return Fit(candidate, fit, train, later, runs, counts)
+        runs, counts, powers = runs | own, counts | own_counts, powers | checked
+    return Fit(effects, fit, train, later, runs, counts, powers, again)
 
 
 def _nothing() -> SearchSpace:
     return SearchSpace((), np.zeros(0), np.zeros(0), np.zeros(0))
 
 
-def _by_run(misfit: Misfit, x: Array) -> tuple[dict[str, float], dict[str, int]]:
-    lines = misfit.white_lines(x)
-    names = [trial.name for trial in misfit.problem.trials]
-    return (
-        {name: float(np.mean(np.abs(item) ** 2)) for name, item in zip(names, lines, strict=True)},
-        {name: 2 * item.size for name, item in zip(names, lines, strict=True)},
-    )
+def _powers(fit: Polished) -> dict[str, Array]:
+    """Return the squares of a fit's whitened lines by run, `shape (n_lines, n_channels)`."""
+    names = [trial.name for trial in fit.misfit.problem.trials]
+    return {name: np.abs(item) ** 2 for name, item in zip(names, fit.misfit.white_lines(fit.x), strict=True)}
+
+
+def _by_run(powers: dict[str, Array]) -> tuple[dict[str, float], dict[str, int]]:
+    return {name: float(item.mean()) for name, item in powers.items()}, {name: 2 * item.size for name, item in powers.items()}
 
 
 def _pooled(runs: dict[str, float], counts: dict[str, int]) -> float:
     total = sum(counts[name] for name in runs)
     return sum(runs[name] * counts[name] for name in runs) / total
-
-
-def p_value(base: Fit, other: Fit, extra: int) -> float:
-    """Return the probability of such a gain by chance: likelihood ratio, chi-squared with `extra` degrees of freedom."""
-    names = [trial.name for trial in base.polished.misfit.problem.trials]
-    gain = sum((base.runs[name] - other.runs[name]) * base.counts[name] for name in names)
-    return float(scipy.stats.chi2.sf(max(gain, 0.0), max(extra, 1)))

@@ -15,9 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.identify.misfit import Misfit, flatten
-from vehgen.mechanics.linear_model import LinearModel
 from vehgen.mechanics.rows import Row
-from vehgen.simulate.frequency import dynamic_stiffness, output_rows
+from vehgen.simulate.frequency import force_response
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -166,18 +165,6 @@ def _project(lines: Complex, basis: Complex | None) -> Complex:
         return lines
     inside = np.einsum("nck,...nc->...nk", basis.conj(), lines)
     return np.asarray(lines - np.einsum("nck,...nk->...nc", basis, inside))
-
-
-def force_response(model: LinearModel, values: dict[str, float], rows: Sequence[Row], frequency: Array) -> Complex:
-    """Return the channels per unit of generalised forces along rows of the coordinates, `shape (n, n_channels, len(rows))`."""
-    omega = 2 * np.pi * frequency
-    numeric = model.numeric(values)
-    entries = {(i, j): value for j, row in enumerate(rows) for i, value in row.items()}
-    loads = np.zeros((model.n_dof, len(rows)))
-    for place, value in model.evaluate(entries, values).items():
-        loads[place] = value
-    states = np.linalg.solve(dynamic_stiffness(numeric, omega), np.repeat(loads[None].astype(np.complex128), len(omega), axis=0))
-    return np.asarray(output_rows(numeric.outputs, omega)[0] @ states)
 
 
 def recover_force(misfit: Misfit, result: PlaceResult, t: int) -> tuple[Array, Array]:

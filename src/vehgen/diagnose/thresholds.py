@@ -19,3 +19,7 @@ TIE = 3.0
 """Candidates whose excess is within this factor of the best one's (and of the noise floor's) are tied with it."""
 SIGNIFICANT = 0.01
 """Largest p-value, times the number of candidates tried, at which an effect counts as there."""
+AGAIN = 1.10
+"""Above this chi a further effect is looked for."""
+FORM = 0.005
+"""A law may differ from the truth in form by this share of the gap's excess without a further effect being looked for."""

@@ -4,46 +4,44 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
+from typing import Any
 
 from ruamel.yaml import YAML
 
+from vehgen.diagnose.estimates import estimate
 from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.verdict import Verdict
 from vehgen.effects import Surveyor
 from vehgen.identify.problem import Problem
+from vehgen.vehicle.loading import extend_vehicle
 from vehgen.vehicle.writing import base_reference, quantity
 
 
 def effect_file(fit: Fit, base: Problem, verdict: Verdict, folder: Path, name: str) -> str:
-    """Return the text of a vehicle file that extends the base vehicle with its refitted parameters and the effect.
+    """Return the text of a vehicle file that extends the base vehicle with its refitted parameters and the effects of a fit.
 
-    The evidence stands in comments. An effect of runs or sensors changes no vehicle: its number is told in a comment.
+    The evidence stands in comments. An effect of runs or sensors changes no vehicle: its numbers are told in a comment.
     """
-    candidate = fit.candidate
-    assert candidate is not None
     trial = base.trials[0]
-    vehicle = trial.run.vehicle
+    vehicle = extended = trial.run.vehicle
     values = fit.polished.misfit.problem.best_values(fit.polished.values)
-    parameters = {key: {"value": quantity(vehicle, key, value)} for key, value in values.items() if key in vehicle.parameters}
-    data: dict[str, object] = {
+    data: dict[str, Any] = {
         "extends": base_reference(vehicle, folder),
         "name": name,
-        "title": f"{vehicle.title or vehicle.name}, with {candidate.label}",
+        "title": f"{vehicle.title or vehicle.name}, with {fit.label}",
+        "parameters": {key: {"value": quantity(vehicle, key, value)} for key, value in values.items() if key in vehicle.parameters},
     }
     comments = [f"{verdict.verdict}: {verdict.reason}"]
-    if candidate.effect.edit is not None:
-        site = Surveyor(vehicle, dict(trial.values)).site(candidate.place)
+    for candidate in fit.effects:
+        if candidate.effect.edit is None:
+            told = ", ".join(f"{key} = {item.value:.5g} {item.unit}".strip() for key, item in estimate(fit, candidate).items())
+            comments.append(f"{candidate.label} is an effect of the runs, to be corrected there: {told}")
+            continue
+        site = Surveyor(extended, dict(trial.values)).site(candidate.place)
         own = {parameter.name: values[symbol] for parameter, symbol in zip(candidate.effect.parameters, candidate.parameters, strict=True)}
         change = candidate.effect.change(site, own)
-        data["parameters"] = {**parameters, **change.pop("parameters")}
-        data |= change
-    else:
-        data["parameters"] = parameters
-        numbers = [*fit.polished.misfit.adjusted(fit.polished.x), *(values[key] for key in candidate.parameters)]
-        told = ", ".join(
-            f"{item.name} = {value:.5g} {item.unit}".strip() for item, value in zip(candidate.effect.parameters, numbers, strict=False)
-        )
-        comments.append(f"{candidate.label} is an effect of the runs, to be corrected there: {told}")
+        _merge(data, change)
+        extended = extend_vehicle(extended, change, candidate.label)
     for effect in verdict.effects:
         for key, item in effect.parameters.items():
             interval = "" if item.interval is None else f", 90 % interval {item.interval[0]:.5g} to {item.interval[1]:.5g}"
@@ -54,3 +52,17 @@ def effect_file(fit: Fit, base: Problem, verdict: Verdict, folder: Path, name: s
     writer.width = 120
     writer.dump(data, stream)
     return "".join(f"# {' '.join(line.split())}\n" for line in comments) + stream.getvalue()
+
+
+def _merge(data: dict[str, Any], change: dict[str, Any]) -> None:
+    """Lay a change over data, mapping by mapping; a list replaces the one before, which it repeats."""
+    for key, value in change.items():
+        if isinstance(value, dict) and isinstance(data.get(key), dict):
+            _merge(data[key], value)
+        else:
+            data[key] = value
+
+
+def file_name(vehicle: str, fit: Fit) -> str:
+    """Return what a vehicle with the effects of a fit is called."""
+    return f"{vehicle}_with_{'_and_'.join(dict.fromkeys(item.effect.name for item in fit.effects))}"

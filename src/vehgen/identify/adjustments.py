@@ -33,8 +33,11 @@ class Adjustment:
         """Return the scenario as it was, at the number `value`."""
         return scenario
 
-    def response(self, trial: Trial, response: Array, value: float) -> Array:
-        """Return what the sensors would have read, `shape (n, n_samples, n_channels)`, at the number `value`."""
+    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+        """Return what the sensors would have read, `shape (n, n_samples, n_channels)`.
+
+        `numbers` holds its own number, then those of the adjustments after it: one that needs two is followed by a plain one.
+        """
         return response
 
 
@@ -65,22 +68,22 @@ class HeightScale(Adjustment):
 class Gain(Adjustment):
     """A channel's reading over the truth."""
 
-    def response(self, trial: Trial, response: Array, value: float) -> Array:
-        """Return the readings with the channel times `value`."""
-        factors = np.array([value if name == self.place else 1.0 for name in trial.channels])
+    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+        """Return the readings with the channel times its number."""
+        factors = np.array([numbers[0] if name == self.place else 1.0 for name in trial.channels])
         return np.asarray(response * factors)
 
 
 class SensorDelay(Adjustment):
     """How late all channels of a sensor are [s]."""
 
-    def response(self, trial: Trial, response: Array, value: float) -> Array:
-        """Return the readings with the sensor's channels `value` [s] later, by the phase of their Fourier transform."""
+    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+        """Return the readings with the sensor's channels `numbers[0]` [s] later, by the phase of their Fourier transform."""
         late = np.array([channel.sensor == self.place for channel in trial.measurement.channels])
         n, dt = response.shape[-2], trial.measurement.dt
         pad = np.zeros((*response.shape[:-2], n, response.shape[-1]))
         frequency = np.fft.rfftfreq(2 * n, dt)
-        turned = np.fft.rfft(np.concatenate([response, pad], axis=-2), axis=-2) * np.exp(-2j * np.pi * frequency * value)[:, None]
+        turned = np.fft.rfft(np.concatenate([response, pad], axis=-2), axis=-2) * np.exp(-2j * np.pi * frequency * numbers[0])[:, None]
         shifted = np.fft.irfft(turned, 2 * n, axis=-2)[..., :n, :]
         return np.where(late, shifted, response)
 
@@ -92,13 +95,13 @@ class Tilt(Adjustment):
     left out. The pitch is the integral of the sensor's own pitch rate.
     """
 
-    def response(self, trial: Trial, response: Array, value: float) -> Array:
-        """Return the readings with the sensor tilted by `value` [rad]."""
+    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+        """Return the readings with the sensor tilted by `numbers[0]` [rad]."""
         columns = {channel.quantity: i for i, channel in enumerate(trial.measurement.channels) if channel.sensor == self.place}
         if "acceleration" not in columns or "pitch_rate" not in columns:
             return response
         pitch = scipy.integrate.cumulative_trapezoid(response[..., columns["pitch_rate"]], dx=trial.measurement.dt, axis=-1, initial=0.0)
         changed = response.copy()
         column = columns["acceleration"]
-        changed[..., column] = response[..., column] * np.cos(value) - GRAVITY * np.sin(value) * pitch
+        changed[..., column] = response[..., column] * np.cos(numbers[0]) - GRAVITY * np.sin(numbers[0]) * pitch
         return changed

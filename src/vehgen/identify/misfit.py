@@ -137,8 +137,8 @@ class Misfit:
         for item, value in zip(self.shared, numbers, strict=True):
             scenario = item.scenario(scenario, float(value))
         response = self.problem.respond(values, trial, scenario)[0]
-        for item, value in zip(self.shared, numbers, strict=True):
-            response = item.response(trial, response, float(value))
+        for i, item in enumerate(self.shared):
+            response = item.response(trial, response, numbers[i:])
         return response
 
     def simulate(self, x: Array) -> list[Array]:

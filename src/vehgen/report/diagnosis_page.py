@@ -11,8 +11,9 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from vehgen.codegen import write_text
+from vehgen.diagnose.estimates import estimate
 from vehgen.diagnose.fitting import Fit
-from vehgen.diagnose.pipeline import Diagnosis, estimate
+from vehgen.diagnose.pipeline import Diagnosis
 from vehgen.effects import library
 from vehgen.report.comparison import plot_histories, plot_psds
 from vehgen.report.diagnosis_plots import curves, plot_force, plot_places, plot_waterfall

@@ -98,7 +98,7 @@ def curves(diagnosis: Diagnosis) -> tuple[list[Curve], list[Curve]]:
     """Return PSDs and histories of the residual before (as measured) and after (as simulated), of the loudest training run's channels."""
     if not diagnosis.chosen:
         return [], []
-    base, after = diagnosis.detection.base.polished, diagnosis.chosen[0].polished
+    base, after = diagnosis.detection.base.polished, diagnosis.chosen[-1].polished
     loudest = _loudest(base.misfit.problem.trials)
     trial = base.misfit.problem.trials[loudest]
     old, new = (trial.measurement.values - fit.misfit.simulate(fit.x)[loudest] for fit in (base, after))

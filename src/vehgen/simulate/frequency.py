@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.mechanics.linear_model import LinearModel, NumericModel
+from vehgen.mechanics.rows import Row
 from vehgen.simulate.sensitivity import matrix_derivatives
 
 Array = NDArray[np.float64]
@@ -36,6 +37,18 @@ def frequency_response(numeric: NumericModel, frequency: Array) -> tuple[Complex
     found = rows @ states
     width = direct.shape[2]
     return found[:, :, :width] + direct, found[:, :, width:]
+
+
+def force_response(model: LinearModel, values: Mapping[str, float], rows: Sequence[Row], frequency: Array) -> Complex:
+    """Return the channels per unit of generalised forces along rows of the coordinates, `shape (n, n_channels, len(rows))`."""
+    omega = 2 * np.pi * frequency
+    numeric = model.numeric(values)
+    entries = {(i, j): value for j, row in enumerate(rows) for i, value in row.items()}
+    loads = np.zeros((model.n_dof, len(rows)))
+    for place, value in model.evaluate(entries, values).items():
+        loads[place] = value
+    states = np.linalg.solve(dynamic_stiffness(numeric, omega), np.repeat(loads[None].astype(np.complex128), len(omega), axis=0))
+    return np.asarray(output_rows(numeric.outputs, omega)[0] @ states)
 
 
 def dynamic_stiffness(numeric: NumericModel, omega: Array) -> Complex:

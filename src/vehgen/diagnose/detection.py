@@ -1,0 +1,128 @@
+"""Stage 1, detect: how far the recalibrated base model is above the noise, run by run, channel by channel, band by band."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.diagnose.fitting import Fit, fit_base, narrow
+from vehgen.diagnose.noise_floor import NoiseFloor, find_noise_floor
+from vehgen.identify.problem import Problem, make_problem
+from vehgen.identify.trial import Trial
+
+Array = NDArray[np.float64]
+BAND = (0.5, 40.0)
+"""Frequencies compared [Hz]."""
+EDGES = (0.0, 3.0, 8.0, 15.0, np.inf)
+"""Bands of the table of gaps [Hz]: rigid-body motion, between, wheel hop, above."""
+
+
+@dataclass(frozen=True)
+class Detection:
+    """What the first stage finds: the noise floor and how far the recalibrated base model is above it."""
+
+    problem: Problem
+    held_out: tuple[Trial, ...]
+    floor: NoiseFloor
+    base: Fit
+    band: tuple[float, float] = BAND
+
+    @property
+    def chi(self) -> float:
+        """The base model's chi over all runs."""
+        return self.base.chi
+
+    @property
+    def trials(self) -> tuple[Trial, ...]:
+        """All runs, those for fitting first."""
+        return (*self.problem.trials, *self.held_out)
+
+
+@dataclass(frozen=True)
+class BandGap:
+    """chi of one run and channel within a band [Hz]."""
+
+    run: str
+    channel: str
+    band: tuple[float, float]
+    chi: float
+
+
+def split_runs(trials: Sequence[Trial]) -> tuple[list[Trial], list[Trial]]:
+    """Return training runs and untouched ones: of three runs or more, every second one between the gentlest and the roughest."""
+    ordered = sorted(trials, key=kind_of_run)
+    held = ordered[1:-1:2]
+    return [trial for trial in ordered if trial not in held], held
+
+
+def kind_of_run(trial: Trial) -> tuple[float, ...]:
+    """Return what a run is like, whatever it is called: its humps' height, its speed, what was measured."""
+    return (hump_height(trial), trial.scenario.top_speed, float(np.sort(trial.measurement.values**2, axis=None).sum()))
+
+
+def hump_height(trial: Trial) -> float:
+    """Return the height of a run's highest hump [m], 0 without one."""
+    return max((entry.hump.height or 0.0 for entry in trial.run.file.road if entry.hump is not None), default=0.0)
+
+
+def detect(trials: Sequence[Trial], band: tuple[float, float] = BAND) -> Detection:
+    """Find the noise floor, recalibrate the base model on the training runs, and measure the gap within a band [Hz]."""
+    training, held_out = split_runs(trials)
+    floor = find_noise_floor(trials, band)
+    problem = narrow(make_problem(training))
+    return Detection(problem, tuple(held_out), floor, fit_base(problem, held_out, floor.noises, band), band)
+
+
+def band_gaps(detection: Detection, fit: Fit | None = None) -> list[BandGap]:
+    """Return chi by run, channel and band, of the base or of another fit."""
+    fit = fit or detection.base
+    found = []
+    for trial in detection.trials:
+        power = fit.powers.get(trial.name)
+        if power is None:
+            continue
+        n, dt = len(trial.measurement.time), trial.measurement.dt
+        frequency = np.fft.rfftfreq(n, dt)
+        frequency = frequency[(frequency >= detection.band[0]) & (frequency <= detection.band[1])]
+        for low, high in pairwise(EDGES):
+            inside = (frequency >= low) & (frequency < high)
+            if inside.any():
+                bounds = (max(low, detection.band[0]), min(high, detection.band[1]))
+                chis = np.sqrt(power[inside].mean(axis=0))
+                found += [BandGap(trial.name, name, bounds, float(chi)) for name, chi in zip(trial.channels, chis, strict=True)]
+    return found
+
+
+def amplitude_dependence(detection: Detection) -> str:
+    """Return in a sentence how the gap grows with what a run records: what a linear cause cannot do, and a stop, friction or spring does.
+
+    Compares the gap's root mean square, relative to the recording's, over hump runs of different loudness: a linear defect keeps the ratio,
+    friction's falls, a stop's or a hardening spring's grows. Empty with fewer than two loudnesses that differ by a quarter.
+    """
+    shares = []
+    for trial in detection.trials:
+        power = detection.base.powers.get(trial.name)
+        if power is None or hump_height(trial) == 0.0:
+            continue
+        sigma = detection.floor.noises[trial.name].sigma
+        gap = float(np.sqrt(max(power.mean() - 1.0, 0.0)))
+        loudness = float(np.sqrt(np.mean((trial.measurement.values / sigma) ** 2)))
+        shares.append((loudness * float(np.mean(sigma)), gap / loudness))
+    if len(shares) < 2:
+        return ""
+    shares.sort()
+    (quiet, first), (loud, last) = shares[0], shares[-1]
+    if loud < 1.25 * quiet or min(first, last) <= 0:
+        return ""
+    ratio = last / first
+    told = "grows" if ratio > 1.3 else "falls" if ratio < 0.77 else "stays alike"
+    meaning = {
+        "grows": "as with stops, hardening springs and lift-off",
+        "falls": "as with friction and free play",
+        "stays alike": "as with a linear cause",
+    }[told]
+    return f"from the quietest hump run to the loudest the gap's share of the recording {told} ({first:.2f} to {last:.2f}), {meaning}"

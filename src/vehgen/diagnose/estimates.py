@@ -1,0 +1,185 @@
+"""How large an effect is and how sure: intervals, gains on untouched runs, and whether every run asks for the same numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.stats
+from numpy.typing import NDArray
+
+from vehgen.diagnose.candidate import Candidate
+from vehgen.diagnose.fitting import Fit
+from vehgen.diagnose.verdict import NamedParameter
+from vehgen.effects import EffectParameter
+from vehgen.identify.harmonic import Harmonic
+from vehgen.identify.misfit import Misfit, flatten
+
+Array = NDArray[np.float64]
+NINETY = 1.645
+"""Half width of a 90 % interval in standard deviations."""
+WEAK_PRIOR = 6.0
+"""Standard deviation of the prior of a parameter in the unit cube."""
+SAME_WITHIN = 0.3
+"""Runs that differ by less than this share of the value ask for the same number, however sure each is."""
+BLOCK = 10
+"""Spectral lines in a block of the bootstrap."""
+
+
+@dataclass(frozen=True)
+class RunEstimate:
+    """What one run alone asks of an effect's parameter: its value and 90 % half width, in the parameter's unit."""
+
+    run: str
+    parameter: str
+    value: float
+    half_width: float
+
+
+def estimate(fit: Fit, candidate: Candidate | None = None) -> dict[str, NamedParameter]:
+    """Return an effect's own parameters (default: of the effect added last) with 90 % intervals.
+
+    From the Fisher information of the fit, widened by the root of its mean square; a line's amplitude is the median over the runs, its
+    interval their spread and that of the body's parameters.
+    """
+    candidate = candidate or fit.last
+    misfit, x = fit.polished.misfit, fit.polished.x
+    covariance = np.asarray(np.linalg.pinv(_information(misfit, x), hermitian=True) * max(fit.train, 1.0), dtype=np.float64)
+    found: dict[str, NamedParameter] = {}
+    for parameter, column, value, scale in _columns(fit, candidate):
+        spread = NINETY * abs(scale) * float(np.sqrt(max(covariance[column, column], 0.0)))
+        found[parameter.name] = NamedParameter(value, (value - spread, value + spread), parameter.unit)
+    if candidate.effect.adjusts == "harmonic":
+        found["amplitude"] = _amplitude(fit, candidate, covariance)
+    return found
+
+
+def _information(misfit: Misfit, x: Array) -> Array:
+    jacobian = misfit.jacobian(x)
+    information = jacobian.T @ jacobian
+    n = misfit.n_parameters
+    information[:n, :n] += np.eye(n) / WEAK_PRIOR**2
+    return np.asarray(information)
+
+
+def _columns(fit: Fit, candidate: Candidate) -> list[tuple[EffectParameter, int, float, float]]:
+    """Return an effect's parameters with their column among the unknowns, their value and their unit per unit of the unknown."""
+    misfit, x = fit.polished.misfit, fit.polished.x
+    space = misfit.problem.space
+    slopes = space.slopes(space.values(misfit.split(x)[0]))
+    found = []
+    for parameter, symbol in zip(candidate.effect.parameters, candidate.parameters, strict=False):
+        column = space.names.index(symbol)
+        found.append((parameter, column, float(fit.polished.values[column]), float(slopes[column])))
+    places = [item.place for item in misfit.shared]
+    for parameter, item in zip(candidate.effect.parameters, candidate.shared, strict=False):
+        i = next(i for i, own in enumerate(misfit.shared) if type(own) is type(item) and places[i] == item.place)
+        found.append((parameter, misfit.n_parameters + i, float(misfit.adjusted(x)[i]), item.scale))
+    return found
+
+
+def _amplitude(fit: Fit, candidate: Candidate, covariance: Array) -> NamedParameter:
+    misfit, x = fit.polished.misfit, fit.polished.x
+    i = next(i for i, own in enumerate(misfit.shared) if isinstance(own, Harmonic) and own.place == candidate.place)
+    line = misfit.shared[i]
+    assert isinstance(line, Harmonic)
+    numbers = misfit.adjusted(x)[i:]
+    unit, errors = misfit.split(x)
+
+    def middle(at: Array) -> float:
+        values = misfit.problem.space.values(at)
+        found = []
+        for trial, error in zip(misfit.problem.trials, errors, strict=True):
+            without = misfit.problem.respond(values[None], trial, misfit.nuisances.adjust(trial.scenario, error))[0][0]
+            known = trial.values | misfit.problem.best_values(values)
+            found.append(line.amplitude(trial, without, numbers, known))
+        spreads.append(float(np.std(found)) / np.sqrt(len(found)))
+        return float(np.median(found))
+
+    spreads: list[float] = []
+    value = middle(unit)
+    scatter = spreads[0]
+    step = 1e-3
+    gradient = np.array([(middle(unit + step * row) - value) / step for row in np.eye(len(unit))])
+    n = len(unit)
+    spread = float(np.sqrt(max(gradient @ covariance[:n, :n] @ gradient, 0.0) + scatter**2))
+    return NamedParameter(value, (value - NINETY * spread, value + NINETY * spread), candidate.effect.parameters[2].unit)
+
+
+def estimates_by_run(fit: Fit, candidate: Candidate | None = None) -> list[RunEstimate]:
+    """Return what every training run alone asks of an effect's parameters: one Gauss-Newton step from the joint fit.
+
+    The base parameters are held by the joint fit's information from the other runs, the effect's are free.
+    """
+    candidate = candidate or fit.last
+    misfit, x = fit.polished.misfit, fit.polished.x
+    columns = _columns(fit, candidate)
+    own = [column for _, column, _, _ in columns]
+    lines, slopes = misfit.white_lines(x), misfit.white_derivatives(x)
+    jacobians = [flatten(part, first=1).T for part in slopes]
+    whole = _information(misfit, x)
+    n = misfit.n_parameters + len(misfit.shared)
+    found = []
+    for trial, line, jacobian in zip(misfit.problem.trials, lines, jacobians, strict=True):
+        information = jacobian.T @ jacobian
+        rest = whole - information
+        held = rest.copy()
+        held[own, :] = 0.0
+        held[:, own] = 0.0
+        held[n:, :] = held[:, n:] = 0.0
+        normal = information + held
+        normal[np.arange(len(normal)), np.arange(len(normal))] += np.where(np.arange(len(normal)) < n, 1 / WEAK_PRIOR**2, 1.0)
+        step = -np.linalg.solve(normal, jacobian.T @ flatten(line))
+        covariance = np.linalg.pinv(normal, hermitian=True) * max(fit.runs[trial.name], 1.0)
+        for parameter, column, value, scale in columns:
+            half = NINETY * abs(scale) * float(np.sqrt(max(covariance[column, column], 0.0)))
+            found.append(RunEstimate(trial.name, parameter.name, value + scale * float(step[column]), half))
+    return found
+
+
+def unstable(fit: Fit, candidate: Candidate | None = None) -> list[str]:
+    """Return the parameters on which runs disagree: beyond three standard deviations and beyond SAME_WITHIN of the value."""
+    joint = estimate(fit, candidate)
+    told = []
+    for name, item in joint.items():
+        for own in estimates_by_run(fit, candidate):
+            apart = abs(own.value - item.value)
+            if own.parameter == name and apart > 3 * own.half_width / NINETY and apart > SAME_WITHIN * abs(item.value):
+                told.append(f"{name} is {item.value:.4g} {item.unit}".rstrip() + f" in all runs, {own.value:.4g} in {own.run} alone")
+                break
+    return told
+
+
+def held_out_gain(base: Fit, fit: Fit) -> float:
+    """Return the share of the excess on untouched runs that a fit closes."""
+    return float(1 - max(fit.held_out - 1, 0.0) / max(base.held_out - 1, 1e-9))
+
+
+def gain_interval(base: Fit, fit: Fit, untouched: Sequence[str], draws: int = 400, seed: int = 7) -> tuple[float, float] | None:
+    """Return the 90 % interval of the share of the excess that a fit closes on untouched runs, by a bootstrap over blocks of lines.
+
+    Blocks of BLOCK neighbouring lines of all channels are drawn with replacement (Kuensch 1989, doi:10.1214/aos/1176347265).
+    """
+    gains, wanted = [], []
+    for name in untouched:
+        if name in fit.powers and name in base.powers:
+            before, after = base.powers[name].mean(axis=1), fit.powers[name].mean(axis=1)
+            blocks = max(1, len(before) // BLOCK)
+            gains += [float(part.sum()) for part in np.array_split(before - after, blocks)]
+            wanted += [float(part.sum()) for part in np.array_split(before - 1, blocks)]
+    if len(gains) < 4:
+        return None
+    random = np.random.Generator(np.random.PCG64(seed))
+    drawn = random.integers(len(gains), size=(draws, len(gains)))
+    least = max(0.1 * sum(wanted), 1e-9)  # a draw may miss the lines that hold the excess
+    shares = np.asarray(gains)[drawn].sum(axis=1) / np.maximum(np.asarray(wanted)[drawn].sum(axis=1), least)
+    low, high = np.percentile(shares, [5, 95])
+    return float(low), float(high)
+
+
+def p_value(base: Fit, other: Fit, extra: int) -> float:
+    """Return the probability of such a gain on the training runs by chance: likelihood ratio, chi-squared with `extra` freedoms."""
+    names = [trial.name for trial in base.polished.misfit.problem.trials]
+    gain = sum((base.runs[name] - other.runs[name]) * base.counts[name] for name in names)
+    return float(scipy.stats.chi2.sf(max(gain, 0.0), max(extra, 1)))

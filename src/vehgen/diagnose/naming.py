@@ -1,0 +1,125 @@
+"""Stage 3, name: fit the candidates together with the base parameters, to equal effort, and rank them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.diagnose.candidate import Candidate
+from vehgen.diagnose.detection import Detection
+from vehgen.diagnose.fitting import NUISANCES, Fit, Footing, fit_candidate
+from vehgen.diagnose.localisation import GLOBAL, localise, one_force, shortlist
+from vehgen.diagnose.place_test import PlaceResult
+from vehgen.diagnose.screening import screen
+from vehgen.effects import Surveyor
+from vehgen.identify.harmonic import find_line
+from vehgen.simulate import Simulator
+
+Array = NDArray[np.float64]
+Progress = Callable[[str, int, int, str], None]
+"""Called with the stage, how many of how many, and the best so far."""
+
+
+@dataclass(frozen=True)
+class Round:
+    """One look for one effect: what `footing` leaves, the places tested and passed, and the candidates fitted, best first.
+
+    `stopped` tells that Ctrl-C ended it before all candidates were fitted.
+    """
+
+    footing: Fit
+    places: tuple[PlaceResult, ...]
+    passed: tuple[PlaceResult, ...]
+    fits: tuple[Fit, ...]
+    stopped: bool = False
+
+
+def look(
+    detection: Detection, footing: Fit, candidates: Sequence[Candidate], everything: bool = False, tell: Progress | None = None
+) -> Round:
+    """Test the places on what a fit leaves, then fit the candidates that may live there."""
+    say = tell or (lambda stage, done, total, best: None)
+    vehicle = detection.trials[0].run.vehicle
+    say("localise", 0, 1, "")
+    try:
+        places, passed = localise(footing)
+    except KeyboardInterrupt:
+        return Round(footing, (), (), (), True)
+    say("localise", 1, 1, passed[0].place.label if passed else "no single place")
+    known = {(item.effect.name, item.place) for item in footing.effects}
+    others = [item for item in candidates if (item.effect.name, item.place) not in known]
+    chosen = others if everything else shortlist(vehicle, others, places, passed)
+    if footing.effects and not passed and not everything:
+        chosen = [item for item in others if item.effect.attaches in ("run", "sensor") or item.effect.name in GLOBAL]
+    fits, stopped = name(detection, footing, passed, chosen, say, everything)
+    return Round(footing, tuple(places), tuple(passed), tuple(fits), stopped)
+
+
+def name(
+    detection: Detection,
+    base: Fit,
+    passed: Sequence[PlaceResult],
+    candidates: Sequence[Candidate],
+    tell: Progress,
+    everything: bool = False,
+) -> tuple[list[Fit], bool]:
+    """Fit every candidate on top of a fit; return the fits, best first, and whether Ctrl-C ended this early.
+
+    Where one force at one place does not suffice, the candidates are screened first, unless `everything` is to be tried.
+    """
+    footing = Footing.of(base)
+    trial = footing.problem.trials[0]
+    surveyor = Surveyor(trial.run.vehicle, dict(trial.values))
+    simulators: dict[object, Simulator] = {}
+    space = footing.problem.space
+    plain = np.zeros(len(detection.problem.trials) * len(NUISANCES.names))
+    # on the base alone, what the base fit absorbed of the effect misleads: begin at the file's values
+    begun = (footing.unit, footing.errors) if base.effects else (space.unit(space.start), plain)
+    placed = begun
+    if one_force(passed):
+        unit, errors = base.polished.misfit.split(passed[0].x)
+        placed = unit, errors.ravel()
+    fits: list[Fit] = []
+    lines = find_line(base.polished.misfit, base.polished.x)
+    try:
+        if not one_force(passed) and not everything:
+            candidates = screen(candidates, base, footing, surveyor, simulators, {"harmonic": lines})
+        for done, candidate in enumerate(candidates, start=1):
+            harmonic = candidate.effect.adjusts == "harmonic"
+            unit, errors = begun if candidate.effect.attaches == "run" else placed
+            if harmonic:
+                unit, errors = footing.unit, footing.errors
+            fits.append(
+                fit_candidate(
+                    candidate,
+                    replace(footing, unit=np.clip(unit, 0.01, 0.99), errors=errors),
+                    detection.held_out,
+                    detection.floor.noises,
+                    detection.band,
+                    surveyor,
+                    simulators,
+                    lines if harmonic else None,
+                )
+            )
+            best = min(fits, key=merit)
+            tell("name", done, len(candidates), f"{best.label}, chi {np.sqrt(best.train):.3f}")
+    except KeyboardInterrupt:
+        return sorted(fits, key=merit), True
+    return sorted(fits, key=merit), False
+
+
+def merit(fit: Fit) -> float:
+    """Return what ranks fits: -2 ln of the likelihood on the training runs, with the price of the last effect's numbers (BIC)."""
+    training = [trial.name for trial in fit.polished.misfit.problem.trials]
+    total = sum(fit.counts[item] for item in training)
+    return fit.train * total + own_numbers(fit) * float(np.log(total))
+
+
+def own_numbers(fit: Fit) -> int:
+    """Return how many numbers the last effect of a fit added: its parameters, and a line's four parts in every run."""
+    last = fit.last
+    lines = 4 * len(fit.polished.misfit.problem.trials) if last.effect.adjusts == "harmonic" else 0
+    return len(last.parameters) + len(last.shared) + lines

@@ -1,0 +1,128 @@
+"""A line in the spectrum that an engine drives: its frequency and drift are searched, its amplitude and phase follow linearly.
+
+The force at a body turns with the phase 2 pi (f t + d f t^2 / (2 T)) over a run of T seconds: f at its start, f (1 + d) at its end. A run
+does not know the phase at which it starts, so in every run the in-phase and quadrature parts of a vertical force at the body's COG and of a
+pitch moment are least squares of what the rest of the model leaves. What the sensors show of them follows from the linear model at the
+frequency of the moment: the drift is slow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.identify.adjustments import Adjustment
+from vehgen.identify.misfit import Misfit
+from vehgen.identify.trial import Trial
+from vehgen.mechanics.rows import Row
+from vehgen.simulate.frequency import force_response
+
+Array = NDArray[np.float64]
+LOWEST, HIGHEST = 5.0, 40.0
+"""Frequencies at which lines are looked for [Hz]."""
+DRIFTS = np.linspace(-0.03, 0.03, 61)
+"""Drifts at which lines are looked for."""
+SMOOTH = 0.5
+"""Width over which the residual's power is averaged in the search for a line [Hz]."""
+
+
+@dataclass(frozen=True)
+class Harmonic(Adjustment):
+    """An engine's line at the body `place`: its number is the frequency [Hz], the next one the drift (see the head of this file).
+
+    `sigma` is the standard deviation of every channel's noise by trial, `shape (n_channels,)`, by which channels are weighed.
+    """
+
+    sigma: Mapping[str, Array] = field(default_factory=dict)
+
+    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+        """Return the readings with the line that suits them best added."""
+        columns = self.columns(trial, float(numbers[0]), float(numbers[1]), trial.values)
+        left = (trial.measurement.values - response) / self.sigma[trial.name]
+        coefficients = self._solve(trial, columns, left)
+        return np.asarray(response + np.einsum("knc,...k->...nc", columns, coefficients))
+
+    def amplitude(self, trial: Trial, response: Array, numbers: Array, values: Mapping[str, float]) -> float:
+        """Return the amplitude of the vertical force in a run [N], from the readings without it `shape (n_samples, n_channels)`.
+
+        `values` are the vehicle's parameters [SI]: a heavier body needs a larger force.
+        """
+        columns = self.columns(trial, float(numbers[0]), float(numbers[1]), values)
+        coefficients = self._solve(trial, columns, (trial.measurement.values - response) / self.sigma[trial.name])
+        return float(np.hypot(coefficients[0], coefficients[1]))
+
+    def columns(self, trial: Trial, frequency: float, drift: float, values: Mapping[str, float]) -> Array:
+        """Return what the sensors read of unit forces, `shape (2 n_forces, n_samples, n_channels)`: heave in two phases, then pitch."""
+        time = trial.measurement.time
+        duration = max(float(time[-1]), 1e-9)
+        ends = np.array([frequency, frequency * (1.0 + drift)])
+        answers = force_response(trial.simulator.model, values, _rows(trial, self.place), ends)
+        share = (time / duration)[:, None, None]
+        answer = answers[0] * (1 - share) + answers[1] * share
+        turning = answer * np.exp(1j * _phase(time, frequency, drift))[:, None, None]
+        parts = [part for j in range(turning.shape[2]) for part in (turning[:, :, j].real, -turning[:, :, j].imag)]
+        return np.array(parts)
+
+    def _solve(self, trial: Trial, columns: Array, left: Array) -> Array:
+        weighed = (columns / self.sigma[trial.name]).reshape(len(columns), -1)
+        normal = weighed @ weighed.T
+        ridge = 1e-9 * np.trace(normal) / len(normal) * np.eye(len(normal))
+        projected = np.einsum("km,...m->...k", weighed, left.reshape(*left.shape[:-2], -1))
+        return np.asarray(np.linalg.solve(normal + ridge, projected[..., None])[..., 0])
+
+
+def _rows(trial: Trial, body: str) -> list[Row]:
+    motion = trial.simulator.model.motion
+    return [row for row in (motion.heave.get(body, {}), motion.pitch.get(body, {})) if row]
+
+
+def _phase(time: Array, frequency: float, drift: float) -> Array:
+    duration = max(float(time[-1]), 1e-9)
+    return np.asarray(2 * np.pi * frequency * (time + drift * time**2 / (2 * duration)))
+
+
+def find_line(misfit: Misfit, x: Array, most: int = 2) -> list[tuple[float, float]]:
+    """Return the frequencies [Hz] and drifts of the `most` strongest lines in what a fit leaves.
+
+    Peaks of the whitened power of all runs, averaged over SMOOTH; about each, the frequency and drift that collect most of it.
+    """
+    grid = np.arange(LOWEST, HIGHEST, 0.05)
+    power = np.zeros_like(grid)
+    lines = misfit.white_lines(x)
+    for t, line in enumerate(lines):
+        frequency = misfit.frequency(t)
+        own = (np.abs(line) ** 2).sum(axis=1)
+        width = max(1, round(SMOOTH / (frequency[1] - frequency[0])))
+        power += np.interp(grid, frequency, np.convolve(own, np.ones(width) / width, mode="same"))
+    found = []
+    for _ in range(most):
+        top = int(np.argmax(power))
+        found.append(_refine(misfit, x, float(grid[top])))
+        power[np.abs(grid - grid[top]) < 2 * SMOOTH] = 0.0
+    return found
+
+
+def _refine(misfit: Misfit, x: Array, about: float) -> tuple[float, float]:
+    frequencies = np.arange(about - 1.2, about + 1.2, 0.02)
+    energy = np.zeros((len(DRIFTS), len(frequencies)))
+    for trial, simulated in zip(misfit.problem.trials, misfit.simulate(x), strict=True):
+        time = trial.measurement.time
+        left = (trial.measurement.values - simulated) / misfit.noises[trial.name].sigma
+        duration = max(float(time[-1]), 1e-9)
+        turning = np.exp(-2j * np.pi * np.outer(frequencies, time))
+        for i, rate in enumerate(DRIFTS):
+            chirped = left * np.exp(-1j * np.pi * about * rate * time**2 / duration)[:, None]
+            energy[i] += (np.abs(turning @ chirped) ** 2).sum(axis=1) / len(time)
+    drift, frequency = np.unravel_index(int(np.argmax(energy)), energy.shape)
+    return float(frequencies[frequency]), float(DRIFTS[drift])
+
+
+def line_numbers(body: str, noises: Mapping[str, Array]) -> Sequence[Adjustment]:
+    """Return the two adjustments of a line at a body: its frequency, weighed by the channels' `noises`, and its drift."""
+    return Harmonic(body, 0.05, 25.0, dict(noises)), Adjustment(f"{body} drift", 0.002, 0.0)
+
+
+__all__ = ["Harmonic", "find_line", "line_numbers"]
