@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from benchmarks.hidden_effects.generator import Case, Effect, Hump, RandomRoad, RunSpec, write_case
+from benchmarks.hidden_effects.generator import Effect
 
 from vehgen.commands import main
 from vehgen.diagnose.noise_floor import find_noise_floor
@@ -11,27 +11,15 @@ from vehgen.diagnose.pipeline import diagnose, split_runs
 from vehgen.identify.trial import load_trials
 from vehgen.vehicle import load_vehicle
 
-RUNS = (
-    RunSpec((Hump(0.5, 0.03, 4.0),), 2.0, 6.0, "low"),
-    RunSpec((Hump(0.5, 0.05, 5.0),), 2.5, 6.0, "high"),
-    RunSpec((Hump(0.5, 0.05, 6.0),), 4.0, 5.0, "fast"),
-    RunSpec((RandomRoad("C", 5),), 10.0, 8.0, "rough"),
-)
 
-
-def record(folder, tmp_path_factory, *effects, seed=3):
-    write_case(Case("sedan2", effects=effects, runs=RUNS, seed=seed), folder, tmp_path_factory.mktemp("truth"))
-    return sorted(folder.glob("*.yaml"))
+@pytest.fixture(scope="module")
+def nothing(record):
+    return record()
 
 
 @pytest.fixture(scope="module")
-def nothing(tmp_path_factory):
-    return record(tmp_path_factory.mktemp("nothing"), tmp_path_factory)
-
-
-@pytest.fixture(scope="module")
-def cubic(tmp_path_factory):
-    return record(tmp_path_factory.mktemp("cubic"), tmp_path_factory, Effect("cubic_stiffness", "rear", {"k3": 1e8}))
+def cubic(record):
+    return record(Effect("cubic_stiffness", "rear", {"k3": 1e8}))
 
 
 def test_the_noise_floor_is_that_of_the_phones(nothing):
@@ -73,8 +61,8 @@ def test_the_command_leaves_report_and_vehicle(cubic, tmp_path, capsys):
     assert "suspension rear" in page
 
 
-def test_a_sensor_that_reads_too_much_is_told_from_a_force(tmp_path_factory):
-    paths = record(tmp_path_factory.mktemp("gain"), tmp_path_factory, Effect("sensor_gain", "F_az", {"error": 0.15}))
+def test_a_sensor_that_reads_too_much_is_told_from_a_force(record):
+    paths = record(Effect("sensor_gain", "F_az", {"error": 0.15}))
     found = diagnose(load_trials(paths)).verdict
     assert found.verdict == "named"
     assert (found.effects[0].name, found.effects[0].place) == ("sensor_gain", "F_az")

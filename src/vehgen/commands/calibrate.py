@@ -46,6 +46,7 @@ def run(options: argparse.Namespace) -> None:
     import json
 
     from vehgen.codegen import write_text
+    from vehgen.commands.progress import Bars
     from vehgen.identify.calibration import calibrate
     from vehgen.identify.facts import load_facts
     from vehgen.identify.outcome import conclude
@@ -62,8 +63,12 @@ def run(options: argparse.Namespace) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     settings = _settings(options)
     with runner_at(options.scheduler) as runner:
-        with _Progress(quiet=options.json) as progress:
-            found = calibrate(problem, settings, facts, progress.tell, folder / "search.json", options.resume, runner)
+        with Bars(quiet=options.json) as progress:
+
+            def tell(label: str, done: int, total: int, best: float) -> None:
+                progress.tell(label, done, total, f"best {best:.5g}")
+
+            found = calibrate(problem, settings, facts, tell, folder / "search.json", options.resume, runner)
             if found.stopped:
                 progress.say("stopped: the best so far is kept; --resume goes on")
         outcome = conclude(found, facts, options.combination, 0 if found.stopped else options.bootstrap, runner)
@@ -113,44 +118,6 @@ def _band(text: str) -> tuple[float, float]:
     if not 0 < low < high:
         raise InputError(f"--band wants 0 < LOW < HIGH, found {text!r}")
     return low, high
-
-
-class _Progress:
-    """A progress bar a search or polish, with the best objective so far."""
-
-    def __init__(self, quiet: bool) -> None:
-        from rich.console import Console
-        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-        self._console = Console(stderr=True)
-        self._bars = Progress(
-            TextColumn("{task.description}"),
-            BarColumn(),
-            TextColumn("{task.completed:.0f}/{task.total:.0f}  best {task.fields[best]}"),
-            TimeElapsedColumn(),
-            console=self._console,
-            disable=quiet or not self._console.is_terminal,
-        )
-        self._tasks: dict[str, int] = {}
-
-    def __enter__(self) -> _Progress:
-        self._bars.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._bars.stop()
-
-    def tell(self, label: str, done: int, total: int, best: float) -> None:
-        """Show what is done."""
-        from rich.progress import TaskID
-
-        if label not in self._tasks:
-            self._tasks[label] = int(self._bars.add_task(label, total=total, best=""))
-        self._bars.update(TaskID(self._tasks[label]), completed=done, best=f"{best:.5g}")
-
-    def say(self, text: str) -> None:
-        """Print a line."""
-        self._console.print(text)
 
 
 def _show(outcome: Outcome, files: list[Path]) -> None:

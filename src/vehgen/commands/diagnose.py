@@ -26,6 +26,7 @@ def run(options: argparse.Namespace) -> None:
     from dataclasses import replace
 
     from vehgen.codegen import write_text
+    from vehgen.commands.progress import Bars
     from vehgen.diagnose.pipeline import diagnose
     from vehgen.diagnose.writing import effect_file, file_name
     from vehgen.effects import library
@@ -46,19 +47,8 @@ def run(options: argparse.Namespace) -> None:
     trials = load_trials(options.runs, vehicle)
     folder: Path = options.out or Path(f"{Path(options.vehicle).stem}_diagnosis")
     folder.mkdir(parents=True, exist_ok=True)
-    status = None if options.json else console().status("detect")
-    if status is not None:
-        status.start()
-
-    def tell(stage: str, done: int, total: int, best: str) -> None:
-        if status is not None:
-            status.update(f"{stage} {done}/{total}  {best}")
-
-    try:
-        found = diagnose(trials, chosen, options.everywhere, tell)
-    finally:
-        if status is not None:
-            status.stop()
+    with Bars(quiet=options.json) as bars:
+        found = diagnose(trials, chosen, options.everywhere, bars.tell)
     files = [folder / "diagnosis.json", folder / "report.html"]
     if found.chosen:
         name = file_name(vehicle.name, found.chosen[-1])
@@ -92,6 +82,8 @@ def run(options: argparse.Namespace) -> None:
         for run in verdict.gap.runs
     ]
     print_table("chi (1 is noise alone)", ("run", "used for", "before", "after"), rows, right=(2, 3))
+    for note in verdict.notes:
+        console().print(f"note: {note}", highlight=False, markup=False)
     if verdict.next_experiment:
         console().print(f"measure next: {verdict.next_experiment}", highlight=False, markup=False)
     for path in files:

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.fitting import Fit, fit_base, narrow
+from vehgen.diagnose.fitting import Fit, chi_as_filed, fit_base, narrow
 from vehgen.diagnose.noise_floor import NoiseFloor, find_noise_floor
 from vehgen.identify.problem import Problem, make_problem
 from vehgen.identify.trial import Trial
@@ -23,12 +23,13 @@ EDGES = (0.0, 3.0, 8.0, 15.0, np.inf)
 
 @dataclass(frozen=True)
 class Detection:
-    """What the first stage finds: the noise floor and how far the recalibrated base model is above it."""
+    """What the first stage finds: the noise floor and how far the base model is above it, recalibrated and (chi `as_filed`) as filed."""
 
     problem: Problem
     held_out: tuple[Trial, ...]
     floor: NoiseFloor
     base: Fit
+    as_filed: float
     band: tuple[float, float] = BAND
 
     @property
@@ -74,7 +75,8 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] = BAND) -> Detecti
     training, held_out = split_runs(trials)
     floor = find_noise_floor(trials, band)
     problem = narrow(make_problem(training))
-    return Detection(problem, tuple(held_out), floor, fit_base(problem, held_out, floor.noises, band), band)
+    base = fit_base(problem, held_out, floor.noises, band)
+    return Detection(problem, tuple(held_out), floor, base, chi_as_filed(trials, floor.noises, band), band)
 
 
 def band_gaps(detection: Detection, fit: Fit | None = None) -> list[BandGap]:

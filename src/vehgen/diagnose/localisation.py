@@ -36,6 +36,12 @@ def one_force(passed: Sequence[PlaceResult]) -> bool:
     return any(item.place.rows and item.unknowns == 1 for item in passed)
 
 
+def suffices(passed: Sequence[PlaceResult], base: Fit) -> bool:
+    """Return whether one unknown force at a single place leaves noise, so that a second cause is not needed."""
+    least = max(limit.PLACE_PASSES**2 - 1, limit.PLACE_CLEAR * max(base.train - 1, 0.0))
+    return any(item.place.rows and item.unknowns == 1 and item.chi**2 - 1 <= least for item in passed)
+
+
 def shortlist(
     vehicle: Vehicle, candidates: Sequence[Candidate], places: Sequence[PlaceResult], passed: Sequence[PlaceResult]
 ) -> list[Candidate]:

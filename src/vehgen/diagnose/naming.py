@@ -41,7 +41,12 @@ def look(
     detection: Detection, footing: Fit, candidates: Sequence[Candidate], everything: bool = False, tell: Progress | None = None
 ) -> Round:
     """Test the places on what a fit leaves, then fit the candidates that may live there."""
-    say = tell or (lambda stage, done, total, best: None)
+    beside = f" beside {footing.label}" if footing.effects else ""
+
+    def say(stage: str, done: int, total: int, best: str) -> None:
+        if tell is not None:
+            tell(stage + beside, done, total, best)
+
     vehicle = detection.trials[0].run.vehicle
     say("localise", 0, 1, "")
     try:

@@ -29,6 +29,10 @@ MARGIN = 0.1
 TOP = (41.0, 47.0)
 """The top of the band [Hz]."""
 DIFFERENT = 1.3
+SLOPES = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5)
+"""Slopes of coloured noise that are tried."""
+COLOURED = 12.0
+"""Gain in -2 ln of the likelihood of the lead-ins beyond which noise counts as coloured."""
 LARGEST = 4.0
 """The top of the band of a loud run may hold its motion too: it counts at most this much more than the lead-in's variance."""
 
@@ -57,12 +61,12 @@ def find_noise_floor(trials: Sequence[Trial], band: tuple[float, float] = BAND) 
         group = [trial for trial in trials if trial.channels == channels]
         quiet = [part for trial in group if (part := lead_in(trial)) is not None]
         rough = np.sqrt(np.mean([top_of_band(part) ** 2 for part in (quiet or group)], axis=0))
-        shared = _from_lead_in(quiet, rough, band) if quiet else Noise(EVEN, rough)
+        shared = _coloured(quiet, rough, band) if quiet else Noise(EVEN, rough)
         variance, weight = np.zeros((len(group), len(channels))), np.zeros((len(group), len(channels)))
         for i, trial in enumerate(group):
             high = top_of_band(trial)
             part = lead_in(trial)
-            low = None if part is None else _from_lead_in([part], high, band, shared.levels).sigma
+            low = None if part is None else _from_lead_in([part], high, band, shared.slope, shared.levels)[0].sigma
             for j, channel in enumerate(channels):
                 name = f"{trial.name}: {channel}"
                 top[name] = float(high[j])
@@ -79,7 +83,7 @@ def find_noise_floor(trials: Sequence[Trial], band: tuple[float, float] = BAND) 
         power = np.array([np.mean(trial.measurement.values**2, axis=0) for trial in group])
         sigma = np.sqrt(_smooth(variance, weight, power))
         for i, trial in enumerate(group):
-            noises[trial.name] = Noise(shared.levels, sigma[i])
+            noises[trial.name] = Noise(shared.levels, sigma[i], shared.slope)
     return NoiseFloor(noises, lead, top, tuple(corrected))
 
 
@@ -96,14 +100,31 @@ def _smooth(variance: Array, weight: Array, power: Array) -> Array:
     return found
 
 
-def _from_lead_in(quiet: Sequence[Trial], sigma: Array, band: tuple[float, float], levels: Array | None = None) -> Noise:
+def _coloured(quiet: Sequence[Trial], sigma: Array, band: tuple[float, float]) -> Noise:
+    """Return the noise of the lead-ins with the slope that suits them best; white unless another slope does clearly better."""
+    tried = [_from_lead_in(quiet, sigma, band, slope) for slope in SLOPES]
+    best = min(range(len(SLOPES)), key=lambda i: tried[i][1])
+    if tried[0][1] - tried[best][1] < COLOURED:
+        return tried[0][0]
+    near = [i for i in (best - 1, best, best + 1) if 0 <= i < len(SLOPES)]
+    if len(near) == 3:
+        a, b, _ = np.polyfit([SLOPES[i] for i in near], [tried[i][1] for i in near], 2)
+        return _from_lead_in(quiet, sigma, band, float(-b / (2 * a)))[0]
+    return tried[best][0]
+
+
+def _from_lead_in(
+    quiet: Sequence[Trial], sigma: Array, band: tuple[float, float], slope: float, levels: Array | None = None
+) -> tuple[Noise, float]:
+    """Return the noise of lead-ins for a slope, and -2 ln of its likelihood."""
     residuals = []
     for part in quiet:
         frequency = np.asarray(np.fft.rfftfreq(len(part.measurement.time), part.measurement.dt), dtype=np.float64)
         inside = (frequency >= max(band[0], 1.0)) & (frequency <= band[1])
         lines = transform(part.measurement.values - part.measurement.values.mean(axis=0), part.measurement.dt, inside)
         residuals.append((lines, road_answer(part, frequency[inside], part.values)))
-    return estimate_noise(residuals, Noise(np.full(len(EVEN), 100 * SMALLEST_LEVEL) if levels is None else levels, sigma))
+    noise = estimate_noise(residuals, Noise(np.full(len(EVEN), 100 * SMALLEST_LEVEL) if levels is None else levels, sigma, slope))
+    return noise, sum(noise.loss(lines, answer) for lines, answer in residuals)
 
 
 def lead_in(trial: Trial) -> Trial | None:

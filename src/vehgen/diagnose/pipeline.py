@@ -14,7 +14,7 @@ from vehgen.diagnose.detection import BAND, Detection, amplitude_dependence, det
 from vehgen.diagnose.estimates import estimate, gain_interval, held_out_gain, unstable
 from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.judging import adds, chance, excess, needs_both, passes, seeds, tied, unfinished
-from vehgen.diagnose.localisation import localise, one_force, shortlist
+from vehgen.diagnose.localisation import localise, shortlist, suffices
 from vehgen.diagnose.naming import Progress, Round, look
 from vehgen.diagnose.place_test import PlaceResult
 from vehgen.diagnose.verdict import Gap, NamedEffect, Verdict, VerdictName, sentence
@@ -155,8 +155,8 @@ class _Case:
         return chain
 
     def _pair(self, first: Round) -> list[Fit]:
-        """Return the two fits of the best pair of effects that passes; none where one force at one place suffices."""
-        if one_force(first.passed):
+        """Return the two fits of the best pair of effects that passes; none where one force at one place leaves noise."""
+        if suffices(first.passed, self.base):
             return []
         for seed in seeds(first):
             found = self._look(seed)

@@ -11,6 +11,8 @@ PLACE_PASSES = 1.10
 """A place passes below this chi."""
 PLACE_SHARE = 0.10
 """A place also passes when it leaves no more than this share of the excess without any unknown."""
+PLACE_CLEAR = 0.01
+"""A place that leaves no more than this share of the excess needs no second one."""
 LAW_PASSES = 0.10
 """A law passes when it leaves no more than this share of the excess, on the training runs and on untouched ones."""
 LAW_CHI = 1.15

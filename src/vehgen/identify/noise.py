@@ -2,7 +2,8 @@
 
     S(f) = L(f/v) G(f) H(f) R(f) H(f)* + diag(2 dt sigma^2)
 
-is the one-sided cross spectral density of the channels: white noise of standard deviation sigma in each, and the answer H(f) to a road
+is the one-sided cross spectral density of the channels: noise of standard deviation sigma in each, white or with a density that falls
+as (f/COLOUR_AT)^-slope (phones' noise is a little red), and the answer H(f) to a road
 of displacement spectrum L G(f), G = n0^2 v/f^2 (ISO 8608 with w = 2, n0 = 0.1 cycles/m, at v [m/s]), that all axles follow one after the
 other. L is Gd(n0) [m^3] where the road keeps to w = 2; real roads do not, so L may vary with wavenumber, straight lines between KNOTS on
 log-log paper. R_ij = exp(-2 pi i f (t_i - t_j)) rho(t_i - t_j), with rho the autocorrelation of the record's taper: in a record of finite
@@ -40,6 +41,8 @@ ROUGHEST = 3.0
 """Change of ln(level) from one knot to the next that counts as one standard deviation."""
 EVEN = np.full(len(KNOTS), SMALLEST_LEVEL)
 """Levels of an even road."""
+COLOUR_AT = 44.0
+"""Frequency at which coloured noise has the density of white noise of its sigma [Hz]: the top of the band, where it is measured."""
 
 
 @dataclass(frozen=True)
@@ -58,10 +61,14 @@ class RoadAnswer:
 
 @dataclass(frozen=True)
 class Noise:
-    """Roughness `levels shape (len(KNOTS),)` [m^3] of the road beneath, and white noise `sigma shape (n_channels,)` [channels' units]."""
+    """Roughness `levels shape (len(KNOTS),)` [m^3] of the road beneath, and noise `sigma shape (n_channels,)` [channels' units].
+
+    The noise's density falls as f^-slope; 0 is white.
+    """
 
     levels: Array
     sigma: Array
+    slope: float = 0.0
 
     def level(self, wavenumber: Array) -> Array:
         """Return L at wavenumbers [cycles/m]."""
@@ -70,13 +77,13 @@ class Noise:
     def density(self, answer: RoadAnswer) -> Complex:
         """Return S(f), `shape (n, n_channels, n_channels)`."""
         part = np.sqrt(self.level(answer.wavenumber))[:, None, None] * answer.gain
-        return np.asarray(part @ _adjoint(part) + np.diag(2 * answer.dt * self.sigma**2))
+        return np.asarray(part @ _adjoint(part) + self._scale(answer)[:, :, None] ** 2 * np.eye(len(self.sigma)))
 
     def whitener(self, answer: RoadAnswer) -> Complex:
         """Return W(f) with W S W* = 1, `shape (n, n_channels, n_channels)`."""
         scale, b = self._scaled(answer)
-        root = np.linalg.cholesky(np.eye(len(scale)) + b @ _adjoint(b))
-        return np.asarray(np.linalg.inv(root) / scale, dtype=np.complex128)
+        root = np.linalg.cholesky(np.eye(len(self.sigma)) + b @ _adjoint(b))
+        return np.asarray(np.linalg.inv(root) / scale[:, None, :], dtype=np.complex128)
 
     def loss(self, lines: Complex, answer: RoadAnswer) -> float:
         """Return -2 ln of Whittle's likelihood of lines `shape (n, n_channels)`, less a constant: the sum of 2 (ln det S + R* S^-1 R)."""
@@ -85,11 +92,11 @@ class Noise:
     def loss_and_slopes(self, lines: Complex, answer: RoadAnswer) -> tuple[float, Array, Array]:
         """Return :meth:`loss` with its derivatives by ln(levels) `shape (len(KNOTS),)` and by ln(sigma) `shape (n_channels,)`."""
         scale, b = self._scaled(answer)
-        density = np.eye(len(scale)) + b @ _adjoint(b)
+        density = np.eye(len(self.sigma)) + b @ _adjoint(b)
         inverse = np.linalg.inv(density)
         scaled = lines / scale
         weighted = (inverse @ scaled[:, :, None])[:, :, 0]
-        determinant = len(lines) * np.log(scale).sum() + 0.5 * np.linalg.slogdet(density)[1].sum()
+        determinant = np.log(scale).sum() + 0.5 * np.linalg.slogdet(density)[1].sum()
         loss = 2 * (2 * determinant + (scaled.conj() * weighted).real.sum())
         rest = inverse - weighted[:, :, None] * weighted[:, None, :].conj()
         by_sigma = 4 * np.diagonal(rest, axis1=1, axis2=2).real.sum(axis=0)
@@ -97,9 +104,14 @@ class Noise:
         return float(loss), _interpolation(answer.wavenumber).T @ by_level, by_sigma
 
     def _scaled(self, answer: RoadAnswer) -> tuple[Array, Complex]:
-        """Return d and b with S = diag(d) (1 + b b*) diag(d), which is well conditioned however small sigma is."""
-        scale = np.sqrt(2 * answer.dt) * self.sigma
-        return scale, np.sqrt(self.level(answer.wavenumber))[:, None, None] * answer.gain / scale[:, None]
+        """Return d `shape (n, n_channels)` and b with S = diag(d) (1 + b b*) diag(d), which is well conditioned however small sigma is."""
+        scale = self._scale(answer)
+        return scale, np.sqrt(self.level(answer.wavenumber))[:, None, None] * answer.gain / scale[:, :, None]
+
+    def _scale(self, answer: RoadAnswer) -> Array:
+        """Return the root of the sensors' own density, `shape (n, n_channels)`."""
+        colour = (np.maximum(answer.frequency, 1e-3) / COLOUR_AT) ** (-self.slope / 2)
+        return np.asarray(np.sqrt(2 * answer.dt) * colour[:, None] * self.sigma)
 
     def draw(self, answer: RoadAnswer, n_samples: int, lines: NDArray[np.intp], random: np.random.Generator) -> Array:
         """Return noise within the band of `lines` (numbers of the FFT's lines) as time histories `shape (n_samples, n_channels)`."""
@@ -109,7 +121,7 @@ class Noise:
 
         road = np.sqrt(self.level(answer.wavenumber))[:, None] * (answer.gain @ unit((len(lines), answer.gain.shape[2], 1)))[:, :, 0]
         spectrum = np.zeros((n_samples // 2 + 1, road.shape[1]), dtype=np.complex128)
-        spectrum[lines] = (road + unit(road.shape) * np.sqrt(2 * answer.dt) * self.sigma) * np.sqrt(n_samples / (2 * answer.dt))
+        spectrum[lines] = (road + unit(road.shape) * self._scale(answer)) * np.sqrt(n_samples / (2 * answer.dt))
         return np.asarray(np.fft.irfft(spectrum, n_samples, axis=0))
 
 
@@ -168,7 +180,7 @@ def estimate_noise(residuals: Sequence[tuple[Complex, RoadAnswer]], start: Noise
     knots = len(KNOTS)
 
     def read(x: Array) -> Noise:
-        return Noise(np.exp(x[:knots]), np.exp(x[knots:]))
+        return Noise(np.exp(x[:knots]), np.exp(x[knots:]), start.slope)
 
     def loss(x: Array) -> tuple[float, Array]:
         noise, bends = read(x), np.diff(x[:knots])
@@ -182,7 +194,7 @@ def estimate_noise(residuals: Sequence[tuple[Complex, RoadAnswer]], start: Noise
         return total, slopes
 
     share = np.mean([np.mean(np.abs(lines) ** 2 / (np.abs(answer.gain) ** 2).sum(axis=2).clip(1e-300)) for lines, answer in residuals])
-    mostly_road = Noise(np.full(knots, share), 0.1 * np.sqrt(power))
+    mostly_road = Noise(np.full(knots, share), 0.1 * np.sqrt(power), start.slope)
     bounds = [(np.log(SMALLEST_LEVEL), np.log(LARGEST_LEVEL))] * knots + [(np.log(low), np.log(low) + 12.0) for low in floor]
     found = []
     for first in (start, mostly_road):

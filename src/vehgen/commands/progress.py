@@ -1,0 +1,47 @@
+"""Progress bars of long work, on the terminal's error stream; silent where nobody looks."""
+
+from __future__ import annotations
+
+
+class Bars:
+    """A progress bar for every piece of work, with the best result so far.
+
+    Parameters
+    ----------
+    quiet
+        Show nothing.
+    """
+
+    def __init__(self, quiet: bool) -> None:
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+        self._console = Console(stderr=True)
+        self._bars = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TextColumn("{task.completed:.0f}/{task.total:.0f}  {task.fields[best]}"),
+            TimeElapsedColumn(),
+            console=self._console,
+            disable=quiet or not self._console.is_terminal,
+        )
+        self._tasks: dict[str, int] = {}
+
+    def __enter__(self) -> Bars:
+        self._bars.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._bars.stop()
+
+    def tell(self, label: str, done: int, total: int, best: str) -> None:
+        """Show what is done."""
+        from rich.progress import TaskID
+
+        if label not in self._tasks:
+            self._tasks[label] = int(self._bars.add_task(label, total=total, best=""))
+        self._bars.update(TaskID(self._tasks[label]), completed=done, total=total, best=best)
+
+    def say(self, text: str) -> None:
+        """Print a line."""
+        self._console.print(text)

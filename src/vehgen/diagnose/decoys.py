@@ -1,0 +1,88 @@
+"""Would any law do? Random laws at the winner's place, with as many numbers as it has, that no physics stands behind.
+
+A decoy is a sum of k random smooth functions of the place's travel d and rate v, sin(a d/sd + b v/sv + c) with normal a, b and uniform c,
+whose k factors are least squares, with all that the base parameters and nuisances can do besides. Where one of many decoys does as well as
+the named effect, the data do not ask for that effect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.diagnose.fitting import HOLD, Fit
+from vehgen.diagnose.place_test import PlaceResult
+from vehgen.identify.misfit import flatten
+from vehgen.identify.noise import transform
+from vehgen.simulate.frequency import force_response
+
+Array = NDArray[np.float64]
+COUNT = 40
+SEED = 20240
+
+
+def decoy_shares(
+    base: Fit, place: PlaceResult, motion: Mapping[str, tuple[Array, Array]], numbers: int, count: int = COUNT, seed: int = SEED
+) -> Array:
+    """Return the share of the base's excess on the training runs that each of `count` decoys closes, `shape (count,)`.
+
+    Parameters
+    ----------
+    base
+        The fit that the effect was added to.
+    place
+        Where the effect acts, with the base parameters that the place test found.
+    motion
+        Travel [m] and rate [m/s] of the place by training run, each `shape (n,)`.
+    numbers
+        How many numbers a decoy may fit.
+    """
+    misfit, x = base.polished.misfit, place.x
+    n = misfit.n_parameters
+    springs = np.hstack([np.eye(n) / HOLD, np.zeros((n, misfit.n_unknowns - n))])
+    rest = np.hstack([np.zeros((misfit.n_unknowns - n, n)), np.eye(misfit.n_unknowns - n)])
+    slopes = np.vstack([*(flatten(item, first=1).T for item in misfit.white_derivatives(x)), springs, rest])
+    residual = np.concatenate([*(flatten(item) for item in misfit.white_lines(x)), np.zeros(misfit.n_unknowns)])
+    size = len(residual) - misfit.n_unknowns
+    basis = np.linalg.qr(slopes)[0]
+    left = residual - basis @ (basis.T @ residual)
+    scales = [float(np.sqrt(np.mean(np.concatenate([item[i] for item in motion.values()]) ** 2))) for i in (0, 1)]
+    responses = _responses(base, place)
+    random = np.random.Generator(np.random.PCG64(seed))
+    excess = max(float(left @ left) / size - 1, 1e-9)
+    found = []
+    for _ in range(count):
+        columns = []
+        for slope, rate, phase in zip(
+            random.normal(size=numbers), random.normal(size=numbers), random.uniform(0, 2 * np.pi, numbers), strict=True
+        ):
+            parts = []
+            for t, trial in enumerate(misfit.problem.trials):
+                d, v = motion[trial.name]
+                force = np.sin(slope * d / scales[0] + rate * v / scales[1] + phase) - np.sin(phase)
+                frequency = np.fft.rfftfreq(len(d), trial.measurement.dt)
+                inside = (frequency >= misfit.band[0]) & (frequency <= misfit.band[1])
+                lines = transform(force[:, None], trial.measurement.dt, inside) * responses[t]
+                parts.append(flatten(misfit.whiten(t, lines)))
+            columns.append(np.concatenate([*parts, np.zeros(misfit.n_unknowns)]))
+        own = np.array(columns).T
+        own -= basis @ (basis.T @ own)
+        remaining = left - own @ np.linalg.lstsq(own, left, rcond=None)[0]
+        found.append(1 - max(float(remaining @ remaining) / size - 1, 0.0) / excess)
+    return np.array(found)
+
+
+def _responses(base: Fit, place: PlaceResult) -> list[NDArray[np.complex128]]:
+    misfit = base.polished.misfit
+    known = misfit.problem.best_values(misfit.problem.space.values(misfit.split(place.x)[0]))
+    return [
+        force_response(trial.simulator.model, trial.values | known, place.place.rows[:1], misfit.frequency(t))[:, :, 0]
+        for t, trial in enumerate(misfit.problem.trials)
+    ]
+
+
+def beaten_by(shares: Sequence[float] | Array, closed: float) -> float:
+    """Return the share of decoys that close as much of the excess as the effect does, `closed`."""
+    return float(np.mean(np.asarray(shares) >= closed))

@@ -1,0 +1,100 @@
+"""Diagnoses that need more than one look: pairs of effects, lines of engines, and work that is stopped or renamed."""
+
+import shutil
+
+import pytest
+from benchmarks.hidden_effects.generator import Effect
+
+from vehgen.diagnose.detection import amplitude_dependence, band_gaps
+from vehgen.diagnose.estimates import estimates_by_run
+from vehgen.diagnose.pipeline import diagnose
+from vehgen.diagnose.writing import effect_file
+from vehgen.effects import EFFECTS
+from vehgen.identify.trial import load_trials
+from vehgen.vehicle import load_vehicle
+
+FEW = [EFFECTS[name] for name in ("cubic_stiffness", "bump_stop", "sensor_gain", "quadratic_damping", "engine_harmonic")]
+
+
+@pytest.fixture(scope="module")
+def pair(record):
+    return record(Effect("cubic_stiffness", "rear", {"k3": 1e8}), Effect("sensor_gain", "F_az", {"error": 0.2}))
+
+
+@pytest.fixture(scope="module")
+def two(pair):
+    return diagnose(load_trials(pair), FEW)
+
+
+def test_two_effects_are_found_one_after_the_other(two):
+    assert two.verdict.verdict == "named"
+    assert {(item.name, item.place) for item in two.verdict.effects} == {("cubic_stiffness", "rear"), ("sensor_gain", "F_az")}
+    values = {name: item.value for effect in two.verdict.effects for name, item in effect.parameters.items()}
+    assert values["k3"] == pytest.approx(1e8, rel=0.05)
+    assert values["gain"] == pytest.approx(1.2, rel=0.02)
+    assert two.verdict.gap.after < 1.15
+    assert len(two.rounds) >= 2
+
+
+def test_the_vehicle_file_of_a_pair_holds_the_force_and_tells_of_the_sensor(two, tmp_path):
+    text = effect_file(two.chosen[-1], two.detection.problem, two.verdict, tmp_path, "both")
+    path = tmp_path / "both.yaml"
+    path.write_text(text, encoding="utf-8")
+    assert load_vehicle(path).values()["cubic_stiffness_rear_k3"] == pytest.approx(1e8, rel=0.05)
+    assert "sensor_gain at F_az is an effect of the runs" in text
+
+
+def test_gaps_are_told_by_run_channel_and_band(two):
+    before = {(item.run, item.channel, item.band): item.chi for item in band_gaps(two.detection)}
+    after = {(item.run, item.channel, item.band): item.chi for item in band_gaps(two.detection, two.chosen[-1])}
+    assert before.keys() == after.keys()
+    assert len({channel for _, channel, _ in before}) == 4
+    assert max(after.values()) < 2 < max(before.values())
+
+
+def test_every_run_alone_asks_for_the_same_spring(two):
+    spring = next(item for item in two.chosen[-1].effects if item.effect.name == "cubic_stiffness")
+    for own in estimates_by_run(two.chosen[-1], spring):
+        assert own.value == pytest.approx(1e8, abs=max(2.5 * own.half_width, 1e7))
+
+
+def test_a_hardening_spring_shows_more_over_a_higher_hump(record):
+    found = diagnose(load_trials(record(Effect("cubic_stiffness", "rear", {"k3": 1e8}))), FEW[:1])
+    assert "grows" in amplitude_dependence(found.detection)
+
+
+def test_an_engine_is_found_by_its_line(record):
+    engine = Effect("engine_harmonic", "body", {"amplitude": 450.0, "frequency": 24.0, "drift": 0.01, "x": 0.4})
+    found = diagnose(load_trials(record(engine)))
+    assert found.verdict.verdict == "named"
+    effect = found.verdict.effects[0]
+    assert (effect.name, effect.place) == ("engine_harmonic", "body")
+    assert effect.parameters["frequency"].value == pytest.approx(24.0, abs=0.02)
+    assert effect.parameters["drift"].value == pytest.approx(0.01, abs=0.001)
+    assert effect.parameters["amplitude"].value == pytest.approx(450.0, rel=0.1)
+
+
+def test_ctrl_c_leaves_what_was_found(pair):
+    def tell(stage, done, total, best):
+        if stage == "name" and done == 2:
+            raise KeyboardInterrupt
+
+    found = diagnose(load_trials(pair), FEW, tell=tell)
+    assert found.stopped
+    assert found.verdict.verdict == "insufficient_data"
+    assert "stopped by hand after 2 candidates" in found.verdict.reason
+    assert len(found.fits) == 2
+    assert found.places
+
+
+def test_other_names_of_channels_change_nothing_but_names(pair, two, tmp_path):
+    folder = tmp_path / "renamed"
+    shutil.copytree(pair[0].parent, folder)
+    for path in folder.glob("*.csv"):
+        path.write_text(path.read_text(encoding="utf-8").replace("F_az", "zz").replace("R_q", "aa"), encoding="utf-8")
+    for path in folder.glob("*.yaml"):
+        path.write_text(path.read_text(encoding="utf-8").replace("F_az", "zz").replace("R_q", "aa"), encoding="utf-8")
+    found = diagnose(load_trials(sorted(folder.glob("*.yaml"))[::-1]), FEW)
+    assert found.verdict.verdict == two.verdict.verdict
+    renamed = [(item.name, item.place.replace("zz", "F_az"), item.parameters) for item in found.verdict.effects]
+    assert renamed == [(item.name, item.place, item.parameters) for item in two.verdict.effects]
