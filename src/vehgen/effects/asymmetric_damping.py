@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from vehgen.effects.base import Change, Effect, EffectParameter
-from vehgen.effects.law_effect import Given
+from vehgen.effects.law_effect import Given, on_spring
 from vehgen.effects.places import suspensions
 from vehgen.effects.site import Site
 from vehgen.mechanics.laws import LAWS
 
 
 def _edit(site: Site, symbols: Given) -> Change:
-    suspension = site.vehicle.axles[site.place].suspension
-    assert suspension is not None
-    ratio, c = symbols["ratio"], suspension.c.text
+    ratio, c = symbols["ratio"], site.spring.c.text
     bump, more = f"2*({c})*{ratio}/(1 + {ratio})", f"2*({c})*(1 - {ratio})/(1 + {ratio})"
     law = {"asymmetric_damping": {"c": more, "ratio": "0"}}
-    return {"axles": {site.place: {"suspension": {"c": bump, "laws": [*site.laws("suspension", site.place), law]}}}}
+    return on_spring(site, {"c": bump, "laws": [*site.laws(site.kind, site.place), law]})
 
 
 ASYMMETRIC_DAMPING = Effect(

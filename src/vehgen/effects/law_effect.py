@@ -13,7 +13,7 @@ Given = Mapping[str, str]
 
 
 def law_edit(kind: str, law: str, write: Callable[[Site, Given], Change] | None = None) -> Callable[[Site, Given], Change]:
-    """Return the edit that adds a law to a suspension, tyre or hinge.
+    """Return the edit that adds a law to a suspension (or a link in its place), tyre or hinge.
 
     Parameters
     ----------
@@ -29,16 +29,23 @@ def law_edit(kind: str, law: str, write: Callable[[Site, Given], Change] | None 
         entry = {law: write(site, symbols) if write else dict(symbols)}
         if kind == "hinge":
             return {"hinges": {site.place: {"laws": [*site.laws(kind, site.place), entry]}}}
+        if kind == "suspension":
+            return on_spring(site, {"laws": [*site.laws(site.kind, site.place), entry]})
         names = list(site.vehicle.axles) if site.place == ALL_TYRES else [site.place]
         return {"axles": {name: {kind: {"laws": [*site.laws(kind, name), entry]}} for name in names}}
 
     return edit
 
 
+def on_spring(site: Site, change: Change) -> Change:
+    """Return a change of the suspension or link at a site, in the form of a vehicle file."""
+    return {"links": {site.place: change}} if site.kind == "link" else {"axles": {site.place: {"suspension": change}}}
+
+
 def suspension_law(
     name: str, law: str, signature: str, parameters: tuple[EffectParameter, ...], write: Callable[[Site, Given], Change] | None = None
 ) -> Effect:
-    """Return the effect of a law of the library on a suspension."""
+    """Return the effect of a law of the library on a suspension or link."""
     known = LAWS[law]
     return Effect(
         name,

@@ -11,8 +11,8 @@ ALL_RUNS = "all runs"
 
 
 def suspensions(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
-    """Return every axle with a suspension."""
-    return tuple(name for name, axle in vehicle.axles.items() if axle.suspension is not None)
+    """Return every axle with a suspension, then every link: both are a spring and damper with room for laws."""
+    return (*(name for name, axle in vehicle.axles.items() if axle.suspension is not None), *vehicle.links)
 
 
 def axles(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
@@ -69,5 +69,5 @@ def sensors_(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def runs(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
-    """Return all runs as one place."""
-    return (ALL_RUNS,)
+    """Return all runs as one place, where the vehicle has wheels to run on."""
+    return (ALL_RUNS,) if vehicle.axles else ()

@@ -8,14 +8,16 @@ from dataclasses import dataclass
 from vehgen.mechanics import LinearModel, derive, static_loads
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.expressions import Expression
+from vehgen.vehicle.model import Spring
 
 
 @dataclass(frozen=True)
 class Site:
     """A place of a vehicle with its sizes.
 
-    `load` [N] is the static load of the axle (of the hinge, the body's weight); `k` [N/m], `c` [N s/m] its suspension's; `kt` [N/m] its
-    tyre's; `mass` [kg] and `inertia` [kg m^2] its body's; `length` [m] the distance between the body's outermost supports.
+    `load` [N] is the static load of the axle (of the hinge, the link, the body's weight); `k` [N/m], `c` [N s/m] its suspension's
+    or link's; `kt` [N/m] its tyre's; `mass` [kg] and `inertia` [kg m^2] its body's; `length` [m] the distance between the body's
+    outermost supports.
     """
 
     vehicle: Vehicle
@@ -34,9 +36,22 @@ class Site:
         """A typical dynamic travel: a tenth of what the static load compresses the spring by, between 2 and 20 mm [m]."""
         return min(max(0.1 * self.load / self.k, 0.002), 0.02) if self.k > 0 else 0.005
 
+    @property
+    def kind(self) -> str:
+        """What holds a spring and damper there: `link`, `hinge` or `suspension`."""
+        return "link" if self.place in self.vehicle.links else "hinge" if self.place in self.vehicle.hinges else "suspension"
+
+    @property
+    def spring(self) -> Spring:
+        """The spring and damper of the suspension or link there."""
+        found = self.vehicle.links[self.place] if self.kind == "link" else self.vehicle.axles[self.place].suspension
+        assert found is not None
+        return found
+
     def laws(self, kind: str, name: str) -> list[object]:
-        """Return the force laws that a suspension, tyre or hinge carries already, in the form of a vehicle file."""
-        spring = self.vehicle.hinges[name] if kind == "hinge" else getattr(self.vehicle.axles[name], kind)
+        """Return the force laws that a suspension, tyre, link or hinge carries already, in the form of a vehicle file."""
+        joints: dict[str, Mapping[str, Spring]] = {"hinge": self.vehicle.hinges, "link": self.vehicle.links}
+        spring = joints[kind][name] if kind in joints else getattr(self.vehicle.axles[name], kind)
         return [_plain(entry) for entry in spring.laws]
 
 
@@ -71,7 +86,7 @@ class Surveyor:
         )
 
     def site(self, place: str) -> Site:
-        """Return the site of an axle, hinge, body or group of axles joined by `+`."""
+        """Return the site of an axle, link, hinge, body or group of axles joined by `+`."""
         vehicle, known = self.vehicle, self._known
         names = place.split("+")
         load = k = c = kt = 0.0
@@ -85,6 +100,12 @@ class Surveyor:
                 if axle.suspension is not None:
                     k += axle.suspension.k.evaluate(known)
                     c += axle.suspension.c.evaluate(known)
+            elif name in vehicle.links:
+                link = vehicle.links[name]
+                body = next(end for end, _ in link.ends if end in vehicle.bodies)
+                load += abs(self._loads.elements["link", name])
+                k += link.k.evaluate(known)
+                c += link.c.evaluate(known)
             elif name in vehicle.hinges:
                 load += abs(self._loads.hinges[name])
                 body = vehicle.hinges[name].ends[1][0]
