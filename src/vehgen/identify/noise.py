@@ -8,7 +8,8 @@ of displacement spectrum L G(f), G = n0^2 v/f^2 (ISO 8608 with w = 2, n0 = 0.1 c
 other. L is Gd(n0) [m^3] where the road keeps to w = 2; real roads do not, so L may vary with wavenumber, straight lines between KNOTS on
 log-log paper. R_ij = exp(-2 pi i f (t_i - t_j)) rho(t_i - t_j), with rho the autocorrelation of the record's taper: in a record of finite
 length two axles share only the road that both have passed. The road's part is what a white-noise model misses: it is coloured, common
-to all channels, and stronger than a phone's own noise even on a very good road.
+to all channels, and stronger than a phone's own noise even on a very good road. White errors of applied forces, where a run file states
+them, come to the channels in the same way: H_F(f) diag(2 dt sigma_F^2) H_F(f)* is added.
 """
 
 from __future__ import annotations
@@ -50,13 +51,14 @@ class RoadAnswer:
     """The channels' answer to roughness in one trial, at spectral lines.
 
     `frequency shape (n,)` [Hz]; `wavenumber shape (n,)` [cycles/m]; `gain shape (n, n_channels, n_axles)` with gain gain* = G H R H*; `dt`
-    the samples' spacing [s].
+    the samples' spacing [s]; `forced shape (n, n_channels, n_forces)` likewise for the stated errors of applied forces, levels apart.
     """
 
     frequency: Array
     wavenumber: Array
     gain: Complex
     dt: float
+    forced: Complex | None = None
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,7 @@ class Noise:
 
     def density(self, answer: RoadAnswer) -> Complex:
         """Return S(f), `shape (n, n_channels, n_channels)`."""
-        part = np.sqrt(self.level(answer.wavenumber))[:, None, None] * answer.gain
+        part = self._part(answer)
         return np.asarray(part @ _adjoint(part) + self._scale(answer)[:, :, None] ** 2 * np.eye(len(self.sigma)))
 
     def whitener(self, answer: RoadAnswer) -> Complex:
@@ -100,18 +102,23 @@ class Noise:
         loss = 2 * (2 * determinant + (scaled.conj() * weighted).real.sum())
         rest = inverse - weighted[:, :, None] * weighted[:, None, :].conj()
         by_sigma = 4 * np.diagonal(rest, axis1=1, axis2=2).real.sum(axis=0)
-        by_level = 2 * (b.conj() * (rest @ b)).real.sum(axis=(1, 2))
+        by_level = 2 * (b.conj() * (rest @ b)).real[:, :, : answer.gain.shape[2]].sum(axis=(1, 2))
         return float(loss), _interpolation(answer.wavenumber).T @ by_level, by_sigma
 
     def _scaled(self, answer: RoadAnswer) -> tuple[Array, Complex]:
         """Return d `shape (n, n_channels)` and b with S = diag(d) (1 + b b*) diag(d), which is well conditioned however small sigma is."""
         scale = self._scale(answer)
-        return scale, np.sqrt(self.level(answer.wavenumber))[:, None, None] * answer.gain / scale[:, :, None]
+        return scale, self._part(answer) / scale[:, :, None]
 
     def _scale(self, answer: RoadAnswer) -> Array:
         """Return the root of the sensors' own density, `shape (n, n_channels)`."""
         colour = (np.maximum(answer.frequency, 1e-3) / COLOUR_AT) ** (-self.slope / 2)
         return np.asarray(np.sqrt(2 * answer.dt) * colour[:, None] * self.sigma)
+
+    def _part(self, answer: RoadAnswer) -> Complex:
+        """Return P with S = P P* + the sensors' own density, `shape (n, n_channels, n_axles + n_forces)`."""
+        road = np.sqrt(self.level(answer.wavenumber))[:, None, None] * answer.gain
+        return np.asarray(road if answer.forced is None else np.concatenate([road, answer.forced], axis=2))
 
     def draw(self, answer: RoadAnswer, n_samples: int, lines: NDArray[np.intp], random: np.random.Generator) -> Array:
         """Return noise within the band of `lines` (numbers of the FFT's lines) as time histories `shape (n_samples, n_channels)`."""
@@ -119,7 +126,8 @@ class Noise:
         def unit(shape: tuple[int, ...]) -> Complex:
             return np.asarray((random.standard_normal(shape) + 1j * random.standard_normal(shape)) / np.sqrt(2))
 
-        road = np.sqrt(self.level(answer.wavenumber))[:, None] * (answer.gain @ unit((len(lines), answer.gain.shape[2], 1)))[:, :, 0]
+        part = self._part(answer)
+        road = (part @ unit((len(lines), part.shape[2], 1)))[:, :, 0]
         spectrum = np.zeros((n_samples // 2 + 1, road.shape[1]), dtype=np.complex128)
         spectrum[lines] = (road + unit(road.shape) * self._scale(answer)) * np.sqrt(n_samples / (2 * answer.dt))
         return np.asarray(np.fft.irfft(spectrum, n_samples, axis=0))
@@ -153,7 +161,8 @@ def transform(values: Array, dt: float, inside: NDArray[np.bool_]) -> Complex:
 def road_answer(trial: Trial, frequency: Array, values: dict[str, float]) -> RoadAnswer:
     """Return the channels' answer to a road of level 1 that all axles follow, at frequencies `shape (n,)` [Hz]."""
     model = trial.simulator.model
-    response = frequency_response(model.numeric(values), frequency)[0][:, :, : len(trial.run.vehicle.axles)]
+    displaced, pushed = frequency_response(model.numeric(values), frequency)
+    response = displaced[:, :, : len(trial.run.vehicle.axles)]
     speed, dt = trial.scenario.top_speed, trial.measurement.dt
     late = model.wheel_offsets(values) / speed
     window = taper(len(trial.measurement.time), dt)
@@ -162,7 +171,9 @@ def road_answer(trial: Trial, frequency: Array, values: dict[str, float]) -> Roa
     root = np.linalg.cholesky(shared + 1e-9 * np.eye(len(late)))
     delayed = np.exp(-2j * np.pi * frequency[:, None] * late)
     gain = (response * delayed[:, None, :] * (REFERENCE * np.sqrt(speed) / frequency)[:, None, None]) @ root
-    return RoadAnswer(frequency, frequency / speed, np.asarray(gain), dt)
+    errors = np.array([entry.noise or 0.0 for entry in trial.run.file.forces.values()])
+    forced = np.asarray(pushed * errors * np.sqrt(2 * dt)) if errors.any() else None
+    return RoadAnswer(frequency, frequency / speed, np.asarray(gain), dt, forced)
 
 
 def estimate_noise(residuals: Sequence[tuple[Complex, RoadAnswer]], start: Noise) -> Noise:

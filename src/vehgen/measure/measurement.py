@@ -6,11 +6,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic_core import PydanticCustomError
 
 from vehgen.errors import InputError, did_you_mean
 from vehgen.mechanics.outputs import POINT_QUANTITIES, PointOutput
 from vehgen.road import read_columns
 from vehgen.simulate import Run
+from vehgen.simulate.quantities import read_quantity
 from vehgen.simulate.runfile import ChannelEntry, SensorEntry
 from vehgen.vehicle.units import UNITS, read_unit
 
@@ -23,12 +25,16 @@ CLIPPED = 5
 
 @dataclass(frozen=True)
 class MeasuredChannel:
-    """One recorded channel: its column, the sensor it belongs to and what it measures."""
+    """One recorded channel: its column, the sensor it belongs to and what it measures.
+
+    `noise` is the standard deviation of its white noise [SI] where the run file knows it.
+    """
 
     name: str
     sensor: str
     quantity: str
     output: PointOutput
+    noise: float | None = None
 
 
 @dataclass(frozen=True)
@@ -71,7 +77,7 @@ def read_measurement(run: Run) -> Measurement:
     channels, factors, columns = [], [], []
     for sensor_name, sensor in file.sensors.items():
         for quantity, entry in sensor.channels.items():
-            channel = _channel(sensor_name, sensor, quantity, entry)
+            channel = replace(_channel(sensor_name, sensor, quantity, entry), noise=_noise(run, sensor_name, quantity, entry))
             channels.append(channel)
             columns.append(channel.name)
             factors.append(_factor(run, sensor_name, quantity, entry))
@@ -89,6 +95,22 @@ def read_measurement(run: Run) -> Measurement:
 def _channel(sensor_name: str, sensor: SensorEntry, quantity: str, entry: str | ChannelEntry) -> MeasuredChannel:
     column = (entry if isinstance(entry, str) else entry.column) or f"{sensor_name}_{quantity}"
     return MeasuredChannel(column, sensor_name, quantity, PointOutput(column, sensor.place(sensor_name), quantity))
+
+
+def _noise(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> float | None:
+    """Return the noise that a run file gives with its unit."""
+    if isinstance(entry, str) or entry.noise is None:
+        return None
+    expected = read_unit(POINT_QUANTITIES[quantity])
+    assert expected is not None
+    place = run.document.find(("sensors", sensor, "channels", quantity, "noise"))
+    try:
+        number = read_quantity(entry.noise, expected[1])
+    except PydanticCustomError as error:
+        raise InputError(error.message(), place) from error
+    if not 0 < number < float("inf"):
+        raise InputError(f"a noise above 0 was expected, found {entry.noise}", place)
+    return number
 
 
 def _factor(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> float:

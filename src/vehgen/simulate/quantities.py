@@ -44,4 +44,5 @@ PositiveTime = Annotated[float, BeforeValidator(lambda value: _positive(read_qua
 PositiveSpeed = Annotated[float, BeforeValidator(lambda value: _positive(read_quantity(value, SPEED))), _schema(SPEED)]
 Frequency = Annotated[float, BeforeValidator(lambda value: _positive(read_quantity(value, FREQUENCY))), _schema(FREQUENCY)]
 Force = Annotated[float, BeforeValidator(lambda value: read_quantity(value, FORCE)), _schema(FORCE)]
+PositiveForce = Annotated[float, BeforeValidator(lambda value: _positive(read_quantity(value, FORCE))), _schema(FORCE)]
 Angle = Annotated[float, BeforeValidator(lambda value: read_quantity(value, NONE)), _schema(NONE)]

@@ -12,7 +12,7 @@ from pydantic_core import PydanticCustomError
 
 from vehgen.errors import InputError, did_you_mean
 from vehgen.mechanics.outputs import AXLE_QUANTITIES, LINK_QUANTITIES, POINT_QUANTITIES, ElementOutput, Output, Place, PointOutput
-from vehgen.simulate.quantities import Angle, Force, Frequency, Length, PositiveLength, PositiveSpeed, PositiveTime
+from vehgen.simulate.quantities import Angle, Force, Frequency, Length, PositiveForce, PositiveLength, PositiveSpeed, PositiveTime
 from vehgen.vehicle.checks import check_values
 from vehgen.vehicle.document import Located, read_document
 from vehgen.vehicle.expressions import Expression, ExpressionError
@@ -22,6 +22,8 @@ from vehgen.vehicle.units import LENGTH
 
 DEFAULT_STEP = 1e-3
 DEFAULT_KEEP = 10
+DEFAULT_SPEED = 1.0
+"""What stands for the speed [m/s] of a rig without wheels; nothing depends on it."""
 MAX_STEPS = 10_000_000
 
 
@@ -120,12 +122,16 @@ class PlaceEntry(Noun):
 
 
 class ForceEntry(PlaceEntry):
-    """A vertical force on a body, upwards positive: harmonic, or measured in a CSV file (columns in s and N)."""
+    """A vertical force on a body, upwards positive: harmonic, or measured in a CSV file (columns in s and N).
+
+    `noise` is the standard deviation of what acts besides, white at the recording's samples [N].
+    """
 
     harmonic: ForceHarmonic | None = None
     file: str | None = None
     time: str = "t"
     force: str = "force"
+    noise: PositiveForce | None = None
 
     @model_validator(mode="after")
     def _one_source(self) -> ForceEntry:
@@ -150,11 +156,12 @@ class DisplacementEntry(Noun):
 
 
 class ChannelEntry(Noun):
-    """A recorded column: its unit where it is not SI, and its sign where its axis is reversed."""
+    """A recorded column: its unit where it is not SI, its sign where its axis is reversed, the standard deviation of its white noise."""
 
     column: str
     unit: str | None = None
     sign: Literal[1, -1] = 1
+    noise: str | float | None = None
 
 
 def _default_channels() -> dict[str, str | ChannelEntry]:
@@ -188,7 +195,7 @@ class RunFile(Noun):
     title: str = ""
     set: str | None = None
     parameters: dict[str, Expression] = Field(default_factory=dict)
-    speed: PositiveSpeed | SpeedFile = Field(union_mode="left_to_right")
+    speed: PositiveSpeed | SpeedFile = Field(DEFAULT_SPEED, union_mode="left_to_right")
     duration: PositiveTime | None = None
     step: PositiveTime = DEFAULT_STEP
     sample: PositiveTime | None = None
@@ -199,6 +206,13 @@ class RunFile(Noun):
     sensors: dict[str, SensorEntry] = Field(default_factory=dict)
     outputs: dict[str, OutputEntry] = Field(default_factory=dict)
     recording: str | None = None
+    band: tuple[Frequency, Frequency] | None = None
+
+    @model_validator(mode="after")
+    def _ascending(self) -> RunFile:
+        if self.band is not None and not self.band[0] < self.band[1]:
+            raise PydanticCustomError("joint", "`band` is [lowest, highest] frequency compared; the first must be the lower one")
+        return self
 
 
 @dataclass(frozen=True)
@@ -270,6 +284,8 @@ def _check(run: Run) -> None:
         if name not in allowed:
             raise InputError(f"{vehicle.name} has no {kind} {name!r}; {did_you_mean(name, allowed)}", document.find(place, key=key))
 
+    if vehicle.axles and "speed" not in file.model_fields_set:
+        raise InputError(f"the file lacks the key 'speed': {vehicle.name} has wheels", document.position)
     dimensions = vehicle.dimensions
     if file.set is not None:
         known("parameter set", file.set, vehicle.sets, "set")
