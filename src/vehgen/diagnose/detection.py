@@ -9,14 +9,13 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.diagnose.band import BAND, compared_band
 from vehgen.diagnose.fitting import Fit, chi_as_filed, fit_base, narrow
 from vehgen.diagnose.noise_floor import NoiseFloor, find_noise_floor
 from vehgen.identify.problem import Problem, make_problem
 from vehgen.identify.trial import Trial
 
 Array = NDArray[np.float64]
-BAND = (0.5, 40.0)
-"""Frequencies compared [Hz]."""
 EDGES = (0.0, 3.0, 8.0, 15.0, np.inf)
 """Bands of the table of gaps [Hz]: rigid-body motion, between, wheel hop, above."""
 
@@ -70,9 +69,10 @@ def hump_height(trial: Trial) -> float:
     return max((entry.hump.height or 0.0 for entry in trial.run.file.road if entry.hump is not None), default=0.0)
 
 
-def detect(trials: Sequence[Trial], band: tuple[float, float] = BAND) -> Detection:
-    """Find the noise floor, recalibrate the base model on the training runs, and measure the gap within a band [Hz]."""
+def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> Detection:
+    """Find the noise floor, recalibrate the base model on the training runs, and measure the gap within a band [Hz] (default: the runs')."""
     training, held_out = split_runs(trials)
+    band = band or compared_band(trials)
     floor = find_noise_floor(trials, band)
     problem = narrow(make_problem(training))
     base = fit_base(problem, held_out, floor.noises, band)

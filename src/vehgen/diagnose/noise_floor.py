@@ -2,7 +2,8 @@
 
 The lead-in is what a run recorded before its first wheel met the hump. Where its noise is more than DIFFERENT times that of the top of the
 band, something shakes the vehicle that is no noise (an engine's line, say), and the top of the band is believed. A recording of what the
-vehicle does over a rough road has no quiet stretch; it takes the noise of the others, or that of the top of its band.
+vehicle does over a rough road has no quiet stretch; it takes the noise of the others, or that of the top of its band. Noise
+that the run files state is believed before any of this.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import scipy.optimize
 from numpy.typing import NDArray
 
 from vehgen.identify.misfit import Noises
-from vehgen.identify.noise import EVEN, SMALLEST_LEVEL, Noise, estimate_noise, road_answer, transform
+from vehgen.identify.noise import COLOUR_AT, EVEN, SMALLEST_LEVEL, Noise, estimate_noise, road_answer, transform
 from vehgen.identify.objective import BAND
 from vehgen.identify.trial import Trial
 from vehgen.measure import record_psd
@@ -26,8 +27,8 @@ SHORTEST = 0.8
 """A lead-in shorter than this [s] tells nothing."""
 MARGIN = 0.1
 """How long before the hump the lead-in ends [s]."""
-TOP = (41.0, 47.0)
-"""The top of the band [Hz]."""
+TOP = (1.025, 1.175)
+"""The top of the band lies just above what is compared: so many times its highest frequency (41 to 47 Hz above 40 Hz)."""
 DIFFERENT = 1.3
 SLOPES = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5)
 """Slopes of coloured noise that are tried."""
@@ -60,17 +61,19 @@ def find_noise_floor(trials: Sequence[Trial], band: tuple[float, float] = BAND) 
     for channels in dict.fromkeys(trial.channels for trial in trials):
         group = [trial for trial in trials if trial.channels == channels]
         quiet = [part for trial in group if (part := lead_in(trial)) is not None]
-        rough = np.sqrt(np.mean([top_of_band(part) ** 2 for part in (quiet or group)], axis=0))
+        rough = np.sqrt(np.mean([top_of_band(part, band) ** 2 for part in (quiet or group)], axis=0))
         shared = _coloured(quiet, rough, band) if quiet else Noise(EVEN, rough)
+        colour = (sum(TOP) / 2 * band[1] / COLOUR_AT) ** (shared.slope / 2)
         variance, weight = np.zeros((len(group), len(channels))), np.zeros((len(group), len(channels)))
         for i, trial in enumerate(group):
-            high = top_of_band(trial)
+            high = colour * top_of_band(trial, band)
             part = lead_in(trial)
             low = None if part is None else _from_lead_in([part], high, band, shared.slope, shared.levels)[0].sigma
             for j, channel in enumerate(channels):
                 name = f"{trial.name}: {channel}"
                 top[name] = float(high[j])
-                variance[i, j], weight[i, j] = high[j] ** 2, (TOP[1] - TOP[0]) * trial.measurement.dt * len(trial.measurement.time) / 2
+                duration = trial.measurement.dt * len(trial.measurement.time)
+                variance[i, j], weight[i, j] = high[j] ** 2, (TOP[1] - TOP[0]) * band[1] * duration / 2
                 if low is not None and part is not None:
                     lead[name] = float(low[j])
                     if low[j] > DIFFERENT * high[j]:
@@ -81,9 +84,10 @@ def find_noise_floor(trials: Sequence[Trial], band: tuple[float, float] = BAND) 
                         variance[i, j] = (min(variance[i, j], LARGEST * low[j] ** 2) * weight[i, j] + low[j] ** 2 * lines) / both
                         weight[i, j] = both
         power = np.array([np.mean(trial.measurement.values**2, axis=0) for trial in group])
-        sigma = np.sqrt(_smooth(variance, weight, power))
+        stated = np.array([[channel.noise or np.nan for channel in trial.measurement.channels] for trial in group])
+        sigma = np.where(np.isnan(stated), np.sqrt(_smooth(variance, weight, power)), stated)
         for i, trial in enumerate(group):
-            noises[trial.name] = Noise(shared.levels, sigma[i], shared.slope)
+            noises[trial.name] = Noise(shared.levels, sigma[i], shared.slope if np.isnan(stated).any() else 0.0)
     return NoiseFloor(noises, lead, top, tuple(corrected))
 
 
@@ -142,9 +146,10 @@ def lead_in(trial: Trial) -> Trial | None:
     return replace(trial, measurement=measurement)
 
 
-def top_of_band(trial: Trial) -> Array:
-    """Return the standard deviation of white noise that the top of the band shows, `shape (n_channels,)`."""
+def top_of_band(trial: Trial, band: tuple[float, float] = BAND) -> Array:
+    """Return the standard deviation of white noise that the top of a band [Hz] shows, `shape (n_channels,)`."""
     frequency, density = record_psd(trial.measurement.values, trial.measurement.dt, axis=0)
-    inside = (frequency >= TOP[0]) & (frequency <= TOP[1])
+    top = min(TOP[1] * band[1], frequency[-1])  # a slow recording shows less
+    inside = (frequency >= top * TOP[0] / TOP[1]) & (frequency <= top)
     # the median of an exponential variable is ln 2 of its mean; it forgives a line within the band
     return np.asarray(np.sqrt(np.median(density[inside], axis=0) / np.log(2) / (2 * trial.measurement.dt)))

@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.candidate import list_candidates
-from vehgen.diagnose.detection import BAND, Detection, amplitude_dependence, detect, kind_of_run, split_runs
+from vehgen.diagnose.detection import Detection, amplitude_dependence, detect, kind_of_run, split_runs
 from vehgen.diagnose.estimates import estimate, gain_interval, held_out_gain, unstable
 from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.judging import adds, chance, excess, needs_both, passes, seeds, tied, unfinished
@@ -63,7 +63,7 @@ def diagnose(
     effects: Sequence[Effect] | None = None,
     everything: bool = False,
     tell: Progress | None = None,
-    band: tuple[float, float] = BAND,
+    band: tuple[float, float] | None = None,
 ) -> Diagnosis:
     """Find what a vehicle's model lacks.
 
@@ -78,7 +78,7 @@ def diagnose(
     tell
         Told of progress.
     band
-        Frequencies compared [Hz].
+        Frequencies compared [Hz] (default: what the run files ask for).
 
     Returns
     -------
