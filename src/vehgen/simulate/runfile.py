@@ -208,12 +208,6 @@ class RunFile(Noun):
     recording: str | None = None
     band: tuple[Frequency, Frequency] | None = None
 
-    @model_validator(mode="after")
-    def _ascending(self) -> RunFile:
-        if self.band is not None and not self.band[0] < self.band[1]:
-            raise PydanticCustomError("joint", "`band` is [lowest, highest] frequency compared; the first must be the lower one")
-        return self
-
 
 @dataclass(frozen=True)
 class Run:
@@ -286,6 +280,8 @@ def _check(run: Run) -> None:
 
     if vehicle.axles and "speed" not in file.model_fields_set:
         raise InputError(f"the file lacks the key 'speed': {vehicle.name} has wheels", document.position)
+    if file.band is not None and not file.band[0] < file.band[1]:
+        raise InputError("`band` is [lowest, highest] frequency compared; the first must be the lower one", document.find(("band",)))
     dimensions = vehicle.dimensions
     if file.set is not None:
         known("parameter set", file.set, vehicle.sets, "set")
