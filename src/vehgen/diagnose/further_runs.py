@@ -1,0 +1,109 @@
+"""Runs that nobody has driven yet, and sensors that nobody has mounted: what an experiment can choose among.
+
+The humps have the shape and length of the highest one used, from half to twice its height; the speeds reach from 0.6 of the slowest over a
+hump to twice the fastest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from vehgen.identify.trial import Trial
+from vehgen.mechanics import Place
+from vehgen.mechanics.outputs import PointOutput
+from vehgen.road import ConstantSpeed, Hump, Track
+from vehgen.simulate import Scenario
+
+HEIGHTS = (0.5, 1.0, 1.5, 2.0)
+HIGHEST, LOWEST = 0.12, 0.01
+"""Heights of a hump that one lays out [m]."""
+FASTEST, SLOWEST = 8.0, 0.5
+"""Speeds over it, unless the runs were faster or slower [m/s]."""
+USUAL = (0.05, 2.0)
+"""Height [m] and speed [m/s] from which to begin where no run has a hump."""
+LEAD, AFTER = 1.5, 3.0
+"""Seconds recorded before the hump and after it."""
+NEAR = 0.15
+"""A sensor within this share of the body's length of an end is at that end."""
+
+
+@dataclass(frozen=True)
+class FurtherRun:
+    """A hump of a height and length [m] at a speed [m/s], and its scenario; `same` where the runs had a hump of that shape already."""
+
+    height: float
+    length: float
+    speed: float
+    scenario: Scenario
+    same: bool = True
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return f"{self.height:.3g} m at {self.speed:.3g} m/s"
+
+
+def list_runs(trials: Sequence[Trial]) -> list[FurtherRun]:
+    """Return the runs to choose among, gentlest first: by height, then by speed.
+
+    Parameters
+    ----------
+    trials
+        The runs driven so far; the first gives clock, footprint and other inputs.
+    """
+    known = [(part, trial.scenario.top_speed) for trial in trials for part in trial.scenario.track.parts if isinstance(part, Hump)]
+    shape = Hump.from_shape("half_sine", 0.0, 0.5, USUAL[0])
+    hump = max((hump for hump, _ in known), key=_height, default=shape)
+    top = _height(hump)
+    speeds = [speed for _, speed in known] or [USUAL[1]]
+    slow, fast = min(speeds), max(speeds)
+    heights = sorted({min(max(round(200 * factor * top) / 200, LOWEST), max(HIGHEST, top)) for factor in HEIGHTS})
+    wanted = {max(0.6 * slow, min(SLOWEST, slow)), slow, fast, *(min(factor * fast, max(FASTEST, fast)) for factor in (1.5, 2.0))}
+    return [
+        FurtherRun(height, hump.length, speed, _scenario(trials[0], hump, height / top, speed), bool(known))
+        for height in heights
+        for speed in sorted({round(10 * item) / 10 for item in wanted})
+    ]
+
+
+def _height(hump: Hump) -> float:
+    return float(np.abs(hump.shape(np.linspace(0.0, hump.length, 401))).max())
+
+
+def _scenario(trial: Trial, hump: Hump, scale: float, speed: float) -> Scenario:
+    old = trial.scenario
+    at = LEAD * speed + old.track.footprint
+    behind = float(trial.simulator.model.wheel_offsets(trial.values).max(initial=0.0))
+    track = Track((replace(hump, at=at),), old.track.footprint, scale)
+    duration = (at + hump.length + behind) / speed + AFTER
+    return replace(old, track=track, speed=ConstantSpeed(speed), duration=duration, start=0.0)
+
+
+def free_places(trial: Trial) -> list[PointOutput]:
+    """Return sensors that could be added: of acceleration at each end of a body that has none there, of pitch rate on one without."""
+    vehicle, model = trial.run.vehicle, trial.simulator.model
+    layout, channels = model.layout, trial.measurement.channels
+    entries = {(0, i): layout.place(vehicle, name) for i, name in enumerate((*vehicle.axles, *vehicle.hinges))}
+    places = {
+        (1, i): item.output.place.locate(vehicle, layout) + layout.bodies[item.output.place.body][0] for i, item in enumerate(channels)
+    }
+    numbers = model.evaluate({**entries, **places}, trial.values)
+    found = []
+    for body in vehicle.bodies:
+        supports = [name for name, axle in vehicle.axles.items() if axle.body == body]
+        supports += [name for name, hinge in vehicle.hinges.items() if body in hinge.points]
+        x = {name: numbers[0, i] for i, name in enumerate((*vehicle.axles, *vehicle.hinges)) if name in supports}
+        if not x:
+            continue
+        ends = dict.fromkeys((max(x, key=lambda name: x[name]), min(x, key=lambda name: x[name])))
+        reach = NEAR * max(max(x.values()) - min(x.values()), 1.0)
+        taken = [numbers[1, i] for i, item in enumerate(channels) if item.output.place.body == body and item.quantity == "acceleration"]
+        free = [end for end in ends if all(abs(x[end] - place) > reach for place in taken)]
+        found += [PointOutput(f"{body}_{end}_acceleration", Place(f"{body}_{end}", body, behind=end), "acceleration") for end in free]
+        if not any(item.output.place.body == body and item.quantity == "pitch_rate" for item in channels):
+            end = next(iter(ends))
+            found.append(PointOutput(f"{body}_{end}_pitch_rate", Place(f"{body}_{end}", body, behind=end), "pitch_rate"))
+    return found

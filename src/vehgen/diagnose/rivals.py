@@ -1,0 +1,174 @@
+"""Fitted models asked about runs that nobody has driven yet: what each predicts, and how far two of them are apart.
+
+How far A and B are apart is what B would still be wrong by if A were true and B were fitted to all runs, old and new:
+
+    d^2 = min over x of |W (y_A - y_B) - J x|^2 + x' L x
+
+with W the noise's whitener, J the derivatives of B's prediction by its parameters, its adjustments and what the new run does not know of
+itself (delay, speed, height), and L the information that the runs so far hold about them. It is linear about B's fit, and the expected
+difference of chi-squared between the two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.diagnose.fitting import HOLD, NUISANCES, Fit
+from vehgen.diagnose.further_runs import FurtherRun
+from vehgen.identify.misfit import Misfit, flatten
+from vehgen.identify.noise import Noise, transform
+from vehgen.identify.problem import Problem
+from vehgen.identify.trial import Trial
+from vehgen.measure import MeasuredChannel
+from vehgen.mechanics import Output
+from vehgen.mechanics.outputs import ElementOutput, PointOutput
+from vehgen.simulate import Simulator
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+SPREAD = 0.29
+"""Standard deviation of an effect's own parameter in the unit cube before any run: that of an even distribution."""
+ABSENT = 1e6
+"""A channel with so many times its noise counts as not there."""
+
+
+@dataclass(frozen=True)
+class Separation:
+    """How far two models are apart in a run: `distance` is d^2, over `count` whitened residuals; `x` where the refit ends."""
+
+    distance: float
+    count: int
+    x: Array
+
+
+@dataclass
+class Rival:
+    """A fitted model with the channels of `trial`; `noise` is theirs."""
+
+    fit: Fit
+    trial: Trial
+    noise: Noise
+    _answers: dict[str, Array] = field(default_factory=dict)
+    _locals: dict[tuple[str, tuple[str, ...]], tuple[Misfit, Array]] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, fit: Fit, channels: tuple[str, ...]) -> Rival:
+        """Return the rival that records `channels` as the fit's own runs did, with the most noise found in any of them."""
+        misfit = fit.polished.misfit
+        group = [trial for trial in misfit.problem.trials if trial.channels == channels]
+        noises = [misfit.noises[trial.name] for trial in group]
+        return cls(fit, group[0], Noise(noises[0].levels, np.max([item.sigma for item in noises], axis=0)))
+
+    def with_outputs(self, outputs: Sequence[PointOutput], sigma: Array) -> Rival:
+        """Return the rival with more channels, of noise `sigma shape (len(outputs),)`; compiles a simulator."""
+        measurement = self.trial.measurement
+        added = tuple(MeasuredChannel(item.name, item.place.name, item.quantity, item) for item in outputs)
+        channels = (*measurement.channels, *added)
+        simulator = self.simulator(tuple(channel.output for channel in channels))
+        values = simulator.model.values(overrides=self.trial.run.values())
+        blank = np.zeros((len(measurement.time), len(channels)))
+        trial = replace(self.trial, simulator=simulator, values=values, measurement=replace(measurement, values=blank, channels=channels))
+        return Rival(self.fit, trial, Noise(self.noise.levels, np.concatenate([self.noise.sigma, sigma])))
+
+    def simulator(self, outputs: Sequence[Output]) -> Simulator:
+        """Compile the model with other outputs."""
+        return Simulator(self.trial.run.vehicle, outputs, self.trial.run.forces())
+
+    def misfit(self, run: FurtherRun, noise: Noise | None = None) -> Misfit:
+        """Return the misfit of this model over a run that recorded nothing."""
+        fitted = self.fit.polished.misfit
+        time = run.scenario.time[:: run.scenario.keep]
+        measurement = replace(self.trial.measurement, time=time, values=np.zeros((len(time), len(self.trial.channels))))
+        trial = replace(self.trial, name=run.name, scenario=run.scenario, measurement=measurement)
+        problem = Problem((trial,), fitted.problem.space)
+        noises = {run.name: noise or self.noise}
+        return Misfit(problem, noises, self.fit.polished.values, NUISANCES, fitted.band, fitted.shared)
+
+    def local(self, run: FurtherRun, channels: tuple[str, ...]) -> tuple[Misfit, Array]:
+        """Return the misfit over a run with some channels only, and its derivatives at the fit."""
+        key = run.name, channels
+        if key not in self._locals:
+            kept = np.isin(self.trial.channels, channels)
+            misfit = self.misfit(run, Noise(self.noise.levels, np.where(kept, 1.0, ABSENT) * self.noise.sigma))
+            self._locals[key] = misfit, misfit.jacobian(self.x)
+        return self._locals[key]
+
+    @cached_property
+    def x(self) -> Array:
+        """The fitted parameters and adjustments, then the new run's errors, none."""
+        misfit = self.fit.polished.misfit
+        own = misfit.n_parameters + len(misfit.shared)
+        return np.concatenate([self.fit.polished.x[:own], np.zeros(len(NUISANCES.names))])
+
+    @cached_property
+    def information(self) -> Array:
+        """What the runs so far and the springs of the fit say of parameters and adjustments, `shape (n, n)`."""
+        misfit = self.fit.polished.misfit
+        n = misfit.n_parameters
+        own = 0 if self.fit.candidate is None else len(self.fit.candidate.parameters)
+        jacobian = misfit.jacobian(self.fit.polished.x)
+        whole = jacobian.T @ jacobian
+        whole[:n, :n] += np.diag(np.concatenate([np.full(n - own, HOLD), np.full(own, SPREAD)]) ** -2.0)
+        k = n + len(misfit.shared)
+        return np.asarray(whole[:k, :k] - whole[:k, k:] @ np.linalg.solve(whole[k:, k:], whole[k:, :k]))
+
+    def predict(self, run: FurtherRun) -> Array:
+        """Return what its channels would read, `shape (n_samples, n_channels)`."""
+        if run.name not in self._answers:
+            self._answers[run.name] = self.misfit(run).simulate(self.x)[0]
+        return self._answers[run.name]
+
+    def travels(self, run: FurtherRun, axles: Sequence[str]) -> Array:
+        """Return the travel of the suspensions of axles, `shape (n_samples, len(axles))` [m]; compiles a simulator."""
+        simulator = self.simulator([ElementOutput(f"travel of {name}", name, "suspension_travel") for name in axles])
+        trial = replace(self.trial, simulator=simulator, values=simulator.model.values(overrides=self.trial.run.values()))
+        misfit, scenario = self.fit.polished.misfit, run.scenario
+        for item, value in zip(misfit.shared, misfit.adjusted(self.fit.polished.x), strict=True):
+            scenario = item.scenario(scenario, float(value))
+        return np.asarray(misfit.problem.respond(self.fit.polished.values[None], trial, scenario)[0][0])
+
+
+def at_most(one: Rival, other: Rival, run: FurtherRun, channels: Sequence[str]) -> float:
+    """Return a distance that no refit and no roughness of the road can exceed, quickly; 0 where a prediction is not finite."""
+    if not (np.isfinite(one.predict(run)).all() and np.isfinite(other.predict(run)).all()):
+        return 0.0
+    dt = one.trial.measurement.dt
+    kept = np.isin(one.trial.channels, channels)
+    distance = (np.abs(_difference(one, other, run)) ** 2).sum(axis=0) / (dt * one.noise.sigma**2)
+    return float(distance[kept].sum())
+
+
+def separate(truth: Rival, fitted: Rival, run: FurtherRun, channels: tuple[str, ...]) -> Separation:
+    """Return how far `fitted` stays from the prediction of `truth` after its refit to all runs."""
+    misfit, jacobian = fitted.local(run, channels)
+    lines = _difference(truth, fitted, run)
+    residuals = np.concatenate([flatten(misfit.whiten(0, lines)), np.zeros(len(NUISANCES.names))])
+    k = len(fitted.information)
+    normal = jacobian.T @ jacobian
+    normal[:k, :k] += fitted.information
+    slope = jacobian.T @ residuals
+    step = -np.linalg.lstsq(normal, slope, rcond=1e-12)[0]
+    x = fitted.x + step
+    x[: misfit.n_parameters] = np.clip(x[: misfit.n_parameters], 0.0, 1.0)
+    return Separation(max(float(residuals @ residuals + slope @ step), 0.0), 2 * len(lines) * len(channels), x)
+
+
+def peak(truth: Rival, fitted: Rival, run: FurtherRun, channels: Sequence[str], x: Array) -> tuple[str, float]:
+    """Return the channel in which the predictions differ most, `fitted` at x, and by how many standard deviations of its noise."""
+    left = np.abs(truth.predict(run) - fitted.misfit(run).simulate(x)[0]).max(axis=0) / fitted.noise.sigma
+    left = np.where(np.isin(fitted.trial.channels, channels), np.nan_to_num(left), -1.0)
+    best = int(np.argmax(left))
+    return fitted.trial.channels[best], float(left[best])
+
+
+def _difference(truth: Rival, fitted: Rival, run: FurtherRun) -> Complex:
+    """Return the spectral lines of the difference of two predictions within the band, `shape (n_lines, n_channels)`."""
+    difference, dt = truth.predict(run) - fitted.predict(run), fitted.trial.measurement.dt
+    frequency = np.fft.rfftfreq(len(difference), dt)
+    low, high = fitted.fit.polished.misfit.band
+    return transform(difference, dt, (frequency >= low) & (frequency <= high))
