@@ -7,16 +7,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import combinations, permutations
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.further_runs import FurtherRun, free_places, list_runs
+from vehgen.diagnose.proposal import Proposal, drive, listed, sensor_text
 from vehgen.diagnose.rivals import Rival, Separation, at_most, peak, separate
+from vehgen.identify.trial import Trial
 from vehgen.measure import MeasuredChannel
 from vehgen.mechanics.outputs import PointOutput
 
@@ -31,6 +33,8 @@ NOTHING = 1.0
 """Below this distance two models are the same."""
 VISIBLE = 1.5
 """chi at which an effect is strong enough to be named."""
+WORTH = 2.0
+"""A sensor is worth adding where it gains so many times the distance."""
 REPEATS = 20
 """More repeats than this nobody drives."""
 TRAVEL = 1e-3
@@ -39,44 +43,6 @@ PHONE = {"acceleration": 0.0125, "pitch_rate": 5e-4}
 """Noise of a phone where the runs do not tell [m/s^2, rad/s]."""
 Array = NDArray[np.float64]
 Tell = Callable[[str, int, int, str], None]
-
-
-@dataclass(frozen=True)
-class Proposal:
-    """What to measure next.
-
-    Attributes
-    ----------
-    models
-        What is to be told apart.
-    height, length, speed
-        The hump [m] and the speed over it [m/s]; None where no run helps.
-    distance
-        Expected difference of chi-squared, after a refit of the wrong model to all runs.
-    channel, times
-        Where the predictions then differ most, and by how many standard deviations of its noise.
-    added
-        A sensor to add, in words; None where those of the runs suffice.
-    separates
-        Whether one such run is enough.
-    text
-        All this in a sentence.
-    """
-
-    models: tuple[str, ...]
-    height: float | None
-    length: float | None
-    speed: float | None
-    distance: float
-    channel: str
-    times: float
-    added: str | None
-    separates: bool
-    text: str
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
-        return {**asdict(self), "models": list(self.models)}
 
 
 @dataclass(frozen=True)
@@ -110,11 +76,15 @@ def propose(detection: Detection, fits: Sequence[Fit], tell: Tell | None = None)
     if len(fits) < 2:
         return None
     names = tuple(fit.label for fit in fits)
-    found = _search(detection, list(permutations(fits, 2)), lambda item: item.distance >= ENOUGH, tell)
+    pairs = list(permutations(fits, 2))
+    found = _search(detection, pairs, lambda item: item.distance >= ENOUGH, None, tell)
+    if found is None or found.separation.distance < ENOUGH:
+        found = _search(detection, pairs, lambda item: item.distance >= ENOUGH, found, tell, adding=True)
     if found is None or found.separation.distance < NOTHING:
         return _same(detection, fits, names)
     channel, times = _peak(found)
-    told = f"{_drive(found)}: the predictions of {_and(names)} then differ by {times:.2g} times the noise at {channel}"
+    told = f"{drive(found.run, found.added)}: the predictions of {listed(names)} then differ by {times:.2g} times the noise at {channel}"
+    told += f", by {math.sqrt(found.separation.distance):.2g} standard deviations in all"
     separates = found.separation.distance >= ENOUGH
     if not separates:
         repeats = math.ceil(ENOUGH / found.separation.distance)
@@ -129,40 +99,45 @@ def propose_stronger(detection: Detection, fit: Fit, tell: Tell | None = None) -
     -------
     None where no run makes any difference.
     """
-    found = _search(detection, [(fit, detection.base)], lambda item: 1 + item.distance / item.count >= VISIBLE**2, tell)
+    found = _search(detection, [(fit, detection.base)], lambda item: 1 + item.distance / item.count >= VISIBLE**2, None, tell)
     if found is None or found.separation.distance < NOTHING:
         return None
     channel, times = _peak(found)
     chi = math.sqrt(1 + found.separation.distance / found.separation.count)
-    told = f"{_drive(found)}: {fit.label} would then leave the base model at chi {chi:.2f}, {times:.2g} times the noise at {channel}"
+    told = f"{drive(found.run)}: {fit.label} would then leave the base model at chi {chi:.2f}, {times:.2g} times the noise at {channel}"
     return _proposal((fit.label, detection.base.label), found, channel, times, chi >= VISIBLE, told)
 
 
 def _search(
-    detection: Detection, pairs: Sequence[tuple[Fit, Fit]], enough: Callable[[Separation], bool], tell: Tell | None
+    detection: Detection,
+    pairs: Sequence[tuple[Fit, Fit]],
+    enough: Callable[[Separation], bool],
+    best: _Found | None,
+    tell: Tell | None,
+    adding: bool = False,
 ) -> _Found | None:
-    """Return the first run that is enough, gentlest first, with the runs' own sensors and then with one more; else the best."""
-    best: _Found | None = None
+    """Return the first run that is enough, gentlest first, with the runs' own sensors or one more; else what is best."""
     fits = list({id(fit): fit for pair in pairs for fit in pair}.values())
-    for adding in (False, True):
-        for channels in dict.fromkeys(trial.channels for trial in detection.problem.trials):
-            rivals = {id(fit): Rival.of(fit, channels) for fit in fits}
-            extra: list[PointOutput] = []
-            if adding:
-                extra = free_places(rivals[id(fits[0])].trial)
-                sigma = _sigma(rivals[id(fits[0])], extra)
-                rivals = {key: rival.with_outputs(extra, sigma) for key, rival in rivals.items()} if extra else {}
-            runs = _feasible(detection, list(rivals.values()))
-            options: list[tuple[str | None, tuple[str, ...]]] = [(None, channels)]
-            if adding:
-                options = [(_sensor_text(item), (*channels, item.name)) for item in extra]
-            for done, run in enumerate(runs):
-                if tell is not None:
-                    tell("next run", done, len(runs), run.name)
-                for added, own in options:
-                    best = _better(best, run, [(rivals[id(a)], rivals[id(b)]) for a, b in pairs], own, added)
-                    if best is not None and enough(best.separation):
-                        return best
+    trials = (*detection.problem.trials, *detection.held_out)
+    for channels in dict.fromkeys(trial.channels for trial in detection.problem.trials):
+        rivals = {id(fit): Rival.of(fit, channels) for fit in fits}
+        options: list[tuple[str | None, tuple[str, ...]]] = [(None, channels)]
+        first = rivals[id(fits[0])]
+        if adding:
+            extra = free_places(first.trial)
+            sigma = _sigma(first, extra)
+            rivals = {key: rival.with_outputs(extra, sigma) for key, rival in rivals.items()} if extra else rivals
+            options = [(sensor_text(item), (*channels, item.name)) for item in extra]
+        runs = list_runs((first.trial, *trials)) if options else []
+        for done, run in enumerate(runs):
+            if tell is not None:
+                tell("next run", done, len(runs), run.name)
+            if not _feasible(run, trials, list(rivals.values())):
+                continue
+            for added, own in options:
+                best = _better(best, run, [(rivals[id(a)], rivals[id(b)]) for a, b in pairs], own, added)
+                if best is not None and enough(best.separation):
+                    return best
     return best
 
 
@@ -171,6 +146,7 @@ def _better(
 ) -> _Found | None:
     """Return what is better, the best so far or a run, looking closely only where the run could be."""
     reached = best.separation.distance if best is not None else 0.0
+    reached *= WORTH if added is not None and best is not None and best.added is None else 1.0
     if min(at_most(*pair, run, channels) for pair in pairs) <= reached:
         return best
     worst: _Found | None = None
@@ -183,14 +159,11 @@ def _better(
     return worst
 
 
-def _feasible(detection: Detection, rivals: Sequence[Rival]) -> list[FurtherRun]:
-    """Return the runs in which no model predicts an acceleration that nobody would drive through, gentlest first."""
-    if not rivals:
-        return []
-    trials = (rivals[0].trial, *detection.problem.trials, *detection.held_out)
+def _feasible(run: FurtherRun, trials: Sequence[Trial], rivals: Sequence[Rival]) -> bool:
+    """Return whether no model predicts an acceleration that nobody would drive through."""
     limit = max([ROUGHEST, *(2 * _acceleration(trial.measurement.values, trial.measurement.channels) for trial in trials)])
     channels = rivals[0].trial.measurement.channels
-    return [run for run in list_runs(trials) if all(_acceleration(rival.predict(run), channels) <= limit for rival in rivals)]
+    return all(_acceleration(rival.predict(run), channels) <= limit for rival in rivals)
 
 
 def _acceleration(values: Array, channels: Sequence[MeasuredChannel]) -> float:
@@ -212,8 +185,9 @@ def _same(detection: Detection, fits: Sequence[Fit], names: tuple[str, ...]) -> 
     rivals = [Rival.of(fit, channels) for fit in fits]
     axles = [name for name, axle in detection.problem.trials[0].run.vehicle.axles.items() if axle.suspension is not None]
     axles = [name for name in axles if all(rival.trial.run.vehicle.axles[name].suspension is not None for rival in rivals)]
-    runs = _feasible(detection, rivals)
-    told = f"{_and(names)} are the same in every run with sensors on the bodies"
+    trials = (*detection.problem.trials, *detection.held_out)
+    runs = [run for run in list_runs((rivals[0].trial, *trials)) if _feasible(run, trials, rivals)]
+    told = f"{listed(names)} are the same in every run with sensors on the bodies"
     if axles and runs:
         run = runs[-1]
         travels = [rival.travels(run, axles) for rival in rivals]
@@ -236,19 +210,3 @@ def _peak(found: _Found) -> tuple[str, float]:
 def _proposal(names: tuple[str, ...], found: _Found, channel: str, times: float, separates: bool, told: str) -> Proposal:
     run = found.run
     return Proposal(names, run.height, run.length, run.speed, found.separation.distance, channel, times, found.added, separates, told)
-
-
-def _drive(found: _Found) -> str:
-    run = found.run
-    which = "the same hump" if run.same else f"a hump {run.length:.3g} m long"
-    first = f"add {found.added} and " if found.added else ""
-    return f"{first}drive over {which}, {run.height:.3g} m high, at {run.speed:.3g} m/s"
-
-
-def _sensor_text(output: PointOutput) -> str:
-    quantity = "an accelerometer" if output.quantity == "acceleration" else "a pitch-rate sensor"
-    return f"{quantity} on {output.place.body} at {output.place.behind}"
-
-
-def _and(names: Sequence[str]) -> str:
-    return f"{', '.join(names[:-1])} and {names[-1]}"
