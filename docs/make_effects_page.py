@@ -24,6 +24,41 @@ sensors:
   L2: {body: semitrailer, behind: fifth_wheel, distance: 9.115 m, channels: {acceleration: L2_az, pitch_rate: L2_q}}
 recording: nothing.csv
 """
+OWN = """\
+## Your own effect
+
+One entry of a YAML file, given to `effects` and `diagnose` with `--library my_effects.yaml` (repeatable):
+
+```yaml
+effects:
+  soft_damper:
+    title: Damper with a soft centre
+    meaning: a damper whose valves close as it moves faster
+    signature: damping that grows with the hump's height and the speed
+    attaches: suspension                # suspension, tyre or hinge
+    force: c3*v^3 + k3*d^3              # of travel d, rate v and its parameters; compression is positive
+    parameters:
+      c3: {unit: N s^3/m^3, low: 0.01, high: 100, starts: [0.3, 3], times: c/(0.1 m/s)^2, meaning: cubic damping}
+      k3: {unit: N/m^3, low: 1e4, high: 1e9, starts: [1e7], meaning: cubic stiffness}
+  symmetric_stop:
+    title: Stops of equal clearance
+    meaning: bump and rebound stops that are met after the same travel
+    attaches: suspension
+    law: {bump_stop: {k: 2 * k, clearance: gap, rebound: gap}}
+    parameters:
+      k: {unit: N/m, low: 0.25, high: 15, starts: [3], times: k, meaning: half the stiffness of the stops}
+      gap: {unit: mm, low: 1, high: 60, starts: [8, 15, 25], meaning: clearance}
+```
+
+An entry has either `force`, an expression as of [your own law](force-laws.md#your-own-law), or `law`, one of the
+[force laws](force-laws.md) with each of its parameters a number with its unit or an expression of the effect's. `low`, `high` and `starts`
+count in `unit`, or with `times` as multiples of a size of the place: an expression of its static `load`, its suspension's `k` and `c`,
+its tyre's `kt`, its body's `mass`, `inertia` and `length`, and a typical `travel`. `signature` and `source` may be left out.
+Units are checked when the file is read.
+`python -m vehgen schema --effects` prints the JSON Schema.
+
+What needs more than a force law (a new body, say) is an `Effect` object in any installed package that names it under the entry point group
+`vehgen.effects`."""
 SHOWN = {"hinge_friction": "L2_q", "hinge_stiffness": "L2_q", "walking_beam": "L2_az", "cargo_module": "L2_az", "sensor_delay": "L2_az"}
 """The channel that shows an effect best; L1_az otherwise."""
 PLACES = {"walking_beam": "axle4+axle5", "cargo_module": "semitrailer", "frame_bending": "semitrailer", "sensor_delay": "L2"}
@@ -40,7 +75,7 @@ def page() -> str:
         "(static load, stiffness, typical travel). Every picture shows tractor5 over a hump of 50 mm at 2.5 m/s, without the",
         "effect (grey) and with it (blue), at the strength at which a search begins.",
         "",
-        "An effect of your own is an `Effect` object in any installed package that names it under the entry point group `vehgen.effects`.",
+        *OWN.splitlines(),
         "",
     ]
     for effect in EFFECTS.values():

@@ -11,14 +11,15 @@ EXAMPLE = "python -m vehgen effects"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
+    parser.add_argument("--library", metavar="FILE", action="append", default=[], help="a file of your own effects; may be repeated")
     add_json(parser)
 
 
 def run(options: argparse.Namespace) -> None:
     """Print the library."""
-    from vehgen.effects import library
+    from vehgen.effects import extended_library
 
-    known = library()
+    known = extended_library(options.library)
     if options.json:
         print_json(
             [

@@ -1,4 +1,4 @@
-"""Print the JSON Schema of the vehicle file (or, with --run, of the run file) for editors."""
+"""Print the JSON Schema of the vehicle file (or, with --run or --effects, of those files) for editors."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ EXAMPLE = "python -m vehgen schema > vehicle.schema.json"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
-    parser.add_argument("--run", action="store_true", dest="run_file", help="the schema of the run file")
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--run", action="store_true", dest="run_file", help="the schema of the run file")
+    which.add_argument("--effects", action="store_true", help="the schema of a file of your own effects")
     parser.add_argument("--json", action="store_true", help="accepted for uniformity: the output is JSON always")
 
 
@@ -21,6 +23,11 @@ def run(options: argparse.Namespace) -> None:
         from vehgen.simulate.runfile import RunFile
 
         print_json({"$schema": "https://json-schema.org/draft/2020-12/schema", **RunFile.model_json_schema()})
+        return
+    if options.effects:
+        from vehgen.effects.entry import effects_schema
+
+        print_json(effects_schema())
         return
     from vehgen.vehicle.schema import vehicle_schema
 
