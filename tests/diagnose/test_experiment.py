@@ -17,7 +17,7 @@ from vehgen.mechanics import Place
 from vehgen.mechanics.outputs import ElementOutput, PointOutput
 from vehgen.simulate import Simulator, load_run
 
-LOW = ((0.02, 2.0), (0.03, 2.5), (0.03, 4.0), (0.02, 3.0))
+LOW = ((0.02, 2.0), (0.03, 2.5), (0.03, 4.0))
 TRUTH = Effect("cubic_stiffness", "rear", {"k3": 3e7})
 LOUD = Noise(0.1, 0.005, 0.05)
 
@@ -65,7 +65,7 @@ def test_laws_that_low_humps_cannot_tell_apart_want_a_higher_one(tied, proposal)
 
 def test_the_proposed_run_keeps_what_was_promised(tied, proposal, tmp_path_factory):
     _, fits = fit(record(tmp_path_factory.mktemp("more"), tmp_path_factory, (*LOW, (proposal.height, proposal.speed))))
-    assert "run4" in fits[0].runs
+    assert "run3" in fits[0].runs
     assert lead(fits) - lead(tied[1]) == pytest.approx(proposal.distance, rel=0.5)
     assert lead(fits) > 25
 
@@ -94,7 +94,7 @@ def test_no_refit_can_exceed_the_quick_bound(tied):
     channels = detection.problem.trials[0].channels
     one, other = (Rival.of(item, channels) for item in fits)
     for run in list_runs(detection.problem.trials)[2::5]:
-        assert 0 <= separate(one, other, run, channels).distance <= at_most(one, other, run, channels)
+        assert 0 <= separate(one, other, run, channels).distance <= at_most(one, other, run, channels).distance
         assert separate(one, other, run, channels[:1]).distance <= separate(one, other, run, channels).distance + 1e-6
 
 
@@ -130,18 +130,30 @@ def test_added_channels_are_simulated_beside_the_old_ones(tied):
     trial = detection.problem.trials[0]
     rival = Rival.of(fits[0], trial.channels)
     run = list_runs(detection.problem.trials)[0]
-    middle = PointOutput("middle", Place("middle", "body"), "acceleration")
-    more = rival.with_outputs([middle], np.array([0.01]))
+    quarter = PointOutput("quarter", Place("quarter", "body", behind="front", distance=0.7), "acceleration")
+    more = rival.with_outputs([quarter])
     assert more.predict(run)[:, :-1] == pytest.approx(rival.predict(run), abs=1e-9)
+    assert more.noise.sigma[-1] == pytest.approx(rival.noise.sigma[[0, 2]].mean())
     front, rear = rival.predict(run)[:, 0], rival.predict(run)[:, 2]
-    share = fits[0].polished.values[list(fits[0].polished.misfit.problem.space.names).index("Lf")] / 2.8
-    assert more.predict(run)[:, -1] == pytest.approx((1 - share) * front + share * rear, abs=1e-6)
+    assert more.predict(run)[:, -1] == pytest.approx(0.75 * front + 0.25 * rear, abs=1e-6)
     travel = rival.travels(run, ["rear"])[:, 0]
     vehicle = rival.trial.run.vehicle
     simulator = Simulator(vehicle, [ElementOutput("travel", "rear", "suspension_travel")])
     values = dict(zip(fits[0].polished.misfit.problem.space.names, fits[0].polished.values, strict=True))
     alone = simulator.run(simulator.parameters(values), run.scenario).responses[0, :, 0]
     assert travel == pytest.approx(alone, abs=1e-9)
+
+
+def test_a_sensor_is_added_where_those_there_do_not_suffice(tied, monkeypatch):
+    quarter = PointOutput("quarter", Place("quarter", "body", behind="front", distance=0.7), "acceleration")
+    monkeypatch.setattr(experiment, "free_places", lambda trial: [quarter])
+    monkeypatch.setattr(experiment, "ENOUGH", 5e3)
+    monkeypatch.setattr(experiment, "WORTH", 0.5)
+    found = propose(*tied)
+    assert found.added == "an accelerometer on body at front"
+    assert found.text.startswith("add an accelerometer on body at front and drive over the same hump")
+    monkeypatch.setattr(experiment, "WORTH", 1e3)
+    assert propose(*tied).added is None
 
 
 TRACTOR = """vehicle: tractor5.yaml

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import combinations, permutations
 from typing import TYPE_CHECKING
 
@@ -16,11 +17,10 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.further_runs import FurtherRun, free_places, list_runs
-from vehgen.diagnose.proposal import Proposal, drive, listed, sensor_text
+from vehgen.diagnose.proposal import Proposal, Tell, drive, listed, sensor_text
 from vehgen.diagnose.rivals import Rival, Separation, at_most, peak, separate
 from vehgen.identify.trial import Trial
 from vehgen.measure import MeasuredChannel
-from vehgen.mechanics.outputs import PointOutput
 
 if TYPE_CHECKING:
     from vehgen.diagnose.pipeline import Detection
@@ -36,13 +36,10 @@ VISIBLE = 1.5
 WORTH = 2.0
 """A sensor is worth adding where it gains so many times the distance."""
 REPEATS = 20
-"""More repeats than this nobody drives."""
+"""Nobody drives more repeats."""
 TRAVEL = 1e-3
 """Difference of travel [m] that a displacement sensor across a suspension shows."""
-PHONE = {"acceleration": 0.0125, "pitch_rate": 5e-4}
-"""Noise of a phone where the runs do not tell [m/s^2, rad/s]."""
 Array = NDArray[np.float64]
-Tell = Callable[[str, int, int, str], None]
 
 
 @dataclass(frozen=True)
@@ -77,9 +74,10 @@ def propose(detection: Detection, fits: Sequence[Fit], tell: Tell | None = None)
         return None
     names = tuple(fit.label for fit in fits)
     pairs = list(permutations(fits, 2))
-    found = _search(detection, pairs, lambda item: item.distance >= ENOUGH, None, tell)
-    if found is None or found.separation.distance < ENOUGH:
-        found = _search(detection, pairs, lambda item: item.distance >= ENOUGH, found, tell, adding=True)
+    found: _Found | None = None
+    for adding in (False, True):
+        if found is None or found.separation.distance < ENOUGH:
+            found = _search(detection, pairs, lambda item: item.distance >= ENOUGH, found, tell, adding)
     if found is None or found.separation.distance < NOTHING:
         return _same(detection, fits, names)
     channel, times = _peak(found)
@@ -87,7 +85,7 @@ def propose(detection: Detection, fits: Sequence[Fit], tell: Tell | None = None)
     told += f", by {math.sqrt(found.separation.distance):.2g} standard deviations in all"
     separates = found.separation.distance >= ENOUGH
     if not separates:
-        repeats = math.ceil(ENOUGH / found.separation.distance)
+        repeats = math.ceil(ENOUGH / found.separation.distance)  # distances of equal runs add up
         told += f"; it takes {repeats} such runs to be sure" if repeats <= REPEATS else ", too little to be sure"
     return _proposal(names, found, channel, times, separates, told)
 
@@ -125,58 +123,68 @@ def _search(
         first = rivals[id(fits[0])]
         if adding:
             extra = free_places(first.trial)
-            sigma = _sigma(first, extra)
-            rivals = {key: rival.with_outputs(extra, sigma) for key, rival in rivals.items()} if extra else rivals
+            rivals = {key: rival.with_outputs(extra) for key, rival in rivals.items()} if extra else rivals
             options = [(sensor_text(item), (*channels, item.name)) for item in extra]
+        joined = [(rivals[id(a)], rivals[id(b)]) for a, b in pairs]
         runs = list_runs((first.trial, *trials)) if options else []
+        failed = []
         for done, run in enumerate(runs):
             if tell is not None:
                 tell("next run", done, len(runs), run.name)
-            if not _feasible(run, trials, list(rivals.values())):
-                continue
-            for added, own in options:
-                best = _better(best, run, [(rivals[id(a)], rivals[id(b)]) for a, b in pairs], own, added)
-                if best is not None and enough(best.separation):
-                    return best
+            if _feasible(run, trials, list(rivals.values())):
+                for added, own in options:
+                    found = _weakest(run, joined, own, added, lambda item: not enough(item))
+                    if enough(found.separation):
+                        return found
+                    failed.append(found)
+        best = _best(best, failed, joined)
     return best
 
 
-def _better(
-    best: _Found | None, run: FurtherRun, pairs: Sequence[tuple[Rival, Rival]], channels: tuple[str, ...], added: str | None
-) -> _Found | None:
-    """Return what is better, the best so far or a run, looking closely only where the run could be."""
-    reached = best.separation.distance if best is not None else 0.0
-    reached *= WORTH if added is not None and best is not None and best.added is None else 1.0
-    if min(at_most(*pair, run, channels) for pair in pairs) <= reached:
-        return best
-    worst: _Found | None = None
-    for pair in pairs:
-        separation = separate(*pair, run, channels)
-        if separation.distance <= reached:
-            return best
-        if worst is None or separation.distance < worst.separation.distance:
-            worst = _Found(run, pair, separation, channels, added)
-    return worst
+def _best(best: _Found | None, failed: Sequence[_Found], pairs: Sequence[tuple[Rival, Rival]]) -> _Found | None:
+    """Return what is best of runs that are not enough, looking closely only where a run could be better than the best so far."""
+    for item in sorted(failed, key=lambda item: -item.separation.distance):
+        reached = best.separation.distance if best is not None else 0.0
+        reached *= WORTH if item.added is not None and best is not None and best.added is None else 1.0
+        if item.separation.distance > reached:
+            found = _weakest(item.run, pairs, item.channels, item.added, partial(_within, reached))
+            best = found if found.separation.distance > reached else best
+    return best
+
+
+def _within(reached: float, item: Separation) -> bool:
+    return item.distance <= reached
+
+
+def _weakest(
+    run: FurtherRun,
+    pairs: Sequence[tuple[Rival, Rival]],
+    channels: tuple[str, ...],
+    added: str | None,
+    stop: Callable[[Separation], bool],
+) -> _Found:
+    """Return the pair that a run separates least, or the first found that is reason to `stop`."""
+    bounds = sorted(((at_most(*pair, run, channels), pair) for pair in pairs), key=lambda item: item[0].distance)
+    separation, pair = bounds[0]
+    if stop(separation):
+        return _Found(run, pair, separation, channels, added)
+    found = []
+    for _, pair in bounds:
+        found.append(_Found(run, pair, separate(*pair, run, channels), channels, added))
+        if stop(found[-1].separation):
+            return found[-1]
+    return min(found, key=lambda item: item.separation.distance)
 
 
 def _feasible(run: FurtherRun, trials: Sequence[Trial], rivals: Sequence[Rival]) -> bool:
     """Return whether no model predicts an acceleration that nobody would drive through."""
     limit = max([ROUGHEST, *(2 * _acceleration(trial.measurement.values, trial.measurement.channels) for trial in trials)])
-    channels = rivals[0].trial.measurement.channels
-    return all(_acceleration(rival.predict(run), channels) <= limit for rival in rivals)
+    return all(_acceleration(rival.predict(run), rival.trial.measurement.channels) <= limit for rival in rivals)
 
 
 def _acceleration(values: Array, channels: Sequence[MeasuredChannel]) -> float:
     columns = [i for i, channel in enumerate(channels) if channel.quantity == "acceleration"]
     return float(np.abs(values[:, columns]).max(initial=0.0))
-
-
-def _sigma(rival: Rival, outputs: Sequence[PointOutput]) -> Array:
-    """Return the noise of sensors to add: that of the runs' own of the same quantity."""
-    known: dict[str, list[float]] = {}
-    for channel, sigma in zip(rival.trial.measurement.channels, rival.noise.sigma, strict=True):
-        known.setdefault(channel.quantity, []).append(float(sigma))
-    return np.array([np.mean(known.get(item.quantity, [PHONE[item.quantity]])) for item in outputs])
 
 
 def _same(detection: Detection, fits: Sequence[Fit], names: tuple[str, ...]) -> Proposal:
@@ -187,7 +195,7 @@ def _same(detection: Detection, fits: Sequence[Fit], names: tuple[str, ...]) -> 
     axles = [name for name in axles if all(rival.trial.run.vehicle.axles[name].suspension is not None for rival in rivals)]
     trials = (*detection.problem.trials, *detection.held_out)
     runs = [run for run in list_runs((rivals[0].trial, *trials)) if _feasible(run, trials, rivals)]
-    told = f"{listed(names)} are the same in every run with sensors on the bodies"
+    told = f"{listed(names)} predict the same in every hump run looked at, on the bodies"
     if axles and runs:
         run = runs[-1]
         travels = [rival.travels(run, axles) for rival in rivals]
@@ -199,7 +207,7 @@ def _same(detection: Detection, fits: Sequence[Fit], names: tuple[str, ...]) -> 
                 f"; measure {sensor}: over a hump {run.height:.3g} m high at {run.speed:.3g} m/s they differ by {1e3 * apart[best]:.2g} mm"
             )
             return Proposal(names, run.height, run.length, run.speed, 0.0, sensor, float(apart[best] / TRAVEL), sensor, True, told)
-        told += " and on the axles"
+        told += " and across the suspensions"
     return Proposal(names, None, None, None, 0.0, "", 0.0, None, False, told + ": nothing that can be measured tells them apart")
 
 

@@ -37,6 +37,10 @@ ABSENT = 1e6
 """A channel with so many times its noise counts as not there."""
 
 
+PHONE = {"acceleration": 0.0125, "pitch_rate": 5e-4}
+"""Noise of a phone where the runs do not tell [m/s^2, rad/s]."""
+
+
 @dataclass(frozen=True)
 class Separation:
     """How far two models are apart in a run: `distance` is d^2, over `count` whitened residuals; `x` where the refit ends."""
@@ -64,8 +68,12 @@ class Rival:
         noises = [misfit.noises[trial.name] for trial in group]
         return cls(fit, group[0], Noise(noises[0].levels, np.max([item.sigma for item in noises], axis=0)))
 
-    def with_outputs(self, outputs: Sequence[PointOutput], sigma: Array) -> Rival:
-        """Return the rival with more channels, of noise `sigma shape (len(outputs),)`; compiles a simulator."""
+    def with_outputs(self, outputs: Sequence[PointOutput]) -> Rival:
+        """Return the rival with more channels, as noisy as its own of the same quantity; compiles a simulator."""
+        known: dict[str, list[float]] = {}
+        for channel, own in zip(self.trial.measurement.channels, self.noise.sigma, strict=True):
+            known.setdefault(channel.quantity, []).append(float(own))
+        sigma = np.array([np.mean(known.get(item.quantity, [PHONE[item.quantity]])) for item in outputs])
         measurement = self.trial.measurement
         added = tuple(MeasuredChannel(item.name, item.place.name, item.quantity, item) for item in outputs)
         channels = (*measurement.channels, *added)
@@ -133,14 +141,12 @@ class Rival:
         return np.asarray(misfit.problem.respond(self.fit.polished.values[None], trial, scenario)[0][0])
 
 
-def at_most(one: Rival, other: Rival, run: FurtherRun, channels: Sequence[str]) -> float:
+def at_most(truth: Rival, fitted: Rival, run: FurtherRun, channels: tuple[str, ...]) -> Separation:
     """Return a distance that no refit and no roughness of the road can exceed, quickly; 0 where a prediction is not finite."""
-    if not (np.isfinite(one.predict(run)).all() and np.isfinite(other.predict(run)).all()):
-        return 0.0
-    dt = one.trial.measurement.dt
-    kept = np.isin(one.trial.channels, channels)
-    distance = (np.abs(_difference(one, other, run)) ** 2).sum(axis=0) / (dt * one.noise.sigma**2)
-    return float(distance[kept].sum())
+    lines, dt = _difference(truth, fitted, run), fitted.trial.measurement.dt
+    kept = np.isin(fitted.trial.channels, channels)
+    distance = float(((np.abs(lines) ** 2).sum(axis=0) / (dt * fitted.noise.sigma**2))[kept].sum())
+    return Separation(distance if np.isfinite(distance) else 0.0, 2 * len(lines) * len(channels), fitted.x)
 
 
 def separate(truth: Rival, fitted: Rival, run: FurtherRun, channels: tuple[str, ...]) -> Separation:
