@@ -7,9 +7,11 @@ import pytest
 from benchmarks.hidden_effects.generator import Case, Effect, Hump, Noise, RunSpec, simulate_case, write_case
 
 from vehgen.diagnose import experiment
+from vehgen.diagnose.candidate import list_candidates
+from vehgen.diagnose.detection import detect
 from vehgen.diagnose.experiment import propose, propose_stronger
 from vehgen.diagnose.further_runs import free_places, list_runs
-from vehgen.diagnose.pipeline import detect, list_candidates, name
+from vehgen.diagnose.naming import name
 from vehgen.diagnose.rivals import Rival, at_most, separate
 from vehgen.effects import library
 from vehgen.identify.trial import load_trials, make_trial
@@ -32,7 +34,8 @@ def fit(trials):
     effects = library()
     detection = detect(trials)
     listed = list_candidates(trials[0].run.vehicle, trials, [effects["cubic_stiffness"], effects["bump_stop"]])
-    return detection, name(detection, [], [item for item in listed if item.place == "rear"])
+    rear = [item for item in listed if item.place == "rear"]
+    return detection, name(detection, detection.base, [], rear, lambda *_: None)[0]
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +50,7 @@ def proposal(tied):
 
 def lead(fits):
     """Return how much less of chi-squared the true law leaves than the wrong one, on the runs of the fit."""
-    left = {item.candidate.effect.name: item for item in fits}
+    left = {item.last.effect.name: item for item in fits}
     names = [trial.name for trial in fits[0].polished.misfit.problem.trials]
     total = {law: sum(item.runs[run] * item.counts[run] for run in names) for law, item in left.items()}
     return total["bump_stop"] - total["cubic_stiffness"]
@@ -72,7 +75,7 @@ def test_the_proposed_run_keeps_what_was_promised(tied, proposal, tmp_path_facto
 
 def test_predictions_are_those_of_the_generator(tied):
     detection, fits = tied
-    true = next(item for item in fits if item.candidate.effect.name == "cubic_stiffness")
+    true = next(item for item in fits if item.last.effect.name == "cubic_stiffness")
     rival = Rival.of(true, detection.problem.trials[0].channels)
     run = list_runs(detection.problem.trials)[-3]
     values = dict(zip(true.polished.misfit.problem.space.names, true.polished.values, strict=True))
@@ -100,7 +103,7 @@ def test_no_refit_can_exceed_the_quick_bound(tied):
 
 def test_an_effect_too_weak_to_name_stands_out_in_a_stronger_run(tied):
     detection, fits = tied
-    found = propose_stronger(detection, next(item for item in fits if item.candidate.effect.name == "cubic_stiffness"))
+    found = propose_stronger(detection, next(item for item in fits if item.last.effect.name == "cubic_stiffness"))
     assert found.separates
     assert found.height > 0.03
     assert "leave the base model at chi 1." in found.text

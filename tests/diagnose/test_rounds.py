@@ -5,7 +5,7 @@ import shutil
 import pytest
 from benchmarks.hidden_effects.generator import Effect
 
-from vehgen.diagnose.detection import amplitude_dependence, band_gaps
+from vehgen.diagnose.detection import band_gaps, run_gaps
 from vehgen.diagnose.estimates import estimates_by_run
 from vehgen.diagnose.pipeline import diagnose
 from vehgen.diagnose.writing import effect_file
@@ -58,9 +58,15 @@ def test_every_run_alone_asks_for_the_same_spring(two):
         assert own.value == pytest.approx(1e8, abs=max(2.5 * own.half_width, 1e7))
 
 
-def test_a_hardening_spring_shows_more_over_a_higher_hump(record):
-    found = diagnose(load_trials(record(Effect("cubic_stiffness", "rear", {"k3": 1e8}))), FEW[:1])
-    assert "grows" in amplitude_dependence(found.detection)
+def test_the_gap_is_told_beside_height_and_speed(two):
+    gaps = {item.run: item for item in run_gaps(two.detection)}
+    assert {name: (item.height, item.speed) for name, item in gaps.items()} == {
+        "low": (0.03, 2.0),
+        "high": (0.05, 2.5),
+        "fast": (0.05, 4.0),
+        "rough": (0.0, 10.0),
+    }
+    assert all(0 < item.share < 1 < item.chi for item in gaps.values())
 
 
 def test_an_engine_is_found_by_its_line(record):

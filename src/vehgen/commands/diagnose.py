@@ -15,6 +15,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("vehicle", metavar="VEHICLE", help="a vehicle file whose `range`s say what may be recalibrated")
     parser.add_argument("runs", metavar="RUN", nargs="+", help="run files with recordings; three or more, at two hump heights or speeds")
     parser.add_argument("--effects", metavar="A,B", help="try these effects only (default: the whole library)")
+    parser.add_argument("--library", metavar="FILE", action="append", default=[], help="a file of your own effects; may be repeated")
     parser.add_argument("--everywhere", action="store_true", help="try every effect at every place, whatever the place test says")
     parser.add_argument("--out", metavar="DIR", type=Path, help="folder for report and files (default: VEHICLE_diagnosis)")
     add_json(parser)
@@ -29,14 +30,14 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.commands.progress import Bars
     from vehgen.diagnose.pipeline import diagnose
     from vehgen.diagnose.writing import effect_file, file_name
-    from vehgen.effects import library
+    from vehgen.effects import extended_library
     from vehgen.errors import InputError, did_you_mean
     from vehgen.identify.trial import load_trials
     from vehgen.report.diagnosis_page import write_diagnosis_page
     from vehgen.vehicle import load_vehicle
 
-    known = library()
-    chosen = None
+    known = extended_library(options.library)
+    chosen = list(known.values())
     if options.effects:
         names = [part.strip() for part in options.effects.split(",")]
         for name in names:

@@ -70,7 +70,7 @@ def hump_height(trial: Trial) -> float:
 
 
 def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> Detection:
-    """Find the noise floor, recalibrate the base model on the training runs, and measure the gap within a band [Hz] (default: the runs')."""
+    """Find the noise floor, recalibrate the base model on the training runs, measure the gap in a band [Hz] (default: that of the runs)."""
     training, held_out = split_runs(trials)
     band = band or compared_band(trials)
     floor = find_noise_floor(trials, band)
@@ -99,32 +99,28 @@ def band_gaps(detection: Detection, fit: Fit | None = None) -> list[BandGap]:
     return found
 
 
-def amplitude_dependence(detection: Detection) -> str:
-    """Return in a sentence how the gap grows with what a run records: what a linear cause cannot do, and a stop, friction or spring does.
+@dataclass(frozen=True)
+class RunGap:
+    """How large a run's gap is beside its amplitude and speed.
 
-    Compares the gap's root mean square, relative to the recording's, over hump runs of different loudness: a linear defect keeps the ratio,
-    friction's falls, a stop's or a hardening spring's grows. Empty with fewer than two loudnesses that differ by a quarter.
+    `height` of its highest hump [m] (0 without one), `speed` [m/s], `chi`, and `share`, the gap's root mean square over that of the
+    recording, both in units of the noise: a linear cause keeps the share over amplitudes, a stop's grows, friction's falls.
     """
-    shares = []
+
+    run: str
+    height: float
+    speed: float
+    chi: float
+    share: float
+
+
+def run_gaps(detection: Detection) -> list[RunGap]:
+    """Return how large the base model's gap is in every run."""
+    found = []
     for trial in detection.trials:
-        power = detection.base.powers.get(trial.name)
-        if power is None or hump_height(trial) == 0.0:
-            continue
         sigma = detection.floor.noises[trial.name].sigma
-        gap = float(np.sqrt(max(power.mean() - 1.0, 0.0)))
         loudness = float(np.sqrt(np.mean((trial.measurement.values / sigma) ** 2)))
-        shares.append((loudness * float(np.mean(sigma)), gap / loudness))
-    if len(shares) < 2:
-        return ""
-    shares.sort()
-    (quiet, first), (loud, last) = shares[0], shares[-1]
-    if loud < 1.25 * quiet or min(first, last) <= 0:
-        return ""
-    ratio = last / first
-    told = "grows" if ratio > 1.3 else "falls" if ratio < 0.77 else "stays alike"
-    meaning = {
-        "grows": "as with stops, hardening springs and lift-off",
-        "falls": "as with friction and free play",
-        "stays alike": "as with a linear cause",
-    }[told]
-    return f"from the quietest hump run to the loudest the gap's share of the recording {told} ({first:.2f} to {last:.2f}), {meaning}"
+        square = detection.base.runs[trial.name]
+        share = float(np.sqrt(max(square - 1.0, 0.0))) / loudness
+        found.append(RunGap(trial.name, hump_height(trial), trial.scenario.top_speed, float(np.sqrt(square)), share))
+    return found

@@ -23,7 +23,7 @@ from vehgen.identify.trial import Trial
 from vehgen.measure import MeasuredChannel
 
 if TYPE_CHECKING:
-    from vehgen.diagnose.pipeline import Detection
+    from vehgen.diagnose.detection import Detection
 
 ROUGHEST = 20.0
 """Acceleration [m/s^2] beyond which nobody drives, unless the runs have half of it behind them."""

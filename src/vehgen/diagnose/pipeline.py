@@ -10,8 +10,9 @@ from threadpoolctl import threadpool_limits
 
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.candidate import list_candidates
-from vehgen.diagnose.detection import Detection, amplitude_dependence, detect, kind_of_run, split_runs
+from vehgen.diagnose.detection import Detection, detect, kind_of_run, split_runs
 from vehgen.diagnose.estimates import estimate, gain_interval, held_out_gain, unstable
+from vehgen.diagnose.experiment import propose, propose_stronger
 from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.judging import adds, chance, excess, needs_both, passes, seeds, tied, unfinished
 from vehgen.diagnose.localisation import localise, shortlist, suffices
@@ -24,7 +25,6 @@ from vehgen.identify.trial import Trial
 
 MOST_EFFECTS = 3
 """So many effects are added at most."""
-APART = "a run with another hump height and speed tells them apart"
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,9 @@ class _Case:
         interval = gain_interval(self.base, best, [trial.name for trial in detection.held_out])
         if p > limit.SIGNIFICANT or (detection.chi <= limit.WEAK and not good) or (good and interval is not None and interval[0] <= 0):
             reason = f"chi is {detection.chi:.3f}, but no effect is told from chance (p {p:.2g})"
-            return self._end("too_weak", reason, "a higher hump or a higher speed makes the effect larger")
+            self.tell("propose", 0, 1, "")
+            louder = propose_stronger(detection, best)
+            return self._end("too_weak", reason, louder.text if louder else None)
         chain = self._further([best]) if good else self._pair(first)
         if self.rounds[-1].stopped and not chain:
             return self._stopped(first)
@@ -216,12 +218,18 @@ class _Case:
             tuple(effects),
             self._gap(last),
             self._places(),
-            next_experiment=APART if ties else None,
+            next_experiment=self._apart(chain, ties) if ties else None,
             notes=self._notes(last),
         )
         return Diagnosis(
             self.detection.trials, self.detection, tuple(self.rounds), tuple(chain), verdict, any(item.stopped for item in self.rounds)
         )
+
+    def _apart(self, chain: list[Fit], ties: list[Fit]) -> str | None:
+        """Return which run would tell tied models apart, by what each predicts."""
+        self.tell("propose", 0, 1, "")
+        found = propose(self.detection, (chain[-1], *ties))
+        return found.text if found else None
 
     def _effect(self, step: Round, fit: Fit, number: int, others: list[str]) -> NamedEffect:
         """Return the effect `number` of a fit, judged by what it closed in its own round."""
@@ -239,7 +247,7 @@ class _Case:
         )
 
     def _notes(self, fit: Fit) -> tuple[str, ...]:
-        told = [amplitude_dependence(self.detection)]
+        told: list[str] = []
         for candidate in fit.effects:
             told += [f"{candidate.label}: {text}" for text in unstable(fit, candidate)]
         if fit.polished.on_bound:
@@ -247,7 +255,7 @@ class _Case:
         left = excess(fit.train)
         if left > limit.AGAIN**2 - 1:
             told.append(f"chi {np.sqrt(1 + left):.2f} is left unexplained")
-        return tuple(text for text in told if text)
+        return tuple(told)
 
 
 def _runs(base: Fit, fit: Fit, held_out: Sequence[Trial]) -> tuple[dict[str, object], ...]:

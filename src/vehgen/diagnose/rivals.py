@@ -66,7 +66,7 @@ class Rival:
         misfit = fit.polished.misfit
         group = [trial for trial in misfit.problem.trials if trial.channels == channels]
         noises = [misfit.noises[trial.name] for trial in group]
-        return cls(fit, group[0], Noise(noises[0].levels, np.max([item.sigma for item in noises], axis=0)))
+        return cls(fit, group[0], replace(noises[0], sigma=np.max([item.sigma for item in noises], axis=0)))
 
     def with_outputs(self, outputs: Sequence[PointOutput]) -> Rival:
         """Return the rival with more channels, as noisy as its own of the same quantity; compiles a simulator."""
@@ -81,7 +81,7 @@ class Rival:
         values = simulator.model.values(overrides=self.trial.run.values())
         blank = np.zeros((len(measurement.time), len(channels)))
         trial = replace(self.trial, simulator=simulator, values=values, measurement=replace(measurement, values=blank, channels=channels))
-        return Rival(self.fit, trial, Noise(self.noise.levels, np.concatenate([self.noise.sigma, sigma])))
+        return Rival(self.fit, trial, replace(self.noise, sigma=np.concatenate([self.noise.sigma, sigma])))
 
     def simulator(self, outputs: Sequence[Output]) -> Simulator:
         """Compile the model with other outputs."""
@@ -102,7 +102,7 @@ class Rival:
         key = run.name, channels
         if key not in self._locals:
             kept = np.isin(self.trial.channels, channels)
-            misfit = self.misfit(run, Noise(self.noise.levels, np.where(kept, 1.0, ABSENT) * self.noise.sigma))
+            misfit = self.misfit(run, replace(self.noise, sigma=np.where(kept, 1.0, ABSENT) * self.noise.sigma))
             self._locals[key] = misfit, misfit.jacobian(self.x)
         return self._locals[key]
 
@@ -118,7 +118,7 @@ class Rival:
         """What the runs so far and the springs of the fit say of parameters and adjustments, `shape (n, n)`."""
         misfit = self.fit.polished.misfit
         n = misfit.n_parameters
-        own = 0 if self.fit.candidate is None else len(self.fit.candidate.parameters)
+        own = sum(len(item.parameters) for item in self.fit.effects)
         jacobian = misfit.jacobian(self.fit.polished.x)
         whole = jacobian.T @ jacobian
         whole[:n, :n] += np.diag(np.concatenate([np.full(n - own, HOLD), np.full(own, SPREAD)]) ** -2.0)

@@ -14,7 +14,6 @@ from vehgen.codegen import write_text
 from vehgen.diagnose.estimates import estimate
 from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.pipeline import Diagnosis
-from vehgen.effects import library
 from vehgen.report.comparison import plot_histories, plot_psds
 from vehgen.report.diagnosis_plots import curves, plot_force, plot_places, plot_waterfall
 from vehgen.report.files import figure_svg, inline_svg
@@ -43,7 +42,7 @@ def write_diagnosis_page(diagnosis: Diagnosis, path: Path) -> None:
             figures=figures,
             force_place=force_place,
             fits=[_row(fit) for fit in diagnosis.fits[:MOST]],
-            meanings={name: effect.meaning for name, effect in library().items()},
+            meanings={fit.last.effect.name: fit.last.effect.meaning for item in diagnosis.rounds for fit in item.fits},
             version=__version__,
         ),
     )
