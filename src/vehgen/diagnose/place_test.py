@@ -128,6 +128,20 @@ def _test(misfit: Misfit, x: Array, place: Place, lines: list[Complex], derivati
     return PlaceResult(place, best_chi, unknowns, best)
 
 
+def posterior(misfit: Misfit, result: PlaceResult) -> Array:
+    """Return the covariance of the base fit that a hypothesis leaves, `shape (n_unknowns, n_unknowns)`: Gauss-Newton, with the prior.
+
+    What the hypothesis cannot see, as an element's own stiffness, is known no better than by the prior.
+    """
+    slopes = [
+        flatten(_project(derivatives, _basis(misfit, result.x, result.place, t)), first=1).T
+        for t, derivatives in enumerate(misfit.white_derivatives(result.x))
+    ]
+    rows, _ = _prior(misfit, result.x)
+    stacked = np.vstack([np.vstack(slopes) / max(result.chi, 1.0), rows])
+    return np.asarray(np.linalg.inv(stacked.T @ stacked))
+
+
 def _prior(misfit: Misfit, x: Array) -> tuple[Array, Array]:
     """Return the prior's rows and residuals: parameters about the file's values, nuisances about nothing."""
     n, total = misfit.n_parameters, misfit.n_unknowns
@@ -165,24 +179,3 @@ def _project(lines: Complex, basis: Complex | None) -> Complex:
         return lines
     inside = np.einsum("nck,...nc->...nk", basis.conj(), lines)
     return np.asarray(lines - np.einsum("nck,...nk->...nc", basis, inside))
-
-
-def recover_force(misfit: Misfit, result: PlaceResult, t: int) -> tuple[Array, Array]:
-    """Return the force history that a hypothesis with one force wants in trial t, and its standard deviation [N or N m].
-
-    Least squares line by line: F = (H* H)^-1 H* r with whitened H; lines that see nothing of it are left at zero.
-    """
-    trial = misfit.problem.trials[t]
-    frequency = misfit.frequency(t)
-    known = misfit.problem.best_values(misfit.problem.space.values(misfit.split(result.x)[0]))
-    raw = force_response(trial.simulator.model, trial.values | known, result.place.rows[:1], frequency)
-    white = misfit.whiten(t, raw[:, :, 0])
-    power = (np.abs(white) ** 2).sum(axis=1)
-    lines = (white.conj() * misfit.white_lines(result.x)[t]).sum(axis=1) / power
-    usable = power > 1e-3 * np.median(power)
-    n, dt = len(trial.measurement.time), trial.measurement.dt
-    spectrum = np.zeros(n // 2 + 1, dtype=np.complex128)
-    places = np.flatnonzero((np.fft.rfftfreq(n, dt) >= misfit.band[0]) & (np.fft.rfftfreq(n, dt) <= misfit.band[1]))
-    spectrum[places[usable]] = lines[usable] * np.sqrt(n / (2 * dt))
-    variance = (1 / power[usable]).sum() / (n * dt)
-    return np.asarray(np.fft.irfft(spectrum, n)), np.full(n, float(np.sqrt(variance)))

@@ -13,10 +13,12 @@ from matplotlib.figure import Figure
 from vehgen.codegen import write_text
 from vehgen.diagnose.estimates import estimate
 from vehgen.diagnose.fitting import Fit
+from vehgen.diagnose.free_form import fit_free_form, recover, strongest
 from vehgen.diagnose.pipeline import Diagnosis
 from vehgen.report.comparison import plot_histories, plot_psds
-from vehgen.report.diagnosis_plots import curves, plot_force, plot_places, plot_waterfall
+from vehgen.report.diagnosis_plots import curves, plot_places, plot_waterfall
 from vehgen.report.files import figure_svg, inline_svg
+from vehgen.report.force_plots import plot_force
 
 MOST = 15
 """So many candidates are listed at most."""
@@ -28,7 +30,7 @@ def write_diagnosis_page(diagnosis: Diagnosis, path: Path) -> None:
 
     text = resources.files("vehgen.report").joinpath("templates/diagnosis.html.j2").read_text(encoding="utf-8")
     environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
-    figures, force_place = _figures(diagnosis)
+    figures, force = _figures(diagnosis)
     floor = diagnosis.detection.floor
     noise = {name: f"{sigma:.3g}" for name, sigma in floor.top.items()}
     write_text(
@@ -40,7 +42,7 @@ def write_diagnosis_page(diagnosis: Diagnosis, path: Path) -> None:
             noise=noise,
             corrected=list(floor.corrected),
             figures=figures,
-            force_place=force_place,
+            force=force,
             fits=[_row(fit) for fit in diagnosis.fits[:MOST]],
             meanings={fit.last.effect.name: fit.last.effect.meaning for item in diagnosis.rounds for fit in item.fits},
             version=__version__,
@@ -60,14 +62,13 @@ def _row(fit: Fit) -> dict[str, str]:
 
 def _figures(diagnosis: Diagnosis) -> tuple[dict[str, Markup], str]:
     found: dict[str, Figure | None] = dict.fromkeys(("places", "force", "waterfall", "psd", "histories"))
-    force_place = ""
+    force = ""
     if diagnosis.places:
         found["places"] = plot_places(diagnosis.places, diagnosis.passed)
-    for result in sorted(diagnosis.passed, key=lambda item: item.place.kind != "suspension"):
-        found["force"] = plot_force(diagnosis, result)
-        force_place = result.place.label
-        if found["force"] is not None:
-            break
+    shown = strongest(diagnosis.passed)
+    law = None if shown is None else fit_free_form(recover(diagnosis.detection, shown))
+    if law is not None:
+        found["force"], force = plot_force(law), law.describe()
     densities, histories = curves(diagnosis)
     if densities:
         found["waterfall"] = plot_waterfall(diagnosis)
@@ -76,4 +77,4 @@ def _figures(diagnosis: Diagnosis) -> tuple[dict[str, Markup], str]:
         found["histories"] = plot_histories(histories, labels)
     return {
         name: Markup(inline_svg(figure_svg(figure), name, name)) if figure is not None else Markup("") for name, figure in found.items()
-    }, force_place
+    }, force

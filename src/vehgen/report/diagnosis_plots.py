@@ -1,4 +1,4 @@
-"""Figures of a diagnosis: places, recovered force, what each step closes."""
+"""Figures of a diagnosis: places, what each step closes."""
 
 from __future__ import annotations
 
@@ -6,13 +6,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from vehgen.diagnose.pipeline import Diagnosis
-from vehgen.diagnose.place_test import PlaceResult, recover_force
+from vehgen.diagnose.place_test import PlaceResult
 from vehgen.identify.trial import Trial
 from vehgen.measure import record_psd
-from vehgen.mechanics.outputs import ElementOutput
 from vehgen.report.canvas import INK
 from vehgen.report.comparison import MEASURED, REFERENCE, SIMULATED, Curve
-from vehgen.simulate import Simulator
 
 MOST = 16
 """So many places are drawn at most."""
@@ -42,38 +40,6 @@ def _loudest(trials: tuple[Trial, ...]) -> int:
     """Return the number of the loudest hump run, or of the loudest run where there is no hump."""
     humps = [any(entry.hump is not None for entry in trial.run.file.road) for trial in trials]
     return max(range(len(trials)), key=lambda t: (humps[t], float(np.mean(trials[t].measurement.values ** 2))))
-
-
-def plot_force(diagnosis: Diagnosis, result: PlaceResult) -> Figure | None:
-    """Plot the force that the data want at a suspension or tyre over travel and rate of the base model, in the loudest training run."""
-    misfit = diagnosis.detection.base.polished.misfit
-    if result.place.kind not in ("suspension", "tyre") or len(result.place.rows) != 1:
-        return None
-    loudest = _loudest(misfit.problem.trials)
-    trial = misfit.problem.trials[loudest]
-    axle = result.place.name
-    output = ElementOutput("travel", axle, "suspension_travel" if trial.run.vehicle.axles[axle].suspension else "tyre_force")
-    simulator = Simulator(trial.run.vehicle, [output], trial.run.forces())
-    unit, errors = misfit.split(result.x)
-    values = trial.values | misfit.problem.best_values(misfit.problem.space.values(unit))
-    population = np.array([[values.get(name, 0.0) for name in simulator.model.parameters]])
-    travel = simulator.run(population, misfit.nuisances.adjust(trial.scenario, errors[loudest])).responses[0, :, 0]
-    rate = np.gradient(travel, trial.measurement.dt)
-    force = -recover_force(misfit, result, loudest)[0]
-    figure = Figure(figsize=(9.6, 3.2), layout="constrained")
-    panels = figure.subplots(1, 3)
-    for axes, x, label in (
-        (panels[0], 1e3 * travel, "travel [mm]"),
-        (panels[1], rate, "rate [m/s]"),
-        (panels[2], trial.measurement.time, "time [s]"),
-    ):
-        axes.plot(x, force, color=SIMULATED, lw=0.7 if axes is panels[2] else 0.0, marker=None if axes is panels[2] else ".", ms=2.5)
-        axes.set_xlabel(label, color=INK)
-        axes.grid(color="#e3e7ea", lw=0.6)
-        axes.spines[["top", "right"]].set_visible(False)
-    panels[0].set_ylabel("unknown force [N]", color=INK)
-    figure.suptitle(f"{trial.name}, {result.place.label}", x=0.01, ha="left", fontsize=10, color=INK, parse_math=False)
-    return figure
 
 
 def plot_waterfall(diagnosis: Diagnosis) -> Figure:
