@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
 from vehgen.codegen import Kernel
-from vehgen.diagnose.pipeline import Detection
-from vehgen.diagnose.place_test import Place, PlaceResult, force_response, posterior, test_places
+from vehgen.diagnose.detection import Detection
+from vehgen.diagnose.place_test import Place, PlaceResult, posterior, test_places
 from vehgen.identify.misfit import Misfit
 from vehgen.identify.noise import taper
 from vehgen.identify.polish import first_delays
 from vehgen.mechanics.linear_model import Channel, LinearModel
+from vehgen.simulate.frequency import force_response
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
