@@ -60,7 +60,7 @@ def test_every_run_alone_asks_for_the_same_spring(two):
 
 def test_the_gap_is_told_beside_height_and_speed(two):
     gaps = {item.run: item for item in run_gaps(two.detection)}
-    assert {name: (item.height, item.speed) for name, item in gaps.items()} == {
+    assert {name: (item.height, round(item.speed, 6)) for name, item in gaps.items()} == {
         "low": (0.03, 2.0),
         "high": (0.05, 2.5),
         "fast": (0.05, 4.0),

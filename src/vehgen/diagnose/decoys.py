@@ -7,13 +7,16 @@ the named effect, the data do not ask for that effect.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.diagnose.detection import Detection
 from vehgen.diagnose.fitting import HOLD, Fit
+from vehgen.diagnose.naming import Round
 from vehgen.diagnose.place_test import PlaceResult
+from vehgen.diagnose.recovered import recover
 from vehgen.identify.misfit import flatten
 from vehgen.identify.noise import transform
 from vehgen.simulate.frequency import force_response
@@ -83,6 +86,17 @@ def _responses(base: Fit, place: PlaceResult) -> list[NDArray[np.complex128]]:
     ]
 
 
-def beaten_by(shares: Sequence[float] | Array, closed: float) -> float:
-    """Return the share of decoys that close as much of the excess as the effect does, `closed`."""
-    return float(np.mean(np.asarray(shares) >= closed))
+def compare(found: Round, fit: Fit, detection: Detection) -> tuple[float, float] | None:
+    """Return the shares of the excess on the training runs that an effect and the best decoy close.
+
+    None where the effect is no law at the place that the place test found with one force.
+    """
+    place = next(
+        (item for item in found.passed if item.unknowns == 1 and item.place.name == fit.last.place and item.place.kind != "body"), None
+    )
+    if place is None or fit.last.effect.edit is None:
+        return None
+    motion = {run.run: (run.travel, run.rate) for run in recover(detection, place) if not run.untouched}
+    shares = decoy_shares(found.footing, place, motion, max(len(fit.last.parameters), 1))
+    before = max(found.footing.train - 1, 1e-9)
+    return 1 - max(fit.train - 1, 0.0) / before, float(shares.max())

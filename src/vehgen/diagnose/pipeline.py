@@ -10,10 +10,12 @@ from threadpoolctl import threadpool_limits
 
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.candidate import list_candidates
+from vehgen.diagnose.decoys import COUNT, compare
 from vehgen.diagnose.detection import Detection, detect, kind_of_run, split_runs
 from vehgen.diagnose.estimates import estimate, gain_interval, held_out_gain, unstable
 from vehgen.diagnose.experiment import propose, propose_stronger
 from vehgen.diagnose.fitting import Fit
+from vehgen.diagnose.free_form import FreeForm, fit_free_form, recover, strongest
 from vehgen.diagnose.judging import adds, chance, excess, needs_both, passes, seeds, tied, unfinished
 from vehgen.diagnose.localisation import localise, shortlist, suffices
 from vehgen.diagnose.naming import Progress, Round, look
@@ -32,7 +34,7 @@ class Diagnosis:
     """A finished diagnosis with the evidence of all stages.
 
     `rounds` are the looks for one effect each, the first on the base; `chosen` the fits that were added, each on top of the one before.
-    `stopped` tells that Ctrl-C ended it.
+    `stopped` tells that Ctrl-C ended it; `law` describes an unknown force that no effect of the library explains.
     """
 
     trials: tuple[Trial, ...]
@@ -41,6 +43,7 @@ class Diagnosis:
     chosen: tuple[Fit, ...]
     verdict: Verdict
     stopped: bool = False
+    law: FreeForm | None = None
 
     @property
     def places(self) -> tuple[PlaceResult, ...]:
@@ -106,6 +109,7 @@ class _Case:
         self.everything = everything
         self.tell = tell
         self.rounds: list[Round] = []
+        self.notes: list[str] = []
         vehicle = detection.trials[0].run.vehicle
         self.candidates = list_candidates(vehicle, detection.trials, effects, detection.floor.noises)
 
@@ -135,6 +139,12 @@ class _Case:
             self.tell("propose", 0, 1, "")
             louder = propose_stronger(detection, best)
             return self._end("too_weak", reason, louder.text if louder else None)
+        rivals = compare(first, best, detection) if good else None
+        if rivals is not None and rivals[1] >= rivals[0] - limit.DECOY:
+            reason = f"{best.label} closes {100 * rivals[0]:.0f} % of the excess, a random law at the same place {100 * rivals[1]:.0f} %"
+            return self._end("too_weak", reason)
+        if rivals is not None:
+            self.notes.append(f"the best of {COUNT} random laws at the same place closes {100 * rivals[1]:.0f} % of the excess")
         chain = self._further([best]) if good else self._pair(first)
         if self.rounds[-1].stopped and not chain:
             return self._stopped(first)
@@ -157,10 +167,9 @@ class _Case:
         return chain
 
     def _pair(self, first: Round) -> list[Fit]:
-        """Return the two fits of the best pair of effects that passes; none where one force at one place leaves noise."""
-        if suffices(first.passed, self.base):
-            return []
-        for seed in seeds(first):
+        """Return the two fits of a pair of effects that passes; where one force leaves noise, only a tyre and its suspension can be two."""
+        tried = seeds(first)[:1] if suffices(first.passed, self.base) else seeds(first)
+        for seed in tried:
             found = self._look(seed)
             if found.stopped:
                 break
@@ -192,7 +201,13 @@ class _Case:
         where = sentence([item.place.label for item in first.passed[:3]]) if first.passed else "no single place"
         left = f"chi {np.sqrt(best.train):.2f} ({np.sqrt(best.held_out):.2f} untouched)"
         reason = f"the best of {len(first.fits)} candidates, {best.label}, leaves {left}; the residual wants an unknown force at {where}"
-        return self._end("not_in_library", reason, fit=best)
+        shown = strongest(first.passed)
+        law = None if shown is None else fit_free_form(recover(self.detection, shown))
+        ended = self._end("not_in_library", reason, fit=best)
+        if law is None:
+            return ended
+        verdict = replace(ended.verdict, free_form=law.to_dict(), notes=(*ended.verdict.notes, law.describe()))
+        return replace(ended, verdict=verdict, law=law)
 
     def _name(self, chain: list[Fit]) -> Diagnosis:
         last = chain[-1]
@@ -247,7 +262,7 @@ class _Case:
         )
 
     def _notes(self, fit: Fit) -> tuple[str, ...]:
-        told: list[str] = []
+        told = list(self.notes)
         for candidate in fit.effects:
             told += [f"{candidate.label}: {text}" for text in unstable(fit, candidate)]
         if fit.polished.on_bound:

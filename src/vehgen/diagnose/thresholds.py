@@ -25,3 +25,5 @@ AGAIN = 1.10
 """Above this chi a further effect is looked for."""
 FORM = 0.005
 """A law may differ from the truth in form by this share of the gap's excess without a further effect being looked for."""
+DECOY = 0.02
+"""An effect must close this much more of the excess than the best of many random laws at its place."""

@@ -50,7 +50,7 @@ class Verdict:
     """The verdict of a diagnosis.
 
     `reason` says why in a sentence; `places` are the places that pass the place test, with their chi; `next_experiment` what would
-    tell more.
+    tell more; `notes` what a careful reader should know; `free_form` describes the unknown force where no effect of the library does.
     """
 
     verdict: VerdictName
@@ -61,6 +61,7 @@ class Verdict:
     vehicle_file: str | None = None
     next_experiment: str | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
+    free_form: dict[str, Any] | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
@@ -92,6 +93,7 @@ class Verdict:
             "vehicle_file": self.vehicle_file,
             "next_experiment": self.next_experiment,
             "notes": list(self.notes),
+            "free_form": self.free_form,
         }
 
 
