@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.band import BAND, compared_band
-from vehgen.diagnose.fitting import Fit, chi_as_filed, fit_base, narrow
+from vehgen.diagnose.fitting import Fit, fit_base, mean_square_as_filed, narrow
 from vehgen.diagnose.noise_floor import NoiseFloor, find_noise_floor
 from vehgen.identify.problem import Problem, make_problem
 from vehgen.identify.trial import Trial
@@ -22,13 +22,18 @@ EDGES = (0.0, 3.0, 8.0, 15.0, np.inf)
 
 @dataclass(frozen=True)
 class Detection:
-    """What the first stage finds: the noise floor and how far the base model is above it, recalibrated and (chi `as_filed`) as filed."""
+    """What the first stage finds: the noise floor and how far the base model is above it.
+
+    `base` is recalibrated; `as_filed` and `as_filed_untouched` are the mean squares of the file's parameters, on the training runs and on
+    the untouched ones (not a number where there are none).
+    """
 
     problem: Problem
     held_out: tuple[Trial, ...]
     floor: NoiseFloor
     base: Fit
     as_filed: float
+    as_filed_untouched: float
     band: tuple[float, float] = BAND
 
     @property
@@ -76,7 +81,8 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
     floor = find_noise_floor(trials, band)
     problem = narrow(make_problem(training))
     base = fit_base(problem, held_out, floor.noises, band)
-    return Detection(problem, tuple(held_out), floor, base, chi_as_filed(trials, floor.noises, band), band)
+    filed = [mean_square_as_filed(part, floor.noises, band) for part in (training, held_out)]
+    return Detection(problem, tuple(held_out), floor, base, filed[0], filed[1], band)
 
 
 def band_gaps(detection: Detection, fit: Fit | None = None) -> list[BandGap]:

@@ -114,10 +114,12 @@ def fit_base(problem: Problem, held_out: Sequence[Trial], noises: Noises, band: 
     return judge((), fit, held_out, noises)
 
 
-def chi_as_filed(trials: Sequence[Trial], noises: Noises, band: tuple[float, float]) -> float:
-    """Return the chi of the model as its file has it: only each run's clock, speed and road height are fitted."""
+def mean_square_as_filed(trials: Sequence[Trial], noises: Noises, band: tuple[float, float]) -> float:
+    """Return the mean square that the model as its file has it leaves: only each run's clock, speed and road height are fitted."""
+    if not trials:
+        return float("nan")
     fit = polish(Problem(tuple(trials), _nothing()), np.zeros(0), NUISANCES, band, noises=noises, tolerance=ROUGH, renew=RENEW)
-    return float(np.sqrt(_pooled(*_by_run(_powers(fit)))))
+    return _pooled(*_by_run(_powers(fit)))
 
 
 def fit_candidate(

@@ -11,16 +11,18 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from vehgen.codegen import write_text
-from vehgen.diagnose.estimates import estimate
+from vehgen.diagnose.detection import band_gaps, run_gaps
+from vehgen.diagnose.estimates import estimate, estimates_by_run
 from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.free_form import fit_free_form, recover, strongest
+from vehgen.diagnose.naming import Round
 from vehgen.diagnose.pipeline import Diagnosis
 from vehgen.report.comparison import plot_histories, plot_psds
 from vehgen.report.diagnosis_plots import curves, plot_places, plot_waterfall
 from vehgen.report.files import figure_svg, inline_svg
 from vehgen.report.force_plots import plot_force
 
-MOST = 15
+MOST = 12
 """So many candidates are listed at most."""
 
 
@@ -32,32 +34,96 @@ def write_diagnosis_page(diagnosis: Diagnosis, path: Path) -> None:
     environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
     figures, force = _figures(diagnosis)
     floor = diagnosis.detection.floor
-    noise = {name: f"{sigma:.3g}" for name, sigma in floor.top.items()}
     write_text(
         path,
         environment.from_string(text).render(
             vehicle=diagnosis.trials[0].run.vehicle.title or diagnosis.trials[0].run.vehicle.name,
             verdict=diagnosis.verdict,
             stopped=diagnosis.stopped,
-            noise=noise,
+            noise={name: f"{sigma:.3g}" for name, sigma in floor.top.items()},
+            slope=max(noise.slope for noise in floor.noises.values()),
             corrected=list(floor.corrected),
             figures=figures,
             force=force,
-            fits=[_row(fit) for fit in diagnosis.fits[:MOST]],
+            runs=_runs(diagnosis),
+            bands=_bands(diagnosis),
+            rounds=[_round(item) for item in diagnosis.rounds],
+            alone=_alone(diagnosis),
             meanings={fit.last.effect.name: fit.last.effect.meaning for item in diagnosis.rounds for fit in item.fits},
             version=__version__,
         ),
     )
 
 
+def _runs(diagnosis: Diagnosis) -> list[dict[str, str]]:
+    told = {str(run["run"]): run for run in diagnosis.verdict.gap.runs}
+    return [
+        {
+            "run": gap.run,
+            "hump": f"{1e3 * gap.height:.0f} mm" if gap.height else "none",
+            "speed": f"{gap.speed:.3g} m/s",
+            "use": "checking only" if told[gap.run]["untouched"] else "fitting",
+            "share": f"{100 * gap.share:.1f} %",
+            "before": f"{float(told[gap.run]['before']):.3f}",
+            "after": f"{float(told[gap.run]['after']):.3f}",
+        }
+        for gap in run_gaps(diagnosis.detection)
+    ]
+
+
+def _bands(diagnosis: Diagnosis) -> dict[str, list[tuple[str, str, str]]]:
+    """Return by channel: the band, chi before and chi after, pooled over the untouched runs (over all, where there are none)."""
+    wanted = {trial.name for trial in (diagnosis.detection.held_out or diagnosis.trials)}
+    after = {(item.run, item.channel, item.band): item.chi for item in band_gaps(diagnosis.detection, _last(diagnosis))}
+    pooled: dict[tuple[str, tuple[float, float]], list[tuple[float, float]]] = {}
+    for item in band_gaps(diagnosis.detection):
+        if item.run in wanted:
+            pair = item.chi, after.get((item.run, item.channel, item.band), item.chi)
+            pooled.setdefault((item.channel, item.band), []).append(pair)
+    found: dict[str, list[tuple[str, str, str]]] = {}
+    for (channel, band), pairs in pooled.items():
+        old, new = np.sqrt(np.mean(np.square(pairs), axis=0))
+        found.setdefault(channel, []).append((f"{band[0]:g} to {band[1]:g} Hz", f"{old:.2f}", f"{new:.2f}"))
+    return found
+
+
+def _last(diagnosis: Diagnosis) -> Fit:
+    return diagnosis.chosen[-1] if diagnosis.chosen else diagnosis.detection.base
+
+
+def _round(item: Round) -> dict[str, object]:
+    """Return one look for one effect: what it was added to, the places that passed and the best candidates."""
+    return {
+        "footing": item.footing.label,
+        "chi": f"{item.footing.chi:.2f}",
+        "places": [f"{place.place.label} (chi {place.chi:.2f})" for place in item.passed[:4]],
+        "fits": [_row(fit) for fit in item.fits[:MOST]],
+        "tried": len(item.fits),
+    }
+
+
 def _row(fit: Fit) -> dict[str, str]:
     parameters = ", ".join(f"{name} {item.value:.4g} {item.unit}".strip() for name, item in estimate(fit).items())
     return {
-        "label": fit.label,
+        "label": fit.last.label,
         "train": f"{np.sqrt(fit.train):.3f}",
         "held_out": f"{np.sqrt(fit.held_out):.3f}" if np.isfinite(fit.held_out) else "",
         "parameters": parameters,
     }
+
+
+def _alone(diagnosis: Diagnosis) -> list[tuple[str, str, list[str]]]:
+    """Return by effect and parameter what every run for fitting alone asks for."""
+    if not diagnosis.chosen:
+        return []
+    last = diagnosis.chosen[-1]
+    found = []
+    for candidate in last.effects:
+        estimates = estimates_by_run(last, candidate)
+        for name in dict.fromkeys(item.parameter for item in estimates):
+            told = [f"{item.run} {item.value:.4g} ± {item.half_width:.2g}" for item in estimates if item.parameter == name]
+            found.append((candidate.label, name, told))
+    return found
 
 
 def _figures(diagnosis: Diagnosis) -> tuple[dict[str, Markup], str]:
@@ -66,14 +132,14 @@ def _figures(diagnosis: Diagnosis) -> tuple[dict[str, Markup], str]:
     if diagnosis.places:
         found["places"] = plot_places(diagnosis.places, diagnosis.passed)
     shown = strongest(diagnosis.passed)
-    law = None if shown is None else fit_free_form(recover(diagnosis.detection, shown))
+    law = diagnosis.law or (None if shown is None else fit_free_form(recover(diagnosis.detection, shown)))
     if law is not None:
         found["force"], force = plot_force(law), law.describe()
     densities, histories = curves(diagnosis)
     if densities:
         found["waterfall"] = plot_waterfall(diagnosis)
         labels = ("residual before", "residual after")
-        found["psd"] = plot_psds(densities, (0.5, 40.0), labels=labels)
+        found["psd"] = plot_psds(densities, diagnosis.detection.band, labels=labels)
         found["histories"] = plot_histories(histories, labels)
     return {
         name: Markup(inline_svg(figure_svg(figure), name, name)) if figure is not None else Markup("") for name, figure in found.items()

@@ -43,17 +43,22 @@ def _loudest(trials: tuple[Trial, ...]) -> int:
 
 
 def plot_waterfall(diagnosis: Diagnosis) -> Figure:
-    """Plot chi of every run: before, after the effect was added, and the noise floor."""
-    runs = diagnosis.verdict.gap.runs
+    """Plot the chi that each step leaves, on the runs for fitting and on the untouched ones: from the file's parameters to the noise."""
+    detection, base = diagnosis.detection, diagnosis.detection.base
+    steps = [("as filed", detection.as_filed, detection.as_filed_untouched), ("recalibrated", base.train, base.held_out)]
+    steps += [(f"+ {fit.last.effect.name}\nat {fit.last.place}", fit.train, fit.held_out) for fit in diagnosis.chosen]
     figure = Figure(figsize=(7.5, 3.0), layout="constrained")
     axes = figure.subplots()
-    place = np.arange(len(runs))
-    axes.bar(place - 0.2, [run["before"] for run in runs], 0.38, color=MEASURED, label="recalibrated base")
-    axes.bar(place + 0.2, [run["after"] for run in runs], 0.38, color=SIMULATED, label="with the effect")
+    place = np.arange(len(steps))
+    for side, colour, label, column in ((-0.2, MEASURED, "runs for fitting", 1), (0.2, SIMULATED, "untouched runs", 2)):
+        chis = [float(np.sqrt(float(step[column]))) for step in steps]
+        axes.bar(place + side, chis, 0.38, color=colour, label=label)
+        for x, chi in zip(place + side, chis, strict=True):
+            axes.text(x, chi * 1.05, f"{chi:.2f}", ha="center", va="bottom", fontsize=8, color=INK)
     axes.axhline(1.0, color=REFERENCE, lw=1.1, ls=(0, (4, 2)), label="noise floor")
     axes.set_yscale("log")
-    axes.set_ylim(0.7, 2.0 * max(run["before"] for run in runs))
-    axes.set_xticks(place, [f"{run['run']}{' (untouched)' if run['untouched'] else ''}" for run in runs], fontsize=8.5)
+    axes.set_ylim(0.7, 2.0 * max(float(np.sqrt(float(value))) for step in steps for value in step[1:] if np.isfinite(float(value))))
+    axes.set_xticks(place, [str(step[0]) for step in steps], fontsize=8.5)
     axes.set_ylabel("chi", color=INK)
     axes.spines[["top", "right"]].set_visible(False)
     figure.legend(loc="outside upper right", ncols=3, frameon=False, fontsize=9)
@@ -61,17 +66,18 @@ def plot_waterfall(diagnosis: Diagnosis) -> Figure:
 
 
 def curves(diagnosis: Diagnosis) -> tuple[list[Curve], list[Curve]]:
-    """Return PSDs and histories of the residual before (as measured) and after (as simulated), of the loudest training run's channels."""
-    if not diagnosis.chosen:
+    """Return PSDs and histories of the residual before (as measured) and after (as simulated), of the loudest untouched run's channels."""
+    old, new = diagnosis.detection.base.checks, diagnosis.chosen[-1].checks if diagnosis.chosen else None
+    if old is None or new is None:
         return [], []
-    base, after = diagnosis.detection.base.polished, diagnosis.chosen[-1].polished
-    loudest = _loudest(base.misfit.problem.trials)
-    trial = base.misfit.problem.trials[loudest]
-    old, new = (trial.measurement.values - fit.misfit.simulate(fit.x)[loudest] for fit in (base, after))
+    trials = old.misfit.problem.trials
+    loudest = _loudest(trials)
+    trial = trials[loudest]
+    before, after = (trial.measurement.values - fit.misfit.simulate(fit.x)[loudest] for fit in (old, new))
     densities, histories = [], []
     for i, channel in enumerate(trial.measurement.channels):
-        frequency, before = record_psd(old[:, i], trial.measurement.dt)
-        later = record_psd(new[:, i], trial.measurement.dt)[1]
-        densities.append(Curve(trial.name, channel.name, channel.quantity, frequency, before, later))
-        histories.append(Curve(trial.name, channel.name, channel.quantity, trial.measurement.time, old[:, i], new[:, i]))
+        frequency, earlier = record_psd(before[:, i], trial.measurement.dt)
+        later = record_psd(after[:, i], trial.measurement.dt)[1]
+        densities.append(Curve(trial.name, channel.name, channel.quantity, frequency, earlier, later))
+        histories.append(Curve(trial.name, channel.name, channel.quantity, trial.measurement.time, before[:, i], after[:, i]))
     return densities, histories
