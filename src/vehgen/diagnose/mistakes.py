@@ -1,0 +1,320 @@
+"""Mistakes in labels, signs, axle positions and vehicle, undone one at a time to see whether the gap goes with them.
+
+Labels and signs are suspected by correlation with the vehicle file's prediction, which no honest effect turns round; axle positions where
+moving an axle makes measured and predicted correlate better; the vehicle where the base fit hangs on its bounds. A suspicion counts only
+when the base model, fitted again with the mistake undone, keeps no more than a share of its excess chi^2 - 1 over all runs.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from itertools import combinations, permutations
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.codegen import Drive
+from vehgen.diagnose.finding import Finding
+from vehgen.diagnose.fitting import BOUND, HOLD, NUISANCES, RENEW, ROUGH
+from vehgen.diagnose.noise_floor import find_noise_floor
+from vehgen.identify.adjustments import Adjustment, SpeedScale
+from vehgen.identify.noise import transform
+from vehgen.identify.polish import HOLD as LOOSE
+from vehgen.identify.polish import Polished, polish
+from vehgen.identify.problem import Problem, make_problem
+from vehgen.identify.trial import Trial
+from vehgen.simulate import Scenario
+
+if TYPE_CHECKING:
+    from vehgen.diagnose.pipeline import Detection
+
+Array = NDArray[np.float64]
+LAG = 0.3
+"""A run's clock may be off by this [s] where labels and axles are judged."""
+MARGIN = 0.15
+"""Another labelling must raise the mean correlation by this, and turned signs by this once more."""
+TURNED = -0.3
+"""A channel is taken as turned below this correlation."""
+RELABELLED = 0.5
+"""Largest share of the excess that another labelling may leave: the true effect may still be in it."""
+MOVED = 0.2
+"""The same for axles elsewhere: of honest effects a late sensor comes nearest, and leaves 0.39."""
+OTHER = 0.2
+"""The same for parameters beyond BOUND: of honest effects the nearest leave more than 0.5."""
+STRANGE = 0.4
+"""Share of the energy that a stranger's recordings leave unexplained in every run."""
+NOTICED = 0.02
+"""Gain in correlation from which a moved axle is fitted."""
+REACH = 0.25
+"""Axles are moved by up to this share of their distance to the axle before."""
+STEP, FINE_STEP = 0.05, 0.01
+MANY = 4
+"""Beyond so many sensors only pairs of them are exchanged."""
+
+
+@dataclass(frozen=True)
+class Suspicion:
+    """A mistake, the share of the excess that is left with it undone, and the largest share at which it counts."""
+
+    findings: tuple[Finding, ...]
+    left: float
+    limit: float
+
+
+@dataclass(frozen=True)
+class _Pattern:
+    """What was recorded as channel i is channel `source[i]`, times `signs[i]`."""
+
+    source: tuple[int, ...]
+    signs: tuple[int, ...]
+
+    @property
+    def trivial(self) -> bool:
+        return self.source == tuple(range(len(self.source))) and min(self.signs) > 0
+
+    def undo(self, trial: Trial) -> Trial:
+        values = np.empty_like(trial.measurement.values)
+        values[:, list(self.source)] = trial.measurement.values * np.array(self.signs)
+        return replace(trial, measurement=replace(trial.measurement, values=values))
+
+
+@dataclass(frozen=True)
+class _Moved(Scenario):
+    axles: tuple[int, ...] = ()
+    shift: float = 0.0
+
+    def drive(self, offsets: Array) -> Drive:
+        moved = np.array(offsets)
+        moved[list(self.axles)] += self.shift
+        return super().drive(moved)
+
+
+@dataclass(frozen=True)
+class AxleShift(Adjustment):
+    """How much further behind the first axle some axles run than the vehicle file says [m]; `axles` are their numbers."""
+
+    axles: tuple[int, ...] = ()
+
+    def scenario(self, scenario: Scenario, value: float) -> Scenario:
+        """Return the scenario with the road `value` [m] later under the axles."""
+        known = {item.name: getattr(scenario, item.name) for item in fields(Scenario) if item.init}
+        return _Moved(**known, axles=self.axles, shift=value)
+
+
+def suspect(detection: Detection) -> Iterator[Suspicion]:
+    """Yield every mistake that there is reason to suspect, refitted."""
+    case = _Case(detection)
+    yield from _labels(case)
+    yield from _axles(case)
+    yield from _other_vehicle(case)
+    yield _stranger(case)
+
+
+class _Case:
+    """A detection's runs, all of them, and refits of the base model to them."""
+
+    def __init__(self, detection: Detection) -> None:
+        self.base = detection.base.polished
+        self.trials = (*detection.problem.trials, *detection.held_out)
+        self.problem = detection.problem.with_trials(self.trials)
+        self.noises = detection.floor.noises
+        self.band = self.base.misfit.band
+        self.excess = max(detection.chi**2 - 1, 1e-9)
+
+    def predict(self, trial: Trial, change: Adjustment | None = None, value: float = 0.0) -> Array:
+        """Return what the vehicle file predicts, `shape (n_samples, n_channels)`."""
+        scenario = trial.scenario if change is None else change.scenario(trial.scenario, value)
+        return np.asarray(trial.simulator.run(trial.simulator.parameters(trial.values), scenario).responses[0])
+
+    def refit(
+        self, problem: Problem, unit: Array | None = None, change: Adjustment | None = None, value: float = 0.0, lags: Array | None = None
+    ) -> tuple[Polished, float]:
+        """Fit the base model and return the fit with the share of the excess that it leaves."""
+        start = None
+        if lags is not None:
+            errors = np.zeros((len(lags), len(NUISANCES.names)))
+            errors[:, NUISANCES.names.index("delay")] = lags / NUISANCES.delay
+            start = errors.ravel()
+        same = problem.trials == self.trials
+        fit = polish(
+            problem,
+            problem.space.unit(problem.space.start) if unit is None else unit,
+            NUISANCES,
+            self.band,
+            noises=self.noises if same else find_noise_floor(problem.trials, self.band).noises,
+            start=start,
+            hold=HOLD if unit is None else LOOSE,
+            shared=() if change is None else (change,),
+            numbers=() if change is None else (value,),
+            max_steps=20,
+            tolerance=ROUGH,
+            renew=RENEW,
+        )
+        lines = np.concatenate([item.ravel() for item in fit.misfit.white_lines(fit.x)])
+        return fit, float((np.mean(np.abs(lines) ** 2) - 1) / self.excess)
+
+    def best(self, change: Adjustment, values: Sequence[float]) -> tuple[float, float, Array]:
+        """Return the mean correlation of all runs at the best of `values`, that value, and each run's lag there [s]."""
+        found: tuple[float, float, Array] = (-np.inf, 0.0, np.zeros(0))
+        for value in values:
+            scores, lags = [], []
+            for trial in self.trials:
+                mean = np.diagonal(correlate(trial, self.predict(trial, change, value), self.band), axis1=1, axis2=2).mean(axis=1)
+                scores.append(mean.max())
+                lags.append((int(mean.argmax()) - len(mean) // 2) * trial.measurement.dt)
+            if np.mean(scores) > found[0]:
+                found = float(np.mean(scores)), float(value), np.array(lags)
+        return found
+
+
+def correlate(trial: Trial, simulated: Array, band: tuple[float, float]) -> Array:
+    """Return the correlation of every measured channel (second axis) with every simulated one within a band, at lags up to LAG.
+
+    `shape (n_lags, n_channels, n_channels)`, from -LAG, the recording early, to LAG.
+    """
+    dt, n = trial.measurement.dt, len(simulated)
+    frequency = np.fft.rfftfreq(2 * n, dt)
+    inside = ((frequency >= band[0]) & (frequency <= band[1]))[:, None]
+    measured, model = (np.fft.rfft(item, 2 * n, axis=0) * inside for item in (trial.measurement.values, simulated))
+    cross = np.fft.irfft(measured[:, :, None] * model[:, None, :].conj(), 2 * n, axis=0)
+    own, other = (np.sqrt((np.fft.irfft(item, 2 * n, axis=0) ** 2).sum(axis=0)) for item in (measured, model))
+    reach = min(int(LAG / dt), n - 1)
+    return np.asarray(cross[np.arange(-reach, reach + 1)] / np.maximum(np.outer(own, other), 1e-300))
+
+
+def _labels(case: _Case) -> Iterator[Suspicion]:
+    found = {trial.name: _pattern(trial, correlate(trial, case.predict(trial), case.band)) for trial in case.trials}
+    wrong = {name: pattern for name, pattern in found.items() if not pattern.trivial}
+    if not wrong:
+        return
+    hypotheses = [wrong]
+    common, count = Counter(wrong.values()).most_common(1)[0]
+    if count > len(case.trials) / 2 and len({trial.channels for trial in case.trials}) == 1:
+        hypotheses.append({trial.name: common for trial in case.trials})
+    for hypothesis in hypotheses[: 1 if hypotheses[-1] == wrong else 2]:
+        trials = [hypothesis[trial.name].undo(trial) if trial.name in hypothesis else trial for trial in case.trials]
+        yield Suspicion(tuple(_relabelled(case, hypothesis)), case.refit(case.problem.with_trials(trials))[1], RELABELLED)
+
+
+def _pattern(trial: Trial, correlation: Array) -> _Pattern:
+    """Return the labelling that correlates best, each kind of mistake handicapped by MARGIN."""
+    n = correlation.shape[1]
+    best, pattern = -np.inf, _Pattern(tuple(range(n)), (1,) * n)
+    for source in _sources(trial):
+        chosen = correlation[:, np.arange(n), list(source)]
+        for turned in (False, True):
+            signs = np.where(turned & (chosen < TURNED), -1, 1)
+            mean = (chosen * signs).mean(axis=1)
+            at = int(mean.argmax())
+            item = _Pattern(source, tuple(int(sign) for sign in signs[at]))
+            score = mean[at] - MARGIN * ((source != tuple(range(n))) + (min(item.signs) < 0))
+            if score > best:
+                best, pattern = float(score), item
+    return pattern
+
+
+def _sources(trial: Trial) -> Iterator[tuple[int, ...]]:
+    """Yield every way in which sensors of the same quantities may have been exchanged, as channel numbers; the labelled one first."""
+    channels = trial.measurement.channels
+    sensors = list(dict.fromkeys(channel.sensor for channel in channels))
+    number = {(channel.sensor, channel.quantity): i for i, channel in enumerate(channels)}
+    if len(sensors) <= MANY:
+        orders: list[Sequence[str]] = list(permutations(sensors))
+    else:
+        pairs = [{a: b, b: a} for a, b in combinations(sensors, 2)]
+        orders = [sensors, *([pair.get(name, name) for name in sensors] for pair in pairs)]
+    for order in orders:
+        given = dict(zip(sensors, order, strict=True))
+        source = [number.get((given[channel.sensor], channel.quantity), -1) for channel in channels]
+        if sorted(source) == list(range(len(channels))):
+            yield tuple(source)
+
+
+def _relabelled(case: _Case, hypothesis: Mapping[str, _Pattern]) -> Iterator[Finding]:
+    trials = {trial.name: trial for trial in case.trials}
+    everywhere = len(hypothesis) == len(trials) and len(set(hypothesis.values())) == 1
+    for run, pattern in list(hypothesis.items())[: 1 if everywhere else None]:
+        channels = trials[run].measurement.channels
+        where = "in all runs" if everywhere else f"in {run}"
+        given = {channel.sensor: channels[i].sensor for channel, i in zip(channels, pattern.source, strict=True)}
+        moved = sorted(name for name, other in given.items() if name != other)
+        if moved:
+            words = " and ".join(moved) + " have been exchanged" if len(moved) == 2 else "the sensors " + ", ".join(moved) + " are mixed up"
+            what = ", ".join(f"what is labelled {name} is what {given[name]} would record" for name in moved)
+            message = f"{words} {where}: {what}; put the columns right in the run file"
+            yield Finding("exchanged", None if everywhere else run, ", ".join(moved), message, True)
+        turned = [channel.name for channel, sign in zip(channels, pattern.signs, strict=True) if sign < 0]
+        if turned:
+            verb = "has its sign" if len(turned) == 1 else "have their signs"
+            message = (
+                f"{' and '.join(turned)} {verb} turned {where}: set `sign: -1` for it in the run file (z up, pitch nose-down positive)"
+            )
+            yield Finding("turned", None if everywhere else run, ", ".join(turned), message, True)
+
+
+def _axles(case: _Case) -> Iterator[Suspicion]:
+    trial = case.trials[0]
+    names = list(trial.run.vehicle.axles)
+    offsets = trial.simulator.model.wheel_offsets(trial.values)
+    order = [int(i) for i in np.argsort(offsets)]
+    as_filed, _, lags = case.best(Adjustment(""), [0.0])
+    found = []
+    for k in range(1, len(order)):
+        gap = float(offsets[order[k]] - offsets[order[k - 1]])
+        for group in dict.fromkeys(((order[k],), tuple(order[k:]))):
+            change = AxleShift("+".join(names[i] for i in group), STEP, 0.0, group)
+            coarse = case.best(change, [i * STEP for i in range(-round(REACH * gap / STEP), round(REACH * gap / STEP) + 1)])[1]
+            found.append((*case.best(change, [coarse + FINE_STEP * i for i in range(-4, 5)]), change))
+    if not found:
+        return
+    score, value, lags, change = max(found, key=lambda item: item[0])
+    if score < as_filed + NOTICED:
+        return
+    fit, left = case.refit(case.problem, None, change, value, lags)
+    if left > MOVED:
+        return
+    speed = SpeedScale("runs", 0.01, 1.0)
+    _, value, lags = case.best(speed, [0.9 + 0.01 * i for i in range(21)])
+    if case.refit(case.problem, None, speed, value, lags)[1] < 2 * left:
+        return
+    shift = float(fit.misfit.adjusted(fit.x)[0])
+    moved = [names[i] for i in change.axles]
+    words = f"{' and '.join(moved)} {'seems' if len(moved) == 1 else 'seem'} to run {abs(shift):.2f} m {'further' if shift > 0 else 'less'}"
+    message = (
+        f"{words} behind {names[order[0]]} than the vehicle file says, by when {'it meets' if len(moved) == 1 else 'they meet'} the road: "
+        "measure the distance and put the file right"
+    )
+    yield Suspicion((Finding("axle_position", None, None, message, True),), left, MOVED)
+
+
+def _other_vehicle(case: _Case) -> Iterator[Suspicion]:
+    if not case.base.on_bound:
+        return
+    wide = make_problem(case.trials)
+    fit, left = case.refit(wide, np.asarray(wide.space.unit(case.base.values)))
+    ratios = {name: value / start for name, value, start in zip(wide.space.names, fit.values, wide.space.start, strict=True) if start > 0}
+    far = sorted((name for name, ratio in ratios.items() if abs(np.log(ratio)) > BOUND), key=lambda name: -abs(np.log(ratios[name])))
+    if far:
+        listed = ", ".join(f"{name} {ratios[name]:.2f} times" for name in far[:4])
+        message = (
+            f"the recordings are of a vehicle with other parameters than the file's ({listed} its value): that alone explains {100 * (1 - left):.0f} % "
+            "of the gap; check the file, or calibrate first"
+        )
+        yield Suspicion((Finding("other_parameters", None, None, message, True),), left, OTHER)
+
+
+def _stranger(case: _Case) -> Suspicion:
+    misfit, shares = case.base.misfit, []
+    for t, (trial, (lines, _)) in enumerate(zip(misfit.problem.trials, misfit.lines(case.base.x), strict=True)):
+        inside = np.isin(np.fft.rfftfreq(len(trial.measurement.time), trial.measurement.dt), misfit.frequency(t))
+        recorded = transform(trial.measurement.values, trial.measurement.dt, inside)
+        shares.append(float(np.mean((np.abs(lines) ** 2).sum(axis=0) / (np.abs(recorded) ** 2).sum(axis=0))))
+    low = min(shares)
+    message = (
+        f"the recalibrated model leaves {100 * low:.0f} % or more of every run unexplained: check that vehicle, road, speed and "
+        "places of the sensors are those of these recordings"
+    )
+    return Suspicion((Finding("stranger", None, None, message, True),), 1 - low, 1 - STRANGE)
