@@ -41,7 +41,8 @@ def explain_gap(detection: Detection) -> tuple[Finding, ...]:
 
     To be called when the base model is above the noise floor. Takes a few refits of the base model.
     """
-    accepted = [item for item in suspect(detection) if item.left <= item.limit]
+    *mistakes, last = suspect(detection)
+    accepted = [item for item in mistakes if item.left <= item.limit] or [item for item in (last,) if item.left <= item.limit]
     return min(accepted, key=lambda item: item.left).findings if accepted else ()
 
 

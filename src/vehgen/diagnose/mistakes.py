@@ -105,7 +105,7 @@ class AxleShift(Adjustment):
 
 
 def suspect(detection: Detection) -> Iterator[Suspicion]:
-    """Yield every mistake that there is reason to suspect, refitted."""
+    """Yield every mistake that there is reason to suspect, refitted; the last, that nothing fits, is for want of a better one."""
     case = _Case(detection)
     yield from _labels(case)
     yield from _axles(case)
@@ -138,7 +138,7 @@ class _Case:
             errors = np.zeros((len(lags), len(NUISANCES.names)))
             errors[:, NUISANCES.names.index("delay")] = lags / NUISANCES.delay
             start = errors.ravel()
-        same = problem.trials == self.trials
+        same = all(one is other for one, other in zip(problem.trials, self.trials, strict=True))
         fit = polish(
             problem,
             problem.space.unit(problem.space.start) if unit is None else unit,
@@ -300,8 +300,8 @@ def _other_vehicle(case: _Case) -> Iterator[Suspicion]:
     if far:
         listed = ", ".join(f"{name} {ratios[name]:.2f} times" for name in far[:4])
         message = (
-            f"the recordings are of a vehicle with other parameters than the file's ({listed} its value): that alone explains {100 * (1 - left):.0f} % "
-            "of the gap; check the file, or calibrate first"
+            f"the recordings are of a vehicle with other parameters than the file's ({listed} its value): that alone explains "
+            f"{100 * (1 - left):.0f} % of the gap; check the file, or calibrate first"
         )
         yield Suspicion((Finding("other_parameters", None, None, message, True),), left, OTHER)
 
