@@ -27,6 +27,8 @@ STUCK = 0.3
 """A channel that does not change for this long [s] while the others move is stuck."""
 MOVING = 0.5
 """The others move where their RMS is at least this share of that of their whole run."""
+COARSE = 0.1
+"""A channel whose smallest change is more than this share of its RMS is too coarse to be called stuck."""
 SAME = 0.1
 """Amplitudes and speeds within this share of one another are one."""
 
@@ -69,10 +71,14 @@ def _clipped(trial: Trial) -> Iterator[Finding]:
 
 def _stuck(trial: Trial) -> Iterator[Finding]:
     values, dt = trial.measurement.values, trial.measurement.dt
-    power = (values / np.maximum(np.sqrt(np.mean(values**2, axis=0)), 1e-300)) ** 2
+    rms = np.maximum(np.sqrt(np.mean(values**2, axis=0)), 1e-300)
+    power = (values / rms) ** 2
     for column, name in enumerate(trial.channels):
+        jumps = np.abs(np.diff(values[:, column]))
+        if jumps[jumps > 0].min(initial=np.inf) > COARSE * rms[column]:
+            continue
         others = np.delete(power, column, axis=1)
-        changes = np.flatnonzero(np.diff(values[:, column]) != 0) + 1
+        changes = np.flatnonzero(jumps) + 1
         edges = np.concatenate([[0], changes, [len(values)]])
         for first, last in pairwise(edges.tolist()):
             if (last - first) * dt < STUCK or not others.shape[1] or others[first:last].mean() < MOVING**2:

@@ -8,9 +8,8 @@ when the base model, fitted again with the mistake undone, keeps no more than a 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
-from itertools import combinations, permutations
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 from vehgen.codegen import Drive
 from vehgen.diagnose.finding import Finding
 from vehgen.diagnose.fitting import BOUND, HOLD, NUISANCES, RENEW, ROUGH
+from vehgen.diagnose.labels import correlate, relabelled, true_labels
 from vehgen.diagnose.noise_floor import find_noise_floor
 from vehgen.identify.adjustments import Adjustment, SpeedScale
 from vehgen.identify.noise import transform
@@ -32,27 +32,19 @@ if TYPE_CHECKING:
     from vehgen.diagnose.pipeline import Detection
 
 Array = NDArray[np.float64]
-LAG = 0.3
-"""A run's clock may be off by this [s] where labels and axles are judged."""
-MARGIN = 0.15
-"""Another labelling must raise the mean correlation by this, and turned signs by this once more."""
-TURNED = -0.3
-"""A channel is taken as turned below this correlation."""
 RELABELLED = 0.5
 """Largest share of the excess that another labelling may leave: the true effect may still be in it."""
 MOVED = 0.2
 """The same for axles elsewhere: of honest effects a late sensor comes nearest, and leaves 0.39."""
 OTHER = 0.2
 """The same for parameters beyond BOUND: of honest effects the nearest leave more than 0.5."""
-STRANGE = 0.4
-"""Share of the energy that a stranger's recordings leave unexplained in every run."""
+STRANGE = 0.6
+"""Share of the energy that a stranger's recordings leave unexplained in every run; of honest effects brake pulses come nearest, with 0.35."""
 NOTICED = 0.02
 """Gain in correlation from which a moved axle is fitted."""
 REACH = 0.25
 """Axles are moved by up to this share of their distance to the axle before."""
 STEP, FINE_STEP = 0.05, 0.01
-MANY = 4
-"""Beyond so many sensors only pairs of them are exchanged."""
 
 
 @dataclass(frozen=True)
@@ -62,23 +54,6 @@ class Suspicion:
     findings: tuple[Finding, ...]
     left: float
     limit: float
-
-
-@dataclass(frozen=True)
-class _Pattern:
-    """What was recorded as channel i is channel `source[i]`, times `signs[i]`."""
-
-    source: tuple[int, ...]
-    signs: tuple[int, ...]
-
-    @property
-    def trivial(self) -> bool:
-        return self.source == tuple(range(len(self.source))) and min(self.signs) > 0
-
-    def undo(self, trial: Trial) -> Trial:
-        values = np.empty_like(trial.measurement.values)
-        values[:, list(self.source)] = trial.measurement.values * np.array(self.signs)
-        return replace(trial, measurement=replace(trial.measurement, values=values))
 
 
 @dataclass(frozen=True)
@@ -170,23 +145,8 @@ class _Case:
         return found
 
 
-def correlate(trial: Trial, simulated: Array, band: tuple[float, float]) -> Array:
-    """Return the correlation of every measured channel (second axis) with every simulated one within a band, at lags up to LAG.
-
-    `shape (n_lags, n_channels, n_channels)`, from -LAG, the recording early, to LAG.
-    """
-    dt, n = trial.measurement.dt, len(simulated)
-    frequency = np.fft.rfftfreq(2 * n, dt)
-    inside = ((frequency >= band[0]) & (frequency <= band[1]))[:, None]
-    measured, model = (np.fft.rfft(item, 2 * n, axis=0) * inside for item in (trial.measurement.values, simulated))
-    cross = np.fft.irfft(measured[:, :, None] * model[:, None, :].conj(), 2 * n, axis=0)
-    own, other = (np.sqrt((np.fft.irfft(item, 2 * n, axis=0) ** 2).sum(axis=0)) for item in (measured, model))
-    reach = min(int(LAG / dt), n - 1)
-    return np.asarray(cross[np.arange(-reach, reach + 1)] / np.maximum(np.outer(own, other), 1e-300))
-
-
 def _labels(case: _Case) -> Iterator[Suspicion]:
-    found = {trial.name: _pattern(trial, correlate(trial, case.predict(trial), case.band)) for trial in case.trials}
+    found = {trial.name: true_labels(trial, correlate(trial, case.predict(trial), case.band)) for trial in case.trials}
     wrong = {name: pattern for name, pattern in found.items() if not pattern.trivial}
     if not wrong:
         return
@@ -196,63 +156,7 @@ def _labels(case: _Case) -> Iterator[Suspicion]:
         hypotheses.append({trial.name: common for trial in case.trials})
     for hypothesis in hypotheses[: 1 if hypotheses[-1] == wrong else 2]:
         trials = [hypothesis[trial.name].undo(trial) if trial.name in hypothesis else trial for trial in case.trials]
-        yield Suspicion(tuple(_relabelled(case, hypothesis)), case.refit(case.problem.with_trials(trials))[1], RELABELLED)
-
-
-def _pattern(trial: Trial, correlation: Array) -> _Pattern:
-    """Return the labelling that correlates best, each kind of mistake handicapped by MARGIN."""
-    n = correlation.shape[1]
-    best, pattern = -np.inf, _Pattern(tuple(range(n)), (1,) * n)
-    for source in _sources(trial):
-        chosen = correlation[:, np.arange(n), list(source)]
-        for turned in (False, True):
-            signs = np.where(turned & (chosen < TURNED), -1, 1)
-            mean = (chosen * signs).mean(axis=1)
-            at = int(mean.argmax())
-            item = _Pattern(source, tuple(int(sign) for sign in signs[at]))
-            score = mean[at] - MARGIN * ((source != tuple(range(n))) + (min(item.signs) < 0))
-            if score > best:
-                best, pattern = float(score), item
-    return pattern
-
-
-def _sources(trial: Trial) -> Iterator[tuple[int, ...]]:
-    """Yield every way in which sensors of the same quantities may have been exchanged, as channel numbers; the labelled one first."""
-    channels = trial.measurement.channels
-    sensors = list(dict.fromkeys(channel.sensor for channel in channels))
-    number = {(channel.sensor, channel.quantity): i for i, channel in enumerate(channels)}
-    if len(sensors) <= MANY:
-        orders: list[Sequence[str]] = list(permutations(sensors))
-    else:
-        pairs = [{a: b, b: a} for a, b in combinations(sensors, 2)]
-        orders = [sensors, *([pair.get(name, name) for name in sensors] for pair in pairs)]
-    for order in orders:
-        given = dict(zip(sensors, order, strict=True))
-        source = [number.get((given[channel.sensor], channel.quantity), -1) for channel in channels]
-        if sorted(source) == list(range(len(channels))):
-            yield tuple(source)
-
-
-def _relabelled(case: _Case, hypothesis: Mapping[str, _Pattern]) -> Iterator[Finding]:
-    trials = {trial.name: trial for trial in case.trials}
-    everywhere = len(hypothesis) == len(trials) and len(set(hypothesis.values())) == 1
-    for run, pattern in list(hypothesis.items())[: 1 if everywhere else None]:
-        channels = trials[run].measurement.channels
-        where = "in all runs" if everywhere else f"in {run}"
-        given = {channel.sensor: channels[i].sensor for channel, i in zip(channels, pattern.source, strict=True)}
-        moved = sorted(name for name, other in given.items() if name != other)
-        if moved:
-            words = " and ".join(moved) + " have been exchanged" if len(moved) == 2 else "the sensors " + ", ".join(moved) + " are mixed up"
-            what = ", ".join(f"what is labelled {name} is what {given[name]} would record" for name in moved)
-            message = f"{words} {where}: {what}; put the columns right in the run file"
-            yield Finding("exchanged", None if everywhere else run, ", ".join(moved), message, True)
-        turned = [channel.name for channel, sign in zip(channels, pattern.signs, strict=True) if sign < 0]
-        if turned:
-            verb = "has its sign" if len(turned) == 1 else "have their signs"
-            message = (
-                f"{' and '.join(turned)} {verb} turned {where}: set `sign: -1` for it in the run file (z up, pitch nose-down positive)"
-            )
-            yield Finding("turned", None if everywhere else run, ", ".join(turned), message, True)
+        yield Suspicion(tuple(relabelled(case.trials, hypothesis)), case.refit(case.problem.with_trials(trials))[1], RELABELLED)
 
 
 def _axles(case: _Case) -> Iterator[Suspicion]:

@@ -1,0 +1,165 @@
+"""Mistakes in recordings and vehicle files, made on purpose with the independent generator, are found; honest effects are none."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from benchmarks.hidden_effects.generator import Case, Effect, Hump, RunSpec, nominal, perturbed, write_case
+
+from vehgen.diagnose.inputs import check_inputs, explain_gap
+from vehgen.diagnose.labels import correlate
+from vehgen.diagnose.pipeline import detect
+from vehgen.identify.trial import load_trials
+
+RUNS = (
+    RunSpec((Hump(0.5, 0.03, 4.0),), 2.0, 5.0, "low"),
+    RunSpec((Hump(0.5, 0.05, 4.0),), 2.5, 4.5, "high"),
+    RunSpec((Hump(0.5, 0.05, 5.0),), 4.0, 4.0, "fast"),
+)
+NAMES = ("F_az", "F_q", "R_az", "R_q")
+
+
+def record(tmp_path_factory, *effects, parameters=None, runs=RUNS):
+    folder = tmp_path_factory.mktemp("runs")
+    write_case(Case("sedan2", parameters, effects, runs, seed=3), folder, tmp_path_factory.mktemp("truth"))
+    return load_trials(sorted(folder.glob("*.yaml")))
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    return record(tmp_path_factory)
+
+
+@pytest.fixture(scope="module")
+def friction(tmp_path_factory):
+    return record(tmp_path_factory, Effect("dry_friction", "front", {"force": 1100.0}))
+
+
+def edited(trials, change, only=None):
+    """Return trials whose values `shape (n_samples, 4)` have been changed, in all runs or in one."""
+    return [
+        replace(trial, measurement=replace(trial.measurement, values=change(trial.measurement.values.copy())))
+        if only in (None, trial.name)
+        else trial
+        for trial in trials
+    ]
+
+
+def exchange(values):
+    return values[:, [2, 3, 0, 1]]
+
+
+def turn(*names):
+    return lambda values: values * np.array([-1.0 if name in names else 1.0 for name in NAMES])
+
+
+def test_good_recordings_leave_nothing_to_say(plain):
+    assert check_inputs(plain) == ()
+
+
+def test_a_quantised_or_noiseless_recording_is_not_clipped_and_not_stuck(plain):
+    assert check_inputs(edited(plain, lambda values: np.round(values / 0.05) * 0.05)) == ()
+    silent = edited(plain, lambda values: np.where(np.arange(len(values))[:, None] < 100, 0.0, values))
+    assert check_inputs(silent) == ()
+
+
+@pytest.mark.parametrize("both", [True, False])
+def test_a_clipped_accelerometer_is_found_with_level_and_share(plain, both):
+    truth = next(trial for trial in plain if trial.name == "high").measurement.values[:, 0]
+    level = 0.5 * truth.max()
+
+    def clip(values):
+        values[:, 0] = np.clip(values[:, 0], -level if both else None, level)
+        return values
+
+    (finding,) = check_inputs(edited(plain, clip, only="high"))
+    assert (finding.kind, finding.run, finding.channel, finding.fatal) == ("clipped", "high", "F_az", True)
+    count = (truth >= level).sum() + both * (truth <= -level).sum()
+    assert f"{level:.4g}" in finding.message
+    assert f"in {count} samples ({100 * count / len(truth):.2g} %)" in finding.message
+
+
+def test_a_channel_that_stays_while_the_others_move_is_stuck(plain):
+    def hold(values):
+        start = int(np.abs(values[:, 0]).argmax())
+        values[start : start + 40, 3] = values[start, 3]
+        return values
+
+    (finding,) = check_inputs(edited(plain, hold, only="fast"))
+    assert (finding.kind, finding.run, finding.channel, finding.fatal) == ("stuck", "fast", "R_q", True)
+    assert "for 0.4 s" in finding.message
+
+
+def test_one_height_or_speed_only_is_noted(plain):
+    by_name = {trial.name: trial for trial in plain}
+    assert [(item.kind, item.fatal) for item in check_inputs([by_name["high"], by_name["fast"]])] == [("one_amplitude", False)]
+    assert [item.kind for item in check_inputs([by_name["high"]])] == ["one_amplitude", "one_speed"]
+
+
+def test_correlation_is_that_of_numpy_at_the_lag_of_a_delayed_copy(plain):
+    trial = plain[0]
+    moved = np.roll(trial.measurement.values, -7, axis=0)
+    found = correlate(trial, moved, (0.0, 50.0))
+    middle = len(found) // 2
+    assert found[:, 0, 0].argmax() == middle + 7
+    assert found[middle] == pytest.approx(
+        trial.measurement.values.T @ moved / np.outer(*(np.linalg.norm(item, axis=0) for item in (trial.measurement.values, moved))),
+        abs=1e-9,
+    )
+
+
+def test_exchanged_phones_are_named(plain):
+    (finding,) = explain_gap(detect(edited(plain, exchange)))
+    assert (finding.kind, finding.run, finding.channel, finding.fatal) == ("exchanged", None, "F, R", True)
+    assert "F and R have been exchanged in all runs" in finding.message
+
+
+def test_phones_exchanged_in_an_untouched_run_only_are_named_with_the_run(plain):
+    untouched = detect(plain).held_out[0].name
+    (finding,) = explain_gap(detect(edited(plain, exchange, only=untouched)))
+    assert (finding.kind, finding.run) == ("exchanged", untouched)
+
+
+def test_a_turned_axis_is_named_though_friction_hides_too(friction):
+    (finding,) = explain_gap(detect(edited(friction, turn("F_az"))))
+    assert (finding.kind, finding.run, finding.channel, finding.fatal) == ("turned", None, "F_az", True)
+    assert "sign: -1" in finding.message
+
+
+def test_a_wrong_wheelbase_is_measured_by_the_arrival_of_the_rear_axle(tmp_path_factory):
+    parameters = perturbed("sedan2", 3)
+    parameters["wheelbase"] *= 1.15
+    (finding,) = explain_gap(detect(record(tmp_path_factory, parameters=parameters)))
+    assert (finding.kind, finding.fatal) == ("axle_position", True)
+    words = re.search(r"rear seems to run (\S+) m further behind front", finding.message)
+    assert float(words[1]) == pytest.approx(0.15 * nominal("sedan2")["wheelbase"], abs=0.02)
+
+
+def test_another_vehicle_is_told_by_its_parameters(tmp_path_factory):
+    parameters = perturbed("sedan2", 3)
+    for name in ("kf", "kr"):
+        parameters[name] = 2 * nominal("sedan2")[name]
+    (finding,) = explain_gap(detect(record(tmp_path_factory, parameters=parameters)))
+    assert (finding.kind, finding.fatal) == ("other_parameters", True)
+    ratios = dict(re.findall(r"(\w+) (\S+) times", finding.message))
+    assert {name: float(ratio) for name, ratio in ratios.items()} == pytest.approx({"kf": 2.0, "kr": 2.0}, rel=0.02)
+
+
+def test_recordings_that_have_nothing_to_do_with_the_vehicle_are_refused(plain):
+    random = np.random.default_rng(1)
+    (finding,) = explain_gap(
+        detect(edited(plain, lambda values: values + 5 * np.std(values, axis=0) * random.standard_normal(values.shape)))
+    )
+    assert finding.kind == "stranger"
+
+
+def test_friction_is_no_mistake(friction):
+    assert check_inputs(friction) == ()
+    assert explain_gap(detect(friction)) == ()
+
+
+def test_a_late_phone_is_no_mistake(tmp_path_factory):
+    trials = record(tmp_path_factory, Effect("sensor_delay", "R", {"time": 0.03}))
+    assert check_inputs(trials) == ()
+    assert explain_gap(detect(trials)) == ()
