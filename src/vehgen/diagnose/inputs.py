@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.finding import Finding
-from vehgen.diagnose.mistakes import suspect
+from vehgen.diagnose.mistakes import Suspicion, strange, suspect
 from vehgen.identify.trial import Trial
 
 if TYPE_CHECKING:
@@ -31,6 +31,8 @@ COARSE = 0.1
 """A channel whose smallest change is more than this share of its RMS is too coarse to be called stuck."""
 SAME = 0.1
 """Amplitudes and speeds within this share of one another are one."""
+CLEAR = 0.25
+"""A mistake that leaves this share of what it may is not compared with others."""
 
 
 def check_inputs(trials: Sequence[Trial]) -> tuple[Finding, ...]:
@@ -43,8 +45,15 @@ def explain_gap(detection: Detection) -> tuple[Finding, ...]:
 
     To be called when the base model is above the noise floor. Takes a few refits of the base model.
     """
-    *mistakes, last = suspect(detection)
-    accepted = [item for item in mistakes if item.left <= item.limit] or [item for item in (last,) if item.left <= item.limit]
+    accepted: list[Suspicion] = []
+    for item in suspect(detection):
+        if item.left <= CLEAR * item.limit:
+            return item.findings
+        if item.left <= item.limit:
+            accepted.append(item)
+    stranger = strange(detection)
+    if not accepted and stranger.left <= stranger.limit:
+        accepted.append(stranger)
     return min(accepted, key=lambda item: item.left).findings if accepted else ()
 
 

@@ -20,6 +20,7 @@ from vehgen.diagnose.finding import Finding
 from vehgen.diagnose.fitting import BOUND, HOLD, NUISANCES, RENEW, ROUGH
 from vehgen.diagnose.labels import correlate, relabelled, true_labels
 from vehgen.diagnose.noise_floor import find_noise_floor
+from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.identify.adjustments import Adjustment, SpeedScale
 from vehgen.identify.noise import transform
 from vehgen.identify.polish import HOLD as LOOSE
@@ -36,10 +37,10 @@ RELABELLED = 0.5
 """Largest share of the excess that another labelling may leave: the true effect may still be in it."""
 MOVED = 0.2
 """The same for axles elsewhere: of honest effects a late sensor comes nearest, and leaves 0.39."""
-OTHER = 0.2
-"""The same for parameters beyond BOUND: of honest effects the nearest leave more than 0.5."""
+OTHER = 0.01
+"""The same for parameters beyond BOUND, unless the noise floor is reached: of honest effects relaxation comes nearest, and leaves 0.047."""
 STRANGE = 0.6
-"""Share of the energy that a stranger's recordings leave unexplained in every run; of honest effects brake pulses come nearest, with 0.35."""
+"""Share of the energy that a stranger's recordings leave unexplained in every run; brake pulses, an honest effect, leave 0.35."""
 NOTICED = 0.02
 """Gain in correlation from which a moved axle is fitted."""
 REACH = 0.25
@@ -80,12 +81,11 @@ class AxleShift(Adjustment):
 
 
 def suspect(detection: Detection) -> Iterator[Suspicion]:
-    """Yield every mistake that there is reason to suspect, refitted; the last, that nothing fits, is for want of a better one."""
+    """Yield every mistake that there is reason to suspect, refitted."""
     case = _Case(detection)
     yield from _labels(case)
     yield from _axles(case)
     yield from _other_vehicle(case)
-    yield _stranger(case)
 
 
 class _Case:
@@ -207,12 +207,15 @@ def _other_vehicle(case: _Case) -> Iterator[Suspicion]:
             f"the recordings are of a vehicle with other parameters than the file's ({listed} its value): that alone explains "
             f"{100 * (1 - left):.0f} % of the gap; check the file, or calibrate first"
         )
-        yield Suspicion((Finding("other_parameters", None, None, message, True),), left, OTHER)
+        limit = max(OTHER, (NOISE_FLOOR**2 - 1) / case.excess)
+        yield Suspicion((Finding("other_parameters", None, None, message, True),), left, limit)
 
 
-def _stranger(case: _Case) -> Suspicion:
-    misfit, shares = case.base.misfit, []
-    for t, (trial, (lines, _)) in enumerate(zip(misfit.problem.trials, misfit.lines(case.base.x), strict=True)):
+def strange(detection: Detection) -> Suspicion:
+    """Return the suspicion that the recordings have nothing to do with the model; `left` is the most that it explains of any run's energy."""
+    base, shares = detection.base.polished, []
+    misfit = base.misfit
+    for t, (trial, (lines, _)) in enumerate(zip(misfit.problem.trials, misfit.lines(base.x), strict=True)):
         inside = np.isin(np.fft.rfftfreq(len(trial.measurement.time), trial.measurement.dt), misfit.frequency(t))
         recorded = transform(trial.measurement.values, trial.measurement.dt, inside)
         shares.append(float(np.mean((np.abs(lines) ** 2).sum(axis=0) / (np.abs(recorded) ** 2).sum(axis=0))))
