@@ -212,7 +212,7 @@ def _other_vehicle(case: _Case) -> Iterator[Suspicion]:
 
 
 def strange(detection: Detection) -> Suspicion:
-    """Return the suspicion that the recordings have nothing to do with the model; `left` is the most that it explains of any run's energy."""
+    """Return the suspicion that the recordings have nothing to do with the model; `left` is the most it explains of a run's energy."""
     base, shares = detection.base.polished, []
     misfit = base.misfit
     for t, (trial, (lines, _)) in enumerate(zip(misfit.problem.trials, misfit.lines(base.x), strict=True)):
