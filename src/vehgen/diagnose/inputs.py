@@ -18,7 +18,7 @@ from vehgen.diagnose.mistakes import Suspicion, strange, suspect
 from vehgen.identify.trial import Trial
 
 if TYPE_CHECKING:
-    from vehgen.diagnose.pipeline import Detection
+    from vehgen.diagnose.detection import Detection
 
 Array = NDArray[np.float64]
 CLIPPED = 4

@@ -30,7 +30,7 @@ from vehgen.identify.trial import Trial
 from vehgen.simulate import Scenario
 
 if TYPE_CHECKING:
-    from vehgen.diagnose.pipeline import Detection
+    from vehgen.diagnose.detection import Detection
 
 Array = NDArray[np.float64]
 RELABELLED = 0.5

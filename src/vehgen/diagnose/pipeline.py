@@ -16,6 +16,7 @@ from vehgen.diagnose.estimates import estimate, gain_interval, held_out_gain, un
 from vehgen.diagnose.experiment import propose, propose_stronger
 from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.free_form import FreeForm, fit_free_form, recover, strongest
+from vehgen.diagnose.inputs import check_inputs, explain_gap
 from vehgen.diagnose.judging import adds, chance, excess, needs_both, passes, seeds, tied, unfinished
 from vehgen.diagnose.localisation import localise, shortlist, suffices
 from vehgen.diagnose.naming import Progress, Round, look
@@ -116,6 +117,11 @@ class _Case:
     def decide(self) -> Diagnosis:
         """Return the diagnosis."""
         detection = self.detection
+        shown = check_inputs(detection.trials)
+        fatal = [item.message for item in shown if item.fatal]
+        self.notes += [item.message for item in shown if not item.fatal]
+        if fatal:
+            return self._end("insufficient_data", "; ".join(fatal), "record these channels anew, or leave them out of the run files")
         if max(detection.chi, float(np.sqrt(self.base.train))) <= limit.NOISE_FLOOR:
             return self._end("no_missing_effect", f"the recalibrated model is at the noise floor: chi {detection.chi:.3f}")
         if not detection.held_out:
@@ -148,6 +154,10 @@ class _Case:
         chain = self._further([best]) if good else self._pair(first)
         if self.rounds[-1].stopped and not chain:
             return self._stopped(first)
+        if not chain or unfinished(chain[-1], self.base):
+            wrong = explain_gap(detection)
+            if wrong:
+                return self._end("insufficient_data", wrong[0].message, "; ".join(item.message for item in wrong[1:]) or None)
         return self._name(chain) if chain else self._unknown(first)
 
     def _look(self, footing: Fit) -> Round:
@@ -187,7 +197,7 @@ class _Case:
 
     def _end(self, verdict: VerdictName, reason: str, next_experiment: str | None = None, fit: Fit | None = None) -> Diagnosis:
         places = self._places() if self.rounds else ()
-        found = Verdict(verdict, reason, (), self._gap(fit), places, next_experiment=next_experiment)
+        found = Verdict(verdict, reason, (), self._gap(fit), places, next_experiment=next_experiment, notes=tuple(self.notes))
         return Diagnosis(self.detection.trials, self.detection, tuple(self.rounds), (), found)
 
     def _stopped(self, found: Round) -> Diagnosis:
