@@ -10,7 +10,7 @@ and force are positive in compression, so that a positive force resists a positi
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,25 +19,19 @@ from numpy.typing import NDArray
 from vehgen.diagnose.recovered import Recovered, recover, strongest
 from vehgen.diagnose.smoothing import (
     KNOTS,
-    SIDE,
-    Basis,
+    FittedLaw,
     bootstrap,
+    coupled_basis,
     curves_basis,
     explained_share,
-    left_over,
-    normal_equations,
+    fit_law,
     place_knots,
     shifts,
-    smooth,
-    surface_basis,
 )
 
 Array = NDArray[np.float64]
-MOVING = 0.02
+MOVING = 0.1
 """A place moves while its travel or rate exceeds this share of the largest."""
-ROUNDS = 8
-"""How often the weights, and the motion's answer to what the band hides of the force, are found anew."""
-RELAX = 0.5
 POINTS = 61
 """Points of a curve."""
 DRAWS = 400
@@ -88,7 +82,7 @@ class FreeForm:
     runs
         The runs as recovered, with what the band hides of the force in their motion.
     histories
-        f + g by run, filtered as the recovered force is.
+        By run `shape (3, n)`: f, g, and f + g as the test would recover it.
     """
 
     place: str
@@ -114,12 +108,14 @@ class FreeForm:
         if self.rate.share >= least:
             parts.append(_stretch(self.rate, 1.0, self.units[1], self.units[2]))
         poor = "only " if self.explained < POOR else ""
-        memory = (
-            f", {_percent(self.hysteresis)} of what is not straight is no matter of travel and rate" if self.hysteresis > 1 - POOR else ""
-        )
+        more = ""
+        if self.coupled > 1 - POOR:
+            more = f", with travel and rate acting together {_percent(self.beyond + self.coupled)} of what is not straight"
+        if self.hysteresis > 1 - POOR:
+            more += f", and {_percent(self.hysteresis)} of what is not straight is no matter of travel and rate"
         return (
             f"{' and '.join(parts)}; it explains {poor}{_percent(self.explained)} of the unknown force at {self.place} on untouched runs"
-            f"{memory} (a description, not a physical law)"
+            f"{more} (a description, not a physical law)"
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -154,85 +150,62 @@ def fit_free_form(recovered: Sequence[Recovered], seed: int = 11) -> FreeForm | 
     -------
     None where nothing was recovered (a place without a force), or where the place does not move.
     """
-    runs = list(recovered)
-    training = [run for run in runs if not run.untouched]
+    training = [run for run in recovered if not run.untouched]
     reach = [np.concatenate([getattr(run, name) for run in training] or [np.zeros(1)]) for name in ("travel", "rate")]
     moving = np.any([np.abs(x) > MOVING * np.abs(x).max() for x in reach], axis=0)
     if not moving.any():
         return None
-    basis, penalties = curves_basis(*(place_knots(x[moving], KNOTS) for x in reach))
-    excess = left_over(training, [np.zeros(len(run.time)) for run in training])
-    for _ in range(ROUNDS):
-        training = [run for run in runs if not run.untouched]
-        parts = [normal_equations(run, run.force, _columns(run, basis), excess) for run in training]
-        found = smooth(parts, penalties)
-        histories = [_columns(run, basis) @ found.coefficients for run in runs]
-        excess = left_over(training, [_columns(run, basis) @ found.coefficients for run in training])
-        hidden = [run.unseen_motion(history) for run, history in zip(recovered, histories, strict=True)]
-        runs = [_relaxed(run, first, *extra) for run, first, extra in zip(runs, recovered, hidden, strict=True)]
-    random = np.random.Generator(np.random.PCG64(seed))
-    draws = bootstrap(parts, found, DRAWS, random)
-    moved = shifts(training, basis, excess, found)
-    draws += random.standard_normal((DRAWS, len(moved))) @ moved
-    surface, bends = surface_basis(*(place_knots(x[moving], SIDE) for x in reach))
-    whole = smooth([normal_equations(run, run.force, _columns(run, surface), excess) for run in training], bends)
-    straight = smooth([normal_equations(run, run.force, _straight(run), excess) for run in training], [np.zeros((2, 2))])
-    judged = [run for run in runs if run.untouched] or training
-    law, bent, line = (
-        explained_share(judged, [columns(run) @ fit.coefficients for run in judged])
-        for fit, columns in (
-            (found, lambda run: _columns(run, basis)),
-            (whole, lambda run: _columns(run, surface)),
-            (straight, _straight),
-        )
+    knots = [place_knots(x[moving], KNOTS) for x in reach]
+    basis, penalties = curves_basis(*knots)
+    fitted = fit_law(recovered, basis, penalties)
+    line, law, together = (
+        _judge(item) for item in (fit_law(recovered, _straight, [np.zeros((2, 2))]), fitted, fit_law(recovered, *coupled_basis(*knots)))
     )
+    random = np.random.Generator(np.random.PCG64(seed))
+    moved = shifts(fitted)
+    draws = bootstrap(fitted, DRAWS, random) + random.standard_normal((DRAWS, len(moved))) @ moved
     left = max(1.0 - line, 1e-12)
-    beyond, together = ((share - line) / left for share in (law, bent))
+    beyond, together = ((share - line) / left for share in (law, together))
     first = recovered[0]
     return FreeForm(
         first.place.label,
         first.units,
-        _curve(0, reach[0][moving], basis, found.coefficients, draws, runs),
-        _curve(1, reach[1][moving], basis, found.coefficients, draws, runs),
+        _curve(0, reach[0][moving], fitted, draws),
+        _curve(1, reach[1][moving], fitted, draws),
         first.stiffness,
         first.damping,
         law,
         beyond,
         max(together - beyond, 0.0),
         min(1.0 - max(beyond, together), 1.0),
-        tuple(runs),
-        {run.run: run.seen(_columns(run, basis) @ found.coefficients) for run in runs},
+        fitted.runs,
+        {run.run: _histories(run, fitted) for run in fitted.runs},
     )
 
 
-def _columns(run: Recovered, basis: Basis) -> Array:
-    return basis(run.travel, run.rate)
+def _judge(fitted: FittedLaw) -> float:
+    """Return the share that a law explains on the untouched runs; where there are none, on the training runs."""
+    judged = [run for run in fitted.runs if run.untouched] or fitted.runs
+    return explained_share(judged, [fitted.force(run.travel, run.rate) for run in judged])
 
 
-def _straight(run: Recovered) -> Array:
-    return np.column_stack([run.travel, run.rate])
+def _histories(run: Recovered, fitted: FittedLaw) -> Array:
+    still = np.zeros_like(run.time)
+    f, g = fitted.force(run.travel, still), fitted.force(still, run.rate)
+    return np.array([f, g, run.seen(f + g)])
 
 
-def _relaxed(run: Recovered, first: Recovered, travel: Array, rate: Array) -> Recovered:
-    """Return a run a share of the way to the motion with what the band hides: a whole step may overshoot where a law is stiff."""
-    return replace(
-        run,
-        travel=run.travel + RELAX * (first.travel + travel - run.travel),
-        rate=run.rate + RELAX * (first.rate + rate - run.rate),
-    )
+def _straight(travel: Array, rate: Array) -> Array:
+    return np.column_stack([travel, rate])
 
 
-def _curve(axis: int, reach: Array, basis: Basis, coefficients: Array, draws: Array, runs: Sequence[Recovered]) -> Curve:
+def _curve(axis: int, reach: Array, fitted: FittedLaw, draws: Array) -> Curve:
     """Return f (axis 0) or g (axis 1)."""
-
-    def alone(x: Array) -> Array:
-        return basis(np.zeros_like(x), x) if axis else basis(x, np.zeros_like(x))
-
     x = np.linspace(float(np.percentile(reach, 1)), float(np.percentile(reach, 99)), POINTS)
-    columns = alone(x)
+    columns = fitted.basis(np.zeros_like(x), x) if axis else fitted.basis(x, np.zeros_like(x))
     low, high = np.percentile(draws @ columns.T, [5, 95], axis=0)
-    own = sum(float((run.seen(alone(run.rate if axis else run.travel) @ coefficients) ** 2).sum()) for run in runs)
-    return Curve(x, columns @ coefficients, low, high, own / sum(float((run.force**2).sum()) for run in runs))
+    own = sum(float((run.seen(_histories(run, fitted)[axis]) ** 2).sum()) for run in fitted.runs)
+    return Curve(x, columns @ fitted.coefficients, low, high, own / sum(float((run.force**2).sum()) for run in fitted.runs))
 
 
 def _stretch(curve: Curve, scale: float, unit: str, force: str) -> str:
@@ -243,7 +216,7 @@ def _stretch(curve: Curve, scale: float, unit: str, force: str) -> str:
 
 
 def _percent(share: float) -> str:
-    return f"{100 * max(share, 0.0):.0f} %"
+    return f"{100 * max(share, 0.0):.{1 if 0.985 < share < 1 else 0}f} %"
 
 
 __all__ = ["Curve", "FreeForm", "Recovered", "fit_free_form", "recover", "strongest"]

@@ -27,6 +27,8 @@ Complex = NDArray[np.complex128]
 DEAF = 0.05
 """Lines that see less of the force than this share of the median power tell little of it: near the frequency at which the wheel takes up
 a suspension's force alone, what the model errs elsewhere would be blown up."""
+TIED = 1.005
+"""Hypotheses whose chi differ by no more than this factor do equally well."""
 FADED = 0.2
 """Where the record's taper is below this, the motion's answer to the force is not scaled up any further."""
 
@@ -257,6 +259,7 @@ def _element(model: LinearModel, place: Place, values: dict[str, float]) -> tupl
 
 
 def strongest(results: Sequence[PlaceResult]) -> PlaceResult | None:
-    """Return the hypothesis to show: of those with a force the best suspension, else the best of any kind."""
-    forces = [item for item in results if item.place.rows]
-    return min(forces, key=lambda item: (item.place.kind != "suspension", item.chi), default=None)
+    """Return the hypothesis to show: the best one with a force, or a suspension that does as well (its tyre always does)."""
+    forces = sorted((item for item in results if item.place.rows), key=lambda item: item.chi)
+    tied = [item for item in forces if item.chi <= TIED * forces[0].chi]
+    return next((item for item in tied if item.place.kind == "suspension"), forces[0] if forces else None)

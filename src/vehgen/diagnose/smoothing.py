@@ -7,7 +7,7 @@ by its noise and by what the last fit left; then, as histories again, stretches 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -21,8 +21,6 @@ Basis = Callable[[Array, Array], Array]
 """(travel, rate) `shape (n,)` -> columns `shape (n, n_columns)`, zero at rest."""
 KNOTS = 25
 """Knots of a curve."""
-SIDE = 9
-"""Knots along each side of a surface."""
 CLOSE = 0.15
 STRENGTHS = 10.0 ** np.arange(-6.0, 3.0)
 """Strengths of a penalty that are tried."""
@@ -30,6 +28,8 @@ RIDGE = 1e-9
 """Least penalty: it ties down what no data reach."""
 BLOCK = 0.3
 """Length of the stretches of time [s]."""
+ROUNDS, RELAX = 8, 0.5
+"""So many turns between law and motion, each so far."""
 FOLDS = 4
 """A single run is cut into so many parts, each of which the others predict."""
 
@@ -48,6 +48,22 @@ class Smooth:
 
     coefficients: Array
     penalty: Array
+
+
+@dataclass(frozen=True, eq=False)
+class FittedLaw:
+    """A law fitted to runs, whose motion holds what the band hides of its force; `excess` is the PSD it leaves beyond noise [N^2/Hz]."""
+
+    runs: tuple[Recovered, ...]
+    basis: Basis
+    coefficients: Array
+    penalty: Array
+    parts: tuple[Part, ...]
+    excess: float
+
+    def force(self, travel: Array, rate: Array) -> Array:
+        """Return its force at a motion, `shape (n,)`."""
+        return np.asarray(self.basis(travel, rate) @ self.coefficients)
 
 
 def place_knots(x: Array, count: int) -> Array:
@@ -78,18 +94,21 @@ def curves_basis(travel_knots: Array, rate_knots: Array) -> tuple[Basis, list[Ar
     return _from_rest(raw), penalties
 
 
-def surface_basis(travel_knots: Array, rate_knots: Array) -> tuple[Basis, list[Array]]:
-    """Return the basis of a surface over travel and rate, two straight lines first, and its penalties along both."""
-    n, m = len(travel_knots) + 2, len(rate_knots) + 2
+def coupled_basis(travel_knots: Array, rate_knots: Array) -> tuple[Basis, list[Array]]:
+    """Return the basis of f(travel) + g(rate) with products of both, and its penalties.
 
-    def raw(travel: Array, rate: Array) -> Array:
-        product_ = splines(travel, travel_knots)[:, :, None] * splines(rate, rate_knots)[:, None, :]
-        return np.column_stack([travel / np.ptp(travel_knots), rate / np.ptp(rate_knots), product_.reshape(len(travel), -1)])
+    These are powers of the travel times the rate, its square with its sign, and a smooth sign of it: damping and friction that change
+    with the travel.
+    """
+    curves, penalties = curves_basis(travel_knots, rate_knots)
+    d0, v0 = float(np.abs(travel_knots).max()), float(np.abs(rate_knots).max())
 
-    penalties = [np.zeros((2 + n * m, 2 + n * m)) for _ in range(2)]
-    penalties[0][2:, 2:] = np.kron(_bend(n), np.eye(m))
-    penalties[1][2:, 2:] = np.kron(np.eye(n), _bend(m))
-    return _from_rest(raw), penalties
+    def basis(travel: Array, rate: Array) -> Array:
+        d, v = travel / d0, rate / v0
+        products = [d**i * part for i in (1, 2, 3) for part in (v, v * np.abs(v), v / (np.abs(v) + CLOSE))]
+        return np.column_stack([curves(travel, rate), *products])
+
+    return basis, [np.pad(item, (0, 9)) for item in penalties]
 
 
 def _bend(count: int) -> Array:
@@ -145,12 +164,39 @@ def smooth(parts: Sequence[Part], penalties: Sequence[Array]) -> Smooth:
     return Smooth(np.linalg.solve(normal + best, right), best)
 
 
-def bootstrap(parts: Sequence[Part], fit: Smooth, draws: int, random: np.random.Generator) -> Array:
+def fit_law(recovered: Sequence[Recovered], basis: Basis, penalties: Sequence[Array]) -> FittedLaw:
+    """Fit a basis to the forces recovered in the training runs.
+
+    With the law at hand, what the band hides of its force can be added to the motion, and the weights are known; so in turns.
+    """
+    runs = list(recovered)
+    laws = [np.zeros(len(run.time)) for run in runs]
+    for _ in range(ROUNDS):
+        training = [(run, law) for run, law in zip(runs, laws, strict=True) if not run.untouched]
+        excess = left_over([run for run, _ in training], [law for _, law in training])
+        parts = [normal_equations(run, run.force, basis(run.travel, run.rate), excess) for run, _ in training]
+        found = smooth(parts, penalties)
+        fitted = FittedLaw(tuple(runs), basis, found.coefficients, found.penalty, tuple(parts), excess)
+        laws = [fitted.force(run.travel, run.rate) for run in runs]
+        runs = [_relaxed(run, first, *first.unseen_motion(law)) for run, first, law in zip(runs, recovered, laws, strict=True)]
+    return fitted
+
+
+def _relaxed(run: Recovered, first: Recovered, travel: Array, rate: Array) -> Recovered:
+    """Return a run a share of the way to the motion with what the band hides: a whole step may overshoot where a law is stiff."""
+    return replace(
+        run,
+        travel=run.travel + RELAX * (first.travel + travel - run.travel),
+        rate=run.rate + RELAX * (first.rate + rate - run.rate),
+    )
+
+
+def bootstrap(law: FittedLaw, draws: int, random: np.random.Generator) -> Array:
     """Return coefficients fitted to stretches of time drawn with replacement from every run, `shape (draws, p)`."""
     found = []
     for _ in range(draws):
-        normal, right = fit.penalty.copy(), np.zeros(len(fit.penalty))
-        for part in parts:
+        normal, right = law.penalty.copy(), np.zeros(len(law.penalty))
+        for part in law.parts:
             counts = np.bincount(random.integers(len(part.right), size=len(part.right)), minlength=len(part.right)).astype(float)
             normal += np.tensordot(counts, part.normal, 1)
             right += counts @ part.right
@@ -158,18 +204,19 @@ def bootstrap(parts: Sequence[Part], fit: Smooth, draws: int, random: np.random.
     return np.array(found)
 
 
-def shifts(runs: Sequence[Recovered], basis: Basis, excess: float, fit: Smooth) -> Array:
+def shifts(law: FittedLaw) -> Array:
     """Return by how much the coefficients change with every variant of the base fit, `shape (n_variants, p)`."""
+    training = [run for run in law.runs if not run.untouched]
     found = []
-    for j in range(len(runs[0].variants)):
-        normal, right = fit.penalty.copy(), np.zeros(len(fit.penalty))
-        for run in runs:
+    for j in range(len(training[0].variants)):
+        normal, right = law.penalty.copy(), np.zeros(len(law.penalty))
+        for run in training:
             force, travel, rate = run.variants[j]
-            part = normal_equations(run, run.force + force, basis(run.travel + travel, run.rate + rate), excess)
+            part = normal_equations(run, run.force + force, law.basis(run.travel + travel, run.rate + rate), law.excess)
             normal += part.normal.sum(axis=0)
             right += part.right.sum(axis=0)
-        found.append(np.linalg.solve(normal, right) - fit.coefficients)
-    return np.array(found)
+        found.append(np.linalg.solve(normal, right) - law.coefficients)
+    return np.array(found).reshape(-1, len(law.coefficients))
 
 
 def left_over(runs: Sequence[Recovered], histories: Sequence[Array]) -> float:

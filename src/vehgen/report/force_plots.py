@@ -18,6 +18,8 @@ BAND = "#d3dae0"
 INTERVAL = "#a9c8e6"
 LAST = 0.03
 """The time panel shows what lies between the first and the last moment at which the force exceeds this share of its largest."""
+TALL = 1.5
+"""The time panel reaches to this multiple of the largest force, even where the band is wider."""
 LONGEST = 4.0
 """It shows so much time at most, about the largest force [s]."""
 
@@ -25,7 +27,8 @@ LONGEST = 4.0
 def plot_force(law: FreeForm, run: str | None = None) -> Figure:
     """Plot a recovered force with its free-form law, three panels: over travel, over rate, in time.
 
-    Dots are the recovered force of one run; in time, the grey band is its +-2 standard deviations.
+    A dot is what a curve says at one instant plus what the law leaves of the recovered force then; in time, the grey band is that force's
+    +-2 standard deviations.
 
     Parameters
     ----------
@@ -45,10 +48,14 @@ def plot_force(law: FreeForm, run: str | None = None) -> Figure:
     scale, unit = (1.0, "rad") if shown.angular else (1e3, "mm")
     word = "moment" if shown.angular else "force"
     named = {"body": "pitch" if shown.angular else "heave", "hinge": "angle"}.get(shown.place.kind, "travel")
-    _panel(panels[0], law.travel, scale, shown, shown.travel, f"{named} [{unit}]")
-    _panel(panels[1], law.rate, 1.0, shown, shown.rate, f"its rate [{shown.units[1]}]")
+    f, g, both = law.histories[shown.run]
+    _panel(panels[0], law.travel, scale, shown.travel, f + shown.force - both, f"{named} [{unit}]")
+    _panel(panels[1], law.rate, 1.0, shown.rate, g + shown.force - both, f"its rate [{shown.units[1]}]")
+    low, high = (pick(axes.get_ylim()[i] for axes in panels[:2]) for i, pick in enumerate((min, max)))
+    for axes in panels[:2]:
+        axes.set_ylim(low, high)
     panels[0].set_ylabel(f"unknown {word} [{shown.units[2]}]", color=INK)
-    _history(panels[2], shown, law.histories[shown.run])
+    _history(panels[2], shown, both)
     for axes in panels:
         axes.grid(color="#e3e7ea", lw=0.6)
         axes.set_axisbelow(True)
@@ -67,9 +74,11 @@ def _choose(runs: tuple[Recovered, ...], name: str | None) -> Recovered:
     return max((item for item in runs if not item.untouched), key=lambda item: float(np.abs(item.force).max()))
 
 
-def _panel(axes: Axes, curve: Curve, scale: float, run: Recovered, x: Array, label: str) -> None:
+def _panel(axes: Axes, curve: Curve, scale: float, x: Array, dots: Array, label: str) -> None:
     """Draw the force over travel or rate, and its curve with the 90 % interval."""
-    axes.plot(scale * x, run.force, ls="", marker="o", ms=2.6, mfc="none", mec=DOTS, mew=0.7, label="recovered force")
+    reach = 1.08 * np.concatenate([dots, curve.force])
+    axes.set_ylim(float(reach.min()), float(reach.max()))
+    axes.plot(scale * x, dots, ls="", marker="o", ms=2.6, mfc="none", mec=DOTS, mew=0.7, label="recovered, at an instant")
     axes.fill_between(scale * curve.x, curve.low, curve.high, color=INTERVAL, lw=0.0, alpha=0.75, label="90 % interval")
     axes.plot(scale * curve.x, curve.force, color=SIMULATED, lw=1.8, label="free-form law")
     axes.set_xlabel(label, color=INK)
@@ -85,5 +94,6 @@ def _history(axes: Axes, run: Recovered, law: Array) -> None:
     )
     axes.plot(run.time, run.force, color=INK, lw=1.0, label="recovered in time")
     axes.plot(run.time, law, color=SIMULATED, lw=1.3, ls=(0, (4, 1.5)), label="law, as the band shows it")
+    axes.set_ylim(-TALL * size, TALL * size)
     axes.set_xlim(max(first, middle - LONGEST / 2), min(last, middle + LONGEST / 2))
     axes.set_xlabel("time [s]", color=INK)
