@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from benchmarks.hidden_effects.generator import Case, Effect, Hump, RandomRoad, RunSpec, true_parameters, write_case
 
+from vehgen.diagnose import place_test
 from vehgen.diagnose.free_form import fit_free_form, recover
 from vehgen.diagnose.pipeline import detect
-from vehgen.diagnose import place_test
 from vehgen.diagnose.place_test import Place, list_places
 from vehgen.diagnose.recovered import Recovered, strongest
 from vehgen.identify.trial import load_trials
