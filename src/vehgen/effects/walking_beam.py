@@ -6,6 +6,11 @@ from vehgen.effects.base import Change, Effect, EffectParameter
 from vehgen.effects.law_effect import Given
 from vehgen.effects.places import tandems
 from vehgen.effects.site import Site
+from vehgen.vehicle.model import Spring
+
+
+def _spring(suspension: Spring) -> tuple[str, str]:
+    return suspension.k.text, suspension.c.text
 
 
 def _edit(site: Site, symbols: Given) -> Change:
@@ -13,10 +18,15 @@ def _edit(site: Site, symbols: Given) -> Change:
     one, two = site.vehicle.axles[first], site.vehicle.axles[second]
     assert one.mass is not None
     assert two.mass is not None
+    assert one.suspension is not None
+    assert two.suspension is not None
     body, beam = one.body, f"beam_{first}_{second}"
     near, far, m1, m2 = (f"({text})" for text in (one.x.text, two.x.text, one.mass.text, two.mass.text))
+    k1, c1, k2, c2 = (f"({text})" for text in (*_spring(one.suspension), *_spring(two.suspension)))
     middle, half = f"({near} + {far})/2", f"({near} - {far})/2"
     offset = f"{half}*({m1} - {m2})/({m1} + {m2})"
+    share, pivot = symbols["share"], f"{half}*(2*{symbols['split']} - 1)"
+    ends = {first: (near, f"{half} - {offset}", k1, c1), second: (far, f"-{half} - {offset}", k2, c2)}
     return {
         "bodies": {
             beam: {
@@ -26,7 +36,16 @@ def _edit(site: Site, symbols: Given) -> Change:
             }
         },
         "links": {
-            f"{beam}_pivot": {body: {"x": middle}, beam: {"x": f"-{offset}"}, "k": symbols["k"], "c": symbols["c"]},
+            f"{beam}_pivot": {
+                body: {"x": f"{middle} + {pivot}"},
+                beam: {"x": f"{pivot} - {offset}"},
+                "k": f"{share}*({k1} + {k2})",
+                "c": f"{share}*({c1} + {c2})",
+            },
+            **{
+                f"{beam}_{name}": {body: {"x": x}, beam: {"x": end}, "k": f"(1 - {share})*{k}", "c": f"(1 - {share})*{c}"}
+                for name, (x, end, k, c) in ends.items()
+            },
         },
         "axles": {
             first: {"body": beam, "x": f"{half} - {offset}", "mass": None, "suspension": None},
@@ -38,14 +57,14 @@ def _edit(site: Site, symbols: Given) -> Change:
 WALKING_BEAM = Effect(
     "walking_beam",
     "Walking beam (load-sharing tandem)",
-    "both axles hang on a beam that rocks about its pivot: k and c act at the pivot alone",
+    "the share of k and c of both axles acts at the pivot of a beam that joins them, the rest at the axles",
     "a tandem whose axles share their load; only the tyres resist the rocking",
     "the two axles answer as one: their separate hops and the tandem's comb of frequencies change",
     "D. Cebon, Handbook of Vehicle-Road Interaction, 1999, ISBN 9789026515545",
     "axles",
     (
-        EffectParameter("k", "N/m", "stiffness at the pivot", 0.2, 5.0, (1.0,), lambda site: site.k),
-        EffectParameter("c", "N s/m", "damping at the pivot", 0.1, 8.0, (1.0,), lambda site: site.c),
+        EffectParameter("share", "", "share of stiffness and damping at the pivot: 1 is a beam that rocks freely", 0.1, 1.0, (0.95, 0.6)),
+        EffectParameter("split", "", "how far the pivot lies ahead of the rear axle, over the distance of the axles", 0.3, 0.7, (0.5,)),
     ),
     tandems,
     _edit,
