@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 RELABELLED = 0.5
 """Largest share of the excess that another labelling may leave: the true effect may still be in it."""
-MOVED = 0.2
+MOVED = 0.25
 """The same for axles elsewhere: of honest effects a late sensor comes nearest, and leaves 0.39."""
 OTHER = 0.01
 """The same for parameters beyond BOUND, unless the noise floor is reached: of honest effects relaxation comes nearest, and leaves 0.047."""
@@ -45,7 +45,7 @@ NOTICED = 0.02
 """Gain in correlation from which a moved axle is fitted."""
 REACH = 0.25
 """Axles are moved by up to this share of their distance to the axle before."""
-STEP, FINE_STEP = 0.05, 0.01
+STEP, FINE_STEP = 0.1, 0.01
 
 
 @dataclass(frozen=True)
@@ -164,19 +164,20 @@ def _axles(case: _Case) -> Iterator[Suspicion]:
     names = list(trial.run.vehicle.axles)
     offsets = trial.simulator.model.wheel_offsets(trial.values)
     order = [int(i) for i in np.argsort(offsets)]
-    as_filed, _, lags = case.best(Adjustment(""), [0.0])
+    as_filed = case.best(Adjustment(""), [0.0])[0]
     found = []
     for k in range(1, len(order)):
         gap = float(offsets[order[k]] - offsets[order[k - 1]])
         for group in dict.fromkeys(((order[k],), tuple(order[k:]))):
             change = AxleShift("+".join(names[i] for i in group), STEP, 0.0, group)
-            coarse = case.best(change, [i * STEP for i in range(-round(REACH * gap / STEP), round(REACH * gap / STEP) + 1)])[1]
-            found.append((*case.best(change, [coarse + FINE_STEP * i for i in range(-4, 5)]), change))
+            reach = round(REACH * gap / STEP)
+            found.append((*case.best(change, [i * STEP for i in range(-reach, reach + 1)]), change))
     if not found:
         return
     score, value, lags, change = max(found, key=lambda item: item[0])
     if score < as_filed + NOTICED:
         return
+    _, value, lags = case.best(change, [value + i * FINE_STEP for i in range(-5, 6)])
     fit, left = case.refit(case.problem, None, change, value, lags)
     if left > MOVED:
         return
@@ -199,7 +200,11 @@ def _other_vehicle(case: _Case) -> Iterator[Suspicion]:
         return
     wide = make_problem(case.trials)
     fit, left = case.refit(wide, np.asarray(wide.space.unit(case.base.values)))
-    ratios = {name: value / start for name, value, start in zip(wide.space.names, fit.values, wide.space.start, strict=True) if start > 0}
+    ratios = {
+        name: value / start
+        for name, value, start in zip(wide.space.names, fit.values, wide.space.start, strict=True)
+        if min(value, start) > 0
+    }
     far = sorted((name for name, ratio in ratios.items() if abs(np.log(ratio)) > BOUND), key=lambda name: -abs(np.log(ratios[name])))
     if far:
         listed = ", ".join(f"{name} {ratios[name]:.2f} times" for name in far[:4])
