@@ -24,6 +24,8 @@ VISIBLE = 1.5
 NONSENSE = {("sedan2", "suspended_cab")}
 """A sedan has no suspended cab."""
 DRAWS = 12
+VARIETY = (("one height", 0.07), ("one speed", 0.07))
+"""Shares of cases whose hump runs have but one height, or one speed."""
 
 
 @dataclass(frozen=True)
@@ -37,8 +39,8 @@ class HiddenCase:
     case: Case
 
 
-def runs_of(vehicle: str, sharp: bool, wrong: float, rough_seed: int) -> tuple[RunSpec, ...]:
-    """Return humps of two heights at several speeds and a rough road; `wrong` is the hump's true height error."""
+def runs_of(vehicle: str, sharp: bool, wrong: float, rough_seed: int, variety: str = "") -> tuple[RunSpec, ...]:
+    """Return humps of two heights at several speeds and a rough road; `wrong` is the hump's true height error, `variety` may be poor."""
     if vehicle == "sedan2":
         low, high = Hump(0.5, 0.03, 5.0), Hump(0.4, 0.06, 6.0) if sharp else Hump(0.5, 0.05, 6.0)
         plan = (
@@ -52,6 +54,10 @@ def runs_of(vehicle: str, sharp: bool, wrong: float, rough_seed: int) -> tuple[R
         low, high = Hump(0.5, 0.03, 4.0), Hump(0.4, 0.05, 5.0) if sharp else Hump(0.5, 0.05, 5.0)
         plan = (("low_2", low, 2.0, 12.0), ("low_3", low, 3.0, 10.0), ("high_2", high, 2.5, 11.0))
         rough = RunSpec((RandomRoad("C", rough_seed),), 10.0, 10.0, "rough")
+    if variety == "one height":
+        plan = tuple((name, low, speed, duration) for name, _, speed, duration in plan)
+    elif variety == "one speed":
+        plan = tuple((name, hump, 2.5, plan[-1][3] + 1.0) for name, hump, _, _ in plan)
     return (*(RunSpec((hump,), speed, duration, name, hump_height_error=wrong) for name, hump, speed, duration in plan), rough)
 
 
@@ -60,7 +66,7 @@ def draw_cases(
 ) -> list[HiddenCase]:
     """Return the cases of a set: every listed effect once on each vehicle, then nulls, weak ones, pairs and effects outside the library.
 
-    A fifth of the cases has a hump 3 % higher than its run file says, a fifth coloured noise.
+    A fifth of the cases has a hump 3 % higher than its run file says, a fifth coloured noise, a seventh one height or one speed only.
     """
     random = np.random.default_rng(seed)
     cases: list[HiddenCase] = []
@@ -81,13 +87,18 @@ def draw_cases(
 def _draw(name: str, kind: str, vehicle: str, groups: list[list], random: np.random.Generator, strength: str) -> HiddenCase:  # type: ignore[type-arg]
     wrong = 0.03 if random.random() < 0.2 else 0.0
     colour = 0.5 if random.random() < 0.2 else 0.0
+    dice, variety = random.random(), ""
+    for word, share in VARIETY:
+        variety, dice = (word if 0 <= dice < share else variety), dice - share
     best: HiddenCase | None = None
     for _ in range(DRAWS):
         chosen = [options[int(random.integers(len(options)))] for options in groups]
         effects = tuple(option.draw(random, strength) for option in chosen)
         sharp = any(effect.name == "tyre_liftoff" for effect in effects)
         seed = int(random.integers(1_000_000))
-        case = Case(vehicle, effects=effects, runs=runs_of(vehicle, sharp, wrong, seed % 1000), noise=Noise(colour=colour), seed=seed)
+        case = Case(
+            vehicle, effects=effects, runs=runs_of(vehicle, sharp, wrong, seed % 1000, variety), noise=Noise(colour=colour), seed=seed
+        )
         best = HiddenCase(name, kind, vehicle, effects, case)
         if kind in ("null", "weak") or visibility(case) >= VISIBLE:
             break

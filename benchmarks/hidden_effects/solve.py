@@ -31,5 +31,6 @@ def solve(item: HiddenCase) -> dict:
         except Exception as error:  # a crash is a result too
             return {**record, "verdict": "crash", "error": f"{type(error).__name__}: {error}", "seconds": time.perf_counter() - start}
     data = found.verdict.to_dict()
+    data["passed"] = [item.place.label for item in found.passed]
     data["tried"] = [[fit.label, fit.train, fit.held_out] for fit in found.fits[:5]]
     return {**record, **data, "seconds": time.perf_counter() - start}
