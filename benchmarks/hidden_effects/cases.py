@@ -24,7 +24,7 @@ VISIBLE = 1.5
 NONSENSE = {("sedan2", "suspended_cab")}
 """A sedan has no suspended cab."""
 DRAWS = 12
-VARIETY = (("one height", 0.07), ("one speed", 0.07))
+VARIETY = {"": 0.86, "one height": 0.07, "one speed": 0.07}
 """Shares of cases whose hump runs have but one height, or one speed."""
 
 
@@ -87,18 +87,15 @@ def draw_cases(
 def _draw(name: str, kind: str, vehicle: str, groups: list[list], random: np.random.Generator, strength: str) -> HiddenCase:  # type: ignore[type-arg]
     wrong = 0.03 if random.random() < 0.2 else 0.0
     colour = 0.5 if random.random() < 0.2 else 0.0
-    dice, variety = random.random(), ""
-    for word, share in VARIETY:
-        variety, dice = (word if 0 <= dice < share else variety), dice - share
+    variety = str(random.choice(list(VARIETY), p=list(VARIETY.values())))
     best: HiddenCase | None = None
     for _ in range(DRAWS):
         chosen = [options[int(random.integers(len(options)))] for options in groups]
         effects = tuple(option.draw(random, strength) for option in chosen)
         sharp = any(effect.name == "tyre_liftoff" for effect in effects)
         seed = int(random.integers(1_000_000))
-        case = Case(
-            vehicle, effects=effects, runs=runs_of(vehicle, sharp, wrong, seed % 1000, variety), noise=Noise(colour=colour), seed=seed
-        )
+        runs = runs_of(vehicle, sharp, wrong, seed % 1000, variety)
+        case = Case(vehicle, effects=effects, runs=runs, noise=Noise(colour=colour), seed=seed)
         best = HiddenCase(name, kind, vehicle, effects, case)
         if kind in ("null", "weak") or visibility(case) >= VISIBLE:
             break
