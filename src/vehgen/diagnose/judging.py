@@ -27,8 +27,8 @@ def excess(mean_square: float) -> float:
 
 
 def passes(fit: Fit, base: Fit) -> bool:
-    """Return whether a fit closes the gap of the base, on the training runs and on untouched ones."""
-    return all(
+    """Return whether a fit closes the gap of the base, on the training runs and on untouched ones, however small the gap is."""
+    return excess(fit.train) <= limit.AT_LEAST * excess(base.train) and all(
         after <= limit.LAW_PASSES * max(before, 1e-9) or after <= limit.LAW_CHI**2 - 1
         for after, before in ((excess(fit.train), excess(base.train)), (excess(fit.held_out), excess(base.held_out)))
     )

@@ -9,7 +9,6 @@ from vehgen.diagnose.candidate import Candidate
 from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.place_test import Place, PlaceResult, list_places, test_places
 from vehgen.effects.places import ALL_TYRES
-from vehgen.vehicle import Vehicle
 
 GLOBAL = ("speed_error", "tyre_footprint", "tyre_damping", "tyre_liftoff", "frame_bending", "suspended_cab", "cargo_module", "walking_beam")
 """Effects that no single place explains, or that reach several: they are tried whatever the place test says."""
@@ -42,9 +41,7 @@ def suffices(passed: Sequence[PlaceResult], base: Fit) -> bool:
     return any(item.place.rows and item.unknowns == 1 and item.chi**2 - 1 <= least for item in passed)
 
 
-def shortlist(
-    vehicle: Vehicle, candidates: Sequence[Candidate], places: Sequence[PlaceResult], passed: Sequence[PlaceResult]
-) -> list[Candidate]:
+def shortlist(base: Fit, candidates: Sequence[Candidate], places: Sequence[PlaceResult], passed: Sequence[PlaceResult]) -> list[Candidate]:
     """Return the candidates worth fitting: those that live at the places left, and those that no single force explains.
 
     A sensor's effects are tried where leaving out the sensor or one of its channels helps; effects of the whole vehicle, and those at a
@@ -53,24 +50,24 @@ def shortlist(
     if not passed:
         return list(candidates)
     names = {owner(item.place) for item in passed if item.place.rows}
-    if not one_force(passed):
+    single = suffices(passed, base)
+    if not single:
+        vehicle = base.polished.misfit.problem.trials[0].run.vehicle
         names |= {name for name, axle in vehicle.axles.items() if axle.body in names}
         names |= {name for name, hinge in vehicle.hinges.items() if not names.isdisjoint(hinge.points)}
     excess = max(max(item.chi for item in places) ** 2 - 1, 1e-9)
     silenced = {
         part for item in places if item.place.channels and _reaches(item, excess) for part in (item.place.name, *item.place.channels)
     }
-    single = one_force(passed)
     found = []
     for candidate in candidates:
         if candidate.effect.attaches == "sensor":
             wanted = candidate.place in silenced or any(part.rpartition("_")[0] == candidate.place for part in silenced)
         elif candidate.place == ALL_TYRES:
             wanted = not single or any(item.place.kind == "tyre" for item in passed)
-        elif candidate.effect.name in GLOBAL and candidate.place not in names:
-            wanted = not single
         else:
-            wanted = any(part in names for part in candidate.place.split("+"))
+            touches = any(part in names for part in candidate.place.split("+"))
+            wanted = touches or (candidate.effect.name in GLOBAL and not single)
         if wanted:
             found.append(candidate)
     return found

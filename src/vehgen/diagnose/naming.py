@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from vehgen.diagnose.candidate import Candidate
 from vehgen.diagnose.detection import Detection
 from vehgen.diagnose.fitting import NUISANCES, Fit, Footing, fit_candidate
-from vehgen.diagnose.localisation import GLOBAL, localise, one_force, shortlist
+from vehgen.diagnose.localisation import GLOBAL, localise, one_force, shortlist, suffices
 from vehgen.diagnose.place_test import PlaceResult
 from vehgen.diagnose.screening import screen
 from vehgen.effects import Surveyor
@@ -47,7 +47,6 @@ def look(
         if tell is not None:
             tell(stage + beside, done, total, best)
 
-    vehicle = detection.trials[0].run.vehicle
     say("localise", 0, 1, "")
     try:
         places, passed = localise(footing)
@@ -56,7 +55,7 @@ def look(
     say("localise", 1, 1, passed[0].place.label if passed else "no single place")
     known = {(item.effect.name, item.place) for item in footing.effects}
     others = [item for item in candidates if (item.effect.name, item.place) not in known]
-    chosen = others if everything else shortlist(vehicle, others, places, passed)
+    chosen = others if everything else shortlist(footing, others, places, passed)
     if footing.effects and not passed and not everything:
         chosen = [item for item in others if item.effect.attaches in ("run", "sensor") or item.effect.name in GLOBAL]
     fits, stopped = name(detection, footing, passed, chosen, say, everything)
@@ -90,7 +89,7 @@ def name(
     fits: list[Fit] = []
     lines = find_line(base.polished.misfit, base.polished.x)
     try:
-        if not one_force(passed) and not everything:
+        if not suffices(passed, base) and not everything:
             candidates = screen(candidates, base, footing, surveyor, simulators, {"harmonic": lines})
         for done, candidate in enumerate(candidates, start=1):
             harmonic = candidate.effect.adjusts == "harmonic"

@@ -17,6 +17,8 @@ LAW_PASSES = 0.10
 """A law passes when it leaves no more than this share of the excess, on the training runs and on untouched ones."""
 LAW_CHI = 1.15
 """A law also passes below this chi."""
+AT_LEAST = 0.5
+"""A law leaves at most this share of the excess on the training runs, however near to the noise that is."""
 TIE = 3.0
 """Candidates whose excess is within this factor of the best one's (and of the noise floor's) are tied with it."""
 SIGNIFICANT = 0.01
