@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -24,10 +24,11 @@ def main() -> None:
     seed = DEVELOP_SEED if options.set == "develop" else SCORED_SEED
     cases = draw_cases(seed, tuple(options.vehicle or ("sedan2", "tractor5")))
     cases = [case for case in cases if options.only is None or options.only in case.name]
-    done = {json.loads(line)["case"] for line in options.out.read_text().splitlines()} if options.out.is_file() else set()
-    waiting = [case for case in cases if case.name not in done]
+    known = {json.loads(line)["case"] for line in options.out.read_text().splitlines()} if options.out.is_file() else set()
+    waiting = [case for case in cases if case.name not in known]
     with ProcessPoolExecutor(options.workers, mp_context=get_context("spawn")) as pool, options.out.open("a") as stream:
-        for record in pool.map(solve, waiting):
+        for done in as_completed([pool.submit(solve, case) for case in waiting]):
+            record = done.result()
             stream.write(json.dumps(record) + "\n")
             stream.flush()
             named = ", ".join(f"{effect['name']} at {effect['place']}" for effect in record.get("effects", []))

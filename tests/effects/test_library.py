@@ -51,7 +51,7 @@ def frequencies(vehicle):
 def test_a_walking_beam_leaves_the_tandem_its_heave_and_takes_its_pitch_stiffness():
     vehicle = load_vehicle("tractor5.yaml")
     site = Surveyor(vehicle, vehicle.values()).site("axle4+axle5")
-    changed = derive(extend_vehicle(vehicle, EFFECTS["walking_beam"].change(site)))
+    changed = derive(extend_vehicle(vehicle, EFFECTS["walking_beam"].change(site, {"share": 1.0, "split": 0.5})))
     K = changed.numeric().K
     beam = [item.name for item in changed.coordinates]
     pitch = beam.index("pitch.beam_axle4_axle5")
