@@ -111,7 +111,7 @@ def polish(
     values = problem.space.values(unit)
     misfit = Misfit(problem, noises, values, nuisances, band, shared, renew)
     begun = [(value - item.neutral) / item.scale for item, value in zip(shared, numbers, strict=True)] if numbers else [0.0] * len(shared)
-    x = np.concatenate([np.clip(unit, 0.0, 1.0), begun, first_delays(misfit, unit) if start is None else start])
+    x = np.concatenate([np.clip(unit, 0.0, 1.0), begun, first_delays(misfit, unit, begun) if start is None else start])
     result = _fit(misfit, x, facts, max_steps, tolerance if known else ROUGH, springs)
     for left in reversed(range(0 if known else rounds - 1)):
         noises = estimate_noises(misfit, result)
@@ -174,13 +174,16 @@ def estimate_noises(misfit: Misfit, x: Array) -> Noises:
     return found
 
 
-def first_delays(misfit: Misfit, unit: Array) -> Array:
-    """Return nuisances whose delays make measured and simulated correlate best: least squares alone may lock onto a wrong cycle."""
+def first_delays(misfit: Misfit, unit: Array, begun: Sequence[float] = ()) -> Array:
+    """Return nuisances whose delays make measured and simulated correlate best: least squares alone may lock onto a wrong cycle.
+
+    `begun` are the shared adjustments in units of their scales (default: neutral).
+    """
     names = misfit.nuisances.names
     found = np.zeros((len(misfit.problem.trials), len(names)))
     if "delay" in names:
-        for t, trial in enumerate(misfit.problem.trials):
-            simulated = misfit.problem.respond(misfit.problem.space.values(unit)[None], trial)[0][0]
+        x = np.concatenate([unit, begun or np.zeros(len(misfit.shared)), found.ravel()])
+        for t, (trial, simulated) in enumerate(zip(misfit.problem.trials, misfit.simulate(x), strict=True)):
             found[t, names.index("delay")] = _delay(trial, simulated, misfit.band) / misfit.nuisances.delay
     return found.ravel()
 
