@@ -1,4 +1,4 @@
-"""Write the tables of docs/hidden-effects.md and its figure from a set's results: `python docs/make_hidden_effects_page.py RESULTS.jsonl`.
+"""Write the tables of docs/hidden-effects.md and its figure from a set's results: `python -m benchmarks.hidden_effects.page RESULTS.jsonl`.
 
 What stands outside the two marks of the page is written by hand and kept.
 """
@@ -13,13 +13,11 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))
+from benchmarks.hidden_effects.score import NAMED, right_name, right_place, score, table, untouched
+from vehgen.effects import EFFECTS
+from vehgen.report import save_figure
 
-from benchmarks.hidden_effects.score import NAMED, right_name, right_place, score, table, untouched  # noqa: E402
-from vehgen.effects import EFFECTS  # noqa: E402
-from vehgen.report import save_figure  # noqa: E402
-
+ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "hidden-effects.md"
 IMAGE = ROOT / "docs" / "images" / "hidden-effects.svg"
 START, END = "<!-- results: start -->", "<!-- results: end -->"
@@ -27,6 +25,7 @@ OTHER = ("no_missing_effect", "too_weak", "not_in_library", "insufficient_data",
 
 
 def main() -> None:
+    """Rewrite the page."""
     records = [json.loads(line) for line in Path(sys.argv[1]).read_text(encoding="utf-8").splitlines()]
     order = {name: i for i, name in enumerate(EFFECTS)}
     kinds = ("listed", "two", "weak", "outside", "null")
