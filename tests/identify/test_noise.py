@@ -19,7 +19,7 @@ def draw(noise, answer, random):
 def test_the_whitener_makes_the_density_one():
     random = np.random.default_rng(0)
     answer = make_answer(random)
-    noise = Noise(10.0 ** random.uniform(-6, -3, len(KNOTS)), np.array([1e-4, 0.1, 1.0, 0.01]))
+    noise = Noise(10.0 ** random.uniform(-6, -3, len(KNOTS)), np.array([1e-4, 0.1, 1.0, 0.01]), 0.7)
     white = noise.whitener(answer)
     found = white @ noise.density(answer) @ white.conj().transpose(0, 2, 1)
     assert np.abs(found - np.eye(4)).max() < 1e-6
@@ -28,7 +28,7 @@ def test_the_whitener_makes_the_density_one():
 def test_the_loss_is_minus_two_ln_of_the_likelihood_and_its_slopes_are_its_derivatives():
     random = np.random.default_rng(1)
     answer = make_answer(random, n=50)
-    noise = Noise(10.0 ** random.uniform(-4, -1, len(KNOTS)), random.uniform(0.5, 2, 4))
+    noise = Noise(10.0 ** random.uniform(-4, -1, len(KNOTS)), random.uniform(0.5, 2, 4), 0.7)
     lines = random.standard_normal((50, 4)) + 1j * random.standard_normal((50, 4))
     loss, by_level, by_sigma = noise.loss_and_slopes(lines, answer)
     direct = sum(
@@ -42,7 +42,8 @@ def test_the_loss_is_minus_two_ln_of_the_likelihood_and_its_slopes_are_its_deriv
             for step in (1e-5, -1e-5):
                 moved = array.copy()
                 moved[i] *= np.exp(step)
-                sides.append((Noise(moved, noise.sigma) if array is noise.levels else Noise(noise.levels, moved)).loss(lines, answer))
+                one = Noise(moved, noise.sigma, 0.7) if array is noise.levels else Noise(noise.levels, moved, 0.7)
+                sides.append(one.loss(lines, answer))
             assert (sides[0] - sides[1]) / 2e-5 == pytest.approx(slopes[i], rel=1e-4, abs=1e-4)
 
 
@@ -71,3 +72,9 @@ def test_the_taper_leaves_the_middle_alone():
     window = taper(1000, 0.01)
     assert window[0] == 0.0
     assert (window[80:-80] == 1.0).all()
+
+
+def test_coloured_noise_has_the_density_of_white_noise_at_44_hz_and_more_below():
+    answer = RoadAnswer(np.array([11.0, 44.0]), np.array([5.5, 22.0]), np.zeros((2, 1, 1), dtype=complex), 0.01)
+    density = Noise(EVEN, np.array([0.3]), 0.5).density(answer)[:, 0, 0].real
+    assert density == pytest.approx(2 * 0.01 * 0.3**2 * np.array([2.0, 1.0]))

@@ -15,6 +15,7 @@ from vehgen.diagnose.detection import band_gaps, run_gaps
 from vehgen.diagnose.estimates import estimate, estimates_by_run
 from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.free_form import fit_free_form, recover, strongest
+from vehgen.diagnose.harmonics import distortions
 from vehgen.diagnose.naming import Round
 from vehgen.diagnose.pipeline import Diagnosis
 from vehgen.report.comparison import plot_histories, plot_psds
@@ -47,6 +48,7 @@ def write_diagnosis_page(diagnosis: Diagnosis, path: Path) -> None:
             force=force,
             runs=_runs(diagnosis),
             bands=_bands(diagnosis),
+            distortions=distortions(diagnosis.detection),
             rounds=[_round(item) for item in diagnosis.rounds],
             alone=_alone(diagnosis),
             meanings={fit.last.effect.name: fit.last.effect.meaning for item in diagnosis.rounds for fit in item.fits},

@@ -1,0 +1,82 @@
+"""An engine's line: what sensors show of it, and how it is found."""
+
+import numpy as np
+import pytest
+
+from vehgen.identify.harmonic import Harmonic, find_line, line_numbers
+from vehgen.identify.misfit import Misfit
+from vehgen.identify.noise import EVEN, Noise
+from vehgen.identify.problem import make_problem
+from vehgen.identify.trial import load_trials
+from vehgen.simulate import load_run, simulate
+
+RUN = """
+vehicle: sedan2.yaml
+speed: 2 m/s
+duration: 6 s
+step: 0.5 ms
+sample: 10 ms
+road:
+  - hump: {shape: half_sine, length: 0.5 m, height: 0.03 m, at: 4 m}
+sensors:
+  F: {body: body, behind: front, channels: {acceleration: F_az, pitch_rate: F_q}}
+  R: {body: body, behind: rear, channels: {acceleration: R_az, pitch_rate: R_q}}
+"""
+FORCE = """forces:
+  engine: {body: body, x: 0 m, harmonic: {amplitude: 300 N, frequency: 21 Hz}}
+"""
+SIGMA = np.array([0.01, 5e-4, 0.01, 5e-4])
+CHANNELS = ("F_az", "F_q", "R_az", "R_q")
+
+
+def record(folder, text, road=True):
+    """Return what the kernel's sensors read, `shape (601, 4)`."""
+    if not road:
+        text = text[: text.index("road:")] + text[text.index("sensors:") :]
+    path = folder / "source.yaml"
+    path.write_text(text, encoding="utf-8")
+    response = simulate(load_run(path))
+    return np.column_stack([response.channel(name)[0] for name in CHANNELS])
+
+
+def trial_of(folder, values):
+    table = np.column_stack([np.arange(len(values)) * 0.01, values])
+    np.savetxt(folder / "run.csv", table, delimiter=",", header="t," + ",".join(CHANNELS), comments="")
+    (folder / "run.yaml").write_text(RUN.replace("step: 0.5 ms\nsample: 10 ms", "recording: run.csv"), encoding="utf-8")
+    return load_trials([folder / "run.yaml"])
+
+
+@pytest.fixture(scope="module")
+def shaken(tmp_path_factory):
+    """Return the response to the engine alone, and a trial of hump, engine and noise."""
+    folder = tmp_path_factory.mktemp("engine")
+    alone = record(folder, RUN + FORCE, road=False)
+    noise = np.random.default_rng(3).standard_normal(alone.shape) * SIGMA
+    return alone, trial_of(folder, record(folder, RUN) + alone + noise)
+
+
+def test_the_columns_are_what_the_kernel_answers_to_a_harmonic_force(shaken):
+    alone, (trial,) = shaken
+    columns = Harmonic("body", sigma={trial.name: SIGMA}).columns(trial, 21.0, 0.0, trial.values)
+    late = slice(300, None)  # the start of the force has died away
+    factors = np.linalg.lstsq(columns[:2, late].reshape(2, -1).T, alone[late].ravel(), rcond=None)[0]
+    assert np.hypot(*factors) == pytest.approx(300.0, rel=0.01)
+    left = alone[late] - np.einsum("knc,k->nc", columns[:2, late], factors)
+    assert np.abs(left).max() < 0.02 * np.abs(alone[late]).max()
+
+
+def test_a_line_is_found_where_it_is_and_taken_out(shaken):
+    _, trials = shaken
+    problem = make_problem(trials)
+    noises = {trials[0].name: Noise(EVEN, SIGMA)}
+    plain = Misfit(problem, noises, problem.space.start)
+    x = np.concatenate([problem.space.unit(problem.space.start), np.zeros(plain.n_unknowns - plain.n_parameters)])
+    (frequency, drift), *_ = find_line(plain, x)
+    assert frequency == pytest.approx(21.0, abs=0.05)
+    assert drift == pytest.approx(0.0, abs=0.002)
+    lined = Misfit(problem, noises, problem.space.start, shared=line_numbers("body", {trials[0].name: SIGMA}))
+    numbers = [(frequency - lined.shared[0].neutral) / lined.shared[0].scale, drift / lined.shared[1].scale]
+    before = np.mean(plain.residuals(x) ** 2)
+    after = np.mean(lined.residuals(np.concatenate([x[: plain.n_parameters], numbers, x[plain.n_parameters :]])) ** 2)
+    assert before > 20
+    assert after < 2.5
