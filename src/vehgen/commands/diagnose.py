@@ -24,6 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> None:
     """Diagnose, write the report and the vehicle file, and print the verdict."""
     import json
+    import os
     from dataclasses import replace
 
     from vehgen.codegen import write_text
@@ -49,7 +50,7 @@ def run(options: argparse.Namespace) -> None:
     folder: Path = options.out or Path(f"{Path(options.vehicle).stem}_diagnosis")
     folder.mkdir(parents=True, exist_ok=True)
     with Bars(quiet=options.json) as bars:
-        found = diagnose(trials, chosen, options.everywhere, bars.tell)
+        found = diagnose(trials, chosen, options.everywhere, bars.tell, workers=os.cpu_count() or 1)
     files = [folder / "diagnosis.json", folder / "report.html"]
     if found.chosen:
         name = file_name(vehicle.name, found.chosen[-1])

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.candidate import Candidate
+from vehgen.codegen import compile_all
+from vehgen.diagnose.candidate import Candidate, pose
 from vehgen.diagnose.detection import Detection
 from vehgen.diagnose.fitting import NUISANCES, Fit, Footing, fit_candidate
 from vehgen.diagnose.localisation import GLOBAL, localise, one_force, shortlist, suffices
@@ -38,9 +39,14 @@ class Round:
 
 
 def look(
-    detection: Detection, footing: Fit, candidates: Sequence[Candidate], everything: bool = False, tell: Progress | None = None
+    detection: Detection,
+    footing: Fit,
+    candidates: Sequence[Candidate],
+    everything: bool = False,
+    tell: Progress | None = None,
+    workers: int = 1,
 ) -> Round:
-    """Test the places on what a fit leaves, then fit the candidates that may live there."""
+    """Test the places on what a fit leaves, then fit the candidates that may live there; `workers` processes compile their kernels."""
     beside = f" beside {footing.label}" if footing.effects else ""
 
     def say(stage: str, done: int, total: int, best: str) -> None:
@@ -58,7 +64,7 @@ def look(
     chosen = others if everything else shortlist(footing, others, places, passed)
     if footing.effects and not passed and not everything:
         chosen = [item for item in others if item.effect.attaches in ("run", "sensor") or item.effect.name in GLOBAL]
-    fits, stopped = name(detection, footing, passed, chosen, say, everything)
+    fits, stopped = name(detection, footing, passed, chosen, say, everything, workers)
     return Round(footing, tuple(places), tuple(passed), tuple(fits), stopped)
 
 
@@ -69,6 +75,7 @@ def name(
     candidates: Sequence[Candidate],
     tell: Progress,
     everything: bool = False,
+    workers: int = 1,
 ) -> tuple[list[Fit], bool]:
     """Fit every candidate on top of a fit; return the fits, best first, and whether Ctrl-C ended this early.
 
@@ -89,6 +96,11 @@ def name(
     fits: list[Fit] = []
     lines = find_line(base.polished.misfit, base.polished.x)
     try:
+        if workers > 1:
+            tell("compile", 0, 1, "")
+            posed = [pose(item, footing.problem, surveyor, simulators) for item in candidates if item.effect.edit is not None]
+            compile_all([trial.simulator.kernel for problem in posed for trial in problem.trials], workers)
+            tell("compile", 1, 1, f"{len(posed)} vehicles")
         if not suffices(passed, base) and not everything:
             candidates = screen(candidates, base, footing, surveyor, simulators, {"harmonic": lines})
         for done, candidate in enumerate(candidates, start=1):

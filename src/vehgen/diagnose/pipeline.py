@@ -68,6 +68,7 @@ def diagnose(
     everything: bool = False,
     tell: Progress | None = None,
     band: tuple[float, float] | None = None,
+    workers: int = 1,
 ) -> Diagnosis:
     """Find what a vehicle's model lacks.
 
@@ -83,6 +84,8 @@ def diagnose(
         Told of progress.
     band
         Frequencies compared [Hz] (default: what the run files ask for).
+    workers
+        So many processes compile the candidates' kernels. More than one needs `if __name__ == "__main__":` around a script's work.
 
     Returns
     -------
@@ -98,17 +101,18 @@ def diagnose(
         say("detect", 0, 1, "")
         detection = detect(sorted(trials, key=kind_of_run), band)  # whatever order they came in
         say("detect", 1, 1, f"chi {detection.chi:.3f}")
-        return _Case(detection, list(effects if effects is not None else library().values()), everything, say).decide()
+        return _Case(detection, list(effects if effects is not None else library().values()), everything, say, workers).decide()
 
 
 class _Case:
     """One diagnosis on its way: what was detected, the library, and the rounds so far."""
 
-    def __init__(self, detection: Detection, effects: Sequence[Effect], everything: bool, tell: Progress) -> None:
+    def __init__(self, detection: Detection, effects: Sequence[Effect], everything: bool, tell: Progress, workers: int) -> None:
         self.detection = detection
         self.base = detection.base
         self.everything = everything
         self.tell = tell
+        self.workers = workers
         self.rounds: list[Round] = []
         self.notes: list[str] = []
         vehicle = detection.trials[0].run.vehicle
@@ -161,7 +165,7 @@ class _Case:
         return self._name(chain) if chain else self._unknown(first)
 
     def _look(self, footing: Fit) -> Round:
-        found = look(self.detection, footing, self.candidates, self.everything, self.tell)
+        found = look(self.detection, footing, self.candidates, self.everything, self.tell, self.workers)
         self.rounds.append(found)
         return found
 
