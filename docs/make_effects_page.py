@@ -128,7 +128,7 @@ def draw() -> None:
         line = candidate.shared[0] if candidate.shared else None
         if isinstance(line, Harmonic):
             size = surveyor.site(candidate.place).load
-            changed = base + 0.02 * size * line.columns(trial, 25.0, 0.01, trial.values)[0]
+            changed = base + 0.02 * size * line.columns(trial, 17.8, 0.01, trial.values)[0]
         else:
             numbers = np.array(combination[:1]) if candidate.shared else np.zeros(0)
             changed = misfit.respond(posed.trials[0], values[None], numbers, np.zeros(2))[0]

@@ -67,7 +67,8 @@ def list_candidates(vehicle: Vehicle, trials: Sequence[Trial], effects: Sequence
                 names = tuple(f"{channel.output.place.name}.shift" for channel in _of_sensor(trials, place)[:1])
             elif effect.adjusts in KINDS:
                 kind, scale, neutral = KINDS[effect.adjusts]
-                shared = (kind(place, scale, neutral),)
+                bounds = [(item.low, item.high) for item in effect.parameters] or [(-np.inf, np.inf)]
+                shared = (kind(place, scale, neutral, *bounds[0]),)
             elif effect.adjusts == "harmonic":
                 shared = tuple(line_numbers(place, sigma))
             else:

@@ -79,9 +79,10 @@ def decoy_shares(
 
 def _responses(base: Fit, place: PlaceResult) -> list[NDArray[np.complex128]]:
     misfit = base.polished.misfit
-    known = misfit.problem.best_values(misfit.problem.space.values(misfit.split(place.x)[0]))
+    values = misfit.problem.space.values(misfit.split(place.x)[0])
+    known = [misfit.problem.values_of(values, trial) for trial in misfit.problem.trials]
     return [
-        force_response(trial.simulator.model, trial.values | known, place.place.rows[:1], misfit.frequency(t))[:, :, 0]
+        force_response(trial.simulator.model, known[t], place.place.rows[:1], misfit.frequency(t))[:, :, 0]
         for t, trial in enumerate(misfit.problem.trials)
     ]
 
@@ -91,9 +92,9 @@ def compare(found: Round, fit: Fit, detection: Detection) -> tuple[float, float]
 
     None where the effect is no law at the place that the place test found with one force.
     """
-    place = next(
-        (item for item in found.passed if item.unknowns == 1 and item.place.name == fit.last.place and item.place.kind != "body"), None
-    )
+    forces = [item for item in found.passed if item.unknowns == 1 and item.place.kind != "body" and item.place.rows]
+    here = [item for item in forces if item.place.name == fit.last.place]
+    place = next((item for item in here if item.place.kind == fit.last.effect.attaches), here[0] if here else None)
     if place is None or fit.last.effect.edit is None:
         return None
     motion = {run.run: (run.travel, run.rate) for run in recover(detection, place) if not run.untouched}

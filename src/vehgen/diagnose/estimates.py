@@ -9,6 +9,7 @@ import numpy as np
 import scipy.stats
 from numpy.typing import NDArray
 
+from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.candidate import Candidate
 from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.verdict import NamedParameter
@@ -49,7 +50,8 @@ def estimate(fit: Fit, candidate: Candidate | None = None) -> dict[str, NamedPar
     found: dict[str, NamedParameter] = {}
     for parameter, column, value, scale in _columns(fit, candidate):
         spread = NINETY * abs(scale) * float(np.sqrt(max(covariance[column, column], 0.0)))
-        found[parameter.name] = NamedParameter(value, (value - spread, value + spread), parameter.unit)
+        interval = (value - spread, value + spread) if spread > 0 else None
+        found[parameter.name] = NamedParameter(value, interval, parameter.unit)
     if candidate.effect.adjusts == "harmonic":
         found["amplitude"] = _amplitude(fit, candidate, covariance)
     return found
@@ -92,8 +94,7 @@ def _amplitude(fit: Fit, candidate: Candidate, covariance: Array) -> NamedParame
         found = []
         for trial, error in zip(misfit.problem.trials, errors, strict=True):
             without = misfit.problem.respond(values[None], trial, misfit.nuisances.adjust(trial.scenario, error))[0][0]
-            known = trial.values | misfit.problem.best_values(values)
-            found.append(line.amplitude(trial, without, numbers, known))
+            found.append(line.amplitude(trial, without, numbers, misfit.problem.values_of(values, trial)))
         spreads.append(float(np.std(found)) / np.sqrt(len(found)))
         return float(np.median(found))
 
@@ -110,7 +111,7 @@ def _amplitude(fit: Fit, candidate: Candidate, covariance: Array) -> NamedParame
 def estimates_by_run(fit: Fit, candidate: Candidate | None = None) -> list[RunEstimate]:
     """Return what every training run alone asks of an effect's parameters: one Gauss-Newton step from the joint fit.
 
-    The base parameters are held by the joint fit's information from the other runs, the effect's are free.
+    The base parameters are held by what the other runs say of them, whatever the effect is; the effect's are free.
     """
     candidate = candidate or fit.last
     misfit, x = fit.polished.misfit, fit.polished.x
@@ -119,31 +120,37 @@ def estimates_by_run(fit: Fit, candidate: Candidate | None = None) -> list[RunEs
     lines, slopes = misfit.white_lines(x), misfit.white_derivatives(x)
     jacobians = [flatten(part, first=1).T for part in slopes]
     whole = _information(misfit, x)
-    n = misfit.n_parameters + len(misfit.shared)
+    gradient = misfit.jacobian(x).T @ misfit.residuals(x)
+    blocks = misfit.n_parameters + len(misfit.shared)
+    each = len(misfit.nuisances.names)
     found = []
-    for trial, line, jacobian in zip(misfit.problem.trials, lines, jacobians, strict=True):
-        information = jacobian.T @ jacobian
-        rest = whole - information
-        held = rest.copy()
-        held[own, :] = 0.0
-        held[:, own] = 0.0
-        held[n:, :] = held[:, n:] = 0.0
-        normal = information + held
-        normal[np.arange(len(normal)), np.arange(len(normal))] += np.where(np.arange(len(normal)) < n, 1 / WEAK_PRIOR**2, 1.0)
-        step = -np.linalg.solve(normal, jacobian.T @ flatten(line))
-        covariance = np.linalg.pinv(normal, hermitian=True) * max(fit.runs[trial.name], 1.0)
-        for parameter, column, value, scale in columns:
-            half = NINETY * abs(scale) * float(np.sqrt(max(covariance[column, column], 0.0)))
-            found.append(RunEstimate(trial.name, parameter.name, value + scale * float(step[column]), half))
+    for t, (trial, line, jacobian) in enumerate(zip(misfit.problem.trials, lines, jacobians, strict=True)):
+        information, slope = jacobian.T @ jacobian, jacobian.T @ flatten(line)
+        own_block = np.arange(blocks + t * each, blocks + (t + 1) * each)
+        kept = np.array([i for i in range(blocks) if i not in own] + list(own_block))
+        dropped = np.setdiff1d(np.arange(len(whole)), kept)
+        rest, pull = whole - information, gradient - slope
+        through = rest[np.ix_(kept, dropped)] @ np.linalg.pinv(rest[np.ix_(dropped, dropped)], hermitian=True)
+        asked = np.concatenate([kept, own]).astype(int)
+        normal, force = information[np.ix_(asked, asked)].copy(), slope[asked].copy()
+        n = len(kept)
+        normal[:n, :n] += rest[np.ix_(kept, kept)] - through @ rest[np.ix_(dropped, kept)]
+        force[:n] += pull[kept] - through @ pull[dropped]
+        normal[n:, n:] += np.eye(len(own)) / WEAK_PRIOR**2
+        covariance = np.linalg.pinv(normal, hermitian=True)
+        step = -covariance @ force
+        for k, (parameter, _, value, scale) in enumerate(columns):
+            half = NINETY * abs(scale) * float(np.sqrt(max(covariance[n + k, n + k], 0.0) * max(fit.runs[trial.name], 1.0)))
+            found.append(RunEstimate(trial.name, parameter.name, value + scale * float(step[n + k]), half))
     return found
 
 
 def unstable(fit: Fit, candidate: Candidate | None = None) -> list[str]:
     """Return the parameters on which runs disagree: beyond three standard deviations and beyond SAME_WITHIN of the value."""
-    joint = estimate(fit, candidate)
+    joint, alone = estimate(fit, candidate), estimates_by_run(fit, candidate)
     told = []
     for name, item in joint.items():
-        for own in estimates_by_run(fit, candidate):
+        for own in alone:
             apart = abs(own.value - item.value)
             if own.parameter == name and apart > 3 * own.half_width / NINETY and apart > SAME_WITHIN * abs(item.value):
                 told.append(f"{name} is {item.value:.4g} {item.unit}".rstrip() + f" in all runs, {own.value:.4g} in {own.run} alone")
@@ -151,35 +158,39 @@ def unstable(fit: Fit, candidate: Candidate | None = None) -> list[str]:
     return told
 
 
-def held_out_gain(base: Fit, fit: Fit) -> float:
-    """Return the share of the excess on untouched runs that a fit closes."""
-    return float(1 - max(fit.held_out - 1, 0.0) / max(base.held_out - 1, 1e-9))
+def held_out_gain(base: Fit, fit: Fit) -> float | None:
+    """Return the share of the excess on untouched runs that a fit closes; None where those runs show no gap, or were not simulated."""
+    if not (np.isfinite(fit.held_out) and base.held_out > limit.NOISE_FLOOR**2):
+        return None
+    return float(1 - max(fit.held_out - 1, 0.0) / (base.held_out - 1))
 
 
 def gain_interval(base: Fit, fit: Fit, untouched: Sequence[str], draws: int = 400, seed: int = 7) -> tuple[float, float] | None:
-    """Return the 90 % interval of the share of the excess that a fit closes on untouched runs, by a bootstrap over blocks of lines.
+    """Return the 90 % interval of :func:`held_out_gain`, by a bootstrap over blocks of spectral lines; None where that is None.
 
     Blocks of BLOCK neighbouring lines of all channels are drawn with replacement (Kuensch 1989, doi:10.1214/aos/1176347265).
     """
-    gains, wanted = [], []
-    for name in untouched:
-        if name in fit.powers and name in base.powers:
-            before, after = base.powers[name].mean(axis=1), fit.powers[name].mean(axis=1)
-            blocks = max(1, len(before) // BLOCK)
-            gains += [float(part.sum()) for part in np.array_split(before - after, blocks)]
-            wanted += [float(part.sum()) for part in np.array_split(before - 1, blocks)]
-    if len(gains) < 4:
+    if held_out_gain(base, fit) is None:
         return None
+    parts = []
+    for name in untouched:
+        before, after = base.powers[name], fit.powers[name]
+        for lines in np.array_split(np.arange(len(before)), max(1, len(before) // BLOCK)):
+            parts.append((before[lines].sum(), after[lines].sum(), before[lines].size))
+    blocks = np.array(parts)
     random = np.random.Generator(np.random.PCG64(seed))
-    drawn = random.integers(len(gains), size=(draws, len(gains)))
-    least = max(0.1 * sum(wanted), 1e-9)  # a draw may miss the lines that hold the excess
-    shares = np.asarray(gains)[drawn].sum(axis=1) / np.maximum(np.asarray(wanted)[drawn].sum(axis=1), least)
+    old, new, count = blocks[random.integers(len(blocks), size=(draws, len(blocks)))].sum(axis=1).T
+    least = 0.1 * (base.held_out - 1)  # a draw may miss the lines that hold the gap
+    shares = 1 - np.maximum(new / count - 1, 0.0) / np.maximum(old / count - 1, least)
     low, high = np.percentile(shares, [5, 95])
     return float(low), float(high)
 
 
 def p_value(base: Fit, other: Fit, extra: int) -> float:
-    """Return the probability of such a gain on the training runs by chance: likelihood ratio, chi-squared with `extra` freedoms."""
+    """Return the probability of such a gain on the training runs by chance: likelihood ratio, chi-squared with `extra` freedoms.
+
+    The gain counts in units of what the better model leaves, so that a gap that neither explains lends no significance.
+    """
     names = [trial.name for trial in base.polished.misfit.problem.trials]
-    gain = sum((base.runs[name] - other.runs[name]) * base.counts[name] for name in names)
+    gain = sum((base.runs[name] - other.runs[name]) * base.counts[name] for name in names) / max(other.train, 1.0)
     return float(scipy.stats.chi2.sf(max(gain, 0.0), max(extra, 1)))

@@ -131,7 +131,7 @@ def fit_candidate(
     surveyor: Surveyor,
     simulators: dict[object, Simulator],
     begin: Sequence[tuple[float, ...]] | None = None,
-) -> Fit:
+) -> Fit | None:
     """Fit a candidate's effect together with what it is added to: roughly from its most promising starts, finely from the best.
 
     Parameters
@@ -142,6 +142,10 @@ def fit_candidate(
         As elsewhere.
     begin
         Where the effect's own numbers begin (default: its own starts).
+
+    Returns
+    -------
+    None where the simulation fails at every start.
     """
     problem = pose(candidate, footing.problem, surveyor, simulators)
     shared = (*footing.shared, *candidate.shared)
@@ -166,7 +170,8 @@ def fit_candidate(
         )
         if best is None or fit.loss < best.loss:
             best = fit
-    assert best is not None
+    if best is None:
+        return None
     effects = (*footing.effects, candidate)
     if best.chi2 - 1 > HOPELESS * max(footing.train - 1, 0.0):
         return judge(effects, best, (), noises)
@@ -209,13 +214,14 @@ def _promising(
         numbers = [(value - item.neutral) / item.scale for item, value in zip(candidate.shared, combination, strict=False)]
         x = np.concatenate([unit, np.zeros(len(footing.shared)), numbers, footing.errors])
         loss = float((misfit.residuals(x) ** 2).sum())
-        ranked.append((loss if np.isfinite(loss) else np.inf, unit, combination))
+        if np.isfinite(loss):
+            ranked.append((loss, unit, combination))
     ranked.sort(key=lambda item: item[0])
     return [(unit, combination) for _, unit, combination in ranked[:MOST_STARTS]]
 
 
 def judge(effects: tuple[Candidate, ...], fit: Polished, held_out: Sequence[Trial], noises: Noises) -> Fit:
-    """Simulate a fitted model on untouched runs, of which only the clock, speed and road height are fitted."""
+    """Simulate a fitted model on untouched runs, of which only the clock, speed and road height are fitted, and the phase of a line."""
     powers = _powers(fit)
     runs, counts = _by_run(powers)
     train = _pooled(runs, counts)
@@ -235,7 +241,7 @@ def judge(effects: tuple[Candidate, ...], fit: Polished, held_out: Sequence[Tria
             tuple(replace(t, values=t.values | {k: v for k, v in fixed.items() if k not in t.fixed}) for t in trials), _nothing()
         )
         frozen_shared = tuple(
-            replace(item, neutral=float(value), scale=1e-12) for item, value in zip(fit.misfit.shared, numbers, strict=True)
+            replace(item, neutral=float(value), scale=0.0) for item, value in zip(fit.misfit.shared, numbers, strict=True)
         )
         again = polish(frozen, np.zeros(0), NUISANCES, fit.misfit.band, noises=noises, shared=frozen_shared, tolerance=FINE, renew=RENEW)
         checked = _powers(again)

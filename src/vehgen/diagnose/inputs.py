@@ -105,6 +105,8 @@ def _stuck(trial: Trial) -> Iterator[Finding]:
 
 
 def _variety(trials: Sequence[Trial]) -> Iterator[Finding]:
+    if not trials[0].run.vehicle.axles:
+        return
     heights = []
     for trial in trials:
         offsets = trial.simulator.model.wheel_offsets(trial.values)

@@ -55,14 +55,16 @@ def shortlist(base: Fit, candidates: Sequence[Candidate], places: Sequence[Place
         vehicle = base.polished.misfit.problem.trials[0].run.vehicle
         names |= {name for name, axle in vehicle.axles.items() if axle.body in names}
         names |= {name for name, hinge in vehicle.hinges.items() if not names.isdisjoint(hinge.points)}
-    excess = max(max(item.chi for item in places) ** 2 - 1, 1e-9)
+    excess = max(base.train - 1, 1e-9)
+    channels = {channel.name: channel.sensor for trial in base.polished.misfit.problem.trials for channel in trial.measurement.channels}
     silenced = {
         part for item in places if item.place.channels and _reaches(item, excess) for part in (item.place.name, *item.place.channels)
     }
+    silenced |= {channels[part] for part in silenced if part in channels}
     found = []
     for candidate in candidates:
         if candidate.effect.attaches == "sensor":
-            wanted = candidate.place in silenced or any(part.rpartition("_")[0] == candidate.place for part in silenced)
+            wanted = candidate.place in silenced
         elif candidate.place == ALL_TYRES:
             wanted = not single or any(item.place.kind == "tyre" for item in passed)
         else:

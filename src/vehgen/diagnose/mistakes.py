@@ -169,7 +169,7 @@ def _axles(case: _Case) -> Iterator[Suspicion]:
     for k in range(1, len(order)):
         gap = float(offsets[order[k]] - offsets[order[k - 1]])
         for group in dict.fromkeys(((order[k],), tuple(order[k:]))):
-            change = AxleShift("+".join(names[i] for i in group), STEP, 0.0, group)
+            change = AxleShift("+".join(names[i] for i in group), STEP, axles=group)
             reach = round(REACH * gap / STEP)
             found.append((*case.best(change, [i * STEP for i in range(-reach, reach + 1)]), change))
     if not found:

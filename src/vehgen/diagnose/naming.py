@@ -94,8 +94,9 @@ def name(
         unit, errors = base.polished.misfit.split(passed[0].x)
         placed = unit, errors.ravel()
     fits: list[Fit] = []
-    lines = find_line(base.polished.misfit, base.polished.x)
     try:
+        harmonics = any(item.effect.adjusts == "harmonic" for item in candidates)
+        lines = find_line(base.polished.misfit, base.polished.x) if harmonics else []
         if workers > 1:
             tell("compile", 0, 1, "")
             posed = [pose(item, footing.problem, surveyor, simulators) for item in candidates if item.effect.edit is not None]
@@ -108,19 +109,19 @@ def name(
             unit, errors = begun if candidate.effect.attaches == "run" else placed
             if harmonic:
                 unit, errors = footing.unit, footing.errors
-            fits.append(
-                fit_candidate(
-                    candidate,
-                    replace(footing, unit=np.clip(unit, 0.01, 0.99), errors=errors),
-                    detection.held_out,
-                    detection.floor.noises,
-                    detection.band,
-                    surveyor,
-                    simulators,
-                    lines if harmonic else None,
-                )
+            fit = fit_candidate(
+                candidate,
+                replace(footing, unit=np.clip(unit, 0.01, 0.99), errors=errors),
+                detection.held_out,
+                detection.floor.noises,
+                detection.band,
+                surveyor,
+                simulators,
+                lines if harmonic else None,
             )
-            best = min(fits, key=merit)
+            if fit is not None:
+                fits.append(fit)
+            best = min(fits, key=merit, default=base)
             tell("name", done, len(candidates), f"{best.label}, chi {np.sqrt(best.train):.3f}")
     except KeyboardInterrupt:
         return sorted(fits, key=merit), True

@@ -140,7 +140,7 @@ def lead_in(trial: Trial) -> Trial | None:
     time = trial.measurement.time
     quiet = trial.scenario.speed.distance(time + MARGIN) < first
     count = int(quiet.sum())
-    if count * trial.measurement.dt < SHORTEST:
+    if count * trial.measurement.dt < SHORTEST or np.any(np.ptp(trial.measurement.values[:count], axis=0) == 0.0):
         return None
     measurement = replace(trial.measurement, time=time[:count], values=trial.measurement.values[:count])
     return replace(trial, measurement=measurement)

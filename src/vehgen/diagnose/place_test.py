@@ -165,8 +165,8 @@ def _basis(misfit: Misfit, x: Array, place: Place, t: int) -> Complex | None:
         for j, column in enumerate(columns):
             raw[:, column, j] = 1.0
     elif place.rows:
-        known = misfit.problem.best_values(misfit.problem.space.values(misfit.split(x)[0]))
-        raw = force_response(trial.simulator.model, trial.values | known, place.rows, frequency)
+        known = misfit.problem.values_of(misfit.problem.space.values(misfit.split(x)[0]), trial)
+        raw = force_response(trial.simulator.model, known, place.rows, frequency)
     else:
         return None
     white = np.stack([misfit.whiten(t, raw[:, :, j]) for j in range(raw.shape[2])], axis=2)

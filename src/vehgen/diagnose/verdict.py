@@ -23,14 +23,14 @@ class NamedEffect:
     """An effect that the data ask for: where it is, how strong, how sure.
 
     `p_value` holds for the whole library (Bonferroni); `held_out_gain` is the share of the excess on untouched runs that it closes, with
-    its block-bootstrap `gain_interval`; `alternatives` do as well within the slack.
+    its block-bootstrap `gain_interval` (None where those runs show no gap); `alternatives` do as well within the slack.
     """
 
     name: str
     place: str
     parameters: dict[str, NamedParameter]
     p_value: float
-    held_out_gain: float
+    held_out_gain: float | None
     gain_interval: tuple[float, float] | None
     alternatives: tuple[str, ...] = ()
 

@@ -58,8 +58,8 @@ def long_bodies(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def tandems(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
-    """Return pairs of neighbouring suspended axles of one body behind the first axle, as `first+second`."""
-    names = [name for name, axle in vehicle.axles.items() if axle.suspension is not None][1:]
+    """Return pairs of neighbouring axles of one body behind the first axle, whose suspensions are linear, as `first+second`."""
+    names = [name for name, axle in vehicle.axles.items() if axle.suspension is not None and not axle.suspension.laws][1:]
     return tuple(f"{one}+{two}" for one, two in pairwise(names) if vehicle.axles[one].body == vehicle.axles[two].body)
 
 

@@ -5,6 +5,7 @@ A fit carries an adjustment's number along with the vehicle's parameters, in uni
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,12 +23,22 @@ GRAVITY = 9.81
 class Adjustment:
     """Something about all runs or one sensor that a single number changes; this one changes nothing.
 
-    `place` is a sensor, a channel, or the runs; `scale` the size of a typical change; `neutral` the number that changes nothing.
+    `place` is a sensor, a channel, or the runs; `scale` the size of a typical change, 0 for a number that stands; `neutral` the number
+    that changes nothing; `low` and `high` bound it.
     """
 
     place: str
     scale: float = 1.0
     neutral: float = 0.0
+    low: float = -math.inf
+    high: float = math.inf
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Its bounds in units of its scale, about its neutral number."""
+        if self.scale == 0:
+            return -math.inf, math.inf
+        return (self.low - self.neutral) / self.scale, (self.high - self.neutral) / self.scale
 
     def scenario(self, scenario: Scenario, value: float) -> Scenario:
         """Return the scenario as it was, at the number `value`."""

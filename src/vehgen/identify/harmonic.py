@@ -39,7 +39,9 @@ class Harmonic(Adjustment):
     sigma: Mapping[str, Array] = field(default_factory=dict)
 
     def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
-        """Return the readings with the line that suits them best added."""
+        """Return the readings with the line that suits them best added; without it for a trial whose noise is not known."""
+        if trial.name not in self.sigma:
+            return response
         columns = self.columns(trial, float(numbers[0]), float(numbers[1]), trial.values)
         left = (trial.measurement.values - response) / self.sigma[trial.name]
         coefficients = self._solve(trial, columns, left)
@@ -122,7 +124,8 @@ def _refine(misfit: Misfit, x: Array, about: float) -> tuple[float, float]:
 
 def line_numbers(body: str, noises: Mapping[str, Array]) -> Sequence[Adjustment]:
     """Return the two adjustments of a line at a body: its frequency, weighed by the channels' `noises`, and its drift."""
-    return Harmonic(body, 0.05, 25.0, dict(noises)), Adjustment(f"{body} drift", 0.002, 0.0)
+    line = Harmonic(body, 0.05, 25.0, LOWEST, HIGHEST + 5.0, dict(noises))
+    return line, Adjustment(f"{body} drift", 0.002, 0.0, -0.05, 0.05)
 
 
 __all__ = ["Harmonic", "find_line", "line_numbers"]

@@ -98,7 +98,7 @@ class Misfit:
         self.nuisances = nuisances or Nuisances()
         self.band = band
         self.shared = tuple(shared)
-        self._renew = renew
+        self.renew = renew
         self._calls = 0
         self._kept: list[Array] = []
         self._weights = [self._weight(trial, problem.best_values(reference)) for trial in problem.trials]
@@ -178,7 +178,7 @@ class Misfit:
         values = self.problem.space.values(unit + np.vstack([np.eye(n), -np.eye(n)]) * STEP)
         middle = self.problem.space.values(unit)[None]
         found = []
-        fresh = self._calls % self._renew == 0
+        fresh = self._calls % self.renew == 0
         self._calls += 1
         if fresh:
             self._kept = [

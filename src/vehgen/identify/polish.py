@@ -117,6 +117,7 @@ def polish(
         noises = estimate_noises(misfit, result)
         misfit = Misfit(problem, noises, problem.space.values(misfit.split(result)[0]), nuisances, band, shared, renew)
         result = _fit(misfit, result, facts, max_steps, ROUGH if left else tolerance, springs)
+    misfit.renew = 1  # who asks from now on wants derivatives at x itself
     residuals = misfit.residuals(result)
     prior = float((misfit.split(result)[1] ** 2).sum())
     lines = zip(misfit.problem.trials, misfit.lines(result), strict=True)
@@ -130,6 +131,8 @@ def _fit(misfit: Misfit, x: Array, facts: Facts | None, max_steps: int, toleranc
     n, rest = misfit.n_parameters, misfit.n_unknowns - misfit.n_parameters
     low = np.concatenate([np.zeros(n), np.full(rest, -np.inf)])
     high = np.concatenate([np.ones(n), np.full(rest, np.inf)])
+    for i, item in enumerate(misfit.shared):
+        low[n + i], high[n + i] = item.bounds
     inside = np.clip(x, low + 1e-6, high - 1e-6)
     space = misfit.problem.space
     middle = space.unit(space.start)

@@ -30,7 +30,7 @@ class Problem:
         base = np.array([trial.values[name] for name in names])
         found = np.repeat(base[None, :], len(values), axis=0)
         for column, name in enumerate(self.space.names):
-            if name not in trial.fixed:
+            if name not in trial.fixed and name in names:
                 found[:, names.index(name)] = values[:, column]
         return found
 
@@ -70,6 +70,10 @@ class Problem:
         """Return the problem that searches `names` only, other parameters standing at `fixed` [SI]."""
         trials = [replace(trial, values=trial.values | {k: v for k, v in fixed.items() if k not in trial.fixed}) for trial in self.trials]
         return Problem(tuple(trials), self.space.only(names))
+
+    def values_of(self, values: Array, trial: Trial) -> dict[str, float]:
+        """Return all of a trial's parameters [SI] at searched values `shape (space.size,)`; what its run file fixes stands."""
+        return trial.values | {name: value for name, value in self.best_values(values).items() if name not in trial.fixed}
 
     def best_values(self, values: Array) -> dict[str, float]:
         """Return searched values `shape (space.size,)` by name [SI]."""
