@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from vehgen.commands.terminal import add_json, console, print_json, print_table
+
+if TYPE_CHECKING:
+    from vehgen.diagnose.pipeline import Diagnosis
 
 EXAMPLE = "python -m vehgen diagnose tractor5.yaml hump_2ms.yaml hump_3ms.yaml high_2ms.yaml --out diagnosis"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
-    parser.add_argument("vehicle", metavar="VEHICLE", help="a vehicle file whose `range`s say what may be recalibrated")
+    parser.add_argument("vehicle", metavar="VEHICLE", help="a vehicle file whose `range`s say what may be refitted, within 35 %%")
     parser.add_argument("runs", metavar="RUN", nargs="+", help="run files with recordings; three or more, at two hump heights or speeds")
     parser.add_argument("--effects", metavar="A,B", help="try these effects only (default: the whole library)")
     parser.add_argument("--library", metavar="FILE", action="append", default=[], help="a file of your own effects; may be repeated")
@@ -40,7 +44,7 @@ def run(options: argparse.Namespace) -> None:
     known = extended_library(options.library)
     chosen = list(known.values())
     if options.effects:
-        names = [part.strip() for part in options.effects.split(",")]
+        names = list(dict.fromkeys(part.strip() for part in options.effects.split(",")))
         for name in names:
             if name not in known:
                 raise InputError(f"no effect {name!r}; {did_you_mean(name, known)}")
@@ -59,11 +63,17 @@ def run(options: argparse.Namespace) -> None:
         found = replace(found, verdict=replace(found.verdict, vehicle_file=str(path)))
         files.append(path)
     data = found.verdict.to_dict()
-    write_text(files[0], json.dumps(data, indent=1))
+    write_text(files[0], json.dumps(data, indent=1, allow_nan=False))
     write_diagnosis_page(found, files[1])
     if options.json:
         print_json({**data, "files": [str(path) for path in files]})
-        return
+    else:
+        _show(found, files)
+    if found.stopped:
+        raise KeyboardInterrupt  # what was found is written; the exit code tells
+
+
+def _show(found: Diagnosis, files: list[Path]) -> None:
     verdict = found.verdict
     console().print(f"[bold]{verdict.verdict.replace('_', ' ')}[/bold]: {verdict.reason}", highlight=False)
     effect_rows = [
@@ -79,11 +89,12 @@ def run(options: argparse.Namespace) -> None:
     ]
     if effect_rows:
         print_table("what is missing", ("effect", "place", "parameter", "value", "90 % interval"), effect_rows, right=(3,))
+    columns = ("run", "used for", "before", "after") if verdict.effects else ("run", "used for", "chi")
     rows = [
-        (run["run"], "checking" if run["untouched"] else "fitting", f"{run['before']:.3f}", f"{run['after']:.3f}")
+        (run["run"], "checking" if run["untouched"] else "fitting", f"{run['before']:.3f}", f"{run['after']:.3f}")[: len(columns)]
         for run in verdict.gap.runs
     ]
-    print_table("chi (1 is noise alone)", ("run", "used for", "before", "after"), rows, right=(2, 3))
+    print_table("chi (1 is noise alone)", columns, rows, right=(2, 3)[: len(columns) - 2])
     for note in verdict.notes:
         console().print(f"note: {note}", highlight=False, markup=False)
     if verdict.next_experiment:

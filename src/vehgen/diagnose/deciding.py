@@ -67,7 +67,7 @@ class Case:
             count = len(detection.trials)
             return self._end(
                 "insufficient_data",
-                f"chi is {detection.chi:.2f}, but {count} run{'s' if count > 1 else ''} leave none untouched to check an effect on",
+                f"chi is {detection.chi:.2f}, but at least three runs are needed, so that one stays untouched ({count} given)",
                 f"record at least three runs{', with two hump heights or speeds' if detection.trials[0].run.vehicle.axles else ''}",
             )
         if not self._candidates(self.base):
@@ -96,8 +96,10 @@ class Case:
     def _too_weak(self, first: Round, best: Fit, good: bool) -> Diagnosis | None:
         """Return the verdict where the best effect is not told from chance, from random laws, or by the untouched runs."""
         chi, p = self.detection.chi, chance(first, best, self.tried)
-        if (p > limit.SIGNIFICANT and (good or chi <= VISIBLE)) or (chi <= limit.WEAK and not good):
+        if p > limit.SIGNIFICANT and (good or chi <= VISIBLE):
             return self._propose(f"chi is {chi:.3f}, but no effect is told from chance (p {p:.2g})", best)
+        if chi <= limit.WEAK and not good:
+            return self._propose(f"chi is {chi:.3f}: a small gap, of which no effect closes enough to be named", best)
         if not good:
             return None
         interval = gain_interval(self.base, best, self.untouched)
@@ -114,7 +116,7 @@ class Case:
     def _propose(self, reason: str, best: Fit) -> Diagnosis:
         self.tell("propose", 0, 1, "")
         louder = propose_stronger(self.detection, best)
-        return self._end("too_weak", reason, louder.text if louder else None)
+        return self._end("too_weak", reason, louder.text if louder and louder.separates else "no run within reach would show it clearly")
 
     def _candidates(self, footing: Fit) -> list[Candidate]:
         """Return what may live on the vehicle of a fit: a walking beam leaves its axles no suspension."""
@@ -186,6 +188,11 @@ class Case:
             reason = f"the best of {len(first.fits)} candidates, {best.label}, leaves chi {np.sqrt(best.train):.2f}"
         else:
             reason = "none of the effects tried can live where the model errs"
+        if self.base.polished.on_bound:
+            edge = ", ".join(self.base.polished.on_bound)
+            self.notes.append(
+                f"the refit, within 35 % of the file's values, ends at its edge for {edge}: if they are uncertain, calibrate first"
+            )
         ended = self._end("not_in_library", f"{reason}; the residual wants an unknown force at {where}")
         shown = strongest(first.passed)
         law = None if shown is None else fit_free_form(recover(self.detection, shown))
@@ -196,7 +203,7 @@ class Case:
 
     def _name(self, chain: list[Fit]) -> Diagnosis:
         last = chain[-1]
-        steps = [next(item for item in self.rounds if any(own.effects == fit.effects for own in item.fits)) for fit in chain]
+        steps = [next(item for item in self.rounds if any(own.key == fit.key for own in item.fits)) for fit in chain]
         alternatives = [tied(step, fit) for step, fit in zip(steps, chain, strict=True)]
         effects = [
             self._effect(step, last, i, [item.last.label for item in others])
@@ -235,7 +242,7 @@ class Case:
 
     def _effect(self, step: Round, fit: Fit, number: int, others: list[str]) -> NamedEffect:
         """Return the effect `number` of a fit, judged by what it closed in its own round."""
-        own = next((item for item in step.fits if item.effects == fit.effects[: number + 1]), fit)
+        own = next((item for item in step.fits if item.key == fit.key[: number + 1]), fit)
         candidate = fit.effects[number]
         return NamedEffect(
             candidate.effect.name,

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from vehgen.diagnose.band import BAND, compared_band
 from vehgen.diagnose.fitting import Fit, fit_base, mean_square_as_filed, narrow
 from vehgen.diagnose.noise_floor import NoiseFloor, find_noise_floor
+from vehgen.errors import InputError
 from vehgen.identify.problem import Problem, make_problem
 from vehgen.identify.trial import Trial
 
@@ -61,7 +62,8 @@ def split_runs(trials: Sequence[Trial]) -> tuple[list[Trial], list[Trial]]:
     """Return training runs and untouched ones: of three runs or more, every second one between the gentlest and the roughest."""
     ordered = sorted(trials, key=kind_of_run)
     held = ordered[1:-1:2]
-    return [trial for trial in ordered if trial not in held], held
+    apart = {id(trial) for trial in held}
+    return [trial for trial in ordered if id(trial) not in apart], held
 
 
 def kind_of_run(trial: Trial) -> tuple[float, ...]:
@@ -76,6 +78,7 @@ def hump_height(trial: Trial) -> float:
 
 def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> Detection:
     """Find the noise floor, recalibrate the base model on the training runs, measure the gap in a band [Hz] (default: that of the runs)."""
+    _refuse_copies(trials)
     training, held_out = split_runs(trials)
     band = band or compared_band(trials)
     floor = find_noise_floor(trials, band)
@@ -103,6 +106,18 @@ def band_gaps(detection: Detection, fit: Fit | None = None) -> list[BandGap]:
                 chis = np.sqrt(power[inside].mean(axis=0))
                 found += [BandGap(trial.name, name, bounds, float(chi)) for name, chi in zip(trial.channels, chis, strict=True)]
     return found
+
+
+def _refuse_copies(trials: Sequence[Trial]) -> None:
+    """Raise InputError where two runs hold the same recording: a copy is no check."""
+    known: dict[bytes, str] = {}
+    for trial in trials:
+        content = trial.measurement.values.tobytes()
+        if content in known:
+            raise InputError(
+                f"{known[content]} and {trial.name} hold the same recording; a copy can neither teach nor check: leave one out"
+            )
+        known[content] = trial.name
 
 
 @dataclass(frozen=True)

@@ -70,7 +70,7 @@ def propose(detection: Detection, fits: Sequence[Fit], tell: Tell | None = None)
     None for fewer than two models.
     """
     fits = fits[:4]
-    if len(fits) < 2:
+    if len(fits) < 2 or not detection.trials[0].run.vehicle.axles:
         return None
     names = tuple(fit.label for fit in fits)
     pairs = list(permutations(fits, 2))
@@ -97,6 +97,8 @@ def propose_stronger(detection: Detection, fit: Fit, tell: Tell | None = None) -
     -------
     None where no run makes any difference.
     """
+    if not detection.trials[0].run.vehicle.axles:
+        return None
     found = _search(detection, [(fit, detection.base)], lambda item: 1 + item.distance / item.count >= VISIBLE**2, None, tell)
     if found is None or found.separation.distance < NOTHING:
         return None

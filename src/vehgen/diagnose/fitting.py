@@ -57,6 +57,11 @@ class Fit:
         return " and ".join(item.label for item in self.effects) or "base"
 
     @property
+    def key(self) -> tuple[tuple[str, str], ...]:
+        """Its effects by name and place."""
+        return tuple((item.effect.name, item.place) for item in self.effects)
+
+    @property
     def last(self) -> Candidate:
         """The effect added last."""
         return self.effects[-1]

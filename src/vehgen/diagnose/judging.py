@@ -47,7 +47,7 @@ def tied(found: Round, best: Fit) -> list[Fit]:
     return [
         item
         for item in found.fits
-        if item is not best
+        if item.key != best.key
         and not _same(item.last, best.last)
         and item.train - best.train <= near
         and item.train - 1 <= limit.TIE * max(best.train - 1, 0.25 * floor)
@@ -97,10 +97,6 @@ def seeds(found: Round) -> list[Fit]:
 
 def needs_both(pair: Fit, fits: Sequence[Fit]) -> bool:
     """Return whether the second effect of a pair alone leaves TIE times the pair's excess or more."""
-    alone = [item for item in fits if _key(item.last) == _key(pair.last)]
+    alone = [item for item in fits if item.key == pair.key[-1:]]
     least = max(excess(pair.train), limit.NOISE_FLOOR**2 - 1)
     return all(excess(item.train) >= limit.TIE * least for item in alone)
-
-
-def _key(candidate: Candidate) -> tuple[str, str]:
-    return candidate.effect.name, candidate.place

@@ -41,7 +41,10 @@ def write_diagnosis_page(diagnosis: Diagnosis, path: Path) -> None:
             vehicle=diagnosis.trials[0].run.vehicle.title or diagnosis.trials[0].run.vehicle.name,
             verdict=diagnosis.verdict,
             stopped=diagnosis.stopped,
-            noise={name: f"{sigma:.3g}" for name, sigma in floor.top.items()},
+            noise=_noise(diagnosis),
+            parameters=_parameters(diagnosis),
+            conditions=_conditions(diagnosis),
+            untouched=len(diagnosis.detection.held_out),
             slope=max(noise.slope for noise in floor.noises.values()),
             corrected=list(floor.corrected),
             figures=figures,
@@ -55,6 +58,49 @@ def write_diagnosis_page(diagnosis: Diagnosis, path: Path) -> None:
             version=__version__,
         ),
     )
+
+
+def _noise(diagnosis: Diagnosis) -> list[str]:
+    """Return the noise of every channel that the fits used, from the quietest run to the loudest."""
+    units = {"acceleration": "m/s²", "pitch_rate": "rad/s", "displacement": "m"}
+    found: dict[str, tuple[str, list[float]]] = {}
+    for trial in diagnosis.trials:
+        for channel, sigma in zip(trial.measurement.channels, diagnosis.detection.floor.noises[trial.name].sigma, strict=True):
+            found.setdefault(channel.name, (units.get(channel.quantity, ""), []))[1].append(float(sigma))
+    return [f"{name} {min(values):.3g} to {max(values):.3g} {unit}" for name, (unit, values) in found.items()]
+
+
+def _parameters(diagnosis: Diagnosis) -> list[dict[str, str]]:
+    """Return the base parameters: the file's value, the refit of the base, and that with the effects."""
+    base, last = diagnosis.detection.base.polished, _last(diagnosis).polished
+    units = {name: str(unit).strip("1") for name, unit in diagnosis.trials[0].run.vehicle.dimensions.items()}
+    space = base.misfit.problem.space
+    later = last.misfit.problem.best_values(last.values)
+    return [
+        {
+            "name": name,
+            "filed": f"{filed:.4g} {units[name]}",
+            "refitted": f"{value:.4g} {units[name]}{' (at its bound)' if name in base.on_bound else ''}",
+            "last": f"{later[name]:.4g} {units[name]}{' (at its bound)' if name in last.on_bound else ''}",
+        }
+        for name, filed, value in zip(space.names, space.start, base.values, strict=True)
+    ]
+
+
+def _conditions(diagnosis: Diagnosis) -> list[tuple[str, str, str, str]]:
+    """Return what the last fit supposes of every run: the recording's delay, the speed's and the road height's error."""
+    fit = _last(diagnosis)
+    found = []
+    for polished in (fit.polished, fit.checks):
+        if polished is None:
+            continue
+        _, errors = polished.misfit.split(polished.x)
+        spread = polished.misfit.nuisances
+        for trial, error in zip(polished.misfit.problem.trials, errors, strict=True):
+            known = {name: float(value) * getattr(spread, name) for name, value in zip(spread.names, error, strict=True)}
+            delay, speed, height = (known.get(name, 0.0) for name in ("delay", "speed", "height"))
+            found.append((trial.name, f"{1e3 * delay:+.1f} ms", f"{100 * speed:+.2f} %", f"{100 * height:+.2f} %"))
+    return found
 
 
 def _runs(diagnosis: Diagnosis) -> list[dict[str, str]]:

@@ -27,7 +27,8 @@ def plot_places(results: tuple[PlaceResult, ...], passed: tuple[PlaceResult, ...
     axes.axvline(1.0, color=INK, lw=0.9, ls=(0, (4, 2)))
     for row, item in enumerate(shown):
         axes.text(item.chi * 1.03, row, f"{item.chi:.2f}", va="center", fontsize=8.5, color=INK)
-    axes.set_yticks(range(len(shown)), [item.place.label for item in shown], fontsize=8.5)
+    labels = [f"{item.place.label}{', 2 unknowns' if item.unknowns == 2 and item.place.rows else ''}" for item in shown]
+    axes.set_yticks(range(len(shown)), labels, fontsize=8.5)
     axes.set_ylim(len(shown) - 0.4, -0.6)
     axes.set_xscale("log")
     axes.set_xlim(0.8, max(item.chi for item in shown) * 1.6)
