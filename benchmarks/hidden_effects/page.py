@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from benchmarks.hidden_effects.score import NAMED, right_name, right_place, score, table, untouched
+from benchmarks.hidden_effects.score import NAMED, needless, right_name, right_place, score, table, untouched
 from vehgen.effects import EFFECTS
 from vehgen.report import save_figure
 
@@ -65,6 +65,8 @@ def _mark(item: dict[str, Any]) -> str:
         return ("**missed**", "one of two", "right")[found]
     if kind == "weak":
         return "right" if verdict not in NAMED or right_name(item) else "**wrong**"
+    if needless(item):
+        return "**a needless second one**"
     if right_name(item):
         return "right" if right_place(item) else "right, **elsewhere**"
     return "**wrong**" if verdict in NAMED else "**missed**"

@@ -30,6 +30,13 @@ def right_name(record: Record, number: int = 0, most: int = 3) -> bool:
     return record["verdict"] in NAMED and len(found) <= most and record["truth"][number]["name"] in found
 
 
+def needless(record: Record) -> bool:
+    """Return whether a second effect is named where one was hidden: not as a tie, but beside the first."""
+    effects = record.get("effects", [])
+    together = record["verdict"] == "named" or any(effect["alternatives"] for effect in effects)
+    return len(record["truth"]) == 1 and len(effects) > 1 and together
+
+
 def right_place(record: Record) -> bool:
     """Return whether the true place is named, alone or in a tie, or is among the smallest hypotheses that pass the place test."""
     truth = record["truth"][0]["place"]
@@ -58,7 +65,8 @@ def covered(record: Record) -> list[bool]:
 def score(records: Sequence[Record]) -> dict[str, Any]:
     """Return the scores of a set."""
     kinds = {kind: [item for item in records if item["kind"] == kind] for kind in KINDS}
-    listed, named = kinds["listed"], [item for item in kinds["listed"] if right_name(item)]
+    listed = kinds["listed"]
+    named = [item for item in listed if right_name(item) and not needless(item)]
     hits = [hit for item in named for hit in covered(item)]
     both = [item for item in kinds["two"] if right_name(item, 0) and right_name(item, 1)]
     one = [item for item in kinds["two"] if right_name(item, 0) or right_name(item, 1)]
@@ -70,6 +78,7 @@ def score(records: Sequence[Record]) -> dict[str, Any]:
             sum(item["verdict"] in NAMED and not right_name(item) for item in listed),
             len(listed),
         ),
+        "one effect of the library: a needless second one named beside it": (sum(needless(item) for item in listed), len(listed)),
         "nothing hidden: falsely named": (sum(item["verdict"] in NAMED for item in kinds["null"]), len(kinds["null"])),
         "too weak to see: falsely named": (
             sum(item["verdict"] in NAMED and not right_name(item) for item in kinds["weak"]),

@@ -86,3 +86,15 @@ def test_untouched_runs_lie_between_the_extremes(nothing):
 def test_an_unknown_effect_is_refused_with_the_nearest_name(nothing, tmp_path, capsys):
     assert main(["diagnose", "sedan2.yaml", str(nothing[0]), "--effects", "dry_frction", "--out", str(tmp_path)]) == 2
     assert "did you mean 'dry_friction'" in capsys.readouterr().err
+
+
+def test_a_copy_of_a_run_is_refused(nothing, tmp_path, capsys):
+    folder = nothing[0].parent
+    copy = folder / "twin.yaml"
+    copy.write_text((folder / "low.yaml").read_text(encoding="utf-8"), encoding="utf-8")
+    try:
+        paths = [str(path) for path in (*nothing, copy)]
+        assert main(["diagnose", "sedan2.yaml", *paths, "--out", str(tmp_path)]) == 2
+    finally:
+        copy.unlink()
+    assert "hold the same recording" in capsys.readouterr().err

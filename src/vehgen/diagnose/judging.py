@@ -17,6 +17,7 @@ SEEDS = 2
 """So many effects that explain part of the gap are tried as the first of a pair."""
 PARTLY = 0.85
 """An effect explains part of the gap when it leaves at most this share of the excess."""
+CROWD = 2
 FURTHER = 0.25
 """A further effect must leave at most this share of the excess left before it."""
 
@@ -71,8 +72,11 @@ def adds(found: Round, fit: Fit) -> bool:
     """Return whether a further effect is needed and enough.
 
     It leaves FURTHER of what was left, or noise, on untouched runs too. At the place of an effect found before it must leave noise and
-    attach to another part (a tyre, a suspension): two laws of one suspension can imitate a third.
+    attach to another part (a tyre, a suspension): two laws of one suspension can imitate a third. One with which more than CROWD others
+    tie says nothing.
     """
+    if len(tied(found, fit)) > CROWD:
+        return False
     before = (excess(found.footing.train), excess(found.footing.held_out))
     after = (excess(fit.train), excess(fit.held_out))
     floor = limit.NOISE_FLOOR**2 - 1

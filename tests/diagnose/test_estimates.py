@@ -1,0 +1,56 @@
+"""What counts as gain and as chance, on numbers that can be reckoned by hand."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import scipy.stats
+
+from vehgen.diagnose.estimates import gain_interval, held_out_gain, p_value
+
+
+def fit(power, train=1.0, count=1000):
+    """Return a fit with one training run and one untouched run of 200 lines and 2 channels."""
+    mean = float(np.mean(power))
+    misfit = SimpleNamespace(problem=SimpleNamespace(trials=[SimpleNamespace(name="taught")]))
+    return SimpleNamespace(
+        held_out=mean,
+        train=train,
+        runs={"taught": train, "new": mean},
+        counts={"taught": count, "new": 2 * np.size(power)},
+        powers={"new": np.asarray(power)},
+        polished=SimpleNamespace(misfit=misfit),
+    )
+
+
+def noise(seed, level=1.0):
+    return level * np.random.default_rng(seed).exponential(size=(200, 2))
+
+
+def test_the_gain_is_the_share_of_the_excess_and_its_interval_holds_it():
+    base, better = fit(noise(1, 5.0)), fit(noise(2, 2.0))
+    gain = held_out_gain(base, better)
+    assert gain == pytest.approx(1 - (better.held_out - 1) / (base.held_out - 1))
+    low, high = gain_interval(base, better, ["new"])
+    assert low < gain < high
+    assert 0.05 < high - low < 0.4
+
+
+def test_a_gain_that_sits_in_few_lines_is_uncertain_but_no_more_than_everything():
+    power = noise(3)
+    power[90:100] += 40.0
+    base, better = fit(power), fit(noise(3))
+    low, high = gain_interval(base, better, ["new"])
+    assert 0 <= low <= high <= 1
+
+
+def test_runs_without_a_gap_show_no_gain():
+    assert held_out_gain(fit(noise(4)), fit(noise(5, 0.9))) is None
+    assert gain_interval(fit(noise(4)), fit(noise(5, 0.9)), ["new"]) is None
+
+
+def test_chance_is_the_likelihood_ratio_in_units_of_what_is_left():
+    base, better = fit(noise(6), train=1.02), fit(noise(6), train=1.0)
+    assert p_value(base, better, 2) == pytest.approx(scipy.stats.chi2.sf(20.0, 2))
+    base, better = fit(noise(6), train=100.0), fit(noise(6), train=99.0)
+    assert p_value(base, better, 1) == pytest.approx(scipy.stats.chi2.sf(1000 / 99.0, 1))
