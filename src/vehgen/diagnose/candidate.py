@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.effects import Effect, Surveyor
-from vehgen.identify.adjustments import Adjustment, Footprint, Gain, HeightScale, SensorDelay, SpeedScale, Tilt
+from vehgen.identify.adjustments import Adjustment, Footprint, Gain, SensorDelay, SpeedScale, Tilt
 from vehgen.identify.harmonic import line_numbers
 from vehgen.identify.misfit import Noises
 from vehgen.identify.problem import Problem
@@ -25,7 +25,6 @@ Array = NDArray[np.float64]
 KINDS: dict[str, tuple[type[Adjustment], float, float]] = {
     "speed": (SpeedScale, 0.01, 1.0),
     "footprint": (Footprint, 0.05, 0.0),
-    "height": (HeightScale, 0.02, 1.0),
     "gain": (Gain, 0.05, 1.0),
     "sensor_delay": (SensorDelay, 0.01, 0.0),
     "tilt": (Tilt, 0.1, 0.0),

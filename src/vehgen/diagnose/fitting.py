@@ -103,14 +103,14 @@ class Footing:
         return cls(fit.effects, Problem(misfit.problem.trials, space), shared, free, unit, errors.ravel(), fit.train)
 
 
-def narrow(problem: Problem, start: Array | None = None) -> Problem:
+def narrow(problem: Problem) -> Problem:
     """Return the problem with its space cut to BOUND about the file's values."""
     space = problem.space
     reach = np.maximum(np.abs(space.start) * (np.exp(BOUND) - 1), 0.02 * (space.upper - space.lower))
     positive = space.lower > 0
     low = np.where(positive, np.maximum(space.lower, space.start * np.exp(-BOUND)), np.maximum(space.lower, space.start - reach))
     high = np.where(positive, np.minimum(space.upper, space.start * np.exp(BOUND)), np.minimum(space.upper, space.start + reach))
-    return Problem(problem.trials, SearchSpace(space.names, low, high, space.start if start is None else start))
+    return Problem(problem.trials, SearchSpace(space.names, low, high, space.start))
 
 
 def fit_base(problem: Problem, held_out: Sequence[Trial], noises: Noises, band: tuple[float, float]) -> Fit:

@@ -29,7 +29,6 @@ class Site:
     mass: float
     inertia: float
     length: float
-    middle: float
 
     @property
     def travel(self) -> float:
@@ -119,4 +118,4 @@ class Surveyor:
         length = max(marks) - min(marks) if len(marks) > 1 else 1.0
         if names[0] in vehicle.bodies:
             load = mass * 9.81
-        return Site(vehicle, place, load, k, c, kt, mass, inertia, length, (max(marks) + min(marks)) / 2 if marks else 0.0)
+        return Site(vehicle, place, load, k, c, kt, mass, inertia, length)

@@ -68,14 +68,6 @@ class Footprint(Adjustment):
         return replace(scenario, track=replace(scenario.track, footprint=abs(value)))
 
 
-class HeightScale(Adjustment):
-    """The true height of the road over that of the run files."""
-
-    def scenario(self, scenario: Scenario, value: float) -> Scenario:
-        """Return the scenario on a road `value` times as high."""
-        return scenario.adjusted(height=value)
-
-
 class Gain(Adjustment):
     """A channel's reading over the truth."""
 
