@@ -4,27 +4,21 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from vehgen.diagnose.free_form import fit_free_form, recover, strongest
 from vehgen.diagnose.pipeline import diagnose
 from vehgen.identify.trial import load_trials
 from vehgen.report import save_figure
 from vehgen.report.diagnosis_plots import plot_places, plot_waterfall
-from vehgen.report.force_plots import plot_force
 
 HERE = Path(__file__).resolve().parent
 IMAGES = HERE / "images" / "diagnose"
 
 
 def main() -> None:
-    """Diagnose the hidden case and draw where, how and how far."""
+    """Diagnose the hidden case and draw where, and how far."""
     found = diagnose(load_trials(sorted((HERE / "examples" / "hidden").glob("*.yaml"))))
     IMAGES.mkdir(parents=True, exist_ok=True)
     save_figure(plot_places(found.places, found.passed), IMAGES / "places.svg")
     save_figure(plot_waterfall(found), IMAGES / "steps.svg")
-    place = strongest(found.passed)
-    law = None if place is None else fit_free_form(recover(found.detection, place))
-    if law is not None:
-        save_figure(plot_force(law), IMAGES / "force.svg")
 
 
 if __name__ == "__main__":
