@@ -102,3 +102,13 @@ def test_the_page_shows_the_library_as_it_is():
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     assert module.page() == (DOCS / "effects.md").read_text(encoding="utf-8")
+
+
+def test_a_walking_beam_is_no_place_for_cargo_and_takes_its_axles_suspensions_away():
+    vehicle = load_vehicle("tractor5.yaml")
+    site = Surveyor(vehicle, vehicle.values()).site("axle2+axle3")
+    changed = extend_vehicle(vehicle, EFFECTS["walking_beam"].change(site))
+    assert "beam_axle2_axle3" in changed.bodies
+    for name in ("cargo_module", "frame_bending", "engine_harmonic", "suspended_cab"):
+        assert EFFECTS[name].places(changed, ()) == EFFECTS[name].places(vehicle, ())
+    assert {"axle1", "axle4", "axle5"} == set(EFFECTS["dry_friction"].places(changed, ())) & set(vehicle.axles)

@@ -36,9 +36,9 @@ def hinges(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def pitching_bodies(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
-    """Return every body that heaves and pitches and rides on axles or hinges."""
+    """Return every body that heaves and pitches and rides on axles or hinges; a tandem's beam, which the body carries, is none."""
     carried = {axle.body for axle in vehicle.axles.values()} | {name for hinge in vehicle.hinges.values() for name in hinge.points}
-    return tuple(name for name in vehicle.bodies if name in carried)
+    return tuple(name for name, body in vehicle.bodies.items() if name in carried and body.carried_by is None)
 
 
 def front_body(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
