@@ -33,8 +33,9 @@ def right_name(record: Record, number: int = 0, most: int = 3) -> bool:
 def needless(record: Record) -> bool:
     """Return whether a second effect is named where one was hidden: not as a tie, but beside the first."""
     effects = record.get("effects", [])
-    together = record["verdict"] == "named" or any(effect["alternatives"] for effect in effects)
-    return len(record["truth"]) == 1 and len(effects) > 1 and together
+    ties = effects[0]["alternatives"] if effects else []
+    beside = [effect for effect in effects[1:] if f"{effect['name']} at {effect['place']}" not in ties]
+    return len(record["truth"]) == 1 and bool(beside)
 
 
 def right_place(record: Record) -> bool:

@@ -16,6 +16,7 @@ from vehgen.diagnose.verdict import NamedParameter
 from vehgen.effects import EffectParameter
 from vehgen.identify.harmonic import Harmonic
 from vehgen.identify.misfit import Misfit, flatten
+from vehgen.identify.noise import taper
 
 Array = NDArray[np.float64]
 NINETY = 1.645
@@ -46,7 +47,7 @@ def estimate(fit: Fit, candidate: Candidate | None = None) -> dict[str, NamedPar
     """
     candidate = candidate or fit.last
     misfit, x = fit.polished.misfit, fit.polished.x
-    covariance = np.asarray(np.linalg.pinv(_information(misfit, x), hermitian=True) * max(fit.train, 1.0), dtype=np.float64)
+    covariance = np.asarray(np.linalg.pinv(_information(misfit, x), hermitian=True) * max(fit.train, 1.0) / _seen(misfit), dtype=np.float64)
     found: dict[str, NamedParameter] = {}
     for parameter, column, value, scale in _columns(fit, candidate):
         spread = NINETY * abs(scale) * float(np.sqrt(max(covariance[column, column], 0.0)))
@@ -63,6 +64,11 @@ def _information(misfit: Misfit, x: Array) -> Array:
     n = misfit.n_parameters
     information[:n, :n] += np.eye(n) / WEAK_PRIOR**2
     return np.asarray(information)
+
+
+def _seen(misfit: Misfit) -> float:
+    """Return the share of the records that their tapers let through: neighbouring lines of tapered records are not independent."""
+    return float(np.mean([np.mean(taper(len(trial.measurement.time), trial.measurement.dt) ** 2) for trial in misfit.problem.trials]))
 
 
 def _columns(fit: Fit, candidate: Candidate) -> list[tuple[EffectParameter, int, float, float]]:
@@ -122,7 +128,7 @@ def estimates_by_run(fit: Fit, candidate: Candidate | None = None) -> list[RunEs
     whole = _information(misfit, x)
     gradient = misfit.jacobian(x).T @ misfit.residuals(x)
     blocks = misfit.n_parameters + len(misfit.shared)
-    each = len(misfit.nuisances.names)
+    each, seen = len(misfit.nuisances.names), _seen(misfit)
     found = []
     for t, (trial, line, jacobian) in enumerate(zip(misfit.problem.trials, lines, jacobians, strict=True)):
         information, slope = jacobian.T @ jacobian, jacobian.T @ flatten(line)
@@ -140,7 +146,7 @@ def estimates_by_run(fit: Fit, candidate: Candidate | None = None) -> list[RunEs
         covariance = np.linalg.pinv(normal, hermitian=True)
         step = -covariance @ force
         for k, (parameter, _, value, scale) in enumerate(columns):
-            half = NINETY * abs(scale) * float(np.sqrt(max(covariance[n + k, n + k], 0.0) * max(fit.runs[trial.name], 1.0)))
+            half = NINETY * abs(scale) * float(np.sqrt(max(covariance[n + k, n + k], 0.0) * max(fit.runs[trial.name], 1.0) / seen))
             found.append(RunEstimate(trial.name, parameter.name, value + scale * float(step[n + k]), half))
     return found
 
