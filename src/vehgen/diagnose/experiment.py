@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.further_runs import FurtherRun, free_places, list_runs
-from vehgen.diagnose.proposal import Proposal, Tell, drive, listed, sensor_text
+from vehgen.diagnose.naming import Progress
+from vehgen.diagnose.proposal import Proposal, drive, listed, sensor_text
 from vehgen.diagnose.rivals import Rival, Separation, at_most, peak, separate
 from vehgen.identify.trial import Trial
 from vehgen.measure import MeasuredChannel
@@ -53,7 +54,7 @@ class _Found:
     added: str | None = None
 
 
-def propose(detection: Detection, fits: Sequence[Fit], tell: Tell | None = None) -> Proposal | None:
+def propose(detection: Detection, fits: Sequence[Fit], tell: Progress | None = None) -> Proposal | None:
     """Return the gentlest run that tells tied models apart: with the runs' sensors, else with one more, else the best there is.
 
     Parameters
@@ -90,7 +91,7 @@ def propose(detection: Detection, fits: Sequence[Fit], tell: Tell | None = None)
     return _proposal(names, found, channel, times, separates, told)
 
 
-def propose_stronger(detection: Detection, fit: Fit, tell: Tell | None = None) -> Proposal | None:
+def propose_stronger(detection: Detection, fit: Fit, tell: Progress | None = None) -> Proposal | None:
     """Return the gentlest run in which an effect too weak to be named would stand out: the refitted base's chi above VISIBLE.
 
     Returns
@@ -113,7 +114,7 @@ def _search(
     pairs: Sequence[tuple[Fit, Fit]],
     enough: Callable[[Separation], bool],
     best: _Found | None,
-    tell: Tell | None,
+    tell: Progress | None,
     adding: bool = False,
 ) -> _Found | None:
     """Return the first run that is enough, gentlest first, with the runs' own sensors or one more; else what is best."""

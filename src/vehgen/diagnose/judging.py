@@ -18,6 +18,7 @@ SEEDS = 2
 PARTLY = 0.85
 """An effect explains part of the gap when it leaves at most this share of the excess."""
 CROWD = 2
+"""A further effect with which more than this many others tie is not named."""
 FURTHER = 0.25
 """A further effect must leave at most this share of the excess left before it."""
 
@@ -80,7 +81,7 @@ def adds(found: Round, fit: Fit) -> bool:
     before = (excess(found.footing.train), excess(found.footing.held_out))
     after = (excess(fit.train), excess(fit.held_out))
     floor = limit.NOISE_FLOOR**2 - 1
-    noise = all(item <= floor and item <= 0.5 * old for item, old in zip(after, before, strict=True))
+    noise = all(item <= floor and item <= limit.AT_LEAST * old for item, old in zip(after, before, strict=True))
     neighbours = [item.effect.attaches for item in found.footing.effects if item.place == fit.last.place]
     if neighbours:
         return noise and fit.last.effect.attaches not in neighbours

@@ -1,4 +1,4 @@
-"""Stage 3, name: fit the candidates together with the base parameters, to equal effort, and rank them."""
+"""Stage 3, name: fit the candidates together with the base parameters, and rank them."""
 
 from __future__ import annotations
 

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 from vehgen.diagnose.further_runs import FurtherRun
 from vehgen.mechanics.outputs import PointOutput
-
-Tell = Callable[[str, int, int, str], None]
-"""Called with the stage, how many of how many, and what is being looked at."""
 
 
 @dataclass(frozen=True)
