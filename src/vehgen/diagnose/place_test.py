@@ -23,6 +23,9 @@ Complex = NDArray[np.complex128]
 ROUNDS = 7
 PRIOR = 0.1
 """Standard deviation of ln(parameter) about the vehicle file's values."""
+HIDDEN = 0.005
+"""A direction of the unknowns is hidden by a hypothesis that leaves less than this share of what it moves, as a suspension's force hides
+the suspension's own stiffness: what is left of it then is error, and the prior alone decides."""
 
 
 @dataclass(frozen=True)
@@ -115,6 +118,7 @@ def _test(misfit: Misfit, x: Array, place: Place, lines: list[Complex], derivati
             count += 2 * lines[t].shape[0] * (lines[t].shape[1] - (0 if basis is None else basis.shape[2]))
         residual, jacobian = np.concatenate(parts), np.vstack(slopes)
         rows, offset = _prior(misfit, x)
+        jacobian = _shown(jacobian, np.vstack([flatten(item, first=1).T for item in derivatives]), rows)
         effective = min(misfit.n_unknowns, count - 1)
         chi = float(np.sqrt((residual @ residual) / (count - effective)))
         if chi < best_chi:
@@ -126,6 +130,18 @@ def _test(misfit: Misfit, x: Array, place: Place, lines: list[Complex], derivati
             break
         x = new
     return PlaceResult(place, best_chi, unknowns, best)
+
+
+def _shown(jacobian: Array, whole: Array, prior: Array) -> Array:
+    """Return a hypothesis's Jacobian without the directions that it hides: of what they move in the `whole` one it leaves too little.
+
+    They are the eigenvectors of J'J v = share (W'W + P'P) v with a share below HIDDEN.
+    """
+    factor = np.linalg.cholesky(whole.T @ whole + prior.T @ prior)
+    inverse = np.linalg.inv(factor)
+    shares, directions = np.linalg.eigh(inverse @ (jacobian.T @ jacobian) @ inverse.T)
+    hidden = directions[:, shares < HIDDEN]
+    return np.asarray(jacobian - jacobian @ inverse.T @ hidden @ hidden.T @ factor.T)
 
 
 def posterior(misfit: Misfit, result: PlaceResult) -> Array:
