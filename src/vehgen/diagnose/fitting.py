@@ -14,6 +14,7 @@ from vehgen.identify.adjustments import Adjustment
 from vehgen.identify.misfit import Misfit, Noises, Nuisances
 from vehgen.identify.polish import Polished, polish
 from vehgen.identify.problem import Problem
+from vehgen.identify.resolution import resolve
 from vehgen.identify.space import SearchSpace
 from vehgen.identify.trial import Trial
 from vehgen.simulate import Simulator
@@ -39,7 +40,8 @@ class Fit:
     """A fitted model: the base with `effects`; `train` and `held_out` mean squares of whitened residuals (1 is noise alone).
 
     `runs` are the mean squares run by run, training runs first; `counts` how many residuals stand behind each; `powers` the mean squares
-    line by line and channel by channel, `shape (n_lines, n_channels)`; `checks` the misfit and nuisances of the untouched runs.
+    line by line and channel by channel, `shape (n_lines, n_channels)`; `checks` the misfit and nuisances of the untouched runs. `equals`
+    are the unknowns of other minima that do as well, where the response jumps.
     """
 
     effects: tuple[Candidate, ...]
@@ -50,6 +52,7 @@ class Fit:
     counts: dict[str, int]
     powers: dict[str, Array]
     checks: Polished | None = None
+    equals: tuple[Array, ...] = ()
 
     @property
     def label(self) -> str:
@@ -65,6 +68,11 @@ class Fit:
     def last(self) -> Candidate:
         """The effect added last."""
         return self.effects[-1]
+
+    @property
+    def free(self) -> int:
+        """How many of the searched parameters are the effects'."""
+        return sum(len(item.parameters) for item in self.effects)
 
     @property
     def chi(self) -> float:
@@ -92,7 +100,7 @@ class Footing:
     def of(cls, fit: Fit) -> Footing:
         """Return a fit as what further effects are added to."""
         misfit = fit.polished.misfit
-        free = sum(len(item.parameters) for item in fit.effects)
+        free = fit.free
         unit, errors = misfit.split(fit.polished.x)
         numbers = misfit.adjusted(fit.polished.x)
         shared = tuple(replace(item, neutral=float(value)) for item, value in zip(misfit.shared, numbers, strict=True))
@@ -115,6 +123,7 @@ def narrow(problem: Problem) -> Problem:
 
 def fit_base(problem: Problem, held_out: Sequence[Trial], noises: Noises, band: tuple[float, float]) -> Fit:
     """Fit the base model."""
+    problem = resolve(*_begin(problem, noises, band))
     fit = polish(problem, problem.space.unit(problem.space.start), NUISANCES, band, noises=noises, hold=HOLD, tolerance=FINE, renew=RENEW)
     return judge((), fit, held_out, noises)
 
@@ -123,7 +132,8 @@ def mean_square_as_filed(trials: Sequence[Trial], noises: Noises, band: tuple[fl
     """Return the mean square that the model as its file has it leaves: only each run's clock, speed and road height are fitted."""
     if not trials:
         return float("nan")
-    fit = polish(Problem(tuple(trials), _nothing()), np.zeros(0), NUISANCES, band, noises=noises, tolerance=ROUGH, renew=RENEW)
+    problem = resolve(*_begin(Problem(tuple(trials), _nothing()), noises, band))
+    fit = polish(problem, np.zeros(0), NUISANCES, band, noises=noises, tolerance=ROUGH, renew=RENEW)
     return _pooled(*_by_run(_powers(fit)))
 
 
@@ -180,23 +190,29 @@ def fit_candidate(
     effects = (*footing.effects, candidate)
     if best.chi2 - 1 > HOPELESS * max(footing.train - 1, 0.0):
         return judge(effects, best, (), noises)
-    misfit = best.misfit
-    fine = polish(
+    fine = refine(resolve(best.misfit, best.x), best, best.x, free)
+    return judge(effects, fine, held_out, noises)
+
+
+def refine(problem: Problem, fit: Polished, x: Array, free: int) -> Polished:
+    """Fit finely from the unknowns `x` of another fit, on a problem with the same unknowns; `free` as in :func:`polish`."""
+    misfit = fit.misfit
+    unit, errors = misfit.split(x)
+    return polish(
         problem,
-        misfit.split(best.x)[0],
+        unit,
         NUISANCES,
-        band,
-        noises=noises,
-        start=misfit.split(best.x)[1].ravel(),
+        misfit.band,
+        noises=misfit.noises,
+        start=errors.ravel(),
         hold=HOLD,
         free=free,
-        shared=shared,
-        numbers=tuple(misfit.adjusted(best.x)),
+        shared=misfit.shared,
+        numbers=tuple(misfit.adjusted(x)),
         max_steps=25,
         tolerance=FINE,
         renew=RENEW,
     )
-    return judge(effects, fine, held_out, noises)
 
 
 def _promising(
@@ -248,12 +264,20 @@ def judge(effects: tuple[Candidate, ...], fit: Polished, held_out: Sequence[Tria
         frozen_shared = tuple(
             replace(item, neutral=float(value), scale=0.0) for item, value in zip(fit.misfit.shared, numbers, strict=True)
         )
+        frozen = resolve(*_begin(frozen, noises, fit.misfit.band, frozen_shared))
         again = polish(frozen, np.zeros(0), NUISANCES, fit.misfit.band, noises=noises, shared=frozen_shared, tolerance=FINE, renew=RENEW)
         checked = _powers(again)
         own, own_counts = _by_run(checked)
         later = _pooled(own, own_counts)
         runs, counts, powers = runs | own, counts | own_counts, powers | checked
     return Fit(effects, fit, train, later, runs, counts, powers, again)
+
+
+def _begin(problem: Problem, noises: Noises, band: tuple[float, float], shared: Sequence[Adjustment] = ()) -> tuple[Misfit, Array]:
+    """Return a problem's misfit and unknowns where its space begins, with neutral adjustments and nuisances."""
+    misfit = Misfit(problem, noises, problem.space.start, NUISANCES, band, shared)
+    unit = problem.space.unit(problem.space.start)
+    return misfit, np.concatenate([unit, np.zeros(misfit.n_unknowns - len(unit))])
 
 
 def _nothing() -> SearchSpace:

@@ -15,6 +15,7 @@ from vehgen.diagnose.fitting import NUISANCES, Fit, Footing, fit_candidate
 from vehgen.diagnose.localisation import GLOBAL, localise, one_force, shortlist, suffices
 from vehgen.diagnose.place_test import PlaceResult
 from vehgen.diagnose.screening import screen
+from vehgen.diagnose.settling import settle
 from vehgen.effects import Surveyor
 from vehgen.identify.harmonic import find_line
 from vehgen.simulate import Simulator
@@ -22,6 +23,8 @@ from vehgen.simulate import Simulator
 Array = NDArray[np.float64]
 Progress = Callable[[str, int, int, str], None]
 """Called with the stage, how many of how many, and the best so far."""
+LEADING = 3
+"""So many of the best fits are settled, where their response jumps."""
 
 
 @dataclass(frozen=True)
@@ -123,6 +126,10 @@ def name(
                 fits.append(fit)
             best = min(fits, key=merit, default=base)
             tell("name", done, len(candidates), f"{best.label}, chi {np.sqrt(best.train):.3f}")
+        fits.sort(key=merit)
+        for i, fit in enumerate(fits[:LEADING]):
+            if np.isfinite(fit.held_out):
+                fits[i] = settle(fit, detection.held_out, detection.floor.noises)
     except KeyboardInterrupt:
         return sorted(fits, key=merit), True
     return sorted(fits, key=merit), False

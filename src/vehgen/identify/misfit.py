@@ -162,6 +162,10 @@ class Misfit:
         """Return lines `shape (..., n_lines, n_channels)` of trial `number` whitened."""
         return _apply(self._weights[number].whitener, lines)
 
+    def white_signal(self, number: int, signal: Array) -> Complex:
+        """Return the whitened lines of a signal `shape (n_samples, n_channels)` in trial `number`."""
+        return self.whiten(number, transform(signal, self.problem.trials[number].measurement.dt, self._weights[number].inside))
+
     def frequency(self, number: int) -> Array:
         """Return the frequencies of trial `number`'s lines [Hz]."""
         return self._weights[number].answer.frequency

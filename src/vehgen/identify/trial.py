@@ -88,7 +88,7 @@ def make_trial(run: Run, name: str, simulators: dict[object, Simulator] | None =
     """
     measurement = read_measurement(run)
     dt = measurement.dt
-    keep = max(1, round(dt / min(run.file.step, STEP)))
+    keep = samples_kept(run, dt)
     step = dt / keep
     length = float(measurement.time[-1] - measurement.time[0])
     simulator = _simulator(run, measurement, {} if simulators is None else simulators)
@@ -97,6 +97,11 @@ def make_trial(run: Run, name: str, simulators: dict[object, Simulator] | None =
     scenario = replace(make_scenario(timed, simulator.model, values), duration=length, dt=step, keep=keep, start=float(measurement.time[0]))
     _check_length(run, scenario, simulator, values, name)
     return Trial(name, run, measurement, simulator, scenario, values, tuple(run.file.parameters))
+
+
+def samples_kept(run: Run, dt: float) -> int:
+    """Return every how many steps a recording sampled at `dt` [s] is kept, where nothing asks for shorter steps."""
+    return max(1, round(dt / min(run.file.step, STEP)))
 
 
 def _simulator(run: Run, measurement: Measurement, simulators: dict[object, Simulator]) -> Simulator:

@@ -1,0 +1,36 @@
+"""Fits of laws that make the response jump: many minima lie close together, of which a single descent finds but one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from vehgen.diagnose.fitting import Fit, judge, refine
+from vehgen.identify.misfit import Noises
+from vehgen.identify.resolution import jumps
+from vehgen.identify.trial import Trial
+
+TRIES = 6
+SHAKE = 0.02
+"""Standard deviation of the points from which is begun anew, in the unit cube."""
+AS_GOOD = 0.02
+"""Minima whose mean square is within this of the lowest cannot be told apart: the steps of the simulation leave about as much."""
+
+
+def settle(fit: Fit, held_out: Sequence[Trial], noises: Noises, seed: int = 7) -> Fit:
+    """Return the lowest of several minima about a fit, with those that do as well; a fit without jumps as it is."""
+    misfit, x = fit.polished.misfit, fit.polished.x
+    if not any(jumps(trial) for trial in misfit.problem.trials):
+        return fit
+    random = np.random.Generator(np.random.PCG64(seed))
+    found = [fit.polished]
+    for _ in range(TRIES):
+        begin = x.copy()
+        begin[: misfit.n_parameters] += SHAKE * random.standard_normal(misfit.n_parameters)
+        begin[: misfit.n_parameters] = np.clip(begin[: misfit.n_parameters], 0.01, 0.99)
+        found.append(refine(misfit.problem, fit.polished, begin, fit.free))
+    best = min(found, key=lambda item: item.loss)
+    equals = tuple(item.x for item in found if item.chi2 <= best.chi2 + AS_GOOD)
+    return replace(judge(fit.effects, best, held_out, noises), equals=equals)
