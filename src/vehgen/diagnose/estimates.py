@@ -17,12 +17,18 @@ from vehgen.effects import EffectParameter
 from vehgen.identify.harmonic import Harmonic
 from vehgen.identify.misfit import Misfit, flatten
 from vehgen.identify.noise import taper
+from vehgen.identify.resolution import jumps
 
 Array = NDArray[np.float64]
 NINETY = 1.645
 """Half width of a 90 % interval in standard deviations."""
+BASE_PRIOR = 0.5
+"""Standard deviation of the prior of a base parameter in the unit cube, three times that of the fit, as files may be wrong throughout.
+
+Accelerations tell masses, stiffnesses and forces in proportion only; how large they are then rests on the file.
+"""
 WEAK_PRIOR = 6.0
-"""Standard deviation of the prior of a parameter in the unit cube."""
+"""Standard deviation of the prior of an effect's parameter in the unit cube."""
 SAME_WITHIN = 0.3
 """Runs that differ by less than this share of the value ask for the same number, however sure each is."""
 BLOCK = 10
@@ -42,15 +48,21 @@ class RunEstimate:
 def estimate(fit: Fit, candidate: Candidate | None = None) -> dict[str, NamedParameter]:
     """Return an effect's own parameters (default: of the effect added last) with 90 % intervals.
 
-    From the Fisher information of the fit, widened by the root of its mean square; a line's amplitude is the median over the runs, its
-    interval their spread and that of the body's parameters.
+    Three parts add up in quadrature: noise, from the Fisher information of the fit, widened by the root of its mean square; what the runs
+    ask for beyond it (:func:`disagreement`); and the scatter of other minima that do as well. A line's amplitude is the median over the
+    runs, its interval their spread and that of the body's parameters.
     """
     candidate = candidate or fit.last
     misfit, x = fit.polished.misfit, fit.polished.x
-    covariance = np.asarray(np.linalg.pinv(_information(misfit, x), hermitian=True) * max(fit.train, 1.0) / _seen(misfit), dtype=np.float64)
+    covariance = np.asarray(
+        np.linalg.pinv(_normal(misfit, x, fit.free)[1], hermitian=True) * max(fit.train, 1.0) / _seen(misfit), dtype=np.float64
+    )
+    alone = estimates_by_run(fit, candidate)
     found: dict[str, NamedParameter] = {}
     for parameter, column, value, scale in _columns(fit, candidate):
-        spread = NINETY * abs(scale) * float(np.sqrt(max(covariance[column, column], 0.0)))
+        noise = NINETY * abs(scale) * float(np.sqrt(max(covariance[column, column], 0.0)))
+        minima = NINETY * abs(scale) * float(np.std([own[column] for own in fit.equals], ddof=1)) if len(fit.equals) > 1 else 0.0
+        spread = float(np.hypot(np.hypot(noise, minima), disagreement([item for item in alone if item.parameter == parameter.name])))
         interval = (value - spread, value + spread) if spread > 0 else None
         found[parameter.name] = NamedParameter(value, interval, parameter.unit)
     if candidate.effect.adjusts == "harmonic":
@@ -58,12 +70,39 @@ def estimate(fit: Fit, candidate: Candidate | None = None) -> dict[str, NamedPar
     return found
 
 
-def _information(misfit: Misfit, x: Array) -> Array:
-    jacobian = misfit.jacobian(x)
-    information = jacobian.T @ jacobian
-    n = misfit.n_parameters
-    information[:n, :n] += np.eye(n) / WEAK_PRIOR**2
-    return np.asarray(information)
+def disagreement(alone: Sequence[RunEstimate]) -> float:
+    """Return the half width of the 90 % interval of what one more run would ask for, without its noise.
+
+    Where the library's law has not quite the form of the real one, runs ask for different numbers, each of them sure. Their variance
+    beyond their own errors is that of DerSimonian and Laird (1986, doi:10.1016/0197-2456(86)90046-2), the interval the prediction interval
+    of Higgins, Thompson and Spiegelhalter (2009, doi:10.1111/j.1467-985X.2008.00552.x), with Student's t of one degree of freedom less than
+    runs.
+    """
+    sure = [item for item in alone if item.half_width > 0]
+    if len(sure) < 2:
+        return 0.0
+    values = np.array([item.value for item in sure])
+    weights = (NINETY / np.array([item.half_width for item in sure])) ** 2
+    excess = float(weights @ (values - weights @ values / weights.sum()) ** 2) - (len(sure) - 1)
+    variance = excess / float(weights.sum() - (weights**2).sum() / weights.sum())
+    return float(scipy.stats.t.ppf(0.95, len(sure) - 1) * np.sqrt(max(variance, 0.0) * (1 + 1 / len(sure))))
+
+
+def _normal(misfit: Misfit, x: Array, free: int) -> tuple[dict[int, Array], Array]:
+    """Return the Jacobians of trials `shape (n_residuals, n_unknowns)` by number, and the information they and the priors add up to.
+
+    The last `free` parameters are the effects'. Trials whose response jumps are left out where others do not: what jumps across a
+    difference quotient is no derivative.
+    """
+    trials = misfit.problem.trials
+    told = [i for i, trial in enumerate(trials) if not jumps(trial)] or list(range(len(trials)))
+    slopes = misfit.white_derivatives(x)
+    jacobians = {i: flatten(slopes[i], first=1).T for i in told}
+    n, known = misfit.n_parameters, misfit.n_parameters + len(misfit.shared)
+    prior = np.concatenate(
+        [np.full(n - free, BASE_PRIOR**-2), np.full(free, WEAK_PRIOR**-2), np.zeros(known - n), np.ones(misfit.n_unknowns - known)]
+    )
+    return jacobians, np.diag(prior) + sum(item.T @ item for item in jacobians.values())
 
 
 def _seen(misfit: Misfit) -> float:
@@ -117,21 +156,23 @@ def _amplitude(fit: Fit, candidate: Candidate, covariance: Array) -> NamedParame
 def estimates_by_run(fit: Fit, candidate: Candidate | None = None) -> list[RunEstimate]:
     """Return what every training run alone asks of an effect's parameters: one Gauss-Newton step from the joint fit.
 
-    The base parameters are held by what the other runs say of them, whatever the effect is; the effect's are free.
+    The base parameters are held by what the other runs say of them, whatever the effect is; the effect's are free. Runs whose response
+    jumps are left out, as they are in :func:`estimate`.
     """
     candidate = candidate or fit.last
     misfit, x = fit.polished.misfit, fit.polished.x
     columns = _columns(fit, candidate)
     own = [column for _, column, _, _ in columns]
-    lines, slopes = misfit.white_lines(x), misfit.white_derivatives(x)
-    jacobians = [flatten(part, first=1).T for part in slopes]
-    whole = _information(misfit, x)
-    gradient = misfit.jacobian(x).T @ misfit.residuals(x)
+    lines = misfit.white_lines(x)
+    jacobians, whole = _normal(misfit, x, fit.free)
+    pulls = {t: jacobian.T @ flatten(lines[t]) for t, jacobian in jacobians.items()}
     blocks = misfit.n_parameters + len(misfit.shared)
+    gradient = np.concatenate([np.zeros(blocks), x[blocks:]]) + sum(pulls.values())
     each, seen = len(misfit.nuisances.names), _seen(misfit)
     found = []
-    for t, (trial, line, jacobian) in enumerate(zip(misfit.problem.trials, lines, jacobians, strict=True)):
-        information, slope = jacobian.T @ jacobian, jacobian.T @ flatten(line)
+    for t, jacobian in jacobians.items():
+        trial, slope = misfit.problem.trials[t], pulls[t]
+        information = jacobian.T @ jacobian
         own_block = np.arange(blocks + t * each, blocks + (t + 1) * each)
         kept = np.array([i for i in range(blocks) if i not in own] + list(own_block))
         dropped = np.setdiff1d(np.arange(len(whole)), kept)

@@ -1,0 +1,100 @@
+"""Dry friction: responses that jump, the steps they need, their many minima, and what the place test learns in spite of them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from benchmarks.hidden_effects.generator import Case, Effect
+from benchmarks.hidden_effects.generator.simulate import true_parameters
+
+from tests.diagnose.conftest import RUNS
+from vehgen.diagnose.detection import detect
+from vehgen.diagnose.estimates import RunEstimate, disagreement
+from vehgen.diagnose.pipeline import diagnose
+from vehgen.diagnose.place_test import list_places
+from vehgen.diagnose.place_test import test_places as place_test
+from vehgen.effects import EFFECTS
+from vehgen.identify.misfit import Misfit
+from vehgen.identify.resolution import jumps, resolve
+from vehgen.identify.trial import load_trials
+
+FRICTION = Effect("dry_friction", "front", {"force": 600.0})
+
+
+@pytest.fixture(scope="module")
+def runs(record):
+    return record(FRICTION)
+
+
+@pytest.fixture(scope="module")
+def found(runs):
+    return diagnose(load_trials(runs), [EFFECTS["dry_friction"]])
+
+
+def test_friction_gets_shorter_steps_where_it_jumps_and_smooth_models_none(found):
+    base, friction = found.detection.base, found.chosen[-1]
+    assert not any(jumps(trial) for trial in base.polished.misfit.problem.trials)
+    assert any(jumps(trial) for trial in friction.polished.misfit.problem.trials)
+    steps = {trial.name: trial.scenario.dt for trial in friction.polished.misfit.problem.trials}
+    assert steps["rough"] < 1e-3 == pytest.approx(steps["fast"])
+
+
+def test_at_the_truth_shorter_steps_come_closer_to_the_recording(found):
+    """The recording was made with steps of 0.05 ms by another integrator."""
+    misfit, x = found.chosen[-1].polished.misfit, found.chosen[-1].polished.x
+    truth = true_parameters(Case("sedan2", effects=(FRICTION,), runs=RUNS, seed=3)) | {"dry_friction_front_force": 600.0}
+    values = np.array([truth[name] for name in misfit.problem.space.names])
+    x = np.concatenate([misfit.problem.space.unit(values), np.zeros(len(x) - len(values))])
+    plain = found.detection.problem.trials
+    coarse = [replace(trial, scenario=item.scenario) for trial, item in zip(misfit.problem.trials, plain, strict=True)]
+    first = misfit.problem.with_trials(coarse)
+    loose = Misfit(first, misfit.noises, values, misfit.nuisances, misfit.band)
+    tight = Misfit(resolve(loose, x), misfit.noises, values, misfit.nuisances, misfit.band)
+    number = [trial.name for trial in plain].index("rough")
+    before, after = (float(np.mean(np.abs(item.white_lines(x)[number]) ** 2)) for item in (loose, tight))
+    assert before > 1.5 > after
+
+
+def test_several_minima_are_tried_and_the_force_is_told_within_its_interval(found):
+    fit = found.chosen[-1]
+    assert fit.equals
+    force = found.verdict.effects[0].parameters["force"]
+    assert force.interval[0] < 600.0 < force.interval[1]
+    assert force.interval[1] - force.interval[0] < 60.0
+    assert fit.train < 1.1
+
+
+def test_the_place_test_leaves_parameters_that_the_effect_has_not_biased(runs):
+    detection = detect(load_trials(runs))
+    misfit, x = detection.base.polished.misfit, detection.base.polished.x
+    place = next(item for item in list_places(misfit) if item.label == "suspension front")
+    (result,) = place_test(misfit, x, [place])
+    truth = true_parameters(Case("sedan2", effects=(FRICTION,), runs=RUNS, seed=3))
+    space = misfit.problem.space
+    values = dict(zip(space.names, space.values(misfit.split(result.x)[0]), strict=True))
+    biased = dict(zip(space.names, detection.base.polished.values, strict=True))
+    off = {name: abs(values[name] / truth[name] - 1) for name in ("kr", "cr", "mr", "ktr", "IZ", "Lf")}
+    assert max(off.values()) < 0.05
+    assert max(abs(biased[name] / truth[name] - 1) for name in off) > 0.05
+    for name in ("kf", "cf"):  # hidden behind the unknown force: nothing is learnt of them
+        assert values[name] == pytest.approx(space.start[space.names.index(name)], rel=0.1)
+
+
+def test_runs_that_disagree_widen_the_interval_to_where_the_next_run_may_lie():
+    random = np.random.default_rng(5)
+    held = []
+    for _ in range(400):
+        asked = 10.0 + random.standard_normal(4)  # the last one is yet to come
+        alone = [RunEstimate(str(i), "p", value, 1e-6) for i, value in enumerate(asked[:3])]
+        held.append(abs(asked[3] - np.mean(asked[:3])) < disagreement(alone))
+    assert 0.86 < np.mean(held) < 0.94
+
+
+def test_runs_that_agree_within_their_errors_widen_nothing():
+    random = np.random.default_rng(6)
+    wide = []
+    for _ in range(400):
+        alone = [RunEstimate(str(i), "p", 10.0 + random.standard_normal(), 1.645) for i in range(3)]
+        wide.append(disagreement(alone))
+    assert np.mean(np.array(wide) == 0.0) > 0.5
+    assert disagreement([RunEstimate("only", "p", 1.0, 0.1)]) == 0.0
