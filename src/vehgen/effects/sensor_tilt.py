@@ -13,7 +13,7 @@ SENSOR_TILT = Effect(
     "one acceleration is off at low frequencies, in proportion to the pitch angle",
     "D. H. Titterton, J. L. Weston, Strapdown Inertial Navigation Technology, 2004, doi:10.1049/PBRA017E",
     "sensor",
-    (EffectParameter("tilt", "rad", "nose-down angle of the sensor on its body", -0.5, 0.5, (-0.15, 0.15)),),
+    (EffectParameter("tilt", "rad", "nose-down angle of the sensor on its body", -0.8, 0.8, (-0.4, -0.15, 0.15, 0.4)),),
     sensors_,
     adjusts="tilt",
 )
