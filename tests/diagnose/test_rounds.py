@@ -104,3 +104,11 @@ def test_other_names_of_channels_change_nothing_but_names(pair, two, tmp_path):
     assert found.verdict.verdict == two.verdict.verdict
     renamed = [(item.name, item.place.replace("zz", "F_az"), item.parameters) for item in found.verdict.effects]
     assert renamed == [(item.name, item.place, item.parameters) for item in two.verdict.effects]
+
+
+def test_one_sensor_late_is_the_other_one_early(record):
+    found = diagnose(load_trials(record(Effect("sensor_delay", "F", {"time": 0.015}))), [EFFECTS["sensor_delay"]])
+    delays = {item.place: item.parameters["delay"].value for item in found.verdict.effects}
+    assert found.verdict.verdict == "ambiguous"
+    assert delays == {"F": pytest.approx(0.015, rel=0.05), "R": pytest.approx(-0.015, rel=0.05)}
+    assert "clock" in (found.verdict.next_experiment or "")

@@ -22,6 +22,7 @@ from vehgen.diagnose.fitting import HOLD, NUISANCES, Fit
 from vehgen.diagnose.further_runs import FurtherRun
 from vehgen.identify.misfit import Misfit, flatten
 from vehgen.identify.noise import Noise, transform
+from vehgen.identify.polish import best_delay
 from vehgen.identify.problem import Problem
 from vehgen.identify.trial import Trial
 from vehgen.measure import MeasuredChannel
@@ -33,6 +34,9 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 SPREAD = 0.29
 """Standard deviation of an effect's own parameter in the unit cube before any run: that of an even distribution."""
+REFITS = 4
+SETTLED = 0.9
+"""A step of a refit that leaves more than this share of the distance is the last one."""
 ABSENT = 1e6
 """A channel with so many times its noise counts as not there."""
 
@@ -150,18 +154,44 @@ def at_most(truth: Rival, fitted: Rival, run: FurtherRun, channels: tuple[str, .
 
 
 def separate(truth: Rival, fitted: Rival, run: FurtherRun, channels: tuple[str, ...]) -> Separation:
-    """Return how far `fitted` stays from the prediction of `truth` after its refit to all runs."""
+    """Return how far `fitted` stays from the prediction of `truth` after its refit to all runs: REFITS Gauss-Newton steps at most.
+
+    They begin at the fit, and at the fit with the new run's clock where the two predictions correlate best.
+    """
     misfit, jacobian = fitted.local(run, channels)
-    lines = _difference(truth, fitted, run)
-    residuals = np.concatenate([flatten(misfit.whiten(0, lines)), np.zeros(len(NUISANCES.names))])
-    k = len(fitted.information)
-    normal = jacobian.T @ jacobian
-    normal[:k, :k] += fitted.information
-    slope = jacobian.T @ residuals
-    step = -np.linalg.lstsq(normal, slope, rcond=1e-12)[0]
-    x = fitted.x + step
-    x[: misfit.n_parameters] = np.clip(x[: misfit.n_parameters], 0.0, 1.0)
-    return Separation(max(float(residuals @ residuals + slope @ step), 0.0), 2 * len(lines) * len(channels), x)
+    wanted = misfit.white_signal(0, truth.predict(run))
+    count, k = 2 * wanted.size * len(channels) // wanted.shape[1], len(fitted.information)
+
+    def left(x: Array) -> tuple[float, Array]:
+        residuals = np.concatenate([flatten(wanted + misfit.white_lines(x)[0]), x[k:]])
+        away = x[:k] - fitted.x[:k]
+        return float(residuals @ residuals + away @ fitted.information @ away), residuals
+
+    late = fitted.x.copy()
+    late[k + NUISANCES.names.index("delay")] = _later(truth, fitted, run) / NUISANCES.delay
+    x, (distance, residuals) = min(((item, left(item)) for item in (fitted.x, late)), key=lambda item: item[1][0])
+    if x is late:
+        jacobian = misfit.jacobian(x)
+    for turn in range(REFITS):
+        normal, slope = jacobian.T @ jacobian, jacobian.T @ residuals
+        normal[:k, :k] += fitted.information
+        slope[:k] += fitted.information @ (x[:k] - fitted.x[:k])
+        new = x - np.linalg.lstsq(normal, slope, rcond=1e-12)[0]
+        new[: misfit.n_parameters] = np.clip(new[: misfit.n_parameters], 0.0, 1.0)
+        nearer, residuals_there = left(new)
+        if not nearer < distance:
+            break
+        settled = nearer > SETTLED * distance
+        x, distance, residuals = new, nearer, residuals_there
+        if settled or distance < 1.0 or turn == REFITS - 1:
+            break
+        jacobian = misfit.jacobian(x)
+    return Separation(distance if np.isfinite(distance) else 0.0, count, x)
+
+
+def _later(truth: Rival, fitted: Rival, run: FurtherRun) -> float:
+    """Return by how much later [s] the prediction of `fitted` must come to correlate best with that of `truth`."""
+    return best_delay(truth.predict(run), fitted.predict(run), fitted.trial.measurement.dt, fitted.fit.polished.misfit.band)
 
 
 def peak(truth: Rival, fitted: Rival, run: FurtherRun, channels: Sequence[str], x: Array) -> tuple[str, float]:

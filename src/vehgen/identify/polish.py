@@ -16,7 +16,6 @@ from vehgen.identify.misfit import Misfit, Noises, Nuisances
 from vehgen.identify.noise import EVEN, Noise, estimate_noise, transform
 from vehgen.identify.objective import BAND
 from vehgen.identify.problem import Problem
-from vehgen.identify.trial import Trial
 
 Array = NDArray[np.float64]
 AT_BOUND = 1e-3
@@ -187,18 +186,21 @@ def first_delays(misfit: Misfit, unit: Array, begun: Sequence[float] = ()) -> Ar
     if "delay" in names:
         x = np.concatenate([unit, begun or np.zeros(len(misfit.shared)), found.ravel()])
         for t, (trial, simulated) in enumerate(zip(misfit.problem.trials, misfit.simulate(x), strict=True)):
-            found[t, names.index("delay")] = _delay(trial, simulated, misfit.band) / misfit.nuisances.delay
+            found[t, names.index("delay")] = (
+                best_delay(trial.measurement.values, simulated, trial.measurement.dt, misfit.band) / misfit.nuisances.delay
+            )
     return found.ravel()
 
 
-def _delay(trial: Trial, simulated: Array, band: tuple[float, float]) -> float:
-    dt, n = trial.measurement.dt, len(simulated)
+def best_delay(measured: Array, simulated: Array, dt: float, band: tuple[float, float]) -> float:
+    """Return by how much later [s] the simulated channels `shape (n_samples, n_channels)` must come to correlate best with the measured."""
+    n = len(simulated)
     frequency = np.fft.rfftfreq(n, dt)
     inside = (frequency >= band[0]) & (frequency <= band[1])
-    scale = np.sqrt(np.mean(trial.measurement.values**2, axis=0))
-    measured, model = (transform(item / scale, dt, inside) for item in (trial.measurement.values, simulated))
+    scale = np.maximum(np.sqrt(np.mean(measured**2, axis=0)), 1e-300)
+    one, other = (transform(item / scale, dt, inside) for item in (measured, simulated))
     cross = np.zeros(len(frequency), dtype=np.complex128)
-    cross[inside] = (measured * model.conj()).sum(axis=1)
+    cross[inside] = (one * other.conj()).sum(axis=1)
     lags = np.fft.irfft(cross, n)
     reach = min(int(LATEST / dt), n // 2 - 1)
     index = np.arange(-reach, reach + 1)
