@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -81,7 +82,7 @@ import math
 
 import numba
 {"from numba import float32, float64" if printer.single else ""}
-from vehgen.codegen.selects import lower, sign, step, upper'''
+from vehgen.codegen.straight import straight'''
 
 
 def _function(model: LinearModel, step: StepProgram, printer: Printer, state: list[Node], lanes: int) -> list[str]:
@@ -123,17 +124,30 @@ def _function(model: LinearModel, step: StepProgram, printer: Printer, state: li
 
     sections = _sections(len(parameter_place), len(constants), len(state), n_channels, max(setup_scratch, advance_scratch, sample_scratch))
 
-    def loops(bodies: list[list[str]], indent: int) -> list[str]:
+    functions: list[str] = []
+
+    def loops(name: str, bodies: list[list[str]], indent: int, drives: Sequence[str] = ()) -> list[str]:
+        """Add the bodies to `functions`, and return the loops over lanes that call them."""
+        shared = f"({', '.join(drives)}{',' if len(drives) == 1 else ''})"
+        first = [f"    {shared} = drives"] if drives else []
         blank = "    " * indent
         lines = []
-        for body in bodies:
-            lines += [f"{blank}for j in range({lanes}):", *(f"{blank}    {line}" for line in body or ["pass"])]
+        for i, body in enumerate(body for body in bodies if body):
+            functions.extend(["", "", "@straight", f"def {name}_{i}(work, j, dt, drives):", *first, *(f"    {line}" for line in body)])
+            lines += [f"{blank}for j in range({lanes}):", f"{blank}    {name}_{i}(work, j, dt, {shared})"]
         return lines
 
+    def names(reads: list[str]) -> list[str]:
+        return [line.partition(" = ")[0] for line in reads]
+
+    setup_loops = loops("setup", setup_bodies, 1)
+    sample_loops = loops("sample", sample_bodies, 3, names(values))
+    advance_loops = loops("advance", advance_bodies, 3, names(means))
     return [
         "",
         "LANES = " + str(lanes),
         *(f"{name} = {start * lanes}" for name, start in sections.items()),
+        *functions,
         "",
         "",
         "@numba.njit(",
@@ -143,18 +157,18 @@ def _function(model: LinearModel, step: StepProgram, printer: Printer, state: li
         "def advance(work, inputs, rates, forces, dt, keep, responses):",
         f'    """Advance {lanes} individuals over all steps; responses has shape ({lanes}, samples, {n_channels})."""',
         "    n_steps = inputs.shape[0] - 1",
-        *loops(setup_bodies, 1),
+        *setup_loops,
         "    for n in range(n_steps + 1):",
         "        if n % keep == 0:",
         "            sample = n // keep",
         *(f"            {line}" for line in values),
-        *loops(sample_bodies, 3),
+        *sample_loops,
         f"            for channel in range({n_channels}):",
         f"                for j in range({lanes}):",
         f"                    responses[j, sample, channel] = work[KEPT + channel*{lanes} + j]",
         "        if n < n_steps:",
         *(f"            {line}" for line in means),
-        *loops(advance_bodies, 3),
+        *advance_loops,
     ]
 
 
