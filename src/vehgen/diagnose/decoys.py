@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.detection import Detection
-from vehgen.diagnose.fitting import HOLD, Fit
+from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.naming import Round
 from vehgen.diagnose.place_test import PlaceResult
+from vehgen.diagnose.projection import Projection
 from vehgen.diagnose.recovered import recover
 from vehgen.identify.misfit import flatten
 from vehgen.identify.noise import transform
@@ -42,15 +43,9 @@ def decoy_shares(
     numbers
         How many numbers a decoy may fit.
     """
-    misfit, x = base.polished.misfit, place.x
-    n = misfit.n_parameters
-    springs = np.hstack([np.eye(n) / HOLD, np.zeros((n, misfit.n_unknowns - n))])
-    rest = np.hstack([np.zeros((misfit.n_unknowns - n, n)), np.eye(misfit.n_unknowns - n)])
-    slopes = np.vstack([*(flatten(item, first=1).T for item in misfit.white_derivatives(x)), springs, rest])
-    residual = np.concatenate([*(flatten(item) for item in misfit.white_lines(x)), np.zeros(misfit.n_unknowns)])
-    size = len(residual) - misfit.n_unknowns
-    basis = np.linalg.qr(slopes)[0]
-    left = residual - basis @ (basis.T @ residual)
+    misfit = base.polished.misfit
+    projection = Projection.of(misfit, place.x)
+    left, size = projection.left, projection.size
     scales = [float(np.sqrt(np.mean(np.concatenate([item[i] for item in motion.values()]) ** 2))) for i in (0, 1)]
     responses = _responses(base, place)
     random = np.random.Generator(np.random.PCG64(seed))
@@ -69,9 +64,8 @@ def decoy_shares(
                 inside = (frequency >= misfit.band[0]) & (frequency <= misfit.band[1])
                 lines = transform(force[:, None], trial.measurement.dt, inside) * responses[t]
                 parts.append(flatten(misfit.whiten(t, lines)))
-            columns.append(np.concatenate([*parts, np.zeros(misfit.n_unknowns)]))
-        own = np.array(columns).T
-        own -= basis @ (basis.T @ own)
+            columns.append(np.concatenate(parts))
+        own = projection.free(np.array(columns).T)
         remaining = left - own @ np.linalg.lstsq(own, left, rcond=None)[0]
         found.append(1 - max(float(remaining @ remaining) / size - 1, 0.0) / excess)
     return np.array(found)

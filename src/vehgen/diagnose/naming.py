@@ -100,13 +100,15 @@ def name(
     try:
         harmonics = any(item.effect.adjusts == "harmonic" for item in candidates)
         lines = find_line(base.polished.misfit, base.polished.x) if harmonics else []
+        if not suffices(passed, base) and not everything:
+            tell("screen", 0, 1, "")
+            candidates = screen(candidates, base, footing, surveyor, simulators)
+            tell("screen", 1, 1, f"{len(candidates)} candidates")
         if workers > 1:
             tell("compile", 0, 1, "")
             posed = [pose(item, footing.problem, surveyor, simulators) for item in candidates if item.effect.edit is not None]
             compile_all([trial.simulator.kernel for problem in posed for trial in problem.trials], workers)
             tell("compile", 1, 1, f"{len(posed)} vehicles")
-        if not suffices(passed, base) and not everything:
-            candidates = screen(candidates, base, footing, surveyor, simulators, {"harmonic": lines})
         for done, candidate in enumerate(candidates, start=1):
             harmonic = candidate.effect.adjusts == "harmonic"
             unit, errors = begun if candidate.effect.attaches == "run" else placed

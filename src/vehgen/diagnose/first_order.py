@@ -1,0 +1,152 @@
+"""What a law would do to the recordings, to first order, without a kernel of its own.
+
+A law's force follows from the motion that a fitted model has without it, and the model's frequency response carries the force to the
+sensors. That holds for small forces; for ranking it holds well enough.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from vehgen.codegen import Kernel
+from vehgen.identify.misfit import Misfit, flatten
+from vehgen.identify.noise import transform
+from vehgen.identify.problem import Problem
+from vehgen.mechanics import LinearModel, static_loads
+from vehgen.mechanics.energies import Element
+from vehgen.mechanics.law_terms import RATE, REST, STATIC, TRAVEL
+from vehgen.mechanics.linear_model import Channel
+from vehgen.simulate.frequency import force_response
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+class Motion:
+    """How every spring and damper moves under a fit, and what the sensors show of a force there.
+
+    Parameters
+    ----------
+    misfit, x
+        The fit: laws that it has already are in its motion, not in what the sensors show.
+    """
+
+    def __init__(self, misfit: Misfit, x: Array) -> None:
+        self.misfit = misfit
+        unit, errors = misfit.split(x)
+        values, numbers = misfit.problem.space.values(unit), misfit.adjusted(x)
+        kernels: dict[int, tuple[LinearModel, Kernel]] = {}
+        self.values = [misfit.problem.values_of(values, trial) for trial in misfit.problem.trials]
+        self.motions: list[Array] = []
+        self._responses: dict[tuple[int, int], Complex] = {}
+        for trial, error, known in zip(misfit.problem.trials, errors, self.values, strict=True):
+            model = trial.simulator.model
+            if id(model) not in kernels:
+                probe = _probe(model)
+                kernels[id(model)] = probe, Kernel(probe)
+            probe, kernel = kernels[id(model)]
+            scenario = misfit.nuisances.adjust(trial.scenario, error)
+            for item, value in zip(misfit.shared, numbers, strict=True):
+                scenario = item.scenario(scenario, float(value))
+            population = np.array([[known[name] for name in probe.parameters]])
+            run = kernel.run(population, scenario.drive(probe.wheel_offsets(known)), scenario.keep)
+            self.motions.append(np.asarray(run.responses[0].T.reshape(len(model.elements), 2, -1)))
+
+    def moved(self, problem: Problem, values: Array) -> Array | None:
+        """Return by how much a candidate's residuals differ from the fit's, without the nuisances' priors.
+
+        Parameters
+        ----------
+        problem
+            The candidate's, on the same runs.
+        values
+            Its searched parameters `shape (n_parameters,)` [SI].
+
+        Returns
+        -------
+        None for a candidate that is more than a force of travel and rate at springs and dampers that the fit's model has; and for dry
+        friction, which changes the motion so much that its first order says little.
+        """
+        parts = []
+        for t, trial in enumerate(problem.trials):
+            forces = self._forces(t, trial.simulator.model, problem.values_of(values, trial))
+            if forces is None:
+                return None
+            lines: Complex = np.zeros((len(self.misfit.frequency(t)), len(trial.channels)), dtype=np.complex128)
+            inside = np.isin(np.fft.rfftfreq(len(trial.measurement.time), trial.measurement.dt), self.misfit.frequency(t))
+            for number, force in forces.items():
+                lines += transform(force[:, None], trial.measurement.dt, inside) * self._response(t, number)
+            parts.append(flatten(self.misfit.whiten(t, lines)))
+        return np.concatenate(parts)
+
+    def _forces(self, t: int, model: LinearModel, values: Mapping[str, float]) -> dict[int, Array] | None:
+        """Return what a model adds at the elements of the fit's model, by number, each `shape (n_samples,)`."""
+        own = self.misfit.problem.trials[t].simulator.model
+        alike = len(model.elements) == len(own.elements) and model.mass_entries == own.mass_entries and not model.is_preloaded
+        if not alike or not all(_extends(new, old) for new, old in zip(model.elements, own.elements, strict=True)):
+            return None
+        found = {}
+        for number, (new, old) in enumerate(zip(model.elements, own.elements, strict=True)):
+            added = new.laws[len(old.laws) :]
+            steps = [term.step(new.k, new.c) for term in added]
+            if any(term.law.states for term in added) or any(step.friction != 0 for step in steps):
+                return None
+            force = (new.k - old.k) * TRAVEL + (new.c - old.c) * RATE + sp.Add(*(step.now for step in steps))
+            if force == 0:
+                continue
+            symbols = sorted(force.free_symbols - {TRAVEL, RATE, STATIC}, key=str)
+            numbers = model.evaluate({(i, 0): symbol for i, symbol in enumerate(symbols)}, values)
+            known: dict[sp.Symbol, Array] = {symbol: np.array(numbers[i, 0]) for i, symbol in enumerate(symbols)}
+            travel, rate = self.motions[t][number]
+            known |= {TRAVEL: travel, RATE: rate}
+            if STATIC in force.free_symbols:
+                known[STATIC] = np.array(static_loads(model, values).elements[new.kind, new.name])
+            found[number] = np.broadcast_to(_evaluate(force, known), travel.shape)
+        return found
+
+    def _response(self, t: int, number: int) -> Complex:
+        """Return the channels per unit of force that resists the travel of an element, `shape (n_lines, n_channels)`."""
+        if (t, number) not in self._responses:
+            model = self.misfit.problem.trials[t].simulator.model
+            row = model.elements[number].row
+            self._responses[t, number] = force_response(model, self.values[t], (row,), self.misfit.frequency(t))[:, :, 0]
+        return self._responses[t, number]
+
+
+def _probe(model: LinearModel) -> LinearModel:
+    """Return the model with the travel and the rate of every element as its channels."""
+    channels = []
+    for item in model.elements:
+        channels.append(Channel(f"{item.name} travel", "displacement", "", displacement=item.row, input=item.input_row))
+        channels.append(Channel(f"{item.name} rate", "velocity", "", velocity=item.row, input_rate=item.input_row))
+    return replace(model, channels=tuple(channels))
+
+
+def _extends(new: Element, old: Element) -> bool:
+    """Whether an element is another with laws added, or another stiffness or damping."""
+    same = (new.kind, new.name, new.row, new.input_row) == (old.kind, old.name, old.row, old.input_row)
+    return same and new.laws[: len(old.laws)] == old.laws and all(REST not in term.step().now.free_symbols for term in new.laws)
+
+
+def _evaluate(expression: sp.Expr, known: Mapping[sp.Symbol, Array]) -> Array:
+    """Evaluate an expression of arrays, node by node."""
+    if expression in known:
+        return known[expression]
+    if expression.is_Number:
+        return np.array(float(expression))
+    arguments = [_evaluate(argument, known) for argument in expression.args]
+    if expression.is_Pow:
+        return np.asarray(arguments[0] ** arguments[1])
+    if isinstance(expression, sp.Heaviside):
+        return np.asarray((arguments[0] > 0).astype(np.float64))
+    functions = {"Add": np.add, "Mul": np.multiply, "Abs": np.abs, "sign": np.sign, "Min": np.minimum, "Max": np.maximum}
+    function = functions[type(expression).__name__]
+    found = arguments[0] if len(arguments) > 1 else function(arguments[0])
+    for argument in arguments[1:]:
+        found = function(found, argument)
+    return np.asarray(found)
