@@ -235,12 +235,13 @@ class Kernel:
     def _failures(self, parameters: Array, responses: Array, residuals: Array) -> dict[int, str]:
         failures = find_failures(self.model.parameters, parameters, responses)
         if self.source.nonlinear:
-            limit = UNCONVERGED * self._weight()
+            limit = UNCONVERGED * self._weight
             for individual in np.flatnonzero(residuals > limit):
                 reason = f"its force laws did not converge: {residuals[individual]:.3g} N were left in the worst step; take a smaller step"
                 failures.setdefault(int(individual), reason)
         return failures
 
+    @cached_property
     def _weight(self) -> float:
         numbers = self.model.evaluate({(0, i): term.inertia for i, term in enumerate(self.model.energies.weights)}, self.model.values())
         return GRAVITY * sum(numbers.values())

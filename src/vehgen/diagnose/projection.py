@@ -38,7 +38,7 @@ class Projection:
     @property
     def size(self) -> int:
         """How many residuals there are."""
-        return len(self.basis) - self.basis.shape[1]
+        return int(len(self.basis) - self.basis.shape[1])
 
     def free(self, moved: Array) -> Array:
         """Return changes of the residuals `shape (n_residuals, ...)`, without what the base can undo, with the priors' rows."""

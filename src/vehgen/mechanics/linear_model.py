@@ -199,9 +199,14 @@ class LinearModel:
                 arrays[key][place] = value
         return arrays
 
+    @cached_property
+    def _symbols(self) -> tuple[tuple[str, sp.Symbol], ...]:
+        """The symbol of every parameter by its name."""
+        return tuple((name, sp.Symbol(name, real=True)) for name in self.parameters)
+
     def evaluate(self, entries: Entries, values: Mapping[str, float]) -> dict[tuple[int, int], float]:
         """Evaluate sympy expressions of the vehicle's parameters at the values of `parameters` [SI]."""
-        known: dict[sp.Symbol, float] = {sp.Symbol(name, real=True): float(values[name]) for name in self.parameters}
+        known: dict[sp.Symbol, float] = {symbol: float(values[name]) for name, symbol in self._symbols}
         for symbol, expression in self.definitions:
             known[symbol] = _number(expression, known)
         return {place: _number(value, known) for place, value in entries.items()}

@@ -32,7 +32,9 @@ class Hump:
         """Return the height at positions s along the road [m]; zero outside the hump."""
         local = np.asarray(s, dtype=np.float64) - self.at
         inside = (local > 0) & (local < self.length)
-        return np.where(inside, self.shape(np.clip(local, 0.0, self.length)), 0.0)
+        heights = np.zeros_like(local)
+        heights[inside] = self.shape(local[inside])
+        return heights
 
     @classmethod
     def from_shape(cls, name: str, at: float, length: float, height: float, **extra: float) -> Hump:

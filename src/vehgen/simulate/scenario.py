@@ -25,11 +25,15 @@ from vehgen.road import (
     read_columns,
     wheel_inputs,
 )
+from vehgen.simulate.drive_cache import DriveCache
 from vehgen.simulate.runfile import DisplacementHarmonic, ForceHarmonic, HumpEntry, RoadEntry, Run
 
 Array = NDArray[np.float64]
 AFTER_LAST_HUMP = 3.0
 """Seconds simulated after the last wheel left the last hump, where a run does not say how long it is."""
+
+
+_DRIVES = DriveCache()
 
 
 @dataclass(frozen=True)
@@ -84,7 +88,16 @@ class Scenario:
         return replace(self, speed=law, track=replace(self.track, scale=self.track.scale * height))
 
     def drive(self, offsets: Array) -> Drive:
-        """Return the inputs of a vehicle whose axles run `offsets shape (n_axles,)` [m] behind the first to arrive."""
+        """Return the inputs of a vehicle whose axles run `offsets shape (n_axles,)` [m] behind the first to arrive.
+
+        Not to be written to: the last drives are remembered.
+        """
+        law, errors = (self.speed.law, (self.speed.delay, self.speed.scale)) if isinstance(self.speed, AdjustedSpeed) else (self.speed, ())
+        road = (id(self.track.parts), self.track.footprint, self.track.scale, id(law), errors, np.asarray(offsets, dtype=float).tobytes())
+        key = (*road, self.start, self.dt, len(self.time), id(self.ground), id(self.forces))
+        return _DRIVES.find(key, (self.track, self.speed, self.ground, self.forces), lambda: self._drive(offsets))
+
+    def _drive(self, offsets: Array) -> Drive:
         wheels = wheel_inputs(self.track, self.speed, offsets, self.time)
         half = self.dt / 2
         ground, ground_rates = [], []

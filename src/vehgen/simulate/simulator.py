@@ -23,6 +23,8 @@ from vehgen.simulate.scenario import Scenario, make_scenario
 from vehgen.vehicle import Vehicle
 
 Array = NDArray[np.float64]
+REMEMBERED = 1000
+"""So many layouts of axles are remembered."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +60,7 @@ class Simulator:
     def __init__(self, vehicle: Vehicle, outputs: Iterable[Output], forces: Iterable[Place] = ()) -> None:
         self.model: LinearModel = derive(vehicle, outputs, forces)
         self.kernel = Kernel(self.model)
+        self._known_offsets: dict[tuple[float, ...], Array] = {}
 
     def parameters(self, values: Mapping[str, float] | Sequence[Mapping[str, float]] | None = None) -> Array:
         """Return the array of a population from values by name [SI]; what is not named keeps the file's value.
@@ -147,11 +150,18 @@ class Simulator:
         """Return each axle's distance behind the first to arrive, `shape (n_individuals, n_axles)` [m]."""
         columns = self._layout_columns
         if not columns:
-            row = self.model.wheel_offsets(dict(zip(self.model.parameters, parameters[0], strict=True)))
-            return np.repeat(row[None, :], len(parameters), axis=0)
+            return np.repeat(self._offsets(parameters[0], ())[None, :], len(parameters), axis=0)
         distinct, group = np.unique(parameters[:, columns], axis=0, return_index=True, return_inverse=True)[1:]
-        rows = [self.model.wheel_offsets(dict(zip(self.model.parameters, parameters[i], strict=True))) for i in distinct]
+        rows = [self._offsets(parameters[i], tuple(parameters[i, columns].tolist())) for i in distinct]
         return np.array(rows)[group.ravel()]
+
+    def _offsets(self, individual: Array, layout: tuple[float, ...]) -> Array:
+        """Return one individual's distances `shape (n_axles,)`, which its `layout` decides: the last ones are remembered."""
+        if layout not in self._known_offsets:
+            if len(self._known_offsets) >= REMEMBERED:
+                self._known_offsets.clear()
+            self._known_offsets[layout] = self.model.wheel_offsets(dict(zip(self.model.parameters, individual, strict=True)))
+        return self._known_offsets[layout]
 
     @cached_property
     def _layout_columns(self) -> list[int]:

@@ -1,0 +1,43 @@
+"""The last drives, by what they were made from: a fit asks for the same road under the same wheels again and again."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
+from threading import Lock
+
+from vehgen.codegen import Drive
+
+MOST_BYTES = 100_000_000
+"""Drives are forgotten, the oldest first, beyond this size [bytes]."""
+
+
+class DriveCache:
+    """Remembers drives up to MOST_BYTES.
+
+    A key may hold ids of objects: `alive` is kept as long as the key, so that no other object takes their places.
+    """
+
+    def __init__(self) -> None:
+        self._known: OrderedDict[Hashable, tuple[Drive, object]] = OrderedDict()
+        self._bytes = 0
+        self._lock = Lock()
+
+    def find(self, key: Hashable, alive: object, make: Callable[[], Drive]) -> Drive:
+        """Return the drive of a key, made if it is not known."""
+        with self._lock:
+            if key in self._known:
+                self._known.move_to_end(key)
+                return self._known[key][0]
+        drive = make()
+        with self._lock:
+            if key not in self._known:
+                self._known[key] = drive, alive
+                self._bytes += _size(drive)
+            while self._bytes > MOST_BYTES and len(self._known) > 1:
+                self._bytes -= _size(self._known.popitem(last=False)[1][0])
+        return drive
+
+
+def _size(drive: Drive) -> int:
+    return int(drive.inputs.nbytes + drive.rates.nbytes + drive.forces.nbytes)
