@@ -13,11 +13,15 @@ from vehgen.effects.places import ALL_TYRES
 GLOBAL = ("speed_error", "tyre_footprint", "tyre_damping", "tyre_liftoff", "frame_bending", "suspended_cab", "cargo_module", "walking_beam")
 """Effects that no single place explains, or that reach several: they are tried whatever the place test says."""
 
+ONCE = 1_000_000
+"""The derivatives by nuisances serve for all places: they differ little, and take most of the time."""
+
 
 def localise(fit: Fit) -> tuple[list[PlaceResult], list[PlaceResult]]:
     """Test every place on what a fit leaves; return all results, best first, and the smallest hypotheses that reach the floor."""
     misfit = fit.polished.misfit
-    results = test_places(misfit, fit.polished.x, list_places(misfit))
+    with misfit.quickly(ONCE):
+        results = test_places(misfit, fit.polished.x, list_places(misfit))
     results.sort(key=lambda item: (item.chi, item.unknowns))
     nowhere = next(item for item in results if item.place.kind == "none")
     excess = max(nowhere.chi**2 - 1, 0.0)

@@ -7,7 +7,8 @@ is fitted along with the parameters: its delay, the scales of its speed and of i
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -174,6 +175,15 @@ class Misfit:
     def residuals(self, x: Array) -> Array:
         """Return the whitened residuals, the nuisances' priors last: each of unit variance where model and noise are right."""
         return np.concatenate([*(flatten(lines) for lines in self.white_lines(x)), x[self.n_parameters + len(self.shared) :]])
+
+    @contextmanager
+    def quickly(self, renew: int) -> Iterator[None]:
+        """Within this context derivatives are one-sided, those by nuisances computed anew every `renew` calls only."""
+        before, self.renew, self._calls = self.renew, renew, 0
+        try:
+            yield
+        finally:
+            self.renew, self._calls = before, 0
 
     def white_derivatives(self, x: Array) -> list[Complex]:
         """Return the derivatives of :meth:`white_lines` by differences, each `shape (n_unknowns, n_lines, n_channels)`."""
