@@ -12,7 +12,7 @@ from vehgen.codegen import compile_all
 from vehgen.diagnose.candidate import Candidate, pose
 from vehgen.diagnose.detection import Detection
 from vehgen.diagnose.fitting import NUISANCES, Fit, Footing, fit_candidate
-from vehgen.diagnose.localisation import GLOBAL, localise, one_force, shortlist, suffices
+from vehgen.diagnose.localisation import GLOBAL, localise, one_force, shortlist
 from vehgen.diagnose.place_test import PlaceResult
 from vehgen.diagnose.screening import screen
 from vehgen.diagnose.settling import settle
@@ -82,7 +82,7 @@ def name(
 ) -> tuple[list[Fit], bool]:
     """Fit every candidate on top of a fit; return the fits, best first, and whether Ctrl-C ended this early.
 
-    Where one force at one place does not suffice, the candidates are screened first, unless `everything` is to be tried.
+    The candidates are screened first, unless `everything` is to be tried.
     """
     footing = Footing.of(base)
     trial = footing.problem.trials[0]
@@ -100,7 +100,7 @@ def name(
     try:
         harmonics = any(item.effect.adjusts == "harmonic" for item in candidates)
         lines = find_line(base.polished.misfit, base.polished.x) if harmonics else []
-        if not suffices(passed, base) and not everything:
+        if not everything:
             tell("screen", 0, 1, "")
             candidates = screen(candidates, base, footing, surveyor, simulators)
             tell("screen", 1, 1, f"{len(candidates)} candidates")
