@@ -1,0 +1,47 @@
+"""What a law would do, to first order, against simulations with the law switched on a little."""
+
+import numpy as np
+import pytest
+
+from vehgen.diagnose.candidate import list_candidates, pose
+from vehgen.diagnose.detection import detect
+from vehgen.diagnose.first_order import Motion
+from vehgen.diagnose.fitting import NUISANCES, Footing
+from vehgen.effects import Surveyor, library
+from vehgen.identify.misfit import Misfit, flatten
+from vehgen.identify.trial import load_trials
+
+
+@pytest.fixture(scope="module")
+def detection(record):
+    return detect(load_trials(record()))
+
+
+@pytest.mark.parametrize("name", ["cubic_stiffness", "quadratic_damping", "tyre_damping", "progressive_stiffness"])
+def test_a_weak_law_moves_the_residuals_as_a_simulation_with_it_does(detection, name):
+    problem, moved, simulated = _both(detection, name, 0.02)
+    assert problem.trials[0].simulator.model.elements != detection.problem.trials[0].simulator.model.elements
+    assert moved @ simulated > 0.99 * np.linalg.norm(moved) * np.linalg.norm(simulated)
+    assert np.linalg.norm(moved) == pytest.approx(np.linalg.norm(simulated), rel=0.05)
+
+
+@pytest.mark.parametrize("name", ["dry_friction", "hysteresis", "frame_bending"])
+def test_what_is_no_force_of_travel_and_rate_is_left_to_a_simulation(detection, name):
+    assert _both(detection, name, 1.0)[1] is None
+
+
+def _both(detection, name, share):
+    """Return the problem of an effect, and how it moves the residuals at a share of its first start: to first order, simulated."""
+    base = detection.base.polished
+    footing, trial = Footing.of(detection.base), detection.problem.trials[0]
+    candidates = list_candidates(trial.run.vehicle, detection.trials, [library()[name]])
+    problem = pose(candidates[0], footing.problem, Surveyor(trial.run.vehicle, dict(trial.values)), {})
+    values = problem.space.start.copy()
+    values[: len(footing.unit)] = base.values
+    values[len(footing.unit)] *= share
+    unit = np.clip(problem.space.unit(values), 0.0, 1.0)
+    moved = Motion(base.misfit, base.x).moved(problem, problem.space.values(unit))
+    posed = Misfit(problem, base.misfit.noises, problem.space.start, NUISANCES, base.misfit.band)
+    after = posed.white_lines(np.concatenate([unit, footing.errors]))
+    lines = zip(after, base.misfit.white_lines(base.x), strict=True)
+    return problem, moved, np.concatenate([flatten(new - old) for new, old in lines])
