@@ -28,8 +28,8 @@ from vehgen.identify.trial import Trial
 MOST_EFFECTS = 3
 """So many effects are added at most."""
 CLOCKS = (
-    "no run tells which of the sensors is late and which early: only the difference of their clocks shows; record both by one clock, or let "
-    "both feel a knock at a known time"
+    "no run tells which of the sensors is late and which early: only the difference of their clocks shows; record both by one clock, "
+    "or let both feel a knock at a known time"
 )
 
 

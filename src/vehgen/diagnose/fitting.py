@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.candidate import Candidate, pose, retarget, starts
-from vehgen.effects import Surveyor
+from vehgen.diagnose.candidate import Candidate, retarget
 from vehgen.identify.adjustments import Adjustment
 from vehgen.identify.misfit import Misfit, Noises, Nuisances
 from vehgen.identify.polish import Polished, polish
@@ -27,9 +26,6 @@ BOUND = 0.3
 HOLD = 0.17
 """Standard deviation of a base parameter in the unit cube: 0.1 of a logarithm."""
 ROUGH = 1e-4
-HOPELESS = 0.5
-MOST_STARTS = 4
-"""So many of an effect's starts are fitted."""
 RENEW = 5
 """As in Misfit: saves two thirds of the time."""
 FINE = 1e-6
@@ -137,63 +133,6 @@ def mean_square_as_filed(trials: Sequence[Trial], noises: Noises, band: tuple[fl
     return _pooled(*_by_run(_powers(fit)))
 
 
-def fit_candidate(
-    candidate: Candidate,
-    footing: Footing,
-    held_out: Sequence[Trial],
-    noises: Noises,
-    band: tuple[float, float],
-    surveyor: Surveyor,
-    simulators: dict[object, Simulator],
-    begin: Sequence[tuple[float, ...]] | None = None,
-) -> Fit | None:
-    """Fit a candidate's effect together with what it is added to: roughly from its most promising starts, finely from the best.
-
-    Parameters
-    ----------
-    candidate, footing
-        What to add, and to what. A candidate that leaves HOPELESS of the footing's excess after the rough fits is not refined.
-    held_out, noises, band, surveyor, simulators
-        As elsewhere.
-    begin
-        Where the effect's own numbers begin (default: its own starts).
-
-    Returns
-    -------
-    None where the simulation fails at every start.
-    """
-    problem = pose(candidate, footing.problem, surveyor, simulators)
-    shared = (*footing.shared, *candidate.shared)
-    free = footing.free + len(candidate.parameters)
-    neutral = tuple(item.neutral for item in footing.shared)
-    best: Polished | None = None
-    for point, combination in _promising(candidate, footing, problem, noises, band, begin or list(starts(candidate, surveyor))):
-        fit = polish(
-            problem,
-            point,
-            NUISANCES,
-            band,
-            noises=noises,
-            start=footing.errors,
-            hold=HOLD,
-            free=free,
-            shared=shared,
-            numbers=(*neutral, *combination) if candidate.shared else neutral,
-            max_steps=8,
-            tolerance=ROUGH,
-            renew=RENEW,
-        )
-        if best is None or fit.loss < best.loss:
-            best = fit
-    if best is None:
-        return None
-    effects = (*footing.effects, candidate)
-    if best.chi2 - 1 > HOPELESS * max(footing.train - 1, 0.0):
-        return judge(effects, best, (), noises)
-    fine = refine(resolve(best.misfit, best.x), best, best.x, free)
-    return judge(effects, fine, held_out, noises)
-
-
 def refine(problem: Problem, fit: Polished, x: Array, free: int) -> Polished:
     """Fit finely from the unknowns `x` of another fit, on a problem with the same unknowns; `free` as in :func:`polish`."""
     misfit = fit.misfit
@@ -213,32 +152,6 @@ def refine(problem: Problem, fit: Polished, x: Array, free: int) -> Polished:
         tolerance=FINE,
         renew=RENEW,
     )
-
-
-def _promising(
-    candidate: Candidate,
-    footing: Footing,
-    problem: Problem,
-    noises: Noises,
-    band: tuple[float, float],
-    begin: Sequence[tuple[float, ...]],
-) -> list[tuple[Array, tuple[float, ...]]]:
-    """Return the MOST_STARTS starts that fit best before any fitting: points of the unit cube, with the numbers of adjustments."""
-    n, own = len(footing.unit), len(candidate.parameters)
-    misfit = Misfit(problem, noises, problem.space.start, NUISANCES, band, (*footing.shared, *candidate.shared))
-    ranked = []
-    for combination in begin:
-        point = problem.space.start.copy()
-        if own:
-            point[n:] = combination[:own]
-        unit = np.concatenate([footing.unit, problem.space.unit(point)[n:]])
-        numbers = [(value - item.neutral) / item.scale for item, value in zip(candidate.shared, combination, strict=False)]
-        x = np.concatenate([unit, np.zeros(len(footing.shared)), numbers, footing.errors])
-        loss = float((misfit.residuals(x) ** 2).sum())
-        if np.isfinite(loss):
-            ranked.append((loss, unit, combination))
-    ranked.sort(key=lambda item: item[0])
-    return [(unit, combination) for _, unit, combination in ranked[:MOST_STARTS]]
 
 
 def judge(effects: tuple[Candidate, ...], fit: Polished, held_out: Sequence[Trial], noises: Noises) -> Fit:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from vehgen.codegen import compile_all
 from vehgen.diagnose.candidate import Candidate, pose
 from vehgen.diagnose.detection import Detection
-from vehgen.diagnose.fitting import NUISANCES, Fit, Footing, fit_candidate
+from vehgen.diagnose.fitting import NUISANCES, Fit, Footing
 from vehgen.diagnose.localisation import GLOBAL, localise, one_force, shortlist
 from vehgen.diagnose.place_test import PlaceResult
 from vehgen.diagnose.screening import screen
 from vehgen.diagnose.settling import settle
+from vehgen.diagnose.trying import Origin, fit_candidate
 from vehgen.effects import Surveyor
 from vehgen.identify.harmonic import find_line
 from vehgen.simulate import Simulator
@@ -90,8 +91,8 @@ def name(
     simulators: dict[object, Simulator] = {}
     space = footing.problem.space
     plain = np.zeros(len(detection.problem.trials) * len(NUISANCES.names))
-    # on the base alone, what the base fit absorbed of the effect misleads: begin at the file's values
-    begun = (footing.unit, footing.errors) if base.effects else (space.unit(space.start), plain)
+    fitted: Origin = footing.unit, footing.errors
+    begun = fitted if base.effects else (space.unit(space.start), plain)
     placed = begun
     if one_force(passed):
         unit, errors = base.polished.misfit.split(passed[0].x)
@@ -111,17 +112,17 @@ def name(
             tell("compile", 1, 1, f"{len(posed)} vehicles")
         for done, candidate in enumerate(candidates, start=1):
             harmonic = candidate.effect.adjusts == "harmonic"
-            unit, errors = begun if candidate.effect.attaches == "run" else placed
-            if harmonic:
-                unit, errors = footing.unit, footing.errors
+            # what the base fit absorbed of the effect may mislead: begin at the file's values, or where the place test leaves them, too
+            first = begun if candidate.effect.attaches == "run" else placed
             fit = fit_candidate(
                 candidate,
-                replace(footing, unit=np.clip(unit, 0.01, 0.99), errors=errors),
+                footing,
                 detection.held_out,
                 detection.floor.noises,
                 detection.band,
                 surveyor,
                 simulators,
+                [fitted] if harmonic or first is fitted else [first, fitted],
                 lines if harmonic else None,
             )
             if fit is not None:

@@ -27,8 +27,8 @@ FRAME_BENDING = Effect(
     "R. D. Blevins, Formulas for Natural Frequency and Mode Shape, 1979, ISBN 9780442207106",
     "body",
     (
-        EffectParameter("frequency", "Hz", "natural frequency of the free body", 3.0, 30.0, (6.0, 9.0, 14.0)),
-        EffectParameter("damping_ratio", "", "damping ratio", 0.003, 0.3, (0.03,)),
+        EffectParameter("frequency", "Hz", "natural frequency of the free body", 3.0, 30.0, (4.5, 7.0, 10.0, 15.0)),
+        EffectParameter("damping_ratio", "", "damping ratio", 0.003, 0.3, (0.06,)),
         EffectParameter("length", "m", "length over which it bends", 0.8, 2.5, (1.2,), lambda site: max(site.length, 1.0)),
     ),
     long_bodies,

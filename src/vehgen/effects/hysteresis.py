@@ -12,5 +12,6 @@ HYSTERESIS = suspension_law(
     (
         EffectParameter("force", "N", "force of the fully developed loop", 0.002, 0.4, (0.03, 0.12), lambda site: site.load),
         EffectParameter("travel", "m", "travel over which the loop develops", 0.05, 3.0, (0.3, 1.0), lambda site: site.travel),
+        EffectParameter("beta", "", "share of the loss that follows |v|", 0.3, 1.0, (0.55,)),
     ),
 )
