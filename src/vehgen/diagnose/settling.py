@@ -12,9 +12,8 @@ from vehgen.identify.misfit import Noises
 from vehgen.identify.resolution import jumps
 from vehgen.identify.trial import Trial
 
-TRIES = 6
-SHAKE = 0.02
-"""Standard deviation of the points from which is begun anew, in the unit cube."""
+SHAKES = (0.02, 0.06) * 4
+"""Standard deviations, in the unit cube, of the points about a fit from which is begun anew."""
 AS_GOOD = 0.02
 """Minima whose mean square is within this of the lowest cannot be told apart: the steps of the simulation leave about as much."""
 
@@ -26,9 +25,9 @@ def settle(fit: Fit, held_out: Sequence[Trial], noises: Noises, seed: int = 7) -
         return fit
     random = np.random.Generator(np.random.PCG64(seed))
     found = [fit.polished]
-    for _ in range(TRIES):
+    for shake in SHAKES:
         begin = x.copy()
-        begin[: misfit.n_parameters] += SHAKE * random.standard_normal(misfit.n_parameters)
+        begin[: misfit.n_parameters] += shake * random.standard_normal(misfit.n_parameters)
         begin[: misfit.n_parameters] = np.clip(begin[: misfit.n_parameters], 0.01, 0.99)
         found.append(refine(misfit.problem, fit.polished, begin, fit.free))
     best = min(found, key=lambda item: item.loss)

@@ -25,8 +25,9 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Noises = dict[str, Noise]
 """Noise by name of the trial."""
-STEP = 1e-4
-"""Step of the differences to each side, in the unit cube and in units of a nuisance's uncertainty."""
+STEP = 1e-6
+"""Step of the differences to each side, in the unit cube and in units of a nuisance's uncertainty: so short that no jump of a response
+crosses a sample."""
 
 
 @dataclass(frozen=True)
