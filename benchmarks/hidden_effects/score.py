@@ -48,16 +48,20 @@ def right_place(record: Record) -> bool:
 
 
 def covered(record: Record) -> list[bool]:
-    """Return, for parameters that both sides know, whether the interval holds the truth."""
+    """Return, for parameters that both sides know, whether the interval holds the truth.
+
+    Of a tie of one effect at several places the one at the true place counts: one sensor late is another one early.
+    """
     truth = record["truth"][0]
+    same = [effect for effect in record.get("effects", []) if effect["name"] == truth["name"]]
+    there = [effect for effect in same if effect["place"] in (truth["place"], *SAME_PLACE.get(truth["place"], ()))]
     known = {}
     for name, value in truth["values"].items():
         other, read = SAME_NUMBER.get(truth["name"], {}).get(name, (name, lambda value: value))
         known[other] = read(value)
     return [
         item["interval"][0] <= known[name] <= item["interval"][1]
-        for effect in record.get("effects", [])
-        if effect["name"] == truth["name"]
+        for effect in there or same
         for name, item in effect["parameters"].items()
         if name in known and item["interval"]
     ]
