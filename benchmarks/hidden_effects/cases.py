@@ -18,8 +18,8 @@ from benchmarks.hidden_effects.generator import (
 )
 
 DEVELOP_SEED, FIRST_SEED, SCORED_SEED = 20, 4711, 20261121
-"""A sealed set's seed is chosen before its cases are drawn, and nothing is tuned on them. The first set was scored before the second one was
-drawn; what its failures taught changed the diagnosis, so that it judges no longer."""
+"""A sealed set's seed is chosen before its cases are drawn, and nothing is tuned on them. The first set was scored before the second one
+was drawn; what its failures taught changed the diagnosis, so that it judges no longer."""
 VISIBLE = 1.5
 """A hidden effect counts as visible when it lifts chi at least this far before any refit."""
 NONSENSE = {("sedan2", "suspended_cab")}
