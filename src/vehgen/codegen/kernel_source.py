@@ -173,7 +173,7 @@ def _function(model: LinearModel, step: StepProgram, printer: Printer, state: li
 
 
 def _fold(text: str) -> str:
-    """Write `work[STATE + 96 + j]` as `work[1248 + j]`: fewer operations for the compiler's front end, which takes most of its time."""
+    """Write `work[STATE + 96 + j]` as `work[1248 + j]`, the one form of it that :func:`vehgen.codegen.straight.straight` reads."""
     starts = {name: int(value) for name, value in re.findall(r"^(PARAMETERS|CONSTANTS|STATE|KEPT|SCRATCH) = (\d+)$", text, re.M)}
     return re.sub(r"work\[([A-Z]+) \+ (\d+) \+ j\]", lambda match: f"work[{starts[match[1]] + int(match[2])} + j]", text)
 

@@ -206,35 +206,49 @@ class Case:
         return replace(ended, verdict=verdict, law=law)
 
     def _name(self, chain: list[Fit]) -> Diagnosis:
-        last = chain[-1]
-        steps = [next(item for item in self.rounds if any(own.key == fit.key for own in item.fits)) for fit in chain]
+        return self._name_one(chain[0]) if len(chain) == 1 else self._name_several(chain)
+
+    def _name_one(self, fit: Fit) -> Diagnosis:
+        step = self._round_of(fit)
+        ties = tied(step, fit)
+        effects = [self._effect(step, fit, 0, [item.last.label for item in ties])]
+        effects += [self._effect(step, item, 0, []) for item in ties[:2]]
+        reason = f"{fit.label} closes {self._share(fit)}"
+        if ties:
+            reason = f"{sentence([fit.label, *(item.label for item in ties)])} explain the runs equally well"
+        return self._named([fit], ties, effects, reason)
+
+    def _name_several(self, chain: list[Fit]) -> Diagnosis:
+        last, steps = chain[-1], [self._round_of(fit) for fit in chain]
         alternatives = [tied(step, fit) for step, fit in zip(steps, chain, strict=True)]
         effects = [
             self._effect(step, last, i, [item.last.label for item in others])
             for i, (step, others) in enumerate(zip(steps, alternatives, strict=True))
         ]
-        ties = alternatives[0] if len(chain) == 1 else [item for others in alternatives for item in others]
-        if len(chain) == 1:
-            effects += [self._effect(steps[0], item, 0, []) for item in ties[:2]]
-        names = [item.label for item in (chain[0], *ties)] if len(chain) == 1 else [last.label]
-        closed = held_out_gain(self.base, last)
-        verb = "closes" if len(chain) == 1 else "close"
-        share = f"{100 * closed:.1f} % of the excess on untouched runs" if closed is not None else "the gap on the runs for fitting"
-        reason = f"{last.label} {verb} {share}"
-        if ties and len(chain) == 1:
-            reason = f"{sentence(names)} explain the runs equally well"
-        elif ties:
+        ties = [item for others in alternatives for item in others]
+        reason = f"{last.label} close {self._share(last)}"
+        if ties:
             reason += f", and so {'does' if len(ties) == 1 else 'do'} {sentence([item.last.label for item in ties])}"
+        return self._named(chain, ties, effects, reason)
+
+    def _named(self, chain: list[Fit], ties: list[Fit], effects: list[NamedEffect], reason: str) -> Diagnosis:
         verdict = Verdict(
             "ambiguous" if ties else "named",
             reason,
             tuple(effects),
-            self._gap(last),
+            self._gap(chain[-1]),
             self._places(),
             next_experiment=self._apart(chain, ties) if ties else None,
-            notes=self._notes(last),
+            notes=self._notes(chain[-1]),
         )
         return Diagnosis(self.detection.trials, self.detection, tuple(self.rounds), tuple(chain), verdict, self.interrupted)
+
+    def _round_of(self, fit: Fit) -> Round:
+        return next(item for item in self.rounds if any(own.key == fit.key for own in item.fits))
+
+    def _share(self, fit: Fit) -> str:
+        closed = held_out_gain(self.base, fit)
+        return f"{100 * closed:.1f} % of the excess on untouched runs" if closed is not None else "the gap on the runs for fitting"
 
     def _apart(self, chain: list[Fit], ties: list[Fit]) -> str | None:
         """Return which run would tell tied models apart, by what each predicts."""

@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.further_runs import FurtherRun, free_places, list_runs
 from vehgen.diagnose.naming import Progress
-from vehgen.diagnose.proposal import Proposal, drive, listed, sensor_text
+from vehgen.diagnose.proposal import Proposal, drive, sensor_text
 from vehgen.diagnose.rivals import Rival, Separation, at_most, peak, separate
+from vehgen.diagnose.verdict import sentence
 from vehgen.identify.trial import Trial
 from vehgen.measure import MeasuredChannel
 
@@ -82,7 +83,7 @@ def propose(detection: Detection, fits: Sequence[Fit], tell: Progress | None = N
     if found is None or found.separation.distance < NOTHING:
         return _same(detection, fits, names)
     channel, times = _peak(found)
-    told = f"{drive(found.run, found.added)}: the predictions of {listed(names)} then differ by {times:.2g} times the noise at {channel}"
+    told = f"{drive(found.run, found.added)}: the predictions of {sentence(names, 'and')} then differ by {times:.2g} times the noise at {channel}"
     told += f", by {math.sqrt(found.separation.distance):.2g} standard deviations in all"
     separates = found.separation.distance >= ENOUGH
     if not separates:
@@ -198,7 +199,7 @@ def _same(detection: Detection, fits: Sequence[Fit], names: tuple[str, ...]) -> 
     axles = [name for name in axles if all(rival.trial.run.vehicle.axles[name].suspension is not None for rival in rivals)]
     trials = (*detection.problem.trials, *detection.held_out)
     runs = [run for run in list_runs((rivals[0].trial, *trials)) if _feasible(run, trials, rivals)]
-    told = f"{listed(names)} predict the same in every hump run looked at, on the bodies"
+    told = f"{sentence(names, 'and')} predict the same in every hump run looked at, on the bodies"
     if axles and runs:
         run = runs[-1]
         travels = [rival.travels(run, axles) for rival in rivals]

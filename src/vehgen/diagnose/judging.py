@@ -13,15 +13,6 @@ from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.naming import Round, own_numbers
 from vehgen.effects.places import ALL_TYRES
 
-SEEDS = 2
-"""So many effects that explain part of the gap are tried as the first of a pair."""
-PARTLY = 0.85
-"""An effect explains part of the gap when it leaves at most this share of the excess."""
-CROWD = 2
-"""A further effect with which more than this many others tie is not named."""
-FURTHER = 0.25
-"""A further effect must leave at most this share of the excess left before it."""
-
 
 def excess(mean_square: float) -> float:
     """Return how far a mean square of whitened residuals is above the noise; infinite where it is not a number."""
@@ -76,7 +67,7 @@ def adds(found: Round, fit: Fit) -> bool:
     attach to another part (a tyre, a suspension): two laws of one suspension can imitate a third. One with which more than CROWD others
     tie says nothing.
     """
-    if len(tied(found, fit)) > CROWD:
+    if len(tied(found, fit)) > limit.CROWD:
         return False
     before = (excess(found.footing.train), excess(found.footing.held_out))
     after = (excess(fit.train), excess(fit.held_out))
@@ -85,7 +76,7 @@ def adds(found: Round, fit: Fit) -> bool:
     neighbours = [item.effect.attaches for item in found.footing.effects if item.place == fit.last.place]
     if neighbours:
         return noise and fit.last.effect.attaches not in neighbours
-    return noise or all(item <= FURTHER * max(old, 1e-9) for item, old in zip(after, before, strict=True))
+    return noise or all(item <= limit.FURTHER * max(old, 1e-9) for item, old in zip(after, before, strict=True))
 
 
 def seeds(found: Round) -> list[Fit]:
@@ -93,9 +84,9 @@ def seeds(found: Round) -> list[Fit]:
     before = excess(found.footing.train)
     chosen: list[Fit] = []
     for fit in found.fits:
-        if excess(fit.train) <= PARTLY * before and all(fit.last.place != item.last.place for item in chosen):
+        if excess(fit.train) <= limit.PARTLY * before and all(fit.last.place != item.last.place for item in chosen):
             chosen.append(fit)
-        if len(chosen) == SEEDS:
+        if len(chosen) == limit.SEEDS:
             break
     return chosen
 

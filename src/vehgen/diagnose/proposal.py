@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -59,8 +58,3 @@ def sensor_text(output: PointOutput) -> str:
     """Return a sensor to add, in words."""
     quantity = "an accelerometer" if output.quantity == "acceleration" else "a pitch-rate sensor"
     return f"{quantity} on {output.place.body} at {output.place.behind}"
-
-
-def listed(names: Sequence[str]) -> str:
-    """Return names joined by commas and `and`."""
-    return f"{', '.join(names[:-1])} and {names[-1]}"

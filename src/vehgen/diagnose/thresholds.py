@@ -29,3 +29,11 @@ FORM = 0.005
 """A law may differ from the truth in form by this share of the gap's excess without a further effect being looked for."""
 DECOY = 0.02
 """An effect must close this much more of the excess than the best of many random laws at its place."""
+SEEDS = 2
+"""So many effects that explain part of the gap are tried as the first of a pair."""
+PARTLY = 0.85
+"""An effect explains part of the gap when it leaves at most this share of the excess."""
+CROWD = 2
+"""A further effect with which more than this many others tie is not named."""
+FURTHER = 0.25
+"""A further effect must leave at most this share of the excess left before it."""

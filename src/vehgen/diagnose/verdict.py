@@ -97,7 +97,7 @@ class Verdict:
         }
 
 
-def sentence(items: Sequence[str]) -> str:
-    """Return names joined as in a sentence."""
+def sentence(items: Sequence[str], word: str = "or") -> str:
+    """Return names joined as in a sentence, the last by a word."""
     listed = list(items)
-    return listed[0] if len(listed) == 1 else ", ".join(listed[:-1]) + " or " + listed[-1] if listed else "nothing"
+    return listed[0] if len(listed) == 1 else f"{', '.join(listed[:-1])} {word} {listed[-1]}" if listed else "nothing"
