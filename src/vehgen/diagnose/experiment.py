@@ -83,7 +83,8 @@ def propose(detection: Detection, fits: Sequence[Fit], tell: Progress | None = N
     if found is None or found.separation.distance < NOTHING:
         return _same(detection, fits, names)
     channel, times = _peak(found)
-    told = f"{drive(found.run, found.added)}: the predictions of {sentence(names, 'and')} then differ by {times:.2g} times the noise at {channel}"
+    told = f"{drive(found.run, found.added)}: the predictions of {sentence(names, 'and')} "
+    told += f"then differ by {times:.2g} times the noise at {channel}"
     told += f", by {math.sqrt(found.separation.distance):.2g} standard deviations in all"
     separates = found.separation.distance >= ENOUGH
     if not separates:
