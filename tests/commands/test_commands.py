@@ -1,77 +1,19 @@
-"""The commands: numbers against references typed here, the shape of their JSON, faults, help, and what they import."""
+"""The commands: numbers against references typed here, the shape of their JSON and tables."""
 
 from __future__ import annotations
 
 import json
-import os
 import re
-import shlex
-import subprocess
-import sys
-import warnings
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import jsonschema
 import pytest
 
-import vehgen
-from vehgen.commands import COMMANDS, main, make_parser
-from vehgen.errors import ModelWarning
+from tests.commands.calls import python, run_json
+from vehgen.commands import main
 from vehgen.simulate.runfile import RunFile
 from vehgen.vehicle import bundled_models
 from vehgen.vehicle.schema import vehicle_schema
-
-NAMES = [getattr(command, "NAME", command.__name__.rpartition(".")[2]) for command in COMMANDS]
-HEAVY = {"sympy", "numba", "numpy", "scipy", "matplotlib", "rich", "pydantic", "ruamel"}
-
-BAD_VEHICLES = {
-    "unknown key": ("bodies:\n  body: {mas: 1 kg}\n", "2:10: unknown key 'mas'; did you mean 'mass'?"),
-    "missing unit": ("bodies:\n  body: {mass: 1000, motions: [heave]}\n", "2:16: missing unit: bodies.body.mass must be in kg"),
-    "call": ("bodies:\n  body: {mass: 'open(1) * 1 kg', motions: [heave]}\n", "2:17: only sqrt, abs, sign, min, max may be called"),
-    "YAML": ("bodies: {a: [}\n", "1:14: not valid YAML"),
-    "tag": (
-        "bodies: !!python/object/apply:os.mkdir [hacked]\n",
-        "1:9: the tag tag:yaml.org,2002:python/object/apply:os.mkdir is not allowed",
-    ),
-    "empty": ("", "1:1: the file is empty"),
-    "circle": ("name: a\nextends: bad.yaml\n", "2:10: circular `extends`: bad.yaml -> bad.yaml"),
-    "folder": ("name: ../../up\nextends: quarter_car\n", "1:7: '../../up' cannot name a vehicle"),
-}
-
-
-def run_json(capsys: pytest.CaptureFixture[str], *arguments: str) -> Any:
-    """Run a command with --json in this process; return what it printed."""
-    assert main([*arguments, "--json"]) == 0
-    captured = capsys.readouterr()
-    assert captured.err == ""
-    return json.loads(captured.out)
-
-
-def python(*arguments: str, folder: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
-    """Run `python ...` in a new process."""
-    source = str(Path(vehgen.__file__).parents[1])
-    path = os.pathsep.join([source, os.environ.get("PYTHONPATH", "")])
-    return subprocess.run(
-        [sys.executable, *arguments],
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": path, **environment},
-        check=False,
-    )
-
-
-@pytest.fixture
-def work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty working folder."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-# --- numbers
 
 
 @pytest.mark.parametrize(
@@ -203,9 +145,6 @@ def test_a_set_changes_the_numbers(capsys: pytest.CaptureFixture[str]):
     assert run_json(capsys, "modes", "sedan2", "--set", "DHCM-F&R") == plain
 
 
-# --- lists and schemas
-
-
 def test_models(capsys: pytest.CaptureFixture[str]):
     found = run_json(capsys, "models")
     assert set(found) == {"models"}
@@ -224,9 +163,6 @@ def test_schema(capsys: pytest.CaptureFixture[str]):
     assert run == {"$schema": "https://json-schema.org/draft/2020-12/schema", **RunFile.model_json_schema()}
     assert main(["schema"]) == 0
     assert json.loads(capsys.readouterr().out) == found
-
-
-# --- tables
 
 
 def test_tables_show_the_numbers(capsys: pytest.CaptureFixture[str]):
@@ -257,211 +193,3 @@ def test_a_title_in_another_script_prints_on_a_plain_terminal(work: Path):
     found = python("-m", "vehgen", "modes", "a.yaml", folder=work, PYTHONIOENCODING="ascii")
     assert (found.returncode, found.stderr) == (0, "")
     assert "??? : natural modes".replace(" ", "", 1) in found.stdout
-
-
-# --- faults
-
-
-@pytest.mark.parametrize("command", ["modes", "static", "build"])
-@pytest.mark.parametrize("fault", sorted(BAD_VEHICLES))
-def test_a_bad_vehicle_is_one_line_on_stderr(command: str, fault: str, work: Path, capsys: pytest.CaptureFixture[str]):
-    text, message = BAD_VEHICLES[fault]
-    (work / "bad.yaml").write_text(text)
-    for extra in ([], ["--json"]):
-        assert main([command, "bad.yaml", *extra]) == 2
-        captured = capsys.readouterr()
-        assert captured.out == ""
-        assert captured.err.startswith(f"error: bad.yaml:{message}")
-        assert captured.err.count("\n") == 1
-    assert [path.name for path in work.iterdir()] == ["bad.yaml"]
-
-
-@pytest.mark.parametrize("fault", sorted(BAD_VEHICLES))
-def test_a_bad_vehicle_of_a_run_is_one_line_on_stderr(fault: str, work: Path, capsys: pytest.CaptureFixture[str]):
-    text, message = BAD_VEHICLES[fault]
-    (work / "bad.yaml").write_text(text)
-    (work / "run.yaml").write_text("vehicle: bad.yaml\nspeed: 1 m/s\nduration: 1 s\n")
-    assert main(["simulate", "run.yaml"]) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    assert captured.err.startswith(f"error: bad.yaml:{message}")
-    assert captured.err.count("\n") == 1
-    assert sorted(path.name for path in work.iterdir()) == ["bad.yaml", "run.yaml"]
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("vehicle: quarter_car\nsped: 1 m/s\n", "run.yaml:2:1: unknown key 'sped'; did you mean 'speed' or 'sample'?"),
-        ("vehicle: quarter_car\nspeed: 1 kg\nduration: 1 s\n", "run.yaml:2:8: expected m/s, found kg in '1 kg'"),
-        ("vehicle: quarter_car\nspeed: 1 m/s\n", "run.yaml:1:1: a run without a hump needs `duration`, e.g. 10 s"),
-        (
-            "vehicle: quarter_car\nspeed: 1 m/s\nset: a\nduration: 1 s\n",
-            "run.yaml:3:6: quarter_car has no parameter set 'a'; none is declared",
-        ),
-        (
-            "vehicle: quarter_car\nspeed: 1 m/s\nduration: 1 s\nroad:\n  - profile: {file: absent.csv}\n",
-            "run.yaml:5:3: no file absent.csv",
-        ),
-        ("vehicle: quarter_car\nspeed: {file: absent.csv}\nduration: 1 s\n", "run.yaml:2:15: no file absent.csv"),
-    ],
-)
-def test_a_bad_run_is_one_line_on_stderr(text: str, message: str, work: Path, capsys: pytest.CaptureFixture[str]):
-    (work / "run.yaml").write_text(text)
-    assert main(["simulate", "run.yaml", "--json"]) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    assert captured.err == f"error: {message}\n"
-    assert [path.name for path in work.iterdir()] == ["run.yaml"]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["modes", "tractr5"], "error: no file tractr5, and no bundled model 'tractr5'; did you mean 'tractor5' or 'tractor5_cab' or"),
-        (["modes", "."], "error: . is a folder; a YAML file was expected"),
-        (["modes", "tractor5", "--set", "SHCM1"], "error: tractor5 has no parameter set 'SHCM1'; did you mean 'SHCM-1'"),
-        (["simulate", "absent.yaml"], "error: no file absent.yaml"),
-        (["static", "floating.yaml"], "error: singular stiffness: nothing holds heave.body against gravity"),
-    ],
-)
-def test_other_faults(arguments: list[str], message: str, work: Path, capsys: pytest.CaptureFixture[str]):
-    (work / "floating.yaml").write_text("bodies:\n  body: {mass: 1 kg, motions: [heave]}\n")
-    assert main(arguments) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    assert captured.err.startswith(message)
-    assert captured.err.count("\n") == 1
-
-
-@pytest.mark.parametrize("command", ["modes", "build"])
-def test_a_fault_in_a_process_of_its_own(command: str, work: Path):
-    (work / "bad.yaml").write_text(BAD_VEHICLES["tag"][0])
-    found = python("-m", "vehgen", command, "bad.yaml", folder=work)
-    assert found.returncode == 2
-    assert found.stdout == ""
-    assert found.stderr == f"error: bad.yaml:{BAD_VEHICLES['tag'][1]}\n"
-    assert [path.name for path in work.iterdir()] == ["bad.yaml"]
-
-
-@pytest.mark.parametrize("arguments", [["modes"], ["mods", "tractor5"], ["modes", "tractor5", "--sett", "a"], ["models", "tractor5"]])
-def test_wrong_arguments(arguments: list[str], capsys: pytest.CaptureFixture[str]):
-    with pytest.raises(SystemExit) as left:
-        main(arguments)
-    assert left.value.code == 2
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    assert captured.err.startswith("usage: python -m vehgen")
-
-
-def raising(error: BaseException) -> Callable[..., None]:
-    def run(options: object) -> None:
-        raise error
-
-    return run
-
-
-def test_stopping_and_a_closed_pipe(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
-    monkeypatch.setattr("vehgen.commands.models.run", raising(KeyboardInterrupt()))
-    assert main(["models"]) == 130
-    assert capsys.readouterr().err == "stopped\n"
-    found = subprocess.run(
-        f"{shlex.quote(sys.executable)} -m vehgen schema | head -1", shell=True, capture_output=True, text=True, check=True
-    )
-    assert (found.stdout, found.stderr) == ("{\n", "")
-
-
-def test_doubts_are_warnings_on_stderr(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
-    def run(options: object) -> None:
-        warnings.warn(ModelWarning("the step is coarse"), stacklevel=2)
-        warnings.warn(ModelWarning("the step is coarse"), stacklevel=2)
-
-    monkeypatch.setattr("vehgen.commands.models.run", run)
-    assert main(["models"]) == 0
-    captured = capsys.readouterr()
-    assert captured.err == "warning: the step is coarse\n" * 2
-    assert captured.out == ""
-
-
-def test_a_defect_is_not_hidden(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("vehgen.commands.models.run", raising(RuntimeError("a defect")))
-    with pytest.raises(RuntimeError, match="a defect"):
-        main(["models"])
-
-
-# --- help and imports
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_every_command_has_help_with_an_example_that_can_be_typed(name: str, capsys: pytest.CaptureFixture[str]):
-    with pytest.raises(SystemExit) as left:
-        main([name, "--help"])
-    assert left.value.code == 0
-    text = capsys.readouterr().out
-    example = re.search(r"^example: (python -m vehgen .*)$", text, re.MULTILINE)
-    assert example is not None
-    words = shlex.split(example.group(1).partition(">")[0])[3:]
-    assert words[0] == name
-    assert make_parser().parse_args(words).command == name
-
-
-def test_examples_on_bundled_models_work(capsys: pytest.CaptureFixture[str]):
-    for command in COMMANDS:
-        words = shlex.split(command.EXAMPLE.partition(">")[0])[3:]
-        if words[0] in ("modes", "static", "effects", "models", "schema", "bench"):  # the others write files or read recordings
-            assert main(words) == 0
-            assert capsys.readouterr().out
-
-
-def test_help_lists_every_command_and_no_command_prints_it(capsys: pytest.CaptureFixture[str]):
-    with pytest.raises(SystemExit):
-        main(["--help"])
-    text = capsys.readouterr().out
-    for command, name in zip(COMMANDS, NAMES, strict=True):
-        assert re.search(rf"^ +{name}\s+{re.escape((command.__doc__ or '').split()[0])} ", text, re.MULTILINE)
-    assert main([]) == 0
-    assert capsys.readouterr().out == text
-    assert main(["--version"]) == 0
-    assert capsys.readouterr().out == f"{vehgen.__version__}\n"
-
-
-@pytest.mark.parametrize(
-    "code",
-    [
-        "import vehgen; dir(vehgen)",
-        "import vehgen.commands",
-        "import runpy, sys; sys.argv = ['vehgen', '--help']; runpy.run_module('vehgen', run_name='__main__')",
-        "import runpy, sys; sys.argv = ['vehgen', '--version']; runpy.run_module('vehgen', run_name='__main__')",
-        *(
-            f"import runpy, sys; sys.argv = ['vehgen', '{name}', '--help']; runpy.run_module('vehgen', run_name='__main__')"
-            for name in NAMES
-        ),
-    ],
-)
-def test_help_and_import_stay_light(code: str):
-    watch = f"import atexit, sys\natexit.register(lambda: print('loaded', sorted({HEAVY!r} & set(sys.modules)), file=sys.stderr))\n"
-    found = python("-c", watch + code)
-    assert found.stderr == "loaded []\n"
-
-
-def test_reading_a_bad_file_needs_no_heavy_package(work: Path):
-    """A fault is found before sympy, numba or matplotlib are loaded."""
-    (work / "bad.yaml").write_text("bodies:\n  body: {mas: 1 kg}\n")
-    code = "import sys; from vehgen.commands import main; main(['build', 'bad.yaml'])\n"
-    found = python("-c", code + f"print(sorted({HEAVY - {'pydantic', 'ruamel'}!r} & set(sys.modules)))", folder=work)
-    assert found.stdout == "[]\n"
-
-
-def test_the_packages_names_are_found_when_asked_for():
-    code = "import vehgen; print([name for name in vehgen.__all__ if name != 'simulate' and not callable(getattr(vehgen, name))])"
-    assert python("-c", code).stdout == "[]\n"
-    assert set(vehgen.__all__) < set(dir(vehgen))
-    with pytest.raises(AttributeError, match="module 'vehgen' has no attribute 'Vehicl'"):
-        _ = vehgen.Vehicl
-
-
-def test_no_name_of_the_package_hides_a_room():
-    code = (
-        "import vehgen; print(sorted(set(vehgen.__all__) & {'vehicle', 'mechanics', 'codegen', 'road', 'simulate', 'report', 'commands'}))"
-    )
-    assert python("-c", code).stdout == "[]\n"

@@ -1,0 +1,157 @@
+"""What commands say of faults: one line, exit code 2, no traceback; and of Ctrl-C and closed pipes."""
+
+from __future__ import annotations
+
+import shlex
+import subprocess
+import sys
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.commands.calls import python
+from vehgen.commands import main
+from vehgen.errors import ModelWarning
+
+BAD_VEHICLES = {
+    "unknown key": ("bodies:\n  body: {mas: 1 kg}\n", "2:10: unknown key 'mas'; did you mean 'mass'?"),
+    "missing unit": ("bodies:\n  body: {mass: 1000, motions: [heave]}\n", "2:16: missing unit: bodies.body.mass must be in kg"),
+    "call": ("bodies:\n  body: {mass: 'open(1) * 1 kg', motions: [heave]}\n", "2:17: only sqrt, abs, sign, min, max may be called"),
+    "YAML": ("bodies: {a: [}\n", "1:14: not valid YAML"),
+    "tag": (
+        "bodies: !!python/object/apply:os.mkdir [hacked]\n",
+        "1:9: the tag tag:yaml.org,2002:python/object/apply:os.mkdir is not allowed",
+    ),
+    "empty": ("", "1:1: the file is empty"),
+    "circle": ("name: a\nextends: bad.yaml\n", "2:10: circular `extends`: bad.yaml -> bad.yaml"),
+    "folder": ("name: ../../up\nextends: quarter_car\n", "1:7: '../../up' cannot name a vehicle"),
+}
+
+
+@pytest.mark.parametrize("command", ["modes", "static", "build"])
+@pytest.mark.parametrize("fault", sorted(BAD_VEHICLES))
+def test_a_bad_vehicle_is_one_line_on_stderr(command: str, fault: str, work: Path, capsys: pytest.CaptureFixture[str]):
+    text, message = BAD_VEHICLES[fault]
+    (work / "bad.yaml").write_text(text)
+    for extra in ([], ["--json"]):
+        assert main([command, "bad.yaml", *extra]) == 2
+        captured = capsys.readouterr()
+        assert captured.out == ""
+        assert captured.err.startswith(f"error: bad.yaml:{message}")
+        assert captured.err.count("\n") == 1
+    assert [path.name for path in work.iterdir()] == ["bad.yaml"]
+
+
+@pytest.mark.parametrize("fault", sorted(BAD_VEHICLES))
+def test_a_bad_vehicle_of_a_run_is_one_line_on_stderr(fault: str, work: Path, capsys: pytest.CaptureFixture[str]):
+    text, message = BAD_VEHICLES[fault]
+    (work / "bad.yaml").write_text(text)
+    (work / "run.yaml").write_text("vehicle: bad.yaml\nspeed: 1 m/s\nduration: 1 s\n")
+    assert main(["simulate", "run.yaml"]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith(f"error: bad.yaml:{message}")
+    assert captured.err.count("\n") == 1
+    assert sorted(path.name for path in work.iterdir()) == ["bad.yaml", "run.yaml"]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("vehicle: quarter_car\nsped: 1 m/s\n", "run.yaml:2:1: unknown key 'sped'; did you mean 'speed' or 'sample'?"),
+        ("vehicle: quarter_car\nspeed: 1 kg\nduration: 1 s\n", "run.yaml:2:8: expected m/s, found kg in '1 kg'"),
+        ("vehicle: quarter_car\nspeed: 1 m/s\n", "run.yaml:1:1: a run without a hump needs `duration`, e.g. 10 s"),
+        (
+            "vehicle: quarter_car\nspeed: 1 m/s\nset: a\nduration: 1 s\n",
+            "run.yaml:3:6: quarter_car has no parameter set 'a'; none is declared",
+        ),
+        (
+            "vehicle: quarter_car\nspeed: 1 m/s\nduration: 1 s\nroad:\n  - profile: {file: absent.csv}\n",
+            "run.yaml:5:3: no file absent.csv",
+        ),
+        ("vehicle: quarter_car\nspeed: {file: absent.csv}\nduration: 1 s\n", "run.yaml:2:15: no file absent.csv"),
+    ],
+)
+def test_a_bad_run_is_one_line_on_stderr(text: str, message: str, work: Path, capsys: pytest.CaptureFixture[str]):
+    (work / "run.yaml").write_text(text)
+    assert main(["simulate", "run.yaml", "--json"]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err == f"error: {message}\n"
+    assert [path.name for path in work.iterdir()] == ["run.yaml"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["modes", "tractr5"], "error: no file tractr5, and no bundled model 'tractr5'; did you mean 'tractor5' or 'tractor5_cab' or"),
+        (["modes", "."], "error: . is a folder; a YAML file was expected"),
+        (["modes", "tractor5", "--set", "SHCM1"], "error: tractor5 has no parameter set 'SHCM1'; did you mean 'SHCM-1'"),
+        (["simulate", "absent.yaml"], "error: no file absent.yaml"),
+        (["static", "floating.yaml"], "error: singular stiffness: nothing holds heave.body against gravity"),
+    ],
+)
+def test_other_faults(arguments: list[str], message: str, work: Path, capsys: pytest.CaptureFixture[str]):
+    (work / "floating.yaml").write_text("bodies:\n  body: {mass: 1 kg, motions: [heave]}\n")
+    assert main(arguments) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith(message)
+    assert captured.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("command", ["modes", "build"])
+def test_a_fault_in_a_process_of_its_own(command: str, work: Path):
+    (work / "bad.yaml").write_text(BAD_VEHICLES["tag"][0])
+    found = python("-m", "vehgen", command, "bad.yaml", folder=work)
+    assert found.returncode == 2
+    assert found.stdout == ""
+    assert found.stderr == f"error: bad.yaml:{BAD_VEHICLES['tag'][1]}\n"
+    assert [path.name for path in work.iterdir()] == ["bad.yaml"]
+
+
+@pytest.mark.parametrize("arguments", [["modes"], ["mods", "tractor5"], ["modes", "tractor5", "--sett", "a"], ["models", "tractor5"]])
+def test_wrong_arguments(arguments: list[str], capsys: pytest.CaptureFixture[str]):
+    with pytest.raises(SystemExit) as left:
+        main(arguments)
+    assert left.value.code == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith("usage: python -m vehgen")
+
+
+def raising(error: BaseException) -> Callable[..., None]:
+    def run(options: object) -> None:
+        raise error
+
+    return run
+
+
+def test_stopping_and_a_closed_pipe(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
+    monkeypatch.setattr("vehgen.commands.models.run", raising(KeyboardInterrupt()))
+    assert main(["models"]) == 130
+    assert capsys.readouterr().err == "stopped\n"
+    found = subprocess.run(
+        f"{shlex.quote(sys.executable)} -m vehgen schema | head -1", shell=True, capture_output=True, text=True, check=True
+    )
+    assert (found.stdout, found.stderr) == ("{\n", "")
+
+
+def test_doubts_are_warnings_on_stderr(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
+    def run(options: object) -> None:
+        warnings.warn(ModelWarning("the step is coarse"), stacklevel=2)
+        warnings.warn(ModelWarning("the step is coarse"), stacklevel=2)
+
+    monkeypatch.setattr("vehgen.commands.models.run", run)
+    assert main(["models"]) == 0
+    captured = capsys.readouterr()
+    assert captured.err == "warning: the step is coarse\n" * 2
+    assert captured.out == ""
+
+
+def test_a_defect_is_not_hidden(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("vehgen.commands.models.run", raising(RuntimeError("a defect")))
+    with pytest.raises(RuntimeError, match="a defect"):
+        main(["models"])
