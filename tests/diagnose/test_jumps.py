@@ -15,7 +15,7 @@ from vehgen.diagnose.place_test import list_places
 from vehgen.diagnose.place_test import test_places as place_test
 from vehgen.effects import EFFECTS
 from vehgen.identify.misfit import Misfit
-from vehgen.identify.resolution import jumps, resolve
+from vehgen.identify.resolution import resolve
 from vehgen.identify.trial import load_trials
 
 FRICTION = Effect("dry_friction", "front", {"force": 600.0})
@@ -33,8 +33,8 @@ def found(runs):
 
 def test_friction_gets_shorter_steps_where_it_jumps_and_smooth_models_none(found):
     base, friction = found.detection.base, found.chosen[-1]
-    assert not any(jumps(trial) for trial in base.polished.misfit.problem.trials)
-    assert any(jumps(trial) for trial in friction.polished.misfit.problem.trials)
+    assert not any(trial.jumps for trial in base.polished.misfit.problem.trials)
+    assert any(trial.jumps for trial in friction.polished.misfit.problem.trials)
     steps = {trial.name: trial.scenario.dt for trial in friction.polished.misfit.problem.trials}
     assert steps["rough"] < 1e-3 == pytest.approx(steps["fast"])
 

@@ -32,9 +32,13 @@ def cache_folder() -> Path:
     return base / "vehgen"
 
 
+_WRITER = (Path(__file__).parent / "straight.py").read_text(encoding="utf-8")
+"""What turns a kernel's text into instructions: numba does not see when it changes."""
+
+
 def kernel_name(text: str) -> str:
-    """Return the module name of a kernel: the hash of its source and of numba's version."""
-    digest = hashlib.sha256(f"{numba.__version__}\n{text}".encode()).hexdigest()
+    """Return the module name of a kernel: the hash of its source, of numba's version and of what writes its instructions."""
+    digest = hashlib.sha256(f"{numba.__version__}\n{_WRITER}\n{text}".encode()).hexdigest()
     return f"kernel_{digest[:20]}"
 
 

@@ -21,7 +21,6 @@ from typing import Any
 
 from llvmlite import ir
 from numba.core import types
-from numba.cpython.mathimpl import negate_real
 from numba.extending import intrinsic
 from numba.np.arrayobj import make_array
 
@@ -81,7 +80,8 @@ class _Writer:
         if isinstance(item, ast.Subscript):
             return self.builder.load(self._place(item))
         if isinstance(item, ast.UnaryOp):
-            return negate_real(self.builder, self.value(item.operand))  # type: ignore[no-untyped-call]
+            assert isinstance(item.op, ast.USub), ast.dump(item)
+            return self.builder.fneg(self.value(item.operand))
         if isinstance(item, ast.BinOp):
             return self._binary(item)
         assert isinstance(item, ast.Call), ast.dump(item)

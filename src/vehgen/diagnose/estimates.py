@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +17,6 @@ from vehgen.effects import EffectParameter
 from vehgen.identify.harmonic import Harmonic
 from vehgen.identify.misfit import Misfit, flatten
 from vehgen.identify.noise import taper
-from vehgen.identify.resolution import jumps
 
 Array = NDArray[np.float64]
 NINETY = 1.645
@@ -29,6 +28,8 @@ Accelerations tell masses, stiffnesses and forces in proportion only; how large 
 """
 WEAK_PRIOR = 6.0
 """Standard deviation of the prior of an effect's parameter in the unit cube."""
+TOLD = 0.05
+"""Runs tell of a parameter that moves them by more than this share of what it moves all runs."""
 SAME_WITHIN = 0.3
 """Runs that differ by less than this share of the value ask for the same number, however sure each is."""
 BLOCK = 10
@@ -75,8 +76,8 @@ def disagreement(alone: Sequence[RunEstimate]) -> float:
 
     Where the library's law has not quite the form of the real one, runs ask for different numbers, each of them sure. Their variance
     beyond their own errors is that of DerSimonian and Laird (1986, doi:10.1016/0197-2456(86)90046-2), the interval the prediction interval
-    of Higgins, Thompson and Spiegelhalter (2009, doi:10.1111/j.1467-985X.2008.00552.x), with Student's t of one degree of freedom less than
-    runs.
+    of Higgins, Thompson and Spiegelhalter (2009, doi:10.1111/j.1467-985X.2008.00552.x), here with Student's t of one degree of freedom less
+    than runs (there of two).
     """
     sure = [item for item in alone if item.half_width > 0]
     if len(sure) < 2:
@@ -84,25 +85,34 @@ def disagreement(alone: Sequence[RunEstimate]) -> float:
     values = np.array([item.value for item in sure])
     weights = (NINETY / np.array([item.half_width for item in sure])) ** 2
     excess = float(weights @ (values - weights @ values / weights.sum()) ** 2) - (len(sure) - 1)
-    variance = excess / float(weights.sum() - (weights**2).sum() / weights.sum())
+    share = float(weights.sum() - (weights**2).sum() / weights.sum())
+    variance = excess / share if share > 0 else 0.0
     return float(scipy.stats.t.ppf(0.95, len(sure) - 1) * np.sqrt(max(variance, 0.0) * (1 + 1 / len(sure))))
 
 
 def _normal(misfit: Misfit, x: Array, free: int) -> tuple[dict[int, Array], Array]:
     """Return the Jacobians of trials `shape (n_residuals, n_unknowns)` by number, and the information they and the priors add up to.
 
-    The last `free` parameters are the effects'. Trials whose response jumps are left out where others do not: what jumps across a
-    difference quotient is no derivative.
+    The last `free` parameters are the effects'. Trials whose response jumps are left out where the others tell of all effects: what
+    jumps across a difference quotient is no derivative.
     """
     trials = misfit.problem.trials
-    told = [i for i, trial in enumerate(trials) if not jumps(trial)] or list(range(len(trials)))
-    slopes = misfit.white_derivatives(x)
-    jacobians = {i: flatten(slopes[i], first=1).T for i in told}
     n, known = misfit.n_parameters, misfit.n_parameters + len(misfit.shared)
+    jacobians = {i: flatten(slopes, first=1).T for i, slopes in enumerate(misfit.white_derivatives(x))}
+    smooth = {i: jacobian for i, jacobian in jacobians.items() if not trials[i].jumps}
+    asked = slice(n - free, known)
+    whole, part = (_moved(items.values(), misfit.n_unknowns)[asked] for items in (jacobians, smooth))
+    if smooth and np.all(part > TOLD * whole):
+        jacobians = smooth
     prior = np.concatenate(
         [np.full(n - free, BASE_PRIOR**-2), np.full(free, WEAK_PRIOR**-2), np.zeros(known - n), np.ones(misfit.n_unknowns - known)]
     )
     return jacobians, np.diag(prior) + sum(item.T @ item for item in jacobians.values())
+
+
+def _moved(jacobians: Iterable[Array], n_unknowns: int) -> Array:
+    """Return by how much each unknown moves the residuals of some trials, `shape (n_unknowns,)`."""
+    return np.sqrt(sum(((item**2).sum(axis=0) for item in jacobians), np.zeros(n_unknowns)))
 
 
 def _seen(misfit: Misfit) -> float:

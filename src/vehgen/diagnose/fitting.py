@@ -1,4 +1,4 @@
-"""Fits with equal effort: the base and every candidate, on the training runs, judged on untouched ones."""
+"""Fits of the base and of what is added to it, on the training runs, judged on untouched ones."""
 
 from __future__ import annotations
 

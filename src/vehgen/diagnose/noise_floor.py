@@ -34,6 +34,8 @@ SLOPES = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5)
 """Slopes of coloured noise that are tried."""
 COLOURED = 12.0
 """Gain in -2 ln of the likelihood of the lead-ins beyond which noise counts as coloured."""
+LEAST = 0.5
+"""A lead-in that tells of less than this share of what its own top of the band shows has let the road's roughness take the noise."""
 LARGEST = 4.0
 """The top of the band of a loud run may hold its motion too: it counts at most this much more than the lead-in's variance."""
 
@@ -68,7 +70,11 @@ def find_noise_floor(trials: Sequence[Trial], band: tuple[float, float] = BAND) 
         for i, trial in enumerate(group):
             high = colour * top_of_band(trial, band)
             part = lead_in(trial)
-            low = None if part is None else _from_lead_in([part], high, band, shared.slope, shared.levels)[0].sigma
+            low = None
+            if part is not None:
+                found = _from_lead_in([part], high, band, shared.slope, shared.levels)[0].sigma
+                own = colour * top_of_band(part, band)
+                low = np.where(found < LEAST * own, own, found)
             for j, channel in enumerate(channels):
                 name = f"{trial.name}: {channel}"
                 top[name] = float(high[j])

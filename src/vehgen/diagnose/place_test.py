@@ -149,12 +149,11 @@ def posterior(misfit: Misfit, result: PlaceResult) -> Array:
 
     What the hypothesis cannot see, as an element's own stiffness, is known no better than by the prior.
     """
-    slopes = [
-        flatten(_project(derivatives, _basis(misfit, result.x, result.place, t)), first=1).T
-        for t, derivatives in enumerate(misfit.white_derivatives(result.x))
-    ]
+    derivatives = misfit.white_derivatives(result.x)
+    slopes = [flatten(_project(item, _basis(misfit, result.x, result.place, t)), first=1).T for t, item in enumerate(derivatives)]
     rows, _ = _prior(misfit, result.x)
-    stacked = np.vstack([np.vstack(slopes) / max(result.chi, 1.0), rows])
+    shown = _shown(np.vstack(slopes), np.vstack([flatten(item, first=1).T for item in derivatives]), rows)
+    stacked = np.vstack([shown / max(result.chi, 1.0), rows])
     return np.asarray(np.linalg.inv(stacked.T @ stacked))
 
 

@@ -9,7 +9,6 @@ import numpy as np
 
 from vehgen.diagnose.fitting import Fit, judge, refine
 from vehgen.identify.misfit import Noises
-from vehgen.identify.resolution import jumps
 from vehgen.identify.trial import Trial
 
 SHAKES = (0.02, 0.06) * 4
@@ -21,7 +20,7 @@ AS_GOOD = 0.02
 def settle(fit: Fit, held_out: Sequence[Trial], noises: Noises, seed: int = 7) -> Fit:
     """Return the lowest of several minima about a fit, with those that do as well; a fit without jumps as it is."""
     misfit, x = fit.polished.misfit, fit.polished.x
-    if not any(jumps(trial) for trial in misfit.problem.trials):
+    if not any(trial.jumps for trial in misfit.problem.trials):
         return fit
     random = np.random.Generator(np.random.PCG64(seed))
     found = [fit.polished]

@@ -26,8 +26,8 @@ Complex = NDArray[np.complex128]
 Noises = dict[str, Noise]
 """Noise by name of the trial."""
 STEP = 1e-6
-"""Step of the differences to each side, in the unit cube and in units of a nuisance's uncertainty: so short that no jump of a response
-crosses a sample."""
+"""Step of the differences to each side, in the unit cube and in units of a nuisance's uncertainty: so short that jumps of a response
+seldom cross a sample."""
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,8 @@ class Trial:
     """One run with its measurement, ready to be simulated.
 
     `values` are the vehicle's free parameters in this run before anything is searched [SI]; `fixed` names those that the run file sets
-    itself, which no search changes.
+    itself, which no search changes. `jumps` tells of a response that jumps, as one with dry friction does: shorter steps help it but
+    slowly (see :mod:`vehgen.identify.resolution`).
     """
 
     name: str
@@ -34,6 +35,7 @@ class Trial:
     scenario: Scenario
     values: dict[str, float]
     fixed: tuple[str, ...]
+    jumps: bool = False
 
     @property
     def channels(self) -> tuple[str, ...]:

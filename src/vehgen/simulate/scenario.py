@@ -90,9 +90,13 @@ class Scenario:
     def drive(self, offsets: Array) -> Drive:
         """Return the inputs of a vehicle whose axles run `offsets shape (n_axles,)` [m] behind the first to arrive.
 
-        Not to be written to: the last drives are remembered.
+        Neither they nor the arrays of the scenario are to be written to: the last drives are remembered.
         """
-        law, errors = (self.speed.law, (self.speed.delay, self.speed.scale)) if isinstance(self.speed, AdjustedSpeed) else (self.speed, ())
+        law: SpeedLaw = self.speed
+        errors: tuple[float, ...] = ()
+        while isinstance(law, AdjustedSpeed):
+            errors = (*errors, law.delay, law.scale)
+            law = law.law
         road = (id(self.track.parts), self.track.footprint, self.track.scale, id(law), errors, np.asarray(offsets, dtype=float).tobytes())
         key = (*road, self.start, self.dt, len(self.time), id(self.ground), id(self.forces))
         return _DRIVES.find(key, (self.track, self.speed, self.ground, self.forces), lambda: self._drive(offsets))

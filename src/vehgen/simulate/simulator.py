@@ -91,7 +91,7 @@ class Simulator:
         -------
         Responses and failures; a failed individual raises a ModelWarning and leaves the others unharmed.
         """
-        offsets = np.round(self.wheel_offsets(parameters), 9)
+        offsets = np.round(self.wheel_offsets(parameters), 12)
         distinct, group = np.unique(offsets, axis=0, return_inverse=True)
         group = group.ravel()
         responses: Array | None = None
