@@ -44,6 +44,10 @@ class ModelWarning(UserWarning):
     """The input can be used, but its answer deserves doubt."""
 
 
+class CacheWarning(UserWarning):
+    """The answer stands, but it takes longer than it need: compiled code cannot be kept or used."""
+
+
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Say which known names are nearest to `word`, or list what is allowed."""
     known = list(known)

@@ -1,7 +1,7 @@
-"""Kernel files: named by the hash of their source, written whole or not at all, compiled code kept beside them.
+"""Generated kernels become modules: compiled once, then loaded from the cache by every later process.
 
-numba keeps compiled code only for functions that live in a file, so a kernel is written to a folder and imported from there. The folder
-is `$VEHGEN_CACHE`, else the user's cache folder; nothing but vehgen's own generated source is ever imported from it.
+numba keeps compiled code only for functions that live in a file, so a kernel's source is written to a temporary folder together with what
+the cache holds of it, imported from there, and what numba wrote anew is kept. The cache is `$VEHGEN_CACHE`, else the user's cache folder.
 """
 
 from __future__ import annotations
@@ -11,24 +11,37 @@ import importlib.util
 import os
 import sys
 import tempfile
+import threading
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 
+import llvmlite
 import numba
+import numpy as np
 
-from vehgen.errors import InputError
+from vehgen.codegen.cache_pruning import prune
+from vehgen.codegen.kernel_store import PARTS, private_folder, read_parts, refuse_open_folder, writable_folder, write_parts
+from vehgen.codegen.straight import compiles
+from vehgen.errors import CacheWarning, InputError
 
 
 def cache_folder() -> Path:
     """Return the folder of generated kernels (it need not exist yet)."""
     if chosen := os.environ.get("VEHGEN_CACHE"):
         return Path(chosen)
-    if sys.platform == "win32":
-        base = Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local"))
-    elif sys.platform == "darwin":
-        base = Path.home() / "Library" / "Caches"
-    else:
-        base = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
+    try:
+        if sys.platform == "win32":
+            base = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+        elif sys.platform == "darwin":
+            base = Path.home() / "Library" / "Caches"
+        else:
+            base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    except RuntimeError:  # this user has no home
+        return private_folder()
     return base / "vehgen"
 
 
@@ -36,9 +49,15 @@ _WRITER = (Path(__file__).parent / "straight.py").read_text(encoding="utf-8")
 """What turns a kernel's text into instructions: numba does not see when it changes."""
 
 
+_VERSIONS = f"{numba.__version__} {llvmlite.__version__} {np.__version__} {sys.implementation.cache_tag}"
+_SOURCE_TIME = 1_000_000_000
+"""Time of change of every kernel's source [s]: byte code, and numba's index before version 0.62, hold for this time only."""
+_importing = threading.Lock()
+
+
 def kernel_name(text: str) -> str:
-    """Return the module name of a kernel: the hash of its source, of numba's version and of what writes its instructions."""
-    digest = hashlib.sha256(f"{numba.__version__}\n{_WRITER}\n{text}".encode()).hexdigest()
+    """Return the module name of a kernel: the hash of its source, of what writes its instructions, and of the versions that compile it."""
+    digest = hashlib.sha256(f"{_VERSIONS}\n{_WRITER}\n{text}".encode()).hexdigest()
     return f"kernel_{digest[:20]}"
 
 
@@ -73,28 +92,87 @@ def _umask() -> int:
 
 
 def is_compiled(text: str, folder: Path) -> bool:
-    """Whether this process has loaded a kernel, or the folder holds its compiled code."""
+    """Whether this process has loaded a kernel, or the folder holds its compiled code, or none is wanted (NUMBA_DISABLE_JIT)."""
     name = kernel_name(text)
-    return f"vehgen_{name}" in sys.modules or any((folder / "__pycache__").glob(f"{name}.*.nbi"))
+    return bool(f"vehgen_{name}" in sys.modules or not compiles() or read_parts(folder, name))
 
 
 def import_kernel(text: str, folder: Path | None = None) -> ModuleType:
-    """Write a kernel's source into the cache (unless it is there) and import it; importing compiles it or loads what was compiled."""
+    """Import a kernel's source; importing compiles it or loads what the cache holds.
+
+    Parameters
+    ----------
+    text
+        The source of :func:`vehgen.codegen.kernel_source.write_kernel`.
+    folder
+        Where compiled code is kept (default: the user's cache folder). One that cannot be trusted, read or written costs time only.
+
+    """
     name = kernel_name(text)
+    folder = folder or cache_folder()
+    with _importing:
+        if f"vehgen_{name}" in sys.modules:
+            return sys.modules[f"vehgen_{name}"]
+        if not compiles():
+            _warn_of_plain_python()
+        known = read_parts(folder, name)
+        try:
+            module, parts = _import_in(None, text, name, known)
+        except OSError:  # the folder of temporary files is full, or open to everybody
+            module, parts = _import_in(writable_folder(folder), text, name, known)
+        if parts != known and compiles():
+            write_parts(folder, name, parts)
+            prune(writable_folder(folder))
+        return module
+
+
+@cache
+def _warn_of_plain_python() -> None:
+    message = "NUMBA_DISABLE_JIT is set: kernels run in plain Python, some hundred times slower; unset it to compile them"
+    warnings.warn(CacheWarning(message), stacklevel=3)
+
+
+def _import_in(place: Path | None, text: str, name: str, known: dict[str, bytes]) -> tuple[ModuleType, dict[str, bytes]]:
+    """Import a kernel from a temporary folder within `place`; return it with the files that hold its compiled code."""
+    with tempfile.TemporaryDirectory(prefix="vehgen_", dir=place, ignore_cleanup_errors=True) as path:
+        stage = Path(path)
+        refuse_open_folder(stage)
+        compiled = stage / "__pycache__"
+        compiled.mkdir()
+        for item, content in known.items():
+            (compiled / item).write_bytes(content)
+        module = _execute(text, name, stage)
+        found = [path for path in compiled.iterdir() if path.suffix in PARTS and path.name.startswith(f"{name}.")]
+        return module, {path.name: path.read_bytes() for path in found}
+
+
+def _execute(text: str, name: str, stage: Path) -> ModuleType:
+    path = stage / f"{name}.py"
+    path.write_text(text, encoding="utf-8")
+    os.utime(path, (_SOURCE_TIME, _SOURCE_TIME))
     module_name = f"vehgen_{name}"
-    if module_name in sys.modules:
-        return sys.modules[module_name]
-    path = (folder or cache_folder()) / f"{name}.py"
-    if not path.is_file() or path.read_text(encoding="utf-8") != text:
-        write_text(path, text)
     specification = importlib.util.spec_from_file_location(module_name, path)
     if specification is None or specification.loader is None:
         raise InputError(f"cannot import the generated kernel {path}")
     module = importlib.util.module_from_spec(specification)
     sys.modules[module_name] = module  # numba looks the module up while it compiles
     try:
-        specification.loader.exec_module(module)
+        with _numba_beside_the_source():
+            specification.loader.exec_module(module)
     except BaseException:
         del sys.modules[module_name]
         raise
     return module
+
+
+@contextmanager
+def _numba_beside_the_source() -> Iterator[None]:
+    """Let numba look for compiled code beside the source only, wherever NUMBA_CACHE_DIR and the like point to."""
+    kept = {key: getattr(numba.config, key) for key in ("CACHE_DIR", "CACHE_LOCATOR_CLASSES") if hasattr(numba.config, key)}
+    for key in kept:
+        setattr(numba.config, key, "")
+    try:
+        yield
+    finally:
+        for key, value in kept.items():
+            setattr(numba.config, key, value)

@@ -90,7 +90,7 @@ class Kernel:
     model
         A derived model; its channels are what comes out.
     folder
-        Where the source and the compiled code are kept (default: the user's cache folder).
+        Where the compiled code is kept (default: the user's cache folder).
     sweeps
         How often a step solves for the forces of the laws (default: 2 or 3, as the laws need).
     precision
@@ -118,7 +118,7 @@ class Kernel:
 
     @property
     def folder(self) -> Path:
-        """Where its source and compiled code are kept."""
+        """Where its compiled code is kept, if that folder can be used."""
         return self._folder or cache_folder()
 
     @property

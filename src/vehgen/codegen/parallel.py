@@ -11,6 +11,7 @@ from pathlib import Path
 
 from vehgen.codegen.cache import import_kernel
 from vehgen.codegen.kernel import Kernel
+from vehgen.codegen.kernel_store import writable_folder
 from vehgen.errors import InputError
 
 
@@ -37,7 +38,9 @@ def compile_all(kernels: Iterable[Kernel], workers: int | None = None) -> None:
     missing = [kernel for kernel in wanted.values() if not kernel.is_compiled]
     workers = min(workers or os.cpu_count() or 1, len(missing))
     if workers > 1:
-        jobs = [(kernel.source.text, kernel.folder) for kernel in sorted(missing, key=lambda kernel: -len(kernel.source.text))]
+        jobs = [
+            (kernel.source.text, writable_folder(kernel.folder)) for kernel in sorted(missing, key=lambda kernel: -len(kernel.source.text))
+        ]
         with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
             try:
                 list(pool.map(compile_source, *zip(*jobs, strict=True)))

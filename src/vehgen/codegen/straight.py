@@ -17,18 +17,40 @@ import ast
 import inspect
 import textwrap
 from collections.abc import Callable
+from types import SimpleNamespace
 from typing import Any
 
+import numba
+import numpy as np
 from llvmlite import ir
 from numba.core import types
 from numba.extending import intrinsic
 from numba.np.arrayobj import make_array
 
 SINGLE, DOUBLE = ir.FloatType(), ir.DoubleType()
+_PLAIN = {
+    "math": SimpleNamespace(sqrt=np.sqrt),  # of a negative number: not a number, as when compiled
+    "lower": lambda a, b: a if a < b else b,
+    "upper": lambda a, b: a if a > b else b,
+    "step": lambda value: 1.0 if value > 0 else 0.0,
+    "sign": lambda value: 1.0 if value > 0 else -1.0 if value < 0 else 0.0,
+}
+"""What the functions of a kernel's expressions mean, in plain Python."""
+
+
+def compiles() -> bool:
+    """Whether numba compiles, that is, NUMBA_DISABLE_JIT is not set."""
+    return not getattr(numba.config, "DISABLE_JIT", 0)
 
 
 def straight(function: Callable[..., None]) -> Any:
-    """Return a function `(work, j, dt, drives)` of a kernel as something that numba's code can call; see the head of this file."""
+    """Return a function `(work, j, dt, drives)` of a kernel as something that numba's code can call; see the head of this file.
+
+    Where numba is told not to compile (NUMBA_DISABLE_JIT), it stays a function of plain Python.
+    """
+    if not compiles():
+        function.__globals__.update(_PLAIN)
+        return function
 
     def choose(_context: Any, work: Any, j: Any, dt: Any, drives: Any) -> Any:
         def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
