@@ -149,9 +149,3 @@ def test_doubts_are_warnings_on_stderr(monkeypatch: pytest.MonkeyPatch, capsys: 
     captured = capsys.readouterr()
     assert captured.err == "warning: the step is coarse\n" * 2
     assert captured.out == ""
-
-
-def test_a_defect_is_not_hidden(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("vehgen.commands.models.run", raising(RuntimeError("a defect")))
-    with pytest.raises(RuntimeError, match="a defect"):
-        main(["models"])

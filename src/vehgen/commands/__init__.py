@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import ast
+import inspect
 import io
 import sys
-import warnings
 from collections.abc import Sequence
-from typing import TextIO
+from contextlib import suppress
+from types import ModuleType
 
 from vehgen.commands import (
     bench,
@@ -27,7 +29,7 @@ from vehgen.commands import (
     static,
     validate,
 )
-from vehgen.errors import InputError, ModelWarning
+from vehgen.commands.faults import end_of, show_warnings
 
 COMMANDS = (
     build,
@@ -57,10 +59,11 @@ def make_parser() -> argparse.ArgumentParser:
         epilog="example: python -m vehgen build tractor5.yaml",
     )
     parser.add_argument("--version", action="store_true", help="print the version and leave")
+    _add_debug(parser)
     commands = parser.add_subparsers(dest="command", metavar="COMMAND")
     for command in COMMANDS:
         name = getattr(command, "NAME", command.__name__.rpartition(".")[2])
-        summary = (command.__doc__ or "").strip().splitlines()[0]
+        summary = _summary(command)
         sub = commands.add_parser(
             name,
             help=summary,
@@ -69,42 +72,41 @@ def make_parser() -> argparse.ArgumentParser:
             formatter_class=argparse.RawDescriptionHelpFormatter,  # an example is copied from one line
         )
         command.add_arguments(sub)
+        _add_debug(sub)
         sub.set_defaults(run=command.run)
     return parser
 
 
+def _add_debug(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--debug", action="store_true", default=argparse.SUPPRESS, help="show where an error was raised")
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code: 0 done, 2 the input cannot be used, 130 stopped."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    return end_of(lambda: _run(words), debug="--debug" in words)
+
+
+def _run(words: list[str]) -> None:
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")  # a title in another script must not fail on a plain terminal
     parser = make_parser()
-    options = parser.parse_args(arguments)
+    options = parser.parse_args(words)
     if options.version:
         from vehgen import __version__
 
         print(__version__)
-        return 0
-    if options.command is None:
+    elif options.command is None:
         parser.print_help()
-        return 0
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="replace")  # a title in another script must not fail on a plain terminal
-    warnings.simplefilter("always", ModelWarning)
-    warnings.showwarning = _show_warning
-    try:
+    else:
+        show_warnings()
         options.run(options)
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except BrokenPipeError:
-        sys.stderr.close()
-        return 0
-    except KeyboardInterrupt:
-        print("stopped", file=sys.stderr)
-        return 130
-    return 0
 
 
-def _show_warning(
-    message: Warning | str, category: type[Warning], filename: str, lineno: int, file: TextIO | None = None, line: str | None = None
-) -> None:
-    if issubclass(category, ModelWarning):
-        print(f"warning: {message}", file=sys.stderr)
+def _summary(command: ModuleType) -> str:
+    """Return the first line of a command's docstring, from its source where `python -OO` left it out."""
+    text = command.__doc__
+    if text is None:
+        with suppress(OSError):
+            text = ast.get_docstring(ast.parse(inspect.getsource(command)))
+    return (text or command.__name__.rpartition(".")[2]).strip().splitlines()[0]

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehgen.commands.terminal import add_json, console, print_json, print_table
+from vehgen.commands.terminal import add_json, console, print_json, print_table, say
 
 if TYPE_CHECKING:
     from vehgen.diagnose.pipeline import Diagnosis
@@ -75,7 +75,7 @@ def run(options: argparse.Namespace) -> None:
 
 def _show(found: Diagnosis, files: list[Path]) -> None:
     verdict = found.verdict
-    console().print(f"[bold]{verdict.verdict.replace('_', ' ')}[/bold]: {verdict.reason}", highlight=False)
+    say(f": {verdict.reason}", heading=verdict.verdict.replace("_", " "))
     effect_rows = [
         (
             effect.name,
@@ -96,8 +96,8 @@ def _show(found: Diagnosis, files: list[Path]) -> None:
     ]
     print_table("chi (1 is noise alone)", columns, rows, right=(2, 3)[: len(columns) - 2])
     for note in verdict.notes:
-        console().print(f"note: {note}", highlight=False, markup=False)
+        say(f"note: {note}")
     if verdict.next_experiment:
-        console().print(f"measure next: {verdict.next_experiment}", highlight=False, markup=False)
+        say(f"measure next: {verdict.next_experiment}")
     for path in files:
         console().print(f"wrote {path}", highlight=False, markup=False)

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehgen.commands.terminal import add_json, console, print_json, print_table, warn
+from vehgen.commands.terminal import add_json, console, print_json, print_table, say, warn
 from vehgen.errors import InputError
 
 if TYPE_CHECKING:
@@ -125,10 +125,10 @@ def run(options: argparse.Namespace) -> None:
         ],
         right=(1, 2, 3),
     )
-    console().print(f"speed: {imported.speed_source}", highlight=False, markup=False)
+    say(f"speed: {imported.speed_source}")
     for item in imported.phones:
         for note in phone_notes(imported, item):
-            console().print(note, highlight=False, markup=False)
+            say(note)
     warn(imported.warnings)
     for path in written:
         console().print(f"wrote {path}", highlight=False, markup=False)

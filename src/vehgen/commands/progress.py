@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from vehgen.commands.terminal import console, printable
+
 
 class Bars:
     """A progress bar for every piece of work, with the best result so far.
@@ -13,14 +15,13 @@ class Bars:
     """
 
     def __init__(self, quiet: bool) -> None:
-        from rich.console import Console
         from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-        self._console = Console(stderr=True)
+        self._console = console(stderr=True)
         self._bars = Progress(
-            TextColumn("{task.description}"),
+            TextColumn("{task.description}", markup=False),
             BarColumn(),
-            TextColumn("{task.completed:.0f}/{task.total:.0f}  {task.fields[best]}"),
+            TextColumn("{task.completed:.0f}/{task.total:.0f}  {task.fields[best]}", markup=False),
             TimeElapsedColumn(),
             console=self._console,
             disable=quiet or not self._console.is_terminal,
@@ -39,9 +40,9 @@ class Bars:
         from rich.progress import TaskID
 
         if label not in self._tasks:
-            self._tasks[label] = int(self._bars.add_task(label, total=total, best=""))
-        self._bars.update(TaskID(self._tasks[label]), completed=done, total=total, best=best)
+            self._tasks[label] = int(self._bars.add_task(printable(label), total=total, best=""))
+        self._bars.update(TaskID(self._tasks[label]), completed=done, total=total, best=printable(best))
 
     def say(self, text: str) -> None:
         """Print a line."""
-        self._console.print(text)
+        self._console.print(printable(text))

@@ -1,11 +1,19 @@
-"""What the commands share: the vehicle argument, tables for people, JSON for programs."""
+"""What the commands share: the vehicle argument, text and tables for people, JSON for programs.
+
+Names, titles and messages may come from a stranger's file: here, and only here, they become what a terminal shows.
+"""
 
 from __future__ import annotations
 
 import argparse
 import json
+import re
+import unicodedata
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
+
+MAX_LINE = 600
+"""Characters of an error or a warning; the middle of a longer one is left out."""
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -38,12 +46,37 @@ def print_json(data: Any) -> None:
     print(json.dumps(data, indent=2, allow_nan=False))
 
 
-def console() -> Console:
-    """Return a console that is as wide as its tables need where it is not a terminal."""
+def printable(text: str) -> str:
+    """Return text with everything escaped that would steer a terminal: control characters, and those that turn the direction around."""
+    return "".join(
+        character
+        if character.isprintable() or character in "\n\t" or unicodedata.category(character) == "Zs"
+        else character.encode("unicode_escape").decode("ascii")
+        for character in text
+    )
+
+
+def one_line(text: str) -> str:
+    """Return a message as one printable line of at most `MAX_LINE` characters."""
+    line = printable(re.sub(r"\s*[\r\n]\s*", " ", text.strip()).replace("\t", " "))
+    if len(line) <= MAX_LINE:
+        return line
+    return f"{line[: MAX_LINE - 205]} ... {line[-200:]}"
+
+
+def console(stderr: bool = False) -> Console:
+    """Return a console that takes text as it is, without markup, and is as wide as its tables need where it is not a terminal."""
     from rich.console import Console
 
-    found = Console()
-    return found if found.is_terminal else Console(width=120)
+    found = Console(stderr=stderr, markup=False, emoji=False, highlight=False)
+    return found if stderr or found.is_terminal else Console(width=120, markup=False, emoji=False, highlight=False)
+
+
+def say(text: str, heading: str = "", style: str = "bold") -> None:
+    """Print text, after a heading in a style of its own."""
+    from rich.text import Text
+
+    console().print(Text.assemble((printable(heading), style), printable(text)))
 
 
 def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], right: Sequence[int] = ()) -> None:
@@ -52,17 +85,15 @@ def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(title=Text(title), title_justify="left", title_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
+    table = Table(title=Text(printable(title)), title_justify="left", title_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
     for index, column in enumerate(columns):
-        table.add_column(column, justify="right" if index in right else "left")
+        table.add_column(Text(printable(column)), justify="right" if index in right else "left")
     for row in rows:
-        table.add_row(*(Text(cell) for cell in row))
+        table.add_row(*(Text(printable(cell)) for cell in row))
     console().print(table)
 
 
 def warn(messages: Iterable[str]) -> None:
     """Print warnings beneath the tables."""
-    from rich.text import Text
-
     for message in messages:
-        console().print(Text.assemble(("warning: ", "bold yellow"), message))
+        say(message, "warning: ", "bold yellow")

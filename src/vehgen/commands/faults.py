@@ -1,0 +1,135 @@
+"""How a command ends: done, refused in one line, stopped, or with nobody left to read what it prints."""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import sys
+import threading
+import traceback
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from types import FrameType
+from typing import TextIO
+
+from vehgen.commands.terminal import one_line
+from vehgen.errors import CacheWarning, InputError, ModelWarning
+
+UNUSABLE, STOPPED, TERMINATED = 2, 130, 143
+"""Exit codes; the last two are those of shells, 128 and the number of the signal."""
+
+
+def end_of(work: Callable[[], None], debug: bool = False) -> int:
+    """Do a command's work, print what ends it in one line on stderr, and return the exit code.
+
+    Parameters
+    ----------
+    work
+        What the command does.
+    debug
+        Print where it ended, too.
+
+    """
+    try:
+        with _terminable():
+            try:
+                work()
+            finally:
+                if sys.stdout is not None:
+                    sys.stdout.flush()
+    except KeyboardInterrupt:
+        _say("stopped")
+        return STOPPED
+    except SystemExit as left:
+        if isinstance(left.__context__, BrokenPipeError):  # rich ends so, with stdout already silenced
+            return 0
+        raise
+    except Exception as error:
+        if isinstance(error, BrokenPipeError) and _nobody_reads():
+            _silence(sys.stdout)
+            return 0
+        if debug:
+            with suppress(OSError):
+                traceback.print_exc()
+        _say(f"error: {fault(error)}")
+        if isinstance(error, OSError):
+            _silence(sys.stdout)
+        return UNUSABLE
+    return 0
+
+
+def fault(error: Exception) -> str:
+    """Say what an error means to who called the command."""
+    if isinstance(error, InputError):
+        return str(error)
+    if isinstance(error, MemoryError):
+        details = f" ({error})" if str(error) else ""
+        return f"there is not enough memory for this{details}; a shorter duration, a coarser step or fewer runs need less"
+    if isinstance(error, RecursionError):
+        return "the input is nested too deeply: bodies, parameters or files that rest one on the other in a long chain"
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename}: {error.strerror}" if error.filename else f"cannot read or write: {error.strerror}"
+    return f"internal fault: {type(error).__name__}: {error} (please report it; --debug shows where)"
+
+
+def show_warning(
+    message: Warning | str, category: type[Warning], filename: str, lineno: int, file: TextIO | None = None, line: str | None = None
+) -> None:
+    """Print vehgen's own warnings in one line each, and no other: what `warnings.showwarning` is on the command line."""
+    if issubclass(category, ModelWarning | CacheWarning):
+        _say(f"warning: {message}")
+
+
+def show_warnings() -> None:
+    """Print every warning of vehgen from now on."""
+    for category in (ModelWarning, CacheWarning):
+        warnings.simplefilter("always", category)
+    warnings.showwarning = show_warning
+
+
+def _say(text: str) -> None:
+    try:
+        print(one_line(text), file=sys.stderr, flush=True)
+    except (OSError, ValueError):  # closed or full: the exit code must tell
+        _silence(sys.stderr)
+
+
+def _nobody_reads() -> bool:
+    """Whether the other end of stdout is closed: a worker's broken pipe is a fault, a closed `| head` is none."""
+    if not hasattr(select, "poll"):
+        return True
+    try:
+        poll = select.poll()
+        poll.register(sys.stdout.fileno(), select.POLLOUT)
+        return any(event & (select.POLLERR | select.POLLHUP) for _, event in poll.poll(0))
+    except (OSError, ValueError):
+        return False
+
+
+def _silence(stream: TextIO) -> None:
+    """Send what is still to be written nowhere, so that Python does not complain of it when it ends."""
+    with suppress(OSError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        try:
+            os.dup2(nowhere, stream.fileno())
+        finally:
+            os.close(nowhere)
+
+
+@contextmanager
+def _terminable() -> Iterator[None]:
+    """End by SIGTERM as by any other error, so that temporary files are removed."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def terminate(number: int, frame: FrameType | None) -> None:
+        raise SystemExit(TERMINATED)
+
+    former = signal.signal(signal.SIGTERM, terminate)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, former)
