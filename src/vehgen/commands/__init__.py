@@ -28,6 +28,7 @@ from vehgen.commands import (
     validate,
 )
 from vehgen.errors import InputError, ModelWarning
+from vehgen.files import guarding_results, noting_reads
 
 COMMANDS = (
     build,
@@ -90,7 +91,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     warnings.simplefilter("always", ModelWarning)
     warnings.showwarning = _show_warning
     try:
-        options.run(options)
+        with noting_reads(), guarding_results(getattr(options, "force", False)):
+            options.run(options)
     except InputError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
