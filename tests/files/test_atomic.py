@@ -83,9 +83,13 @@ def test_a_full_disk_is_an_input_error_and_leaves_the_old_file(tmp_path, monkeyp
 
 
 def test_an_interruption_leaves_nothing(tmp_path):
-    with pytest.raises(KeyboardInterrupt), temporary_file(tmp_path) as draft:
-        assert TEMPORARY.fullmatch(draft.name)
-        raise KeyboardInterrupt
+    def interrupted():
+        with temporary_file(tmp_path) as draft:
+            assert TEMPORARY.fullmatch(draft.name)
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
     assert names(tmp_path) == set()
 
 

@@ -77,16 +77,14 @@ def check_result(path: Path) -> None:
         For a name whose parent is no folder or not writable, for what is no regular file; inside :func:`guarding_results` also for a file
         that this command read, and, without force, for one that vehgen did not write or that was changed since.
     """
-    _check_folder(path)
     if path.name == MANIFEST or TEMPORARY.fullmatch(path.name):
         raise InputError(f"cannot write {path}: vehgen keeps this name for itself; name another file")
     found = _look(path)
-    if found is None:
-        return
-    if not stat.S_ISREG(found.st_mode):
+    if found is not None and not stat.S_ISREG(found.st_mode):
         raise InputError(f"cannot write {path}: it is {_kind(found.st_mode)}; the name of a file was expected")
+    _check_folder(path)
     guard = _GUARD.get()
-    if guard is None:
+    if found is None or guard is None:
         return
     if was_read(path):
         raise InputError(f"{path} is a file that this command reads, which is never written over; name another file")
@@ -135,7 +133,7 @@ def _look(path: Path) -> os.stat_result | None:
     """Return what stands under a name, a link itself and not what it leads to; None where nothing does."""
     try:
         return path.lstat()
-    except FileNotFoundError:
+    except (FileNotFoundError, NotADirectoryError):
         return None
     except (OSError, ValueError) as error:
         raise InputError(f"cannot write {path}: {getattr(error, 'strerror', None) or error}") from error
