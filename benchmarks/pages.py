@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from vehgen.codegen import write_text
+from vehgen.files import write_text
 
 ROOT = Path(__file__).parents[1]
 

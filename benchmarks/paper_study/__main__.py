@@ -28,7 +28,7 @@ from benchmarks.paper_study.tables import (
     summary_table,
 )
 from benchmarks.paper_study.truth import drawn
-from vehgen.codegen import write_text
+from vehgen.files import write_text
 
 UNSEEN_DURATION = 60.0
 """Of the drive over the unseen road [s]."""

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from vehgen.commands import main
+from vehgen.files.manifest import MANIFEST
 from vehgen.vehicle import load_vehicle
 
 EXAMPLES = Path(__file__).parents[2] / "docs" / "examples" / "cargo"
@@ -31,7 +32,7 @@ def test_laden(work, capsys):
     assert sum(b - a for a, b in found["axles"].values()) == pytest.approx(5771 * 9.81)
     assert found["files"] == ["out/laden.yaml"]
     assert load_vehicle("out/laden.yaml").title == "Five-axle tractor-semitrailer, laden: building module"
-    assert [path.name for path in (work / "out").iterdir()] == ["laden.yaml"]
+    assert {path.name for path in (work / "out").iterdir()} == {"laden.yaml", MANIFEST}
     assert main(["laden", "tractor5", str(EXAMPLES / "pallets.yaml"), "--set", "SHCM-1"]) == 0
     table = capsys.readouterr().out
     assert "+98,100.0" in table
@@ -41,15 +42,15 @@ def test_laden(work, capsys):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["laden", "own.yaml", "cargo.yaml", "--out", "own.yaml"], "own.yaml is a file that the laden vehicle is made from"),
-        (["laden", "own.yaml", "cargo.yaml", "--out", "cargo.yaml"], "cargo.yaml is a file that the laden vehicle is made from"),
+        (["laden", "own.yaml", "cargo.yaml", "--out", "own.yaml"], "own.yaml is a file that this command reads"),
+        (["laden", "own.yaml", "cargo.yaml", "--out", "cargo.yaml"], "cargo.yaml is a file that this command reads"),
         (["laden", "own.yaml", "absent.yaml"], "no file absent.yaml"),
         (["laden", "own.yaml", "cargo.yaml", "--out", "a-b.yaml", "--set", "x"], "own has no parameter set 'x'"),
         (
             ["laden", "own.yaml", "named.yaml", "--out", "new.yaml"],
             "the laden vehicle would not be valid: 'ground' has a meaning of its own",
         ),
-        (["module", "frame.yaml", "--out", "frame.yaml"], "frame.yaml is the frame file itself"),
+        (["module", "frame.yaml", "--out", "frame.yaml"], "frame.yaml is a file that this command reads"),
         (["module", "absent.yaml"], "no file absent.yaml"),
     ],
 )

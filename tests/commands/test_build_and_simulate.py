@@ -12,6 +12,7 @@ import pytest
 import scipy.integrate
 
 from vehgen.commands import main
+from vehgen.files.manifest import MANIFEST
 
 RUN = """\
 vehicle: quarter_car
@@ -43,7 +44,7 @@ def work(tmp_path: Path, cache: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def written(folder: Path) -> set[str]:
-    return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+    return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file() and path.name != MANIFEST}
 
 
 def test_build_writes_its_folder_and_nothing_else(work: Path, capsys: pytest.CaptureFixture[str]):

@@ -214,11 +214,10 @@ def test_a_plain_csv_in_the_vehicles_axes(tmp_path, capsys):
     """What an import wrote can be imported again, and stays what it was."""
     assert command(tmp_path / "run.yaml", both("hump_2ms")[:1], sensors=(L1,)) == 0
     columns = ("--columns", "time=t,acceleration=L1_az,pitch_rate=L1_q", "--speed", "2")
-    assert (
-        command(tmp_path / "again.yaml", [tmp_path / "run.csv"], *columns, sensors=("L1:body=tractor,behind=axle1,distance=-0.29 m",)) == 0
-    )
+    place = ("L1:body=tractor,behind=axle1,distance=-0.29 m",)
+    assert command(tmp_path / "again.yaml", [tmp_path / "run_recording.csv"], *columns, sensors=place) == 0
     capsys.readouterr()
-    first, again = (np.loadtxt(tmp_path / f"{name}.csv", delimiter=",", skiprows=1) for name in ("run", "again"))
+    first, again = (np.loadtxt(tmp_path / f"{name}_recording.csv", delimiter=",", skiprows=1) for name in ("run", "again"))
     late = load_run(tmp_path / "run.yaml").file.road[0].hump.at - load_run(tmp_path / "again.yaml").file.road[0].hump.at
     shifted = np.interp(again[:, 0] + late / 2.0, first[:, 0], first[:, 1])
     assert np.corrcoef(shifted[:900], again[:900, 1])[0, 1] > 0.995

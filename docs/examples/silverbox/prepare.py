@@ -16,7 +16,7 @@ import scipy.optimize
 import scipy.signal
 from numpy.typing import NDArray
 
-from vehgen.codegen import write_text
+from vehgen.files import write_text
 
 Array = NDArray[np.float64]
 STEP = 2**14 / 1e7

@@ -30,6 +30,7 @@ from vehgen.commands import (
     validate,
 )
 from vehgen.commands.faults import end_of, show_warnings
+from vehgen.files import guarding_results, noting_reads
 
 COMMANDS = (
     build,
@@ -100,7 +101,8 @@ def _run(words: list[str]) -> None:
         parser.print_help()
     else:
         show_warnings()
-        options.run(options)
+        with noting_reads(), guarding_results(getattr(options, "force", False)):
+            options.run(options)
 
 
 def _summary(command: ModuleType) -> str:

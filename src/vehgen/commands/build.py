@@ -7,7 +7,9 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vehgen.commands.results import add_out, folder_named
 from vehgen.commands.terminal import add_vehicle, console, load, print_json, print_table, warn
+from vehgen.files import check_results
 
 if TYPE_CHECKING:
     from vehgen.mechanics import LinearModel, StaticLoads
@@ -19,7 +21,7 @@ EXAMPLE = "python -m vehgen build tractor5.yaml --out build/tractor5"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     add_vehicle(parser)
-    parser.add_argument("--out", metavar="DIR", type=Path, help="where to write (default: build/NAME)")
+    add_out(parser, "DIR", "where to write (default: build/NAME)")
     parser.add_argument("--no-plots", action="store_true", help="leave out drawing and mode shapes (faster)")
 
 
@@ -27,6 +29,10 @@ def run(options: argparse.Namespace) -> None:
     """Build a vehicle."""
     start = time.perf_counter()
     vehicle, _free = load(options)
+    folder = folder_named(options.out, Path("build") / vehicle.name)
+    from vehgen.report import build_files, write_build_folder
+
+    check_results(build_files(folder, plots=not options.no_plots))
     from vehgen.codegen import Kernel
     from vehgen.mechanics import Place, PointOutput, derive, static_loads
     from vehgen.simulate import natural_modes
@@ -44,9 +50,6 @@ def run(options: argparse.Namespace) -> None:
     findings = lint(model, values)
     kernel = Kernel(model)
     kernel.compile()
-    from vehgen.report import write_build_folder
-
-    folder = options.out or Path("build") / vehicle.name
     written = write_build_folder(folder, model, values, modes, loads, kernel.source.text, findings, plots=not options.no_plots)
     seconds = time.perf_counter() - start
     if options.json:

@@ -6,8 +6,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehgen.commands.terminal import add_json, console, print_json, print_table, warn
+from vehgen.commands.results import add_out, folder_named, tell_written
+from vehgen.commands.terminal import add_json, print_json, print_table, warn
 from vehgen.errors import InputError
+from vehgen.files import check_results, write_text
 
 if TYPE_CHECKING:
     from vehgen.identify.calibration import Settings
@@ -36,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--combination", metavar="EXPR", action="append", default=[], help="estimate this too, e.g. 'k1/(mT + mS)'")
     parser.add_argument("--bootstrap", type=int, default=0, metavar="N", help="check the intervals with N refits to redrawn noise")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="run polish and bootstrap on the Dask cluster at this address")
-    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for results and figures (default: VEHICLE_calibrated)")
+    add_out(parser, "DIR", "folder for results and figures (default: VEHICLE_calibrated)")
     parser.add_argument("--resume", action="store_true", help="go on with a search that was stopped")
     add_json(parser)
 
@@ -45,7 +47,6 @@ def run(options: argparse.Namespace) -> None:
     """Calibrate and write the vehicle file, the result and figures."""
     import json
 
-    from vehgen.codegen import write_text
     from vehgen.commands.progress import Bars
     from vehgen.identify.calibration import calibrate
     from vehgen.identify.facts import load_facts
@@ -53,14 +54,16 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.identify.parallel import runner_at
     from vehgen.identify.problem import make_problem
     from vehgen.identify.trial import load_trials
-    from vehgen.report.calibration_plots import save_calibration_figures
+    from vehgen.report.calibration_plots import calibration_figure_files, save_calibration_figures
     from vehgen.vehicle import load_vehicle
 
     vehicle = load_vehicle(options.vehicle)
     problem = make_problem(load_trials(options.runs, vehicle))
     facts = load_facts(options.facts, problem) if options.facts else None
-    folder: Path = options.out or Path(f"{Path(options.vehicle).stem}_calibrated")
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = folder_named(options.out, f"{Path(options.vehicle).stem}_calibrated")
+    name = f"{vehicle.name}_calibrated"
+    files, checkpoint = [folder / f"{name}.yaml", folder / "calibration.json"], folder / "search.json"
+    check_results([*files, checkpoint, *calibration_figure_files(folder)])
     settings = _settings(options)
     with runner_at(options.scheduler) as runner:
         with Bars(quiet=options.json) as progress:
@@ -68,13 +71,11 @@ def run(options: argparse.Namespace) -> None:
             def tell(label: str, done: int, total: int, best: float) -> None:
                 progress.tell(label, done, total, f"best {best:.5g}")
 
-            found = calibrate(problem, settings, facts, tell, folder / "search.json", options.resume, runner)
+            found = calibrate(problem, settings, facts, tell, checkpoint, options.resume, runner)
             if found.stopped:
                 progress.say("stopped: the best so far is kept; --resume goes on")
         outcome = conclude(found, facts, options.combination, 0 if found.stopped else options.bootstrap, runner)
-    name = f"{vehicle.name}_calibrated"
     data = outcome.to_dict()
-    files = [folder / f"{name}.yaml", folder / "calibration.json"]
     write_text(files[0], outcome.vehicle_text(folder, name))
     write_text(files[1], json.dumps(data, indent=1))
     files += save_calibration_figures(outcome, folder)
@@ -146,8 +147,7 @@ def _show(outcome: Outcome, files: list[Path]) -> None:
         right=(1,),
     )
     warn(_doubts(outcome))
-    for path in files:
-        console().print(f"wrote {path}", highlight=False, markup=False)
+    tell_written(files)
 
 
 def _doubts(outcome: Outcome) -> list[str]:

@@ -6,7 +6,9 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehgen.commands.terminal import add_json, console, print_json, print_table, say
+from vehgen.commands.results import add_out, folder_named, tell_written
+from vehgen.commands.terminal import add_json, print_json, print_table, say
+from vehgen.files import check_results, write_text
 
 if TYPE_CHECKING:
     from vehgen.diagnose.pipeline import Diagnosis
@@ -21,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--effects", metavar="A,B", help="try these effects only (default: the whole library)")
     parser.add_argument("--library", metavar="FILE", action="append", default=[], help="a file of your own effects; may be repeated")
     parser.add_argument("--everywhere", action="store_true", help="try every effect at every place, whatever the place test says")
-    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for report and files (default: VEHICLE_diagnosis)")
+    add_out(parser, "DIR", "folder for report and files (default: VEHICLE_diagnosis)")
     add_json(parser)
 
 
@@ -31,10 +33,9 @@ def run(options: argparse.Namespace) -> None:
     import os
     from dataclasses import replace
 
-    from vehgen.codegen import write_text
     from vehgen.commands.progress import Bars
     from vehgen.diagnose.pipeline import diagnose
-    from vehgen.diagnose.writing import effect_file, file_name
+    from vehgen.diagnose.writing import effect_file, file_name, files_named_so
     from vehgen.effects import extended_library
     from vehgen.errors import InputError, did_you_mean
     from vehgen.identify.trial import load_trials
@@ -51,11 +52,11 @@ def run(options: argparse.Namespace) -> None:
         chosen = [known[name] for name in names]
     vehicle = load_vehicle(options.vehicle)
     trials = load_trials(options.runs, vehicle)
-    folder: Path = options.out or Path(f"{Path(options.vehicle).stem}_diagnosis")
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = folder_named(options.out, f"{Path(options.vehicle).stem}_diagnosis")
+    files = [folder / "diagnosis.json", folder / "report.html"]
+    check_results([*files, *files_named_so(vehicle.name, folder)])
     with Bars(quiet=options.json) as bars:
         found = diagnose(trials, chosen, options.everywhere, bars.tell, workers=os.cpu_count() or 1)
-    files = [folder / "diagnosis.json", folder / "report.html"]
     if found.chosen:
         name = file_name(vehicle.name, found.chosen[-1])
         path = folder / f"{name}.yaml"
@@ -99,5 +100,4 @@ def _show(found: Diagnosis, files: list[Path]) -> None:
         say(f"note: {note}")
     if verdict.next_experiment:
         say(f"measure next: {verdict.next_experiment}")
-    for path in files:
-        console().print(f"wrote {path}", highlight=False, markup=False)
+    tell_written(files)

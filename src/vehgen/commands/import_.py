@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehgen.commands.terminal import add_json, console, print_json, print_table, say, warn
+from vehgen.commands.results import add_out, file_named, tell_written
+from vehgen.commands.terminal import add_json, print_json, print_table, say, warn
 from vehgen.errors import InputError
+from vehgen.files import check_results, note_read
 
 if TYPE_CHECKING:
     from vehgen.measure.importing import Imported
@@ -46,9 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--top", type=float, default=25.0, metavar="HZ", help="top of the band that matters; phones need twice that (default 25)"
     )
     parser.add_argument("--columns", metavar="time=T,...", help="columns of a plain CSV; also time_unit=, pitch_rate=, ...")
-    parser.add_argument(
-        "--out", type=Path, required=True, metavar="RUN", help="the run file to write; its recording and a plot go beside it"
-    )
+    add_out(parser, "RUN", "the run file to write; its recording (RUN_recording.csv) and a plot go beside it", required=True)
     add_json(parser)
 
 
@@ -57,7 +56,7 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.measure.csv_table import read_column_map
     from vehgen.measure.importing import import_phones, with_forward
     from vehgen.measure.options import Plan, quantity, read_hump, read_profile, read_sensor
-    from vehgen.measure.run_text import phone_notes, write_import
+    from vehgen.measure.run_text import import_files, phone_notes, write_import
     from vehgen.report import save_figure
     from vehgen.report.import_plot import plot_import
     from vehgen.vehicle import load_vehicle
@@ -82,8 +81,13 @@ def run(options: argparse.Namespace) -> None:
         footprint=options.footprint,
         columns=read_column_map(options.columns) if options.columns else None,
     )
+    out = file_named(options.out)
+    written = [*import_files(out), out.with_suffix(".png")]
+    for export in options.exports:
+        note_read(export)
+    check_results(written)
     imported = import_phones(options.exports, plan)
-    written = [*write_import(imported, options.vehicle, options.out), options.out.with_suffix(".png")]
+    write_import(imported, options.vehicle, out)
     arrival = imported.phones[0].arrival - imported.phones[0].zero
     title = f"{vehicle.title or vehicle.name}, {imported.speed:.3g} m/s"
     save_figure(plot_import(_panels(imported), arrival if imported.at is not None else None, _crossings(imported), title), written[-1])
@@ -130,8 +134,7 @@ def run(options: argparse.Namespace) -> None:
         for note in phone_notes(imported, item):
             say(note)
     warn(imported.warnings)
-    for path in written:
-        console().print(f"wrote {path}", highlight=False, markup=False)
+    tell_written(written)
 
 
 def _panels(imported: Imported) -> list[ImportPanel]:

@@ -6,7 +6,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehgen.commands.terminal import add_json, console, print_json, print_table
+from vehgen.commands.results import add_out, file_named, tell_written
+from vehgen.commands.terminal import add_json, print_json, print_table
+from vehgen.files import check_results, write_text
+from vehgen.files.atomic import temporary_file
 
 if TYPE_CHECKING:
     from vehgen.vehicle import Vehicle
@@ -18,7 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.add_argument("vehicle", metavar="VEHICLE", help="the unladen vehicle: a file, for example a calibrated one, or a bundled model")
     parser.add_argument("cargo", metavar="CARGO", help="a cargo file")
-    parser.add_argument("--out", metavar="FILE", type=Path, help="where to write the laden vehicle (default: VEHICLE_laden.yaml here)")
+    add_out(parser, "FILE", "where to write the laden vehicle (default: VEHICLE_laden.yaml here)")
     parser.add_argument("--set", metavar="NAME", dest="parameter_set", help="compare at a named parameter set of the vehicle")
     add_json(parser)
 
@@ -26,14 +29,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> None:
     """Write the laden vehicle and print the comparison."""
     from vehgen.cargo import compare_laden, laden_text, load_cargo
-    from vehgen.errors import InputError
     from vehgen.vehicle import load_vehicle
 
     vehicle, cargo = load_vehicle(options.vehicle), load_cargo(options.cargo)
     vehicle.values(options.parameter_set)
-    path: Path = options.out or Path(f"{vehicle.name}_laden.yaml")
-    if any(path.resolve() == other.resolve() for other in (*vehicle.files, cargo.path)):
-        raise InputError(f"{path} is a file that the laden vehicle is made from; choose another for --out")
+    path = Path(f"{vehicle.name}_laden.yaml") if options.out is None else file_named(options.out)
+    check_results([path])
     laden = _write(path, laden_text(vehicle, cargo, path.parent, path.stem))
     found = compare_laden(vehicle, laden, cargo.file.on, options.parameter_set)
     (before, after), (forward, up) = found.carrier, found.cog_shift
@@ -60,24 +61,21 @@ def run(options: argparse.Namespace) -> None:
     print_table("Static axle loads, N", ("axle", "unladen", "laden", "change"), axle_rows, right=(1, 2, 3))
     mode_rows = [(name, "" if light is None else f"{light:.4f}", f"{heavy:.4f}") for name, light, heavy in found.modes]
     print_table("Undamped natural frequencies, Hz", ("mode", "unladen", "laden"), mode_rows, right=(1, 2))
-    console().print(f"wrote {path}", highlight=False, markup=False)
+    tell_written([path])
 
 
 def _write(path: Path, text: str) -> Vehicle:
-    """Write a vehicle file and read it back; nothing is left behind when it cannot be read."""
-    from vehgen.codegen import write_text
+    """Write a vehicle file that was read back from a draft beside it; nothing is left behind when it cannot be read."""
     from vehgen.errors import InputError
     from vehgen.vehicle import load_vehicle
 
-    draft = path.with_name(f".{path.name}.draft")
-    write_text(draft, text)
     try:
-        laden = load_vehicle(draft)
-        draft.replace(path)
+        with temporary_file(path.parent) as draft:
+            draft.write_text(text, encoding="utf-8")
+            laden = load_vehicle(draft)
     except InputError as error:
         raise InputError(f"the laden vehicle would not be valid: {error.message}") from error
     except OSError as error:
         raise InputError(f"cannot write {path}: {error.strerror}") from error
-    finally:
-        draft.unlink(missing_ok=True)
+    write_text(path, text)
     return laden

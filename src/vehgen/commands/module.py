@@ -6,7 +6,9 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehgen.commands.terminal import add_json, console, print_json, print_table, warn
+from vehgen.commands.results import add_out, file_named, tell_written
+from vehgen.commands.terminal import add_json, print_json, print_table, warn
+from vehgen.files import check_results, write_text
 
 if TYPE_CHECKING:
     from vehgen.cargo.module_model import ModuleModel
@@ -17,8 +19,8 @@ EXAMPLE = "python -m vehgen module steel_module.yaml --out module_cargo.yaml --p
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.add_argument("frame", metavar="FRAME", help="a frame file: dimensions, members, panels")
-    parser.add_argument("--out", metavar="FILE", type=Path, help="where to write the cargo file (default: FRAME_cargo.yaml here)")
-    parser.add_argument("--plot", metavar="FILE", type=Path, help="draw mesh and mode shape (.png, .svg or .pdf)")
+    add_out(parser, "FILE", "where to write the cargo file (default: FRAME_cargo.yaml here)")
+    parser.add_argument("--plot", metavar="FILE", help="draw mesh and mode shape (.png, .svg or .pdf)")
     parser.add_argument("--mass", choices=("total", "effective"), help="what sits on the spring (default: the file's)")
     parser.add_argument("--convergence", action="store_true", help="solve at four mesh sizes and compare")
     add_json(parser)
@@ -28,23 +30,24 @@ def run(options: argparse.Namespace) -> None:
     """Solve the module, print it and write its cargo file."""
     from vehgen.cargo.frame_file import load_frame
     from vehgen.cargo.module_model import cargo_text, convergence, module_model
-    from vehgen.codegen import write_text
-    from vehgen.errors import InputError
 
     frame = load_frame(options.frame)
-    path: Path = options.out or Path(f"{frame.path.stem}_cargo.yaml")
-    if path.resolve() == frame.path.resolve():
-        raise InputError(f"{path} is the frame file itself; choose another for --out")
+    path = Path(f"{frame.path.stem}_cargo.yaml") if options.out is None else file_named(options.out)
+    picture = None if options.plot is None else file_named(options.plot, "--plot")
+    written = [path] if picture is None else [path, picture]
+    check_results(written)
+    if picture is not None:
+        from vehgen.report import figure_format
+
+        figure_format(picture)
     model = module_model(frame, mass=options.mass)
     study = convergence(frame) if options.convergence else []
-    written = [path]
     write_text(path, cargo_text(model))
-    if options.plot:
+    if picture is not None:
         from vehgen.report import save_figure
         from vehgen.report.module_picture import plot_module
 
-        save_figure(plot_module(model), options.plot)
-        written.append(options.plot)
+        save_figure(plot_module(model), picture)
     if options.json:
         print_json({**_data(model), "convergence": [_level(item) for item in study], "files": [str(item) for item in written]})
         return
@@ -52,8 +55,7 @@ def run(options: argparse.Namespace) -> None:
     if study:
         _print_study(study)
     warn(model.warnings)
-    for item in written:
-        console().print(f"wrote {item}", highlight=False, markup=False)
+    tell_written(written)
 
 
 def _data(model: ModuleModel) -> dict[str, object]:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from vehgen.commands.terminal import add_json, console, print_json, print_table
+from vehgen.commands.results import add_out, folder_named, tell_written
+from vehgen.commands.terminal import add_json, print_json, print_table
+from vehgen.files import check_results
 
 EXAMPLE = "python -m vehgen sensitivity tractor5.yaml hump_2ms.yaml --out sensitivity"
 
@@ -15,22 +17,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("vehicle", metavar="VEHICLE", help="a vehicle file")
     parser.add_argument("run_file", metavar="RUN", help="a run file; it needs no recording")
     parser.add_argument("--parameters", metavar="P,Q", help="parameters to differentiate by (default: all with a range)")
-    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for the figures (default: VEHICLE_sensitivity)")
+    add_out(parser, "DIR", "folder for the figures (default: VEHICLE_sensitivity)")
     add_json(parser)
 
 
 def run(options: argparse.Namespace) -> None:
     """Compute sensitivity indices, print their ranking and draw them."""
     from vehgen.identify.sensitivity import sensitivity_indices
-    from vehgen.report.sensitivity_plots import save_sensitivity_figures
+    from vehgen.report.sensitivity_plots import save_sensitivity_figures, sensitivity_figure_files
     from vehgen.simulate import load_run
     from vehgen.vehicle import load_vehicle
 
     run_ = load_run(options.run_file, load_vehicle(options.vehicle))
     names = [part.strip() for part in options.parameters.split(",")] if options.parameters else None
+    folder = folder_named(options.out, f"{Path(options.vehicle).stem}_sensitivity")
+    check_results(sensitivity_figure_files([output.name for output in run_.outputs()], folder))
     found = sensitivity_indices(run_, names)
-    folder: Path = options.out or Path(f"{Path(options.vehicle).stem}_sensitivity")
-    folder.mkdir(parents=True, exist_ok=True)
     files = save_sensitivity_figures(found, run_.vehicle, folder)
     if options.json:
         channels = {
@@ -44,5 +46,4 @@ def run(options: argparse.Namespace) -> None:
     rows = [(name, *(f"{100 * value:.3f}" for value in found.relative[i])) for i, name in enumerate(found.names)]
     right = tuple(range(1, len(found.channels) + 1))
     print_table("change of each channel [% of its rms] for 1 % of a parameter", ("parameter", *found.channels), rows, right=right)
-    for path in files:
-        console().print(f"wrote {path}", highlight=False, markup=False)
+    tell_written(files)

@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from vehgen.commands.terminal import add_json, console, print_json, print_table, warn
+from vehgen.commands.results import add_out, file_named, tell_written
+from vehgen.commands.terminal import add_json, print_json, print_table, warn
+from vehgen.files import check_results
 
 EXAMPLE = "python -m vehgen simulate run.yaml --out response.csv --plot"
 
@@ -13,7 +15,7 @@ EXAMPLE = "python -m vehgen simulate run.yaml --out response.csv --plot"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.add_argument("run_file", metavar="RUN", help="a run file")
-    parser.add_argument("--out", metavar="CSV", type=Path, help="where to write the response (default: RUN_response.csv beside it)")
+    add_out(parser, "CSV", "where to write the response (default: RUN_response.csv beside it)")
     parser.add_argument("--plot", action="store_true", help="draw the response too, beside the CSV file")
     add_json(parser)
 
@@ -23,17 +25,18 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.simulate import load_run, simulate, write_csv
 
     run_ = load_run(options.run_file)
+    run_file = Path(options.run_file)
+    path = run_file.with_name(f"{run_file.stem}_response.csv") if options.out is None else file_named(options.out)
+    written = [path, path.with_suffix(".png")] if options.plot else [path]
+    check_results(written)
     response = simulate(run_)
-    path = options.out or Path(options.run_file).with_name(Path(options.run_file).stem + "_response.csv")
     write_csv(path, response)
-    written = [path]
     if options.plot:
         from vehgen.report import save_figure
         from vehgen.report.response_plot import plot_response
 
         channels = [(item.name, item.quantity, item.unit) for item in response.channels]
         figure = plot_response(response.time, channels, response.values[0])
-        written.append(path.with_suffix(".png"))
         save_figure(figure, written[-1])
     peaks = [(item.name, item.unit, float(abs(response.values[0, :, i]).max())) for i, item in enumerate(response.channels)]
     if options.json:
@@ -48,5 +51,4 @@ def run(options: argparse.Namespace) -> None:
         right=(2,),
     )
     warn(response.warnings)
-    for item in written:
-        console().print(f"wrote {item}", highlight=False, markup=False)
+    tell_written(written)

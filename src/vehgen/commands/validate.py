@@ -6,7 +6,9 @@ import argparse
 from itertools import pairwise
 from pathlib import Path
 
-from vehgen.commands.terminal import add_json, console, print_json, print_table
+from vehgen.commands.results import add_out, folder_named, tell_written
+from vehgen.commands.terminal import add_json, print_json, print_table
+from vehgen.files import check_results, write_text
 
 EXAMPLE = "python -m vehgen validate calibrated/tractor5_calibrated.yaml road_b.yaml --out validation"
 
@@ -17,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("runs", metavar="RUN", nargs="+", help="run files with recordings")
     parser.add_argument("--bands", metavar="A,B,C", help="edges of the frequency bands [Hz] (default: the paper's)")
     parser.add_argument("--astm", metavar="NAME", help="draw an ASTM D4169 truck spectrum beside the accelerations, e.g. 'level II'")
-    parser.add_argument("--out", metavar="DIR", type=Path, help="folder for results and figures (default: VEHICLE_validation)")
+    add_out(parser, "DIR", "folder for results and figures (default: VEHICLE_validation)")
     add_json(parser)
 
 
@@ -25,12 +27,11 @@ def run(options: argparse.Namespace) -> None:
     """Validate and write the table and figures."""
     import json
 
-    from vehgen.codegen import write_text
     from vehgen.errors import InputError, did_you_mean
     from vehgen.identify.trial import load_trials
     from vehgen.identify.validation import validate
     from vehgen.measure import SPECTRA
-    from vehgen.report.validation_plots import save_validation_figures
+    from vehgen.report.validation_plots import save_validation_figures, validation_figure_files
     from vehgen.vehicle import load_vehicle
 
     if options.astm is not None and options.astm not in SPECTRA:
@@ -43,9 +44,11 @@ def run(options: argparse.Namespace) -> None:
             raise InputError(f"--bands wants frequencies in Hz, e.g. 2,5,8,12; found {options.bands!r}") from None
         bands = tuple(pairwise(edges))
     vehicle = load_vehicle(options.vehicle)
-    found = validate(load_trials(options.runs, vehicle), bands)
-    folder: Path = options.out or Path(f"{Path(options.vehicle).stem}_validation")
-    folder.mkdir(parents=True, exist_ok=True)
+    trials = load_trials(options.runs, vehicle)
+    folder = folder_named(options.out, f"{Path(options.vehicle).stem}_validation")
+    files = [folder / "validation.json"]
+    check_results([*files, *validation_figure_files(folder)])
+    found = validate(trials, bands)
     data = {
         "vehicle": vehicle.name,
         "bands_hz": [list(band) for band in found.bands],
@@ -63,7 +66,6 @@ def run(options: argparse.Namespace) -> None:
         ],
         "worst_acceleration_error": None if found.worst != found.worst else found.worst,
     }
-    files = [folder / "validation.json"]
     write_text(files[0], json.dumps(data, indent=1))
     files += save_validation_figures(found, folder, options.astm)
     if options.json:
@@ -77,5 +79,4 @@ def run(options: argparse.Namespace) -> None:
             )
         ]
         print_table(f"{item.run}: {item.channel}", ("band [Hz]", "measured rms", "simulated rms", "error [%]"), rows, right=(1, 2, 3))
-    for path in files:
-        console().print(f"wrote {path}", highlight=False, markup=False)
+    tell_written(files)

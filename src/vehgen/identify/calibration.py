@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.codegen import write_text
 from vehgen.errors import InputError
+from vehgen.files import write_text
 from vehgen.identify.facts import Facts
 from vehgen.identify.genetic import GeneticSearch, SearchState
 from vehgen.identify.methods import Step, plan

@@ -11,6 +11,7 @@ from pathlib import Path, PurePosixPath
 from typing import IO
 
 from vehgen.errors import InputError
+from vehgen.files import note_read
 
 MAX_FILE = 64 * 2**20
 """Largest file of an export [bytes]: two hours of three axes at 200 Hz."""
@@ -45,6 +46,7 @@ def read_members(path: Path) -> dict[str, bytes]:
 
 
 def _file(path: Path) -> dict[str, bytes]:
+    note_read(path)
     with path.open("rb") as stream:
         start = stream.read(8)
         if start == OLE:
@@ -64,6 +66,7 @@ def _folder(path: Path) -> dict[str, bytes]:
         if file.suffix.lower() in (".xls", ".xlsx"):
             raise InputError(f"{file} {EXCEL}")
         if file.suffix.lower() in TEXT_SUFFIXES:
+            note_read(file)
             with file.open("rb") as stream:
                 data = _bounded(stream, str(file), MAX_FILE)
             total += len(data)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
+from vehgen.files import note_read
 from vehgen.measure.archive import MAX_FILE
 from vehgen.measure.export import ROTATION, SPEED, EpochMap, PhoneExport, Stream, acceleration_kind
 
@@ -37,6 +38,7 @@ def read_matlab(path: Path) -> PhoneExport:
     InputError
         Without mat-io, for a file that it cannot read, and for one without acceleration.
     """
+    note_read(path)
     if path.stat().st_size > MAX_FILE:
         raise InputError(f"{path} is larger than {MAX_FILE} bytes")
     with warnings.catch_warnings():

@@ -9,8 +9,8 @@ import os
 from pathlib import Path
 from typing import Any
 
-from vehgen.codegen import write_text
 from vehgen.errors import InputError
+from vehgen.files import write_text
 from vehgen.measure.importing import Imported, ImportedPhone, clock_difference
 from vehgen.simulate import load_run
 from vehgen.vehicle.loading import find_vehicle_file, models_folder
@@ -37,13 +37,24 @@ def write_import(imported: Imported, vehicle: str, out: Path) -> tuple[Path, Pat
     InputError
         When the folder cannot be written to.
     """
-    if out.suffix.lower() not in (".yaml", ".yml"):
-        raise InputError(f"--out names the run file to write, e.g. run.yaml; found {out.name!r}")
-    recording = out.with_suffix(".csv")
+    out, recording = import_files(out)
     write_text(recording, recording_text(imported))
     write_text(out, run_text(imported, vehicle, out))
     load_run(out)
     return out, recording
+
+
+def import_files(out: Path) -> tuple[Path, Path]:
+    """Return the run file of an import and its recording, which cannot bear the name of an export beside it: a.yaml, a_recording.csv.
+
+    Raises
+    ------
+    InputError
+        When `out` is not the name of a run file.
+    """
+    if out.suffix.lower() not in (".yaml", ".yml"):
+        raise InputError(f"--out names the run file to write, e.g. run.yaml; found {out.name!r}")
+    return out, out.with_name(f"{out.stem}_recording.csv")
 
 
 def recording_text(imported: Imported) -> str:
@@ -78,7 +89,7 @@ def run_text(imported: Imported, vehicle: str, out: Path) -> str:
     lines.append(f"road: [{{{plan.road.kind}: {{{pairs}}}}}]  # {where}")
     if plan.footprint:
         lines.append(f"footprint: {plan.footprint:.6g} m")
-    lines.append(f"recording: {_scalar(out.with_suffix('.csv').name)}")
+    lines.append(f"recording: {_scalar(import_files(out)[1].name)}")
     lines.append("sensors:")
     for phone in imported.phones:
         lines += [f"  # {_plain(text)}" for text in phone_notes(imported, phone)]

@@ -22,18 +22,22 @@ HIGHEST = 25.0
 def save_calibration_figures(outcome: Outcome, folder: Path) -> list[Path]:
     """Draw and save all figures of a calibration; returns their paths."""
     densities, histories = _curves(outcome)
-    figures = {
-        "psd.png": plot_psds(densities, (outcome.calibration.settings.band[0], HIGHEST)),
-        "histories.png": plot_histories(histories),
-        "convergence.png": plot_convergence(outcome),
-    }
+    figures = [
+        plot_psds(densities, (outcome.calibration.settings.band[0], HIGHEST)),
+        plot_histories(histories),
+        plot_convergence(outcome),
+    ]
     if any(item.given is not None for item in outcome.parameters):
-        figures["intervals.png"] = plot_intervals(outcome)
-    paths = []
-    for name, figure in figures.items():
-        paths.append(folder / name)
-        save_figure(figure, paths[-1])
+        figures.append(plot_intervals(outcome))
+    paths = calibration_figure_files(folder)[: len(figures)]
+    for path, figure in zip(paths, figures, strict=True):
+        save_figure(figure, path)
     return paths
+
+
+def calibration_figure_files(folder: Path) -> list[Path]:
+    """Return the files that :func:`save_calibration_figures` writes, the last only where intervals are known."""
+    return [folder / f"{what}.png" for what in ("psd", "histories", "convergence", "intervals")]
 
 
 def _curves(outcome: Outcome) -> tuple[list[Curve], list[Curve]]:

@@ -10,7 +10,6 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from vehgen.codegen import write_text
 from vehgen.diagnose.detection import band_gaps, run_gaps
 from vehgen.diagnose.estimates import estimate, estimates_by_run
 from vehgen.diagnose.fitting import Fit
@@ -18,6 +17,7 @@ from vehgen.diagnose.free_form import fit_free_form, recover, strongest
 from vehgen.diagnose.harmonics import distortions
 from vehgen.diagnose.naming import Round
 from vehgen.diagnose.pipeline import Diagnosis
+from vehgen.files import write_text
 from vehgen.report.comparison import plot_histories, plot_psds
 from vehgen.report.diagnosis_plots import curves, plot_places, plot_waterfall
 from vehgen.report.files import figure_svg, inline_svg

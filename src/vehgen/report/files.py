@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import io
-import os
 import re
-import tempfile
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,6 +13,7 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from vehgen.errors import InputError
+from vehgen.files import write_bytes
 
 FORMATS = ("png", "svg", "pdf")
 """What a figure can be saved as."""
@@ -29,29 +28,33 @@ def figure_svg(figure: Figure) -> str:
 
 
 def save_figure(figure: Figure, path: Path) -> None:
-    """Save a figure as its suffix says, under a temporary name first.
+    """Save a figure as its suffix says.
 
     Raises
     ------
     InputError
-        For a suffix other than those of FORMATS, or a folder that cannot be written to.
+        For a suffix other than those of FORMATS, or a file that cannot be written.
 
+    """
+    kind = figure_format(path)
+    stream = io.BytesIO()
+    with _reproducible():
+        figure.savefig(stream, format=kind, dpi=150, metadata={"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(kind))
+    write_bytes(path, stream.getvalue())
+
+
+def figure_format(path: Path) -> str:
+    """Return what a figure of this name is saved as, one of FORMATS.
+
+    Raises
+    ------
+    InputError
+        For another suffix.
     """
     kind = path.suffix.removeprefix(".").lower()
     if kind not in FORMATS:
         raise InputError(f"cannot save a figure as {path.name!r}: its name must end in {', '.join('.' + item for item in FORMATS)}")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror}") from error
-    try:
-        with os.fdopen(handle, "wb") as stream, _reproducible():
-            figure.savefig(stream, format=kind, dpi=150, metadata={"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(kind))
-        Path(name).replace(path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+    return kind
 
 
 def inline_svg(svg: str, name: str, title: str) -> str:

@@ -15,7 +15,7 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup, escape
 
 import vehgen
-from vehgen.codegen import write_text
+from vehgen.files import write_text
 from vehgen.mechanics import GRAVITY, LinearModel, StaticLoads
 from vehgen.report import equations
 from vehgen.report.drawing import draw_vehicle
@@ -49,9 +49,16 @@ def write_build_folder(
         texts["drawing.svg"] = figure_svg(draw_vehicle(model, values))
         texts["modes.svg"] = figure_svg(draw_modes(model, modes, values))
     texts["index.html"] = _page(model, values, modes, loads, warnings, texts)
-    for name, text in texts.items():
-        write_text(folder / name, text)
-    return [folder / name for name in texts]
+    written = build_files(folder, plots)
+    for path in written:
+        write_text(path, texts[path.name])
+    return written
+
+
+def build_files(folder: Path, plots: bool = True) -> list[Path]:
+    """Return the files that :func:`write_build_folder` writes."""
+    drawings = ("drawing.svg", "modes.svg") if plots else ()
+    return [folder / name for name in ("kernel.py", "equations.txt", "equations.tex", *drawings, "index.html")]
 
 
 def _page(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -21,12 +22,16 @@ DECADES = 6
 
 def save_sensitivity_figures(found: SensitivityIndices, vehicle: Vehicle, folder: Path) -> list[Path]:
     """Draw and save one figure a channel; returns their paths."""
-    paths = []
+    paths = sensitivity_figure_files(found.channels, folder)
     groups = group_parameters(found.names, vehicle)
-    for j, channel in enumerate(found.channels):
-        paths.append(folder / f"sensitivity_{channel}.png")
-        save_figure(plot_sensitivities(found, j, groups), paths[-1])
+    for j, path in enumerate(paths):
+        save_figure(plot_sensitivities(found, j, groups), path)
     return paths
+
+
+def sensitivity_figure_files(channels: Iterable[str], folder: Path) -> list[Path]:
+    """Return the files that :func:`save_sensitivity_figures` writes."""
+    return [folder / f"sensitivity_{channel}.png" for channel in channels]
 
 
 def group_parameters(names: tuple[str, ...], vehicle: Vehicle) -> dict[str, list[str]]:

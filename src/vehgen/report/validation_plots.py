@@ -29,16 +29,16 @@ def save_validation_figures(validation: Validation, folder: Path, astm: str | No
         frequency = np.geomspace(1.0, HIGHEST, 200)
         spectrum = SPECTRA[astm].at(frequency)
         reference = (f"{SPECTRA[astm].name} ({NOTE})", Curve("", astm, "acceleration", frequency, spectrum, spectrum))
-    figures = {
-        "validation_psd.png": plot_psds(densities, (0.3, HIGHEST), reference),
-        "validation_histories.png": plot_histories(histories),
-        "validation_bands.png": plot_band_rms(validation),
-    }
-    paths = []
-    for name, figure in figures.items():
-        paths.append(folder / name)
-        save_figure(figure, paths[-1])
+    paths = validation_figure_files(folder)
+    figures = (plot_psds(densities, (0.3, HIGHEST), reference), plot_histories(histories), plot_band_rms(validation))
+    for path, figure in zip(paths, figures, strict=True):
+        save_figure(figure, path)
     return paths
+
+
+def validation_figure_files(folder: Path) -> list[Path]:
+    """Return the files that :func:`save_validation_figures` writes."""
+    return [folder / f"validation_{what}.png" for what in ("psd", "histories", "bands")]
 
 
 def plot_band_rms(validation: Validation) -> Figure:

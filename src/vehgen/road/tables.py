@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError, Position, did_you_mean
+from vehgen.files import note_read
 
 
 def read_columns(path: Path, names: tuple[str, ...]) -> tuple[NDArray[np.float64], ...]:
@@ -19,6 +20,7 @@ def read_columns(path: Path, names: tuple[str, ...]) -> tuple[NDArray[np.float64
     InputError
         For a missing file or column, and at the line and column of anything that is not a finite number.
     """
+    note_read(path)
     try:
         with path.open(newline="", encoding="utf-8-sig") as stream:
             rows = list(csv.reader(stream))

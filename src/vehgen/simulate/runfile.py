@@ -11,6 +11,7 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from vehgen.errors import InputError, did_you_mean
+from vehgen.files import note_read
 from vehgen.mechanics.outputs import AXLE_QUANTITIES, LINK_QUANTITIES, POINT_QUANTITIES, ElementOutput, Output, Place, PointOutput
 from vehgen.simulate.quantities import Angle, Force, Frequency, Length, PositiveForce, PositiveLength, PositiveSpeed, PositiveTime
 from vehgen.vehicle.checks import check_values
@@ -266,6 +267,8 @@ def load_run(path: str | Path, vehicle: Vehicle | None = None) -> Run:
         if error.position is None:
             raise InputError(error.message, document.find(("vehicle",))) from error
         raise
+    if file.recording is not None:
+        note_read(path.parent / file.recording)  # no result may replace it, even where only its name is read
     run = Run(file, vehicle, path.parent, document)
     _check(run)
     return run

@@ -14,8 +14,9 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from vehgen.codegen import Drive, Kernel, KernelResult, write_text
+from vehgen.codegen import Drive, Kernel, KernelResult
 from vehgen.errors import InputError, ModelWarning, did_you_mean
+from vehgen.files import write_text
 from vehgen.mechanics import Channel, ElementOutput, LinearModel, Output, Place, derive, static_loads
 from vehgen.simulate.doubts import lift_off, spectral_nulls, step_too_coarse
 from vehgen.simulate.runfile import Run

@@ -12,6 +12,7 @@ from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from vehgen.errors import InputError, Position
+from vehgen.files import note_read
 
 MAX_BYTES = 1_000_000
 MAX_VALUES = 20_000
@@ -73,6 +74,7 @@ def read_document(path: Path) -> Located:
         For a missing, oversized, malformed or hostile file (aliases that multiply, custom tags, deep nesting, duplicate keys).
 
     """
+    note_read(path)
     try:
         size = path.stat().st_size
         if size > MAX_BYTES:
