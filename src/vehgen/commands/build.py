@@ -47,7 +47,7 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.report import write_build_folder
 
     folder = options.out or Path("build") / vehicle.name
-    written = write_build_folder(folder, model, values, modes, loads, kernel.source.text, findings, plots=not options.no_plots)
+    written = write_build_folder(folder, model, values, modes, loads, kernel.source, findings, plots=not options.no_plots)
     seconds = time.perf_counter() - start
     if options.json:
         print_json(_summary(model, values, modes, loads, findings, kernel.source.operation_counts, folder, written))
