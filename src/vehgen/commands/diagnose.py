@@ -74,8 +74,10 @@ def run(options: argparse.Namespace) -> None:
 
 
 def _show(found: Diagnosis, files: list[Path]) -> None:
+    from rich.text import Text
+
     verdict = found.verdict
-    console().print(f"[bold]{verdict.verdict.replace('_', ' ')}[/bold]: {verdict.reason}", highlight=False)
+    console().print(Text.assemble((verdict.verdict.replace("_", " "), "bold"), f": {verdict.reason}"))
     effect_rows = [
         (
             effect.name,

@@ -28,13 +28,14 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.cargo import compare_laden, laden_text, load_cargo
     from vehgen.errors import InputError
     from vehgen.vehicle import load_vehicle
+    from vehgen.vehicle.names import as_name
 
     vehicle, cargo = load_vehicle(options.vehicle), load_cargo(options.cargo)
     vehicle.values(options.parameter_set)
     path: Path = options.out or Path(f"{vehicle.name}_laden.yaml")
     if any(path.resolve() == other.resolve() for other in (*vehicle.files, cargo.path)):
         raise InputError(f"{path} is a file that the laden vehicle is made from; choose another for --out")
-    laden = _write(path, laden_text(vehicle, cargo, path.parent, path.stem))
+    laden = _write(path, laden_text(vehicle, cargo, path.parent, as_name(path.stem)))
     found = compare_laden(vehicle, laden, cargo.file.on, options.parameter_set)
     (before, after), (forward, up) = found.carrier, found.cog_shift
     if options.json:

@@ -18,9 +18,9 @@ class Bars:
 
         self._console = Console(stderr=True)
         self._bars = Progress(
-            TextColumn("{task.description}"),
+            TextColumn("{task.description}", markup=False),
             BarColumn(),
-            TextColumn("{task.completed:.0f}/{task.total:.0f}  {task.fields[best]}"),
+            TextColumn("{task.completed:.0f}/{task.total:.0f}  {task.fields[best]}", markup=False),
             TimeElapsedColumn(),
             console=self._console,
             disable=quiet or not self._console.is_terminal,
@@ -43,5 +43,5 @@ class Bars:
         self._bars.update(TaskID(self._tasks[label]), completed=done, total=total, best=best)
 
     def say(self, text: str) -> None:
-        """Print a line."""
-        self._console.print(text)
+        """Print a line as it is."""
+        self._console.print(text, markup=False)

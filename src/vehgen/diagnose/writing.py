@@ -14,6 +14,7 @@ from vehgen.diagnose.verdict import Verdict
 from vehgen.effects import Surveyor
 from vehgen.identify.problem import Problem
 from vehgen.vehicle.loading import extend_vehicle
+from vehgen.vehicle.names import MAX_TEXT, as_name
 from vehgen.vehicle.writing import base_reference, quantity
 
 
@@ -28,7 +29,7 @@ def effect_file(fit: Fit, base: Problem, verdict: Verdict, folder: Path, name: s
     data: dict[str, Any] = {
         "extends": base_reference(vehicle, folder),
         "name": name,
-        "title": f"{vehicle.title or vehicle.name}, with {fit.label}",
+        "title": f"{vehicle.title or vehicle.name}, with {fit.label}"[:MAX_TEXT],
         "parameters": {key: {"value": quantity(vehicle, key, value)} for key, value in values.items() if key in vehicle.parameters},
     }
     comments = [f"{verdict.verdict}: {verdict.reason}"]
@@ -64,5 +65,5 @@ def _merge(data: dict[str, Any], change: dict[str, Any]) -> None:
 
 
 def file_name(vehicle: str, fit: Fit) -> str:
-    """Return what a vehicle with the effects of a fit is called."""
-    return f"{vehicle}_with_{'_and_'.join(dict.fromkeys(item.effect.name for item in fit.effects))}"
+    """Return what a vehicle with the effects of a fit is called, cut to the length of a name."""
+    return as_name(f"{vehicle}_with_{'_and_'.join(dict.fromkeys(item.effect.name for item in fit.effects))}")

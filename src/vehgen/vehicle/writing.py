@@ -2,13 +2,40 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from vehgen.vehicle.loading import bundled_models
 from vehgen.vehicle.model import Vehicle
+from vehgen.vehicle.names import MAX_TEXT
 from vehgen.vehicle.units import NONE
+
+_PLAIN = re.compile(r"[A-Za-z_][A-Za-z0-9_./-]*")
+_WORDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}
+"""What YAML, of one version or another, reads as something else than a text."""
+
+
+def yaml_text(text: str) -> str:
+    """Return a text as a YAML scalar on one line that every reader of YAML reads back as it is, whatever it holds."""
+    if _PLAIN.fullmatch(text) and text.lower() not in _WORDS:
+        return text
+    if text.isprintable():
+        return "'" + text.replace("'", "''") + "'"
+    written = json.dumps(text, ensure_ascii=False)
+    return "".join(character if character.isprintable() else _escape(character) for character in written)
+
+
+def _escape(character: str) -> str:
+    code = ord(character)
+    return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+
+
+def yaml_title(text: str) -> str:
+    """Return free text as a YAML scalar, its white space evened out, cut to what a file may hold."""
+    return yaml_text(" ".join(text.split())[:MAX_TEXT])
 
 
 def quantity(vehicle: Vehicle, name: str, value: float) -> str:
@@ -54,12 +81,13 @@ def variant_text(
         A comment after a parameter's line, by name.
     """
     lines = [f"# {' '.join(comment.split())}" for comment in comments]
-    lines += [f"extends: {_quoted(base_reference(vehicle, folder))}", f"name: {name}", f"title: {_quoted(title)}", "parameters:"]
+    lines += [
+        f"extends: {yaml_text(base_reference(vehicle, folder))}",
+        f"name: {yaml_text(name)}",
+        f"title: {yaml_title(title)}",
+        "parameters:",
+    ]
     for parameter, value in values.items():
         note = (notes or {}).get(parameter, "")
         lines.append(f"  {parameter}: {{value: {quantity(vehicle, parameter, value)}}}{f'  # {note}' if note else ''}")
     return "\n".join(lines) + "\n"
-
-
-def _quoted(text: str) -> str:
-    return "'" + text.replace("'", "''") + "'"
