@@ -8,13 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehgen.cargo import load_cargo
+from vehgen.cargo.frame_file import load_frame
 from vehgen.effects.entry import load_effects
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.simulate import load_run
 from vehgen.vehicle import load_vehicle, parse_vehicle
 from vehgen.vehicle.document import read_text
 from vehgen.vehicle.names import MAX_TEXT, as_name, is_column, is_identifier, is_name, unprintable
-from vehgen.vehicle.writing import variant_text, yaml_text, yaml_title
+from vehgen.vehicle.writing import variant_text, yaml_document, yaml_text, yaml_title
 
 GOOD_NAMES = ("a", "_", "7", "DHCM-1-2", "v1.2_b-c", "挂车", "été", "Ωmega", "x" * 64, "٣")
 BAD_NAMES = (
@@ -90,6 +91,24 @@ effects:
       k3: {meaning: cubic stiffness, unit: N/m^3, low: 1e4, high: 1e9, starts: [1e7]}
 """
 
+FRAME = """\
+name: module
+title: a small box
+source: nowhere
+on: semitrailer
+behind: fifth_wheel
+front: 0.5 m
+size: {length: 2.4 m, width: 1.2 m, height: 1.0 m}
+materials:
+  board: {E: 8 GPa, nu: 0.25, density: 700 kg/m^3}
+sections:
+  joist: {bar: {height: 50 mm, width: 10 mm}}
+panels:
+  floor: {layers: [{material: board, thickness: 20 mm}]}
+mesh: {size: 0.2 m}
+damping: [{frequency: 10 Hz, ratio: 0.02}, {frequency: 50 Hz, ratio: 0.02}]
+"""
+
 # file, line with the name in it, the name
 PLACES = [
     (VEHICLE, "name: rig", "rig"),
@@ -107,10 +126,13 @@ PLACES = [
     (RUN, "  L1: {body", "L1"),
     (RUN, "outputs: {load", "load"),
     (CARGO, "name: box", "box"),
+    (FRAME, "name: module", "module"),
+    (FRAME, "  board: {E", "board"),
+    (FRAME, "  joist: {bar", "joist"),
     (EFFECTS, "  stiffer:", "stiffer"),
     (EFFECTS, "      k3: {", "k3"),
 ]
-LOADERS = {VEHICLE: load_vehicle, RUN: load_run, CARGO: load_cargo, EFFECTS: load_effects}
+LOADERS = {VEHICLE: load_vehicle, RUN: load_run, CARGO: load_cargo, FRAME: load_frame, EFFECTS: load_effects}
 
 
 def refusal(tmp_path, text, changed):
@@ -148,7 +170,7 @@ def test_a_bad_name_is_refused_where_it_stands(tmp_path, text, line, old, bad):
 
 
 def test_every_text_of_a_file_is_checked(tmp_path):
-    for text in (VEHICLE, RUN, CARGO, EFFECTS):
+    for text in LOADERS:
         for word in ("title: ", "meaning: ", "source: "):
             if word not in text:
                 continue
@@ -203,18 +225,28 @@ def test_errors_quote_little_of_a_file_and_escape_it():
     assert len(str(caught.value)) < 300
 
 
+TEXTS = st.text(alphabet=st.characters(exclude_categories=("Cs",)), max_size=30).filter(lambda text: unprintable(text) is None)
+LEAVES = st.one_of(TEXTS, st.integers(-(10**9), 10**9), st.floats(allow_nan=False, allow_infinity=False), st.booleans(), st.none())
+TREES = st.recursive(LEAVES, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(TEXTS, inner, max_size=3), max_leaves=12)
+
+
+@given(st.dictionaries(TEXTS, TREES, min_size=1, max_size=4))
+def test_whole_files_that_vehgen_writes_read_back(data):
+    assert read_text(yaml_document(data), "<text>").plain() == data
+
+
 def read_back(scalar):
     return read_text(f"- {scalar}\n- {{key: {scalar}, other: 1}}\n", "<text>").plain()
 
 
-@given(st.text(alphabet=st.characters(exclude_categories=("Cs",))).filter(lambda text: unprintable(text) is None))
+@given(TEXTS)
 def test_what_vehgen_writes_as_yaml_reads_back(text):
     assert read_back(yaml_text(text)) == [text, {"key": text, "other": 1}]
     assert read_back(yaml_title(text))[0] == " ".join(text.split())
 
 
 @pytest.mark.parametrize(
-    "text", [ODD, "null", "true", "NO", "1e3", "0x10", "~", "", " a ", "2020-01-01", ".nan", "a: b", "a #b", "- a", "'"]
+    "text", [ODD, "null", "true", "NO", "1e3", "0x10", "~", "", " a ", "2020-01-01", ".nan", "a: b", "a #b", "- a", "'", "?0"]
 )
 def test_words_that_yaml_reads_as_something_else_read_back(text):
     assert read_back(yaml_text(text)) == [text, {"key": text, "other": 1}]

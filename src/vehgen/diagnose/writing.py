@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 from typing import Any
-
-from ruamel.yaml import YAML
 
 from vehgen.diagnose.estimates import estimate
 from vehgen.diagnose.fitting import Fit
@@ -15,7 +12,7 @@ from vehgen.effects import Surveyor
 from vehgen.identify.problem import Problem
 from vehgen.vehicle.loading import extend_vehicle
 from vehgen.vehicle.names import MAX_TEXT, as_name
-from vehgen.vehicle.writing import base_reference, quantity
+from vehgen.vehicle.writing import base_reference, quantity, yaml_document
 
 
 def effect_file(fit: Fit, base: Problem, verdict: Verdict, folder: Path, name: str) -> str:
@@ -47,12 +44,7 @@ def effect_file(fit: Fit, base: Problem, verdict: Verdict, folder: Path, name: s
         for key, item in effect.parameters.items():
             interval = "" if item.interval is None else f", 90 % interval {item.interval[0]:.5g} to {item.interval[1]:.5g}"
             comments.append(f"{effect.name} at {effect.place}: {key} = {item.value:.5g} {item.unit}{interval}")
-    stream = io.StringIO()
-    writer = YAML()
-    writer.default_flow_style = None
-    writer.width = 120
-    writer.dump(data, stream)
-    return "".join(f"# {' '.join(line.split())}\n" for line in comments) + stream.getvalue()
+    return "".join(f"# {' '.join(line.split())}\n" for line in comments) + yaml_document(data)
 
 
 def _merge(data: dict[str, Any], change: dict[str, Any]) -> None:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.errors import InputError, Position, did_you_mean, shown
+from vehgen.errors import InputError, Position, did_you_mean, shortened, shown
 from vehgen.measure.export import PITCH_RATE, SPEED, VERTICAL, PhoneExport, Stream
 from vehgen.vehicle.units import ACCELERATION, FREQUENCY, TIME, Dimension, parse_unit
 from vehgen.vehicle.units import SPEED as SPEED_DIMENSION
@@ -77,7 +77,7 @@ def read_table(data: bytes, file: str, export: str = "") -> Table:
     InputError
         For bytes that are no text, no header line, no row, or no table.
     """
-    name = f"{export}: {file}" if export and not export.endswith(file) else export or file
+    name = f"{export}: {shortened(file)}" if export and not export.endswith(file) else export or shortened(file)
     for encoding in ("utf-8-sig", "utf-16") if data[:2] in (b"\xff\xfe", b"\xfe\xff") else ("utf-8-sig", "cp1252"):
         try:
             text = data.decode(encoding)

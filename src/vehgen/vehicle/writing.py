@@ -5,15 +5,17 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from vehgen.vehicle.loading import bundled_models
 from vehgen.vehicle.model import Vehicle
 from vehgen.vehicle.names import MAX_TEXT
 from vehgen.vehicle.units import NONE
 
-_PLAIN = re.compile(r"[A-Za-z_][A-Za-z0-9_./-]*")
+_PLAIN = re.compile(r"[A-Za-z_][A-Za-z0-9_./-]*|-?\d[\d.]*(?:e[+-]?\d+)? [A-Za-z](?:[A-Za-z0-9^/ -]*[A-Za-z0-9])?", re.ASCII)
+"""Words, paths and quantities such as `1.5 kg m^2`, which need no quotes."""
 _WORDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}
 """What YAML, of one version or another, reads as something else than a text."""
 
@@ -36,6 +38,30 @@ def _escape(character: str) -> str:
 def yaml_title(text: str) -> str:
     """Return free text as a YAML scalar, its white space evened out, cut to what a file may hold."""
     return yaml_text(" ".join(text.split())[:MAX_TEXT])
+
+
+def yaml_document(data: Mapping[str, Any]) -> str:
+    """Return mappings, lists, texts and numbers as a YAML file that reads back as they are; innermost mappings stand on one line."""
+    return "".join(f"{line}\n" for line in _block(data, ""))
+
+
+def _block(data: Mapping[str, Any], indent: str) -> Iterator[str]:
+    for key, value in data.items():
+        if isinstance(value, Mapping) and any(isinstance(item, Mapping | list | tuple) for item in value.values()):
+            yield f"{indent}{yaml_text(key)}:"
+            yield from _block(value, f"{indent}  ")
+        else:
+            yield f"{indent}{yaml_text(key)}: {_inline(value)}"
+
+
+def _inline(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{yaml_text(key)}: {_inline(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(_inline, value)) + "]"
+    if isinstance(value, str):
+        return yaml_text(value)
+    return json.dumps(value, allow_nan=False)
 
 
 def quantity(vehicle: Vehicle, name: str, value: float) -> str:
