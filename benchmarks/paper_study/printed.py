@@ -17,7 +17,11 @@ FREQUENCY = np.arange(0.3, 30.001, 0.05)
 """Where spectra are drawn [Hz]."""
 RESOLUTION = 0.25
 """Half width [Hz] of the triangle that a spectrum is averaged over, about that of Welch's method with segments of 4 s."""
-SETS = {"truck": ("SHCM-1", "SHCM-2", "DHCM-1&2"), "sedan": ("SHCM-M", "SHCM-F", "SHCM-R", "DHCM-F&R")}
+SETS = {
+    "truck": {"SHCM-1": "SHCM-1", "SHCM-2": "SHCM-2", "DHCM-1&2": "DHCM-1-2"},
+    "sedan": {"SHCM-M": "SHCM-M", "SHCM-F": "SHCM-F", "SHCM-R": "SHCM-R", "DHCM-F&R": "DHCM-F-R"},
+}
+"""The paper's rows, and the parameter sets of the bundled models that hold them."""
 TEST_PLACE = {
     "truck": Place(name="test place", body="semitrailer", behind="fifth_wheel", distance=5.76),
     "sedan": Place(name="test place", body="body", behind="front", distance=1.70),
@@ -48,8 +52,8 @@ def printed_vehicles(rig: Rig) -> list[Printed]:
     vehicle = load_vehicle(rig.model)
     model = derive(vehicle, [PointOutput("a", TEST_PLACE[rig.kind], "acceleration")])
     found = []
-    for name in SETS[rig.kind]:
-        values = model.values(overrides=vehicle.values(name))
+    for name, parameter_set in SETS[rig.kind].items():
+        values = model.values(overrides=vehicle.values(parameter_set))
         late = model.wheel_offsets(values) / rig.cruise
         gains = frequency_response(model.numeric(values), fine)[0][:, 0, : len(late)]
         total = (gains * np.exp(-2j * np.pi * fine[:, None] * late)).sum(axis=1)

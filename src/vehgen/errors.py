@@ -1,4 +1,7 @@
-"""Errors meant for users: one line that says where, what is wrong and what would be right."""
+"""Errors meant for users: one line that says where, what is wrong and what would be right.
+
+What they quote of a file is a stranger's text: it is cut to a few words and escaped, so that it can neither fill nor command a terminal.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,31 @@ import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+
+MAX_SHOWN = 60
+"""So many characters of a stranger's text are quoted at most."""
+MAX_MESSAGE = 2000
+BIDIRECTIONAL = frozenset("\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
+"""Characters that change the direction of the text after them, and so can make a line read as something else."""
+
+
+def escaped(text: str) -> str:
+    """Return a text with every character that does not print as itself (line ends too) written as in a Python string."""
+    return "".join(character if character.isprintable() else ascii(character)[1:-1] for character in text)
+
+
+def shortened(text: str, limit: int = MAX_SHOWN) -> str:
+    """Return an escaped text, cut where it is longer than `limit` characters."""
+    plain = escaped(text[: limit + 1])
+    return plain if len(text) <= limit and len(plain) <= limit else f"{plain[: limit - 3]}..."
+
+
+def shown(text: object, limit: int = MAX_SHOWN) -> str:
+    """Return what a file holds in quotes, escaped, cut where it is longer than `limit` characters."""
+    quoted = repr(text[: limit + 1] if isinstance(text, str) else text)
+    if len(quoted) <= limit + 2:
+        return quoted
+    return f"{quoted[: limit - 2]}...{quoted[-1]}"
 
 
 @dataclass(frozen=True)
@@ -35,9 +63,9 @@ class InputError(Exception):
     """
 
     def __init__(self, message: str, position: Position | None = None) -> None:
-        self.message = message
+        self.message = shortened(message, MAX_MESSAGE)
         self.position = position
-        super().__init__(f"{position}: {message}" if position else message)
+        super().__init__(f"{escaped(str(position))}: {self.message}" if position else self.message)
 
 
 class ModelWarning(UserWarning):
@@ -51,10 +79,10 @@ class CacheWarning(UserWarning):
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Say which known names are nearest to `word`, or list what is allowed."""
     known = list(known)
-    near = difflib.get_close_matches(word, known, n=3, cutoff=0.6)
+    near = difflib.get_close_matches(word[:MAX_MESSAGE], known, n=3, cutoff=0.6)
     if near:
-        return "did you mean " + " or ".join(repr(name) for name in near) + "?"
+        return "did you mean " + " or ".join(shown(name) for name in near) + "?"
     if not known:
         return "none is declared"
-    listed = ", ".join(sorted(known)[:20]) + (", ..." if len(known) > 20 else "")
+    listed = ", ".join(shortened(name) for name in sorted(known)[:20]) + (", ..." if len(known) > 20 else "")
     return f"known: {listed}"

@@ -63,7 +63,9 @@ def test_build_writes_its_folder_and_nothing_else(work: Path, capsys: pytest.Cap
     assert found["warnings"] == []
     assert found["folder"] == str(Path("build") / "quarter_car")
     assert written(work) == {f"build/quarter_car/{name}" for name in found["files"]}
-    assert {"kernel.py", "equations.txt", "equations.tex", "drawing.svg", "modes.svg", "index.html"} <= set(found["files"])
+    assert {"kernel.py", "kernel_legend.txt", "equations.txt", "equations.tex", "drawing.svg", "modes.svg", "index.html"} <= set(
+        found["files"]
+    )
 
 
 def test_build_without_plots_into_a_chosen_folder_twice_the_same(work: Path, capsys: pytest.CaptureFixture[str]):

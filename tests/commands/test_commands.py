@@ -22,7 +22,7 @@ from vehgen.vehicle.schema import vehicle_schema
         # Wu & Li 2023, Table A2 row DHCM-1&2 and the truck of its Sect. 2.3; computed independently (shared/reference/wu_li_2023.json)
         (["tractor5"], [1.243784729, 2.710665116, 3.238006833, 11.99706999, 13.04757213, 16.65226161, 17.0339614, 19.55492624]),
         (
-            ["tractor5.yaml", "--set", "DHCM-1&2"],
+            ["tractor5.yaml", "--set", "DHCM-1-2"],
             [1.243784729, 2.710665116, 3.238006833, 11.99706999, 13.04757213, 16.65226161, 17.0339614, 19.55492624],
         ),
         (
@@ -142,7 +142,7 @@ def test_axles_carry_the_whole_weight_of_every_bundled_model(name: str, capsys: 
 def test_a_set_changes_the_numbers(capsys: pytest.CaptureFixture[str]):
     plain, front = run_json(capsys, "modes", "sedan2"), run_json(capsys, "modes", "sedan2", "--set", "SHCM-F")
     assert plain != front
-    assert run_json(capsys, "modes", "sedan2", "--set", "DHCM-F&R") == plain
+    assert run_json(capsys, "modes", "sedan2", "--set", "DHCM-F-R") == plain
 
 
 def test_models(capsys: pytest.CaptureFixture[str]):
@@ -151,7 +151,7 @@ def test_models(capsys: pytest.CaptureFixture[str]):
     assert [item["name"] for item in found["models"]] == sorted(bundled_models())
     assert all(list(item) == ["name", "title", "sets", "source"] for item in found["models"])
     assert all(item["title"] and item["source"] for item in found["models"])
-    assert {item["name"]: item["sets"] for item in found["models"]}["tractor5"] == ["SHCM-1", "SHCM-2", "DHCM-1&2", "sensitivity"]
+    assert {item["name"]: item["sets"] for item in found["models"]}["tractor5"] == ["SHCM-1", "SHCM-2", "DHCM-1-2", "sensitivity"]
 
 
 def test_schema(capsys: pytest.CaptureFixture[str]):

@@ -26,7 +26,7 @@ BAD_VEHICLES = {
     ),
     "empty": ("", "1:1: the file is empty"),
     "circle": ("name: a\nextends: bad.yaml\n", "2:10: circular `extends`: bad.yaml -> bad.yaml"),
-    "folder": ("name: ../../up\nextends: quarter_car\n", "1:7: '../../up' cannot name a vehicle"),
+    "folder": ("name: ../../up\nextends: quarter_car\n", "1:7: '../../up' cannot be a name"),
 }
 
 

@@ -127,7 +127,7 @@ def test_hinges_and_tyres_carry_entries_too(tmp_path):
         ("force: k3*d^3", "force: 1 kN/m * d", "8:7", "'k3' is used nowhere"),
         ("force: k3*d^3", "force: __import__('os')", "6:12", "underscore"),
         ("  stiffer:", "  dry_friction:", "2:3", "named 'dry_friction' already"),
-        ("  stiffer:", "  my spring:", "2:3", "is no name"),
+        ("  stiffer:", "  my spring:", "2:3", "'my spring' cannot be a name"),
         ("      k3: {", "      v: {", "8:7", "travel or rate"),
         ("unit: N/m^3", "unit: N/parsec^3", "8:18", "unknown unit"),
         ("low: 1e4", "low: 1e10", "8:30", "`low` must be below `high`"),

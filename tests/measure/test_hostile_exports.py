@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from vehgen.errors import InputError
 from vehgen.measure import ColumnMap, read_export
-from vehgen.measure.csv_table import read_column_map
+from vehgen.measure.csv_table import read_column_map, read_table
 from vehgen.measure.locating import find_speed
 from vehgen.measure.options import PhoneSensor, Plan, read_hump, read_sensor
 from vehgen.measure.phone import make_phone
@@ -105,3 +105,11 @@ def test_options(text):
         for given_text in (text, "L1:" + text):
             with suppress(InputError):
                 read(given_text)
+
+
+def test_what_a_file_in_an_archive_is_called_does_not_command_the_terminal():
+    name = "\x1b]0;pwned\x07\u202e" + "x" * 1000 + ".csv"
+    table = read_table(b"a,b\n1,2\n", name, "export.zip")
+    assert table.file == name
+    assert table.name.isprintable()
+    assert len(table.name) < 100

@@ -61,7 +61,7 @@ class Page(HTMLParser):
 
 def build(folder, name, warnings=(), plots=True):
     m = model(name)
-    return write_build_folder(folder, m, m.values(), natural_modes(m), static_loads(m), write_kernel(m).text, warnings, plots=plots)
+    return write_build_folder(folder, m, m.values(), natural_modes(m), static_loads(m), write_kernel(m), warnings, plots=plots)
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +80,7 @@ def pages(tmp_path_factory):
 
 def test_the_folder_holds_what_it_should(tmp_path):
     written = build(tmp_path / "deep" / "folder", "quarter_car")
-    names = {"kernel.py", "equations.txt", "equations.tex", "drawing.svg", "modes.svg", "index.html"}
+    names = {"kernel.py", "kernel_legend.txt", "equations.txt", "equations.tex", "drawing.svg", "modes.svg", "index.html"}
     assert {path.name for path in written} == names
     assert {path.name for path in (tmp_path / "deep" / "folder").iterdir()} == names
     assert (tmp_path / "deep" / "folder" / "kernel.py").read_text(encoding="utf-8") == write_kernel(model("quarter_car")).text
@@ -88,7 +88,7 @@ def test_the_folder_holds_what_it_should(tmp_path):
 
 def test_plots_can_be_left_out(tmp_path):
     written = build(tmp_path, "quarter_car", plots=False)
-    assert {path.name for path in written} == {"kernel.py", "equations.txt", "equations.tex", "index.html"}
+    assert {path.name for path in written} == {"kernel.py", "kernel_legend.txt", "equations.txt", "equations.tex", "index.html"}
     assert "<svg" not in (tmp_path / "index.html").read_text(encoding="utf-8")
 
 
@@ -182,7 +182,7 @@ def test_force_laws_and_ranges_are_shown(pages):
 def test_a_value_outside_its_range_is_marked(tmp_path):
     m = model("tractor5")
     values = m.values(overrides={"b1": 2.5})
-    write_build_folder(tmp_path, m, values, natural_modes(m, values), static_loads(m, values), "", plots=False)
+    write_build_folder(tmp_path, m, values, natural_modes(m, values), static_loads(m, values), write_kernel(m), plots=False)
     assert "0.8 to 2.2 (outside)" in (tmp_path / "index.html").read_text(encoding="utf-8")
 
 
@@ -196,7 +196,7 @@ def test_a_vehicle_file_that_has_gone_does_not_stop_the_page(tmp_path):
     path.write_text("extends: quarter_car.yaml\nname: gone\n")
     m = derive(load_vehicle(path))
     path.unlink()
-    write_build_folder(tmp_path / "out", m, m.values(), natural_modes(m), static_loads(m), "", plots=False)
+    write_build_folder(tmp_path / "out", m, m.values(), natural_modes(m), static_loads(m), write_kernel(m), plots=False)
     assert "gone.yaml: no longer there" in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
 
 

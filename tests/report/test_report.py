@@ -18,7 +18,7 @@ def build(vehicle, folder, plots=True):
     model = derive(vehicle)
     values = model.values()
     return write_build_folder(
-        folder, model, values, natural_modes(model, values), static_loads(model, values), write_kernel(model).text, ["look out"], plots
+        folder, model, values, natural_modes(model, values), static_loads(model, values), write_kernel(model), ["look out"], plots
     )
 
 
@@ -60,7 +60,15 @@ def test_latex_names_everything():
 
 def test_the_page_is_whole_and_fetches_nothing(tmp_path):
     written = build(load_vehicle("tractor5_module"), tmp_path / "out")
-    assert {path.name for path in written} == {"kernel.py", "equations.txt", "equations.tex", "drawing.svg", "modes.svg", "index.html"}
+    assert {path.name for path in written} == {
+        "kernel.py",
+        "kernel_legend.txt",
+        "equations.txt",
+        "equations.tex",
+        "drawing.svg",
+        "modes.svg",
+        "index.html",
+    }
     page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
     for part in ("semitrailer pitch", "look out", "module heave", "fifth_wheel", "SHA-256", "<svg", "<math"):
         assert part in page

@@ -24,6 +24,7 @@ from vehgen.errors import InputError
 from vehgen.vehicle.document import Located, read_document
 from vehgen.vehicle.loading import validate
 from vehgen.vehicle.model import Noun
+from vehgen.vehicle.names import FreeText, Identifier
 
 
 class RigidCargo(Noun):
@@ -91,9 +92,9 @@ class ModuleCargo(Noun):
 class CargoFile(Noun):
     """A cargo as its file declares it, quantities in SI units."""
 
-    name: str | None = Field(None, pattern=r"^[A-Za-z][A-Za-z0-9_]*$", description="of the body it becomes (default: cargo, or module)")
-    title: str = ""
-    source: str = ""
+    name: Identifier | None = Field(None, description="of the body it becomes (default: cargo, or module)")
+    title: FreeText = ""
+    source: FreeText = ""
     on: str = Field(description="the body that carries it")
     behind: str = Field(description="a hinge or axle of that body, or the body itself (its COG)")
     rigid: RigidCargo | None = None

@@ -13,10 +13,11 @@ from pydantic import Field
 from vehgen.cargo.panels import Layer, equivalent_layer
 from vehgen.cargo.quantities import DampingRatio, Density, Distance, Frequency, Modulus, Poisson, PositiveLength
 from vehgen.cargo.sections import SectionEntry
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.vehicle.document import Located, read_document
 from vehgen.vehicle.loading import validate
 from vehgen.vehicle.model import Noun
+from vehgen.vehicle.names import FreeText, Identifier, Name
 
 MIN_SIDE, MAX_SIDE = 0.1, 100.0
 
@@ -118,16 +119,16 @@ class MeshEntry(Noun):
 class FrameFile(Noun):
     """A building module as its file declares it, quantities in SI units."""
 
-    name: str | None = Field(None, pattern=r"^[A-Za-z][A-Za-z0-9_]*$")
-    title: str = ""
-    source: str = ""
+    name: Identifier | None = None
+    title: FreeText = ""
+    source: FreeText = ""
     on: str
     behind: str
     front: Distance
     base: Distance = 0.0
     size: BoxSize
-    materials: dict[str, Material]
-    sections: dict[str, SectionEntry] = Field(default_factory=dict)
+    materials: dict[Name, Material]
+    sections: dict[Name, SectionEntry] = Field(default_factory=dict)
     frame: Frame = Field(default_factory=Frame)
     panels: Panels = Field(default_factory=Panels)
     mesh: MeshEntry
@@ -182,7 +183,7 @@ def _check(frame: FrameModule) -> None:
 
     def known(kind: str, name: str, allowed: dict[str, Material] | dict[str, SectionEntry], *place: str | int) -> None:
         if name not in allowed:
-            raise InputError(f"no {kind} {name!r}; {did_you_mean(name, allowed)}", document.find(place))
+            raise InputError(f"no {kind} {shown(name)}; {did_you_mean(name, allowed)}", document.find(place))
 
     first, second = file.damping
     place = document.find(("damping",))

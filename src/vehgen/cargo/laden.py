@@ -10,9 +10,10 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from vehgen.cargo.cargo_file import Cargo, ModuleCargo, RigidCargo
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.vehicle.model import Vehicle
-from vehgen.vehicle.writing import base_reference
+from vehgen.vehicle.names import MAX_NAME, is_identifier
+from vehgen.vehicle.writing import base_reference, yaml_text, yaml_title
 
 Definition = tuple[str, float, str, str]
 """A new parameter: its name without prefix, value [SI], unit and meaning."""
@@ -45,14 +46,14 @@ def laden_text(vehicle: Vehicle, cargo: Cargo, folder: Path, name: str) -> str:
     title = cargo.file.title or ("rigid cargo" if isinstance(load, RigidCargo) else "module")
     empty = (vehicle.title or vehicle.name).removesuffix(", unladen")
     lines = [
-        f"extends: {_quoted(base_reference(vehicle, folder))}",
-        f"name: {_quoted(name)}",
-        f"title: {_quoted(f'{empty}, laden: {title}')}",
-        *([f"source: {_quoted(cargo.file.source)}"] if cargo.file.source else []),
+        f"extends: {yaml_text(base_reference(vehicle, folder))}",
+        f"name: {yaml_text(name)}",
+        f"title: {yaml_title(f'{empty}, laden: {title}')}",
+        *([f"source: {yaml_title(cargo.file.source)}"] if cargo.file.source else []),
         "parameters:",
     ]
     for item, value, unit, meaning in definitions:
-        lines.append(f"  {prefix}{item}: {{value: {value!r} {unit}, meaning: {_quoted(meaning)}}}")
+        lines.append(f"  {prefix}{item}: {{value: {value!r} {unit}, meaning: {yaml_title(meaning)}}}")
     if isinstance(load, RigidCargo):
         lines += _rigid_bodies(prefix, body, title, cargo.file.on, x, z, load.pitch_inertia is not None)
     else:
@@ -64,7 +65,7 @@ def _reference(vehicle: Vehicle, cargo: Cargo) -> tuple[str, str]:
     """Return what the cargo's distances start from, as expressions: x ahead of and z above the carrier's COG."""
     on, behind = cargo.file.on, cargo.file.behind
     if on not in vehicle.bodies:
-        raise InputError(f"{vehicle.name} has no body {on!r}; {did_you_mean(on, vehicle.bodies)}", cargo.document.find(("on",)))
+        raise InputError(f"{vehicle.name} has no body {shown(on)}; {did_you_mean(on, vehicle.bodies)}", cargo.document.find(("on",)))
     hinges = {name: hinge.points[on] for name, hinge in vehicle.hinges.items() if on in hinge.points}
     axles = {name: axle for name, axle in vehicle.axles.items() if axle.body == on}
     if behind in hinges:
@@ -75,7 +76,7 @@ def _reference(vehicle: Vehicle, cargo: Cargo) -> tuple[str, str]:
         return "0", "0"
     there = "; it is on another body" if behind in {**vehicle.hinges, **vehicle.axles, **vehicle.bodies} else ""
     raise InputError(
-        f"{behind!r} is no hinge or axle of {on!r}, nor {on!r} itself{there}; {did_you_mean(behind, [*hinges, *axles, on])}",
+        f"{shown(behind)} is no hinge or axle of {on!r}, nor {on!r} itself{there}; {did_you_mean(behind, [*hinges, *axles, on])}",
         cargo.document.find(("behind",)),
     )
 
@@ -83,7 +84,11 @@ def _reference(vehicle: Vehicle, cargo: Cargo) -> tuple[str, str]:
 def _body_name(vehicle: Vehicle, cargo: Cargo) -> str:
     taken = {*vehicle.bodies, *vehicle.hinges, *vehicle.axles, *vehicle.links}
     if cargo.file.name is not None:
-        clash = next((name for name in _names(cargo.file.name, cargo.load) if name in taken), None)
+        names = _names(cargo.file.name, cargo.load)
+        if not all(is_identifier(name) for name in names):
+            message = f"the cargo's parts would be called {' and '.join(names)}, longer than {MAX_NAME} characters; choose a shorter name"
+            raise InputError(message, cargo.document.find(("name",)))
+        clash = next((name for name in names if name in taken), None)
         if clash is not None:
             message = f"{vehicle.name} has a part named {clash!r} already; choose another name for the cargo"
             raise InputError(message, cargo.document.find(("name",)))
@@ -145,33 +150,29 @@ def _rigid_bodies(prefix: str, body: str, title: str, on: str, x: str, z: str, h
     return [
         "bodies:",
         f"  {body}:",
-        f"    title: {_quoted(title)}",
+        f"    title: {yaml_title(title)}",
         f"    mass: {prefix}mass",
         f"    size: {{length: {prefix}length, height: {prefix}height}}",
         *([f"    pitch_inertia: {prefix}pitch_inertia"] if has_inertia else []),
         "    motions: []",
-        f"    carried_by: {{body: {on}, x: '{x} - {prefix}front - {prefix}length/2', z: '{z} + {prefix}base + {prefix}height/2'}}",
+        f"    carried_by: {{body: {yaml_text(on)}, x: '{x} - {prefix}front - {prefix}length/2', "
+        f"z: '{z} + {prefix}base + {prefix}height/2'}}",
     ]
 
 
 def _module_bodies(prefix: str, body: str, title: str, on: str, x: str, z: str, has_fixed: bool) -> list[str]:
     behind = f"{x} - {prefix}front - {prefix}cog_behind_front"
-    carried = f"    carried_by: {{body: {on}, x: '{behind}', z: '{z} + {prefix}base + {prefix}cog_above_floor'}}"
+    carried = f"    carried_by: {{body: {yaml_text(on)}, x: '{behind}', z: '{z} + {prefix}base + {prefix}cog_above_floor'}}"
     lines = [
         "bodies:",
         f"  {body}:",
-        f"    title: {_quoted(title)}",
+        f"    title: {yaml_title(title)}",
         f"    mass: {prefix}mass",
         f"    pitch_inertia: {prefix}pitch_inertia",
     ]
     lines += ["    motions: [heave]", carried]
     if has_fixed:
         fixed_title = f"{title}, fixed part"
-        lines += [f"  {body}_fixed:", f"    title: {_quoted(fixed_title)}", f"    mass: {prefix}fixed_mass", "    motions: []", carried]
-    mount = f"{{{on}: {{x: '{behind}'}}, {body}: {{x: 0 m}}, k: {prefix}stiffness, c: {prefix}damping}}"
+        lines += [f"  {body}_fixed:", f"    title: {yaml_title(fixed_title)}", f"    mass: {prefix}fixed_mass", "    motions: []", carried]
+    mount = f"{{{yaml_text(on)}: {{x: '{behind}'}}, {body}: {{x: 0 m}}, k: {prefix}stiffness, c: {prefix}damping}}"
     return [*lines, "links:", f"  {body}_mount: {mount}"]
-
-
-def _quoted(text: str) -> str:
-    """Return a text as YAML's single-quoted scalar on one line."""
-    return "'" + " ".join(text.split()).replace("'", "''") + "'"

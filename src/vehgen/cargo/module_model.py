@@ -17,7 +17,8 @@ from vehgen.cargo.box_mesh import Mesh, box_mesh, box_node_count
 from vehgen.cargo.eigenmodes import Eigenmodes, RigidBody, eigenmodes, rigid_body
 from vehgen.cargo.elements import assemble
 from vehgen.cargo.frame_file import FrameModule, rayleigh
-from vehgen.errors import InputError
+from vehgen.errors import InputError, escaped
+from vehgen.vehicle.writing import yaml_text, yaml_title
 
 BYTES_PER_NODE = 80_000
 """Memory that assembly and factorisation take (about 50 kB a node at 13 000 nodes), with room for growth."""
@@ -119,14 +120,14 @@ def cargo_text(model: ModuleModel) -> str:
     file, body = model.frame.file, model.body
     nodes, kind = len(model.mesh.nodes), "total" if model.fixed_mass == 0 else "effective"
     lines = [
-        f"# From the finite elements of {model.frame.path.name}: {nodes} nodes, mesh size {model.mesh_size:g} m.",
+        f"# From the finite elements of {escaped(model.frame.path.name)}: {nodes} nodes, mesh size {model.mesh_size:g} m.",
         f"# Principal vertical mode {model.frequency:.4g} Hz, damping ratio {model.damping_ratio:.4g}; "
         f"it moves {model.effective_share:.1%} of {body.mass:.6g} kg.",
         f"# Mass on the spring: {kind}.",
-        *([f"name: {file.name}"] if file.name else []),
-        *(f"{key}: {_quoted(text)}" for key, text in (("title", file.title), ("source", file.source)) if text),
-        f"on: {_quoted(file.on)}",
-        f"behind: {_quoted(file.behind)}",
+        *([f"name: {yaml_text(file.name)}"] if file.name else []),
+        *(f"{key}: {yaml_title(text)}" for key, text in (("title", file.title), ("source", file.source)) if text),
+        f"on: {yaml_text(file.on)}",
+        f"behind: {yaml_text(file.behind)}",
         "module:",
         f"  mass: {model.mass!r} kg",
         *([f"  fixed_mass: {model.fixed_mass!r} kg"] if model.fixed_mass > 0 else []),
@@ -184,7 +185,3 @@ def _doubts(modes: Eigenmodes, body: RigidBody) -> list[str]:
     if not modes.complete:
         found.append(f"modes were sought up to {modes.frequency[-1]:.3g} Hz; a higher one may move more mass vertically")
     return found
-
-
-def _quoted(text: str) -> str:
-    return "'" + " ".join(text.split()).replace("'", "''") + "'"

@@ -112,7 +112,7 @@ class Condensation:
         steps = []
         for place, term in enumerate(element.laws):
             own = {name: sp.Symbol(f"_{name}{number}_{place}", real=True) for name in term.law.states}
-            states |= {symbol: f"s{number}_{place}_{name}" for name, symbol in own.items()}
+            states |= {symbol: f"s{number}_{place}_{i}" for i, symbol in enumerate(own.values())}
             steps.append(term.step(element.k, element.c, own))
         force = rest = None
         if self.model.is_preloaded and any(term.origin == "unloaded" or term.asks_static for term in element.laws):

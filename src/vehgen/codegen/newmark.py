@@ -15,6 +15,7 @@ import sympy as sp
 
 from vehgen.codegen.condensation import Condensation
 from vehgen.codegen.factorisation import Matrix, factorise
+from vehgen.codegen.labels import dependent_label, drive_labels, parameter_label
 from vehgen.codegen.program import SAMPLE, SETUP, STEP, Node, Program
 from vehgen.mechanics.linear_model import LinearModel
 from vehgen.mechanics.rows import Entries, Row
@@ -47,13 +48,13 @@ def write_step(model: LinearModel, sweeps: int | None = None) -> StepProgram:
     program = Program()
     symbols: dict[sp.Symbol, Node] = {}
     parameters = {}
-    for name in model.parameters:
-        parameters[name] = program.leaf(identifier(name), SETUP)
+    for i, name in enumerate(model.parameters):
+        parameters[name] = program.leaf(parameter_label(i), SETUP)
         symbols[sp.Symbol(name, real=True)] = parameters[name]
     memo: dict[sp.Expr, Node] = {}
-    for symbol, expression in model.definitions:
+    for i, (symbol, expression) in enumerate(model.definitions):
         node = program.convert(expression, symbols, memo)
-        symbols[symbol] = program.label(node, identifier(symbol.name))
+        symbols[symbol] = program.label(node, dependent_label(i))
 
     def matrix(entries: Entries, name: str) -> Matrix:
         converted = {place: program.convert(value, symbols, memo) for place, value in entries.items()}
@@ -67,7 +68,7 @@ def write_step(model: LinearModel, sweeps: int | None = None) -> StepProgram:
     n = model.n_dof
     u = [program.leaf(f"u{i}", STEP) for i in range(n)]
     v = [program.leaf(f"v{i}", STEP) for i in range(n)]
-    names = _drive_names(model)
+    names = drive_labels(len(model.inputs), len(model.forces))
     drives = [program.leaf(name, STEP) for name in names]
     loads = _load_matrix(model, P, Q, F)
 
@@ -104,20 +105,6 @@ def write_step(model: LinearModel, sweeps: int | None = None) -> StepProgram:
     channels = _channels(model, program, symbols, memo, (M, C, K, loads), (su, sv, sample_drives), laws)
     states = [*zip(u, next_u, strict=True), *zip(v, next_v, strict=True), *further]
     return StepProgram(program, parameters, laws.rests if laws else {}, h, drives, sample_drives, states, channels)
-
-
-def identifier(name: str) -> str:
-    """Return a parameter's name as it stands in the source."""
-    return "p_" + name.replace(".", "_")
-
-
-def _drive_names(model: LinearModel) -> list[str]:
-    inputs = [name.replace(".", "_") for name in model.inputs]
-    return [
-        *(f"w_{name}" for name in inputs),
-        *(f"dw_{name}" for name in inputs),
-        *(f"f_{name}" for name in model.forces),
-    ]
 
 
 def _load_matrix(model: LinearModel, P: Matrix, Q: Matrix, F: Matrix) -> Matrix:

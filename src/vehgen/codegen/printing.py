@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Iterable
 
 from vehgen.codegen.program import SAMPLE, SETUP, STEP, Node, Program
+from vehgen.errors import InputError
 
 _BINARY = {"+": 1, "-": 1, "*": 2, "/": 2, "**": 3}
 _FUNCTIONS = {"min": "lower", "max": "upper"}
@@ -77,8 +79,8 @@ class Printer:
         return sum(self.program.operations[node] not in ("leaf", "number") for node in nodes)
 
     def number(self, value: float) -> str:
-        """Return a constant as it stands in the loops."""
-        return f"float32({value!r})" if self.single else repr(value)
+        """Return a constant as it stands in the loops; raises InputError for one that is not finite."""
+        return f"float32({literal(value)})" if self.single else literal(value)
 
     def name(self, node: Node) -> str:
         """Return a node's name in the source."""
@@ -113,7 +115,7 @@ class Printer:
                 return texts[node]
             value = self.program.value(node)
             if value is not None:
-                number = self.number(value) if in_loop else repr(value)
+                number = self.number(value) if in_loop else literal(value)
                 texts[node] = (number if value >= 0 else f"({number})", 9)
                 return texts[node]
             source = load(node)
@@ -155,3 +157,16 @@ class Printer:
         if operation == "sqrt":
             return f"math.sqrt({texts[0]})", 9
         return f"{_FUNCTIONS.get(operation, operation)}({', '.join(texts)})", 9
+
+
+def literal(value: float) -> str:
+    """Return a number as Python reads it back, digit for digit.
+
+    Raises
+    ------
+    InputError
+        For infinity and NaN, which would stand in the source as names.
+    """
+    if not math.isfinite(value):
+        raise InputError("the equations hold a number that is not finite: some quantities of the vehicle are out of any scale")
+    return repr(float(value))

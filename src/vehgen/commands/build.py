@@ -50,7 +50,7 @@ def run(options: argparse.Namespace) -> None:
     findings = lint(model, values)
     kernel = Kernel(model)
     kernel.compile()
-    written = write_build_folder(folder, model, values, modes, loads, kernel.source.text, findings, plots=not options.no_plots)
+    written = write_build_folder(folder, model, values, modes, loads, kernel.source, findings, plots=not options.no_plots)
     seconds = time.perf_counter() - start
     if options.json:
         print_json(_summary(model, values, modes, loads, findings, kernel.source.operation_counts, folder, written))

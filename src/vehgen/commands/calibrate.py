@@ -56,12 +56,13 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.identify.trial import load_trials
     from vehgen.report.calibration_plots import calibration_figure_files, save_calibration_figures
     from vehgen.vehicle import load_vehicle
+    from vehgen.vehicle.names import as_name
 
     vehicle = load_vehicle(options.vehicle)
     problem = make_problem(load_trials(options.runs, vehicle))
     facts = load_facts(options.facts, problem) if options.facts else None
     folder = folder_named(options.out, f"{Path(options.vehicle).stem}_calibrated")
-    name = f"{vehicle.name}_calibrated"
+    name = as_name(f"{vehicle.name}_calibrated")
     files, checkpoint = [folder / f"{name}.yaml", folder / "calibration.json"], folder / "search.json"
     check_results([*files, checkpoint, *calibration_figure_files(folder)])
     settings = _settings(options)

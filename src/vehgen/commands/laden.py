@@ -30,12 +30,13 @@ def run(options: argparse.Namespace) -> None:
     """Write the laden vehicle and print the comparison."""
     from vehgen.cargo import compare_laden, laden_text, load_cargo
     from vehgen.vehicle import load_vehicle
+    from vehgen.vehicle.names import as_name
 
     vehicle, cargo = load_vehicle(options.vehicle), load_cargo(options.cargo)
     vehicle.values(options.parameter_set)
     path = Path(f"{vehicle.name}_laden.yaml") if options.out is None else file_named(options.out)
     check_results([path])
-    laden = _write(path, laden_text(vehicle, cargo, path.parent, path.stem))
+    laden = _write(path, laden_text(vehicle, cargo, path.parent, as_name(path.stem)))
     found = compare_laden(vehicle, laden, cargo.file.on, options.parameter_set)
     (before, after), (forward, up) = found.carrier, found.cog_shift
     if options.json:

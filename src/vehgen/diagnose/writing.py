@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import io
 from glob import escape
 from pathlib import Path
 from typing import Any
-
-from ruamel.yaml import YAML
 
 from vehgen.diagnose.estimates import estimate
 from vehgen.diagnose.fitting import Fit
@@ -15,7 +12,8 @@ from vehgen.diagnose.verdict import Verdict
 from vehgen.effects import Surveyor
 from vehgen.identify.problem import Problem
 from vehgen.vehicle.loading import extend_vehicle
-from vehgen.vehicle.writing import base_reference, quantity
+from vehgen.vehicle.names import MAX_TEXT, as_name
+from vehgen.vehicle.writing import base_reference, quantity, yaml_document
 
 
 def effect_file(fit: Fit, base: Problem, verdict: Verdict, folder: Path, name: str) -> str:
@@ -29,7 +27,7 @@ def effect_file(fit: Fit, base: Problem, verdict: Verdict, folder: Path, name: s
     data: dict[str, Any] = {
         "extends": base_reference(vehicle, folder),
         "name": name,
-        "title": f"{vehicle.title or vehicle.name}, with {fit.label}",
+        "title": f"{vehicle.title or vehicle.name}, with {fit.label}"[:MAX_TEXT],
         "parameters": {key: {"value": quantity(vehicle, key, value)} for key, value in values.items() if key in vehicle.parameters},
     }
     comments = [f"{verdict.verdict}: {verdict.reason}"]
@@ -47,12 +45,7 @@ def effect_file(fit: Fit, base: Problem, verdict: Verdict, folder: Path, name: s
         for key, item in effect.parameters.items():
             interval = "" if item.interval is None else f", 90 % interval {item.interval[0]:.5g} to {item.interval[1]:.5g}"
             comments.append(f"{effect.name} at {effect.place}: {key} = {item.value:.5g} {item.unit}{interval}")
-    stream = io.StringIO()
-    writer = YAML()
-    writer.default_flow_style = None
-    writer.width = 120
-    writer.dump(data, stream)
-    return "".join(f"# {' '.join(line.split())}\n" for line in comments) + stream.getvalue()
+    return "".join(f"# {' '.join(line.split())}\n" for line in comments) + yaml_document(data)
 
 
 def _merge(data: dict[str, Any], change: dict[str, Any]) -> None:
@@ -65,8 +58,8 @@ def _merge(data: dict[str, Any], change: dict[str, Any]) -> None:
 
 
 def file_name(vehicle: str, fit: Fit) -> str:
-    """Return what a vehicle with the effects of a fit is called."""
-    return f"{vehicle}_with_{'_and_'.join(dict.fromkeys(item.effect.name for item in fit.effects))}"
+    """Return what a vehicle with the effects of a fit is called, cut to the length of a name."""
+    return as_name(f"{vehicle}_with_{'_and_'.join(dict.fromkeys(item.effect.name for item in fit.effects))}")
 
 
 def files_named_so(vehicle: str, folder: Path) -> list[Path]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
@@ -15,16 +14,16 @@ from vehgen.effects.law_effect import Given, law_edit
 from vehgen.effects.places import axles, hinges, suspensions
 from vehgen.effects.registry import library
 from vehgen.effects.site import Site
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.mechanics.laws import LAWS
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.document import Located, read_document
 from vehgen.vehicle.expressions import Expression, ExpressionError
 from vehgen.vehicle.loading import validate
 from vehgen.vehicle.model import Noun
+from vehgen.vehicle.names import FreeText, Identifier, Name
 from vehgen.vehicle.units import DAMPING, FORCE, INERTIA, LENGTH, MASS, MOMENT, NONE, STIFFNESS, TIME, Dimension, parse_unit
 
-NAME = re.compile(r"[A-Za-z]\w*", re.ASCII)
 Kind = Literal["suspension", "tyre", "hinge"]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 PLACES: dict[Kind, Callable[[Vehicle, tuple[str, ...]], tuple[str, ...]]] = {"suspension": suspensions, "tyre": axles, "hinge": hinges}
@@ -44,7 +43,7 @@ SIZES: dict[str, Dimension] = {
 class ParameterEntry(Noun):
     """A parameter of an effect: searched from `low` to `high`, begun at each of `starts`."""
 
-    meaning: str
+    meaning: FreeText
     unit: str = Field("", description="of its values, e.g. N/m^3")
     low: Finite
     high: Finite
@@ -57,20 +56,20 @@ class ParameterEntry(Noun):
 class EffectEntry(Noun):
     """An effect that could be missing at a suspension, tyre or hinge."""
 
-    title: str
-    meaning: str = Field(description="what it is")
-    signature: str = Field("", description="what it looks like in recordings")
-    source: str = Field("", description="where it comes from")
+    title: FreeText
+    meaning: FreeText = Field(description="what it is")
+    signature: FreeText = Field("", description="what it looks like in recordings")
+    source: FreeText = Field("", description="where it comes from")
     attaches: Kind
-    law: dict[str, dict[str, Expression]] | None = Field(None, description="{law of the library: {its parameter: value or expression}}")
+    law: dict[Name, dict[Name, Expression]] | None = Field(None, description="{law of the library: {its parameter: value or expression}}")
     force: Expression | None = Field(None, description="instead of `law`: an expression of travel d, rate v and the effect's parameters")
-    parameters: dict[str, ParameterEntry]
+    parameters: dict[Identifier, ParameterEntry]
 
 
 class EffectsFile(Noun):
     """A file of effects, by name."""
 
-    effects: dict[str, EffectEntry]
+    effects: dict[Identifier, EffectEntry]
 
 
 def effects_schema() -> dict[str, Any]:
@@ -134,8 +133,6 @@ class _Reader:
     def effect(self) -> Effect:
         """Return the effect."""
         entry = self.entry
-        if not NAME.fullmatch(self.name):
-            raise self.wrong(f"{self.name!r} is no name: a letter, then letters, digits and underscores were expected", key=True)
         parameters = tuple(self.parameter(name, item) for name, item in entry.parameters.items())
         if (entry.law is None) == (entry.force is None):
             raise self.wrong("an effect has either `law`, one of the library, or `force`, an expression of d and v", key=True)
@@ -168,13 +165,8 @@ class _Reader:
     def parameter(self, name: str, item: ParameterEntry) -> EffectParameter:
         """Return a parameter in SI units."""
         path = ("parameters", name)
-        if not NAME.fullmatch(name) or name in ("d", "v"):
-            why = (
-                "the travel or rate of a law"
-                if name in ("d", "v")
-                else "no name: a letter, then letters, digits and underscores were expected"
-            )
-            raise self.wrong(f"{name!r} is {why}", *path, key=True)
+        if name in ("d", "v"):
+            raise self.wrong(f"{name!r} is the travel or rate of a law", *path, key=True)
         try:
             factor, dimension = parse_unit(item.unit) if item.unit else (1.0, NONE)
         except InputError as error:
@@ -235,7 +227,7 @@ class _Reader:
         except ExpressionError as error:
             raise self.wrong(str(error), *path, offset=error.offset) from error
         if found != dimension and plain != 0.0:
-            raise self.wrong(f"{path[-1]} must be in {dimension}, found {found} in {expression.text!r}", *path)
+            raise self.wrong(f"{path[-1]} must be in {dimension}, found {found} in {shown(expression.text)}", *path)
 
 
 def _size(times: Expression, site: Site) -> float:

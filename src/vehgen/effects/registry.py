@@ -28,7 +28,8 @@ from vehgen.effects.tyre_damping import TYRE_DAMPING
 from vehgen.effects.tyre_footprint import TYRE_FOOTPRINT
 from vehgen.effects.tyre_liftoff import TYRE_LIFTOFF
 from vehgen.effects.walking_beam import WALKING_BEAM
-from vehgen.errors import InputError
+from vehgen.errors import InputError, shown
+from vehgen.vehicle.names import is_identifier
 
 GROUP = "vehgen.effects"
 """Entry points of this group name Effect objects of other packages."""
@@ -70,14 +71,16 @@ def library() -> dict[str, Effect]:
     Raises
     ------
     InputError
-        For an entry point that is no effect, or takes the name of another.
+        For an entry point that is no effect, whose effect has no proper name, or that of another.
     """
     found = dict(EFFECTS)
     for point in entry_points(group=GROUP):
         effect = point.load()
         if not isinstance(effect, Effect):
-            raise InputError(f"the entry point {point.name!r} of {GROUP} is not an Effect")
+            raise InputError(f"the entry point {shown(point.name)} of {GROUP} is not an Effect")
+        if not is_identifier(effect.name):
+            raise InputError(f"the entry point {shown(point.name)} of {GROUP} names its effect {shown(effect.name)}, which is no name")
         if effect.name in found:
-            raise InputError(f"two effects are named {effect.name!r}; the entry point {point.name!r} must choose another name")
+            raise InputError(f"two effects are named {effect.name!r}; the entry point {shown(point.name)} must choose another name")
         found[effect.name] = effect
     return found

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.identify.problem import Problem
 from vehgen.mechanics import LinearModel, derive, static_loads
 from vehgen.simulate.quantities import Force
@@ -29,6 +29,7 @@ from vehgen.vehicle.document import read_document
 from vehgen.vehicle.expressions import Expression, ExpressionError
 from vehgen.vehicle.loading import validate
 from vehgen.vehicle.model import GROUND, Noun
+from vehgen.vehicle.names import Name
 
 Array = NDArray[np.float64]
 _DIFFERENCE = 1e-6
@@ -51,9 +52,9 @@ class Known(Noun):
 class FactsFile(Noun):
     """A facts file as it is written."""
 
-    parameters: dict[str, Known] = Field(default_factory=dict)
-    axle_weights: dict[str, Weight] = Field(default_factory=dict)
-    uncoupled: dict[str, dict[str, Weight]] = Field(default_factory=dict)
+    parameters: dict[Name, Known] = Field(default_factory=dict)
+    axle_weights: dict[Name, Weight] = Field(default_factory=dict)
+    uncoupled: dict[Name, dict[Name, Weight]] = Field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -104,7 +105,7 @@ def load_facts(path: str | Path, problem: Problem) -> Facts:
     for name, known in file.parameters.items():
         if name not in vehicle.parameters:
             raise InputError(
-                f"{vehicle.name} has no parameter {name!r}; {did_you_mean(name, vehicle.parameters)}",
+                f"{vehicle.name} has no parameter {shown(name)}; {did_you_mean(name, vehicle.parameters)}",
                 document.find(("parameters", name), key=True),
             )
         for key, expression in (("value", known.value), ("uncertainty", known.uncertainty)):
@@ -123,14 +124,17 @@ def load_facts(path: str | Path, problem: Problem) -> Facts:
     for body, weights in file.uncoupled.items():
         if body not in vehicle.bodies:
             raise InputError(
-                f"{vehicle.name} has no body {body!r}; {did_you_mean(body, vehicle.bodies)}", document.find(("uncoupled", body), key=True)
+                f"{vehicle.name} has no body {shown(body)}; {did_you_mean(body, vehicle.bodies)}",
+                document.find(("uncoupled", body), key=True),
             )
         groups.append((("uncoupled", body), uncouple(vehicle, body), f" of {body} alone", weights))
     for place_of, part, suffix, weights in groups:
         model = derive(part) if weights else None
         for axle, weight in weights.items():
             if axle not in part.axles:
-                raise InputError(f"no axle {axle!r}{suffix}; {did_you_mean(axle, part.axles)}", document.find((*place_of, axle), key=True))
+                raise InputError(
+                    f"no axle {shown(axle)}{suffix}; {did_you_mean(axle, part.axles)}", document.find((*place_of, axle), key=True)
+                )
             assert model is not None
             facts.append(Fact(f"load of {axle}{suffix}", _axle_load(model, axle), weight.value, weight.uncertainty))
     if not facts:

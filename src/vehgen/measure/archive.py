@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 from typing import IO
 
-from vehgen.errors import InputError
+from vehgen.errors import InputError, shown
 from vehgen.files import note_read
 
 MAX_FILE = 64 * 2**20
@@ -96,7 +96,7 @@ def _zip(path: Path, stream: IO[bytes]) -> dict[str, bytes]:
             for entry in entries:
                 if PurePosixPath(entry.filename).suffix.lower() in TEXT_SUFFIXES and not entry.filename.startswith("__MACOSX"):
                     if entry.filename in found:
-                        raise InputError(f"{path} holds {entry.filename!r} twice")
+                        raise InputError(f"{path} holds {shown(entry.filename)} twice")
                     with archive.open(entry) as member:
                         found[entry.filename] = _bounded(member, f"{path}: {entry.filename}", entry.file_size)
     except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, struct.error, NotImplementedError, RuntimeError) as error:
@@ -112,13 +112,13 @@ def _check_entries(path: Path, entries: list[zipfile.ZipInfo]) -> None:
     for entry in entries:
         name = entry.filename
         if name.startswith(("/", "\\")) or ".." in PurePosixPath(name.replace("\\", "/")).parts or ":" in name.partition("/")[0]:
-            raise InputError(f"{path} holds the name {name!r}, which leads out of the archive")
+            raise InputError(f"{path} holds the name {shown(name)}, which leads out of the archive")
         if name == "[Content_Types].xml" or name.lower().endswith((".xls", ".xlsx")):
-            raise InputError(f"{path} {'' if name == '[Content_Types].xml' else f'holds {name!r}, which '}{EXCEL}")
+            raise InputError(f"{path} {'' if name == '[Content_Types].xml' else f'holds {shown(name)}, which '}{EXCEL}")
         if entry.flag_bits & 1:
             raise InputError(f"{path} is encrypted; export without a password")
         if entry.file_size > MAX_FILE or entry.file_size > 2**20 + MAX_RATIO * max(entry.compress_size, 1):
-            raise InputError(f"{path}: {name!r} would unpack to {entry.file_size} bytes, far more than a recording")
+            raise InputError(f"{path}: {shown(name)} would unpack to {entry.file_size} bytes, far more than a recording")
 
 
 def _bounded(stream: IO[bytes], name: str, limit: int) -> bytes:

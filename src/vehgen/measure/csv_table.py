@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.errors import InputError, Position, did_you_mean
+from vehgen.errors import InputError, Position, did_you_mean, shortened, shown
 from vehgen.measure.export import PITCH_RATE, SPEED, VERTICAL, PhoneExport, Stream
 from vehgen.vehicle.units import ACCELERATION, FREQUENCY, TIME, Dimension, parse_unit
 from vehgen.vehicle.units import SPEED as SPEED_DIMENSION
@@ -52,7 +52,7 @@ class Table:
                 found[i] = float(text)
             elif text.lower() not in _MISSING:
                 raise InputError(
-                    f"expected a number in column {self.header[index]!r}, found {text[:40]!r}", Position(self.name, i + 2, index + 1)
+                    f"expected a number in column {shown(self.header[index])}, found {shown(text)}", Position(self.name, i + 2, index + 1)
                 )
         found[np.isinf(found)] = np.nan
         return found
@@ -65,7 +65,7 @@ class Table:
         """Return the index of a column by its name, capitals aside; raises InputError naming the nearest."""
         lower = [item.lower() for item in self.header]
         if name.lower() not in lower:
-            raise InputError(f"{self.name} has no column {name!r}; {did_you_mean(name, self.header)}")
+            raise InputError(f"{self.name} has no column {shown(name)}; {did_you_mean(name, self.header)}")
         return lower.index(name.lower())
 
 
@@ -77,7 +77,7 @@ def read_table(data: bytes, file: str, export: str = "") -> Table:
     InputError
         For bytes that are no text, no header line, no row, or no table.
     """
-    name = f"{export}: {file}" if export and not export.endswith(file) else export or file
+    name = f"{export}: {shortened(file)}" if export and not export.endswith(file) else export or shortened(file)
     for encoding in ("utf-8-sig", "utf-16") if data[:2] in (b"\xff\xfe", b"\xfe\xff") else ("utf-8-sig", "cp1252"):
         try:
             text = data.decode(encoding)

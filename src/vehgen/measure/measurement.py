@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.mechanics.outputs import POINT_QUANTITIES, PointOutput
 from vehgen.road import read_columns
 from vehgen.simulate import Run
@@ -25,7 +25,7 @@ CLIPPED = 5
 
 @dataclass(frozen=True)
 class MeasuredChannel:
-    """One recorded channel: its column, the sensor it belongs to and what it measures.
+    """One recorded channel: its name, the sensor it belongs to and what it measures.
 
     `noise` is the standard deviation of its white noise [SI] where the run file knows it.
     """
@@ -77,9 +77,9 @@ def read_measurement(run: Run) -> Measurement:
     channels, factors, columns = [], [], []
     for sensor_name, sensor in file.sensors.items():
         for quantity, entry in sensor.channels.items():
-            channel = replace(_channel(sensor_name, sensor, quantity, entry), noise=_noise(run, sensor_name, quantity, entry))
+            channel = replace(_channel(sensor_name, sensor, quantity), noise=_noise(run, sensor_name, quantity, entry))
             channels.append(channel)
-            columns.append(channel.name)
+            columns.append(sensor.column(sensor_name, quantity))
             factors.append(_factor(run, sensor_name, quantity, entry))
     try:
         time, *recorded = read_columns(path, ("t", *columns))
@@ -92,9 +92,9 @@ def read_measurement(run: Run) -> Measurement:
     return Measurement(time, values, tuple(channels))
 
 
-def _channel(sensor_name: str, sensor: SensorEntry, quantity: str, entry: str | ChannelEntry) -> MeasuredChannel:
-    column = (entry if isinstance(entry, str) else entry.column) or f"{sensor_name}_{quantity}"
-    return MeasuredChannel(column, sensor_name, quantity, PointOutput(column, sensor.place(sensor_name), quantity))
+def _channel(sensor_name: str, sensor: SensorEntry, quantity: str) -> MeasuredChannel:
+    name = sensor.channel(sensor_name, quantity)
+    return MeasuredChannel(name, sensor_name, quantity, PointOutput(name, sensor.place(sensor_name), quantity))
 
 
 def _noise(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> float | None:
@@ -109,7 +109,7 @@ def _noise(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> f
     except PydanticCustomError as error:
         raise InputError(error.message(), place) from error
     if not 0 < number < float("inf"):
-        raise InputError(f"a noise above 0 was expected, found {entry.noise}", place)
+        raise InputError(f"a noise above 0 was expected, found {shown(entry.noise)}", place)
     return number
 
 
@@ -121,10 +121,12 @@ def _factor(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> 
         place = run.document.find(("sensors", sensor, "channels", quantity, "unit"))
         expected, unit = read_unit(POINT_QUANTITIES[quantity]), read_unit(entry.unit)
         if unit is None or unit[2] != len(entry.unit):
-            raise InputError(f"{entry.unit!r} is not a unit vehgen knows; {did_you_mean(entry.unit, UNITS)}", place)
+            raise InputError(f"{shown(entry.unit)} is not a unit vehgen knows; {did_you_mean(entry.unit, UNITS)}", place)
         assert expected is not None
         if unit[1] != expected[1]:
-            raise InputError(f"{quantity} is measured in {POINT_QUANTITIES[quantity]}, found {entry.unit}, a unit of {unit[1]}", place)
+            raise InputError(
+                f"{quantity} is measured in {POINT_QUANTITIES[quantity]}, found {shown(entry.unit)}, a unit of {unit[1]}", place
+            )
         factor *= unit[0]
     return factor
 

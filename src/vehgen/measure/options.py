@@ -10,16 +10,16 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.measure.csv_table import ColumnMap, split_pairs
 from vehgen.mechanics import Place, PointOutput
 from vehgen.road import Hump, MeasuredProfile, Profile, read_columns
 from vehgen.simulate.runfile import HumpEntry
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.expressions import ExpressionError, parse
+from vehgen.vehicle.names import is_identifier
 from vehgen.vehicle.units import LENGTH, NONE, TIME, Dimension
 
-_NAME = re.compile(r"[A-Za-z]\w*", re.ASCII)
 _SENSOR_KEYS = ("body", "x", "behind", "distance", "forward", "up", "acceleration_sign", "from", "to")
 _HUMP_KEYS = ("length", "height", "ramp", "radius", "file", "distance", "height_column")
 
@@ -114,8 +114,8 @@ def read_sensor(text: str, vehicle: Vehicle) -> PhoneSensor:
     """
     name, colon, rest = text.partition(":")
     name, where = name.strip(), f"--sensor {name.strip()}"
-    if not colon or not _NAME.fullmatch(name):
-        raise InputError(f"--sensor: expected NAME:body=BODY,behind=AXLE,distance=METRES, found {text!r}")
+    if not colon or not is_identifier(name):
+        raise InputError(f"--sensor: expected NAME:body=BODY,behind=AXLE,distance=METRES, found {shown(text)}")
     found = split_pairs(rest, where, _SENSOR_KEYS)
     if "body" not in found:
         raise InputError(f"{where} lacks body=; {did_you_mean('', vehicle.bodies)}")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 import os
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from vehgen.files import write_text
 from vehgen.measure.importing import Imported, ImportedPhone, clock_difference
 from vehgen.simulate import load_run
 from vehgen.vehicle.loading import find_vehicle_file, models_folder
+from vehgen.vehicle.writing import yaml_text
 
 
 def write_import(imported: Imported, vehicle: str, out: Path) -> tuple[Path, Path]:
@@ -156,14 +156,9 @@ def _relative(path: Path, folder: Path) -> str:
 
 
 def _scalar(value: Any) -> str:
-    """Write a value so that YAML reads it back as it is: plain words stand bare, all else is quoted as JSON does, which YAML includes."""
+    """Write a number or quantity bare, and any other text so that YAML reads it back as it is."""
     text = str(value)
-    is_number = isinstance(value, (int, float))
-    return (
-        text
-        if is_number or (text.replace("_", "").replace(".", "").isalnum() and not text[0].isdigit()) or _is_quantity(text)
-        else json.dumps(text)
-    )
+    return text if isinstance(value, (int, float)) or _is_quantity(text) else yaml_text(text)
 
 
 def _is_quantity(text: str) -> bool:

@@ -8,7 +8,7 @@ from typing import Literal, get_args
 
 import sympy as sp
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shortened, shown
 from vehgen.mechanics.laws import LAWS, Kind, Law, LawStep, Motion, custom_law
 from vehgen.mechanics.symbols import number, to_sympy
 from vehgen.vehicle.expressions import Expression, ExpressionError
@@ -91,7 +91,7 @@ def _read(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], name: str, 
     if name == "law":
         return _read_custom(vehicle, kind, path, given)
     if name not in LAWS:
-        raise InputError(f"unknown force law {name!r}; {did_you_mean(name, [*LAWS, 'law'])}", vehicle.position(*path, key=True))
+        raise InputError(f"unknown force law {shown(name)}; {did_you_mean(name, [*LAWS, 'law'])}", vehicle.position(*path, key=True))
     law = LAWS[name]
     if kind not in law.attaches_to:
         raise InputError(f"{name} belongs on a {' or '.join(law.attaches_to)}, not on a {kind}", vehicle.position(*path, key=True))
@@ -99,7 +99,7 @@ def _read(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], name: str, 
     for key in given:
         if key not in known and key != "from":
             raise InputError(
-                f"{name} has no parameter {key!r}; {did_you_mean(key, [*known, 'from'])}", vehicle.position(*path, key, key=True)
+                f"{name} has no parameter {shown(key)}; {did_you_mean(key, [*known, 'from'])}", vehicle.position(*path, key, key=True)
             )
     values = {}
     for key, parameter in known.items():
@@ -124,7 +124,7 @@ def _with_origin(vehicle: Vehicle, path: tuple[str | int, ...], given: LawEntry,
     origin: Origin | None = next((item for item in get_args(Origin) if isinstance(entry, Expression) and entry.text.strip() == item), None)
     if origin is None:
         found = entry.text if isinstance(entry, Expression) else "a mapping"
-        raise InputError(f"`from` is static or unloaded, found {found}", vehicle.position(*path, "from"))
+        raise InputError(f"`from` is static or unloaded, found {shortened(found)}", vehicle.position(*path, "from"))
     step = term.step()
     if origin == "unloaded" and (TRAVEL not in step.now.free_symbols or STATIC in step.now.free_symbols or term.law.states):
         raise InputError(
@@ -138,7 +138,9 @@ def _read_custom(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], give
     force, own = given.get("force"), given.get("parameters", {})
     unknown = [key for key in given if key not in ("force", "parameters", "from")]
     if unknown:
-        raise InputError(f"an own law has `force`, `parameters`, `from`, not {unknown[0]!r}", vehicle.position(*path, unknown[0], key=True))
+        raise InputError(
+            f"an own law has `force`, `parameters`, `from`, not {shown(unknown[0])}", vehicle.position(*path, unknown[0], key=True)
+        )
     if not isinstance(force, Expression) or not isinstance(own, dict):
         raise InputError(
             "an own law has `force`, an expression of d, v and its `parameters` {name: value}", vehicle.position(*path, key=True)
@@ -160,7 +162,7 @@ def _read_custom(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], give
 def _expect(vehicle: Vehicle, expression: Expression, expected: Dimension, dimensions: Mapping[str, Dimension], *path: str | int) -> None:
     found = _dimension(vehicle, expression, dimensions, *path)
     if found != expected and (expression.names or _value(vehicle, expression, *path) != 0.0):
-        raise InputError(f"{path[-1]} must be in {expected}, found {found} in {expression.text!r}", vehicle.position(*path))
+        raise InputError(f"{path[-1]} must be in {expected}, found {found} in {shown(expression.text)}", vehicle.position(*path))
 
 
 def _value(vehicle: Vehicle, expression: Expression, *path: str | int) -> float:

@@ -15,6 +15,7 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup, escape
 
 import vehgen
+from vehgen.codegen import KernelSource
 from vehgen.files import write_text
 from vehgen.mechanics import GRAVITY, LinearModel, StaticLoads
 from vehgen.report import equations
@@ -35,16 +36,21 @@ def write_build_folder(
     values: Mapping[str, float],
     modes: Sequence[Mode],
     loads: StaticLoads,
-    kernel_source: str,
+    kernel: KernelSource,
     warnings: Sequence[str] = (),
     plots: bool = True,
 ) -> list[Path]:
     """Write a vehicle's build folder; returns the files written.
 
-    `kernel.py`, `equations.txt`, `equations.tex`, `index.html` and, with `plots`, `drawing.svg` and `modes.svg`. Each file appears whole
-    or not at all.
+    `kernel.py`, `kernel_legend.txt` (what the numbers in it mean), `equations.txt`, `equations.tex`, `index.html` and, with `plots`,
+    `drawing.svg` and `modes.svg`. Each file appears whole or not at all.
     """
-    texts = {"kernel.py": kernel_source, "equations.txt": equations.equations_text(model), "equations.tex": equations_latex(model)}
+    texts = {
+        "kernel.py": kernel.text,
+        "kernel_legend.txt": kernel.legend,
+        "equations.txt": equations.equations_text(model),
+        "equations.tex": equations_latex(model),
+    }
     if plots:
         texts["drawing.svg"] = figure_svg(draw_vehicle(model, values))
         texts["modes.svg"] = figure_svg(draw_modes(model, modes, values))
@@ -58,7 +64,7 @@ def write_build_folder(
 def build_files(folder: Path, plots: bool = True) -> list[Path]:
     """Return the files that :func:`write_build_folder` writes."""
     drawings = ("drawing.svg", "modes.svg") if plots else ()
-    return [folder / name for name in ("kernel.py", "equations.txt", "equations.tex", *drawings, "index.html")]
+    return [folder / name for name in ("kernel.py", "kernel_legend.txt", "equations.txt", "equations.tex", *drawings, "index.html")]
 
 
 def _page(
@@ -97,6 +103,7 @@ def _page(
         laws_note=equations.LAWS_NOTE,
         counts=model.operation_counts(),
         kernel=texts["kernel.py"],
+        legend=texts["kernel_legend.txt"],
         versions=_versions(),
         inputs=_inputs(model),
     )

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.errors import InputError, Position, did_you_mean
+from vehgen.errors import InputError, Position, did_you_mean, shown
 from vehgen.files import note_read
 
 
@@ -34,7 +34,7 @@ def read_columns(path: Path, names: tuple[str, ...]) -> tuple[NDArray[np.float64
     places = []
     for name in names:
         if name not in header:
-            raise InputError(f"no column {name!r}; {did_you_mean(name, header)}", Position(path, 1, 1))
+            raise InputError(f"no column {shown(name)}; {did_you_mean(name, header)}", Position(path, 1, 1))
         places.append(header.index(name))
     columns = np.empty((len(places), len(rows) - 1))
     for line, row in enumerate(rows[1:], start=2):
@@ -45,5 +45,5 @@ def read_columns(path: Path, names: tuple[str, ...]) -> tuple[NDArray[np.float64
             except ValueError:
                 columns[index, line - 2] = np.nan
             if not np.isfinite(columns[index, line - 2]):
-                raise InputError(f"{text!r} in column {names[index]!r} is not a finite number", Position(path, line, place + 1))
+                raise InputError(f"{shown(text)} in column {shown(names[index])} is not a finite number", Position(path, line, place + 1))
     return tuple(columns)

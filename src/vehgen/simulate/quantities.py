@@ -7,6 +7,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
+from vehgen.errors import shortened, shown
 from vehgen.vehicle.expressions import ExpressionError, parse
 from vehgen.vehicle.units import FORCE, FREQUENCY, LENGTH, NONE, SPEED, TIME, Dimension
 
@@ -18,13 +19,13 @@ def read_quantity(value: Any, dimension: Dimension) -> float:
     try:
         expression = parse(str(value))
         if expression.names:
-            raise ExpressionError(f"expected a plain quantity in {dimension}, found a symbol in {value!r}")
+            raise ExpressionError(f"expected a plain quantity in {dimension}, found a symbol in {shown(value)}")
         found, number = expression.dimension({}), expression.evaluate({})
     except ExpressionError as error:
         raise PydanticCustomError("quantity", "{reason}", {"reason": str(error)}) from error
     if found != dimension and number != 0.0:
-        hint = f"; write e.g. '{value} {dimension}'" if found == NONE else ""
-        raise PydanticCustomError("quantity", "{reason}", {"reason": f"expected {dimension}, found {found} in {value!r}{hint}"})
+        hint = f"; write e.g. '{shortened(str(value))} {dimension}'" if found == NONE else ""
+        raise PydanticCustomError("quantity", "{reason}", {"reason": f"expected {dimension}, found {found} in {shown(value)}{hint}"})
     return number
 
 

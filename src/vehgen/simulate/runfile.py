@@ -10,7 +10,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files import note_read
 from vehgen.mechanics.outputs import AXLE_QUANTITIES, LINK_QUANTITIES, POINT_QUANTITIES, ElementOutput, Output, Place, PointOutput
 from vehgen.simulate.quantities import Angle, Force, Frequency, Length, PositiveForce, PositiveLength, PositiveSpeed, PositiveTime
@@ -19,6 +19,7 @@ from vehgen.vehicle.document import Located, read_document
 from vehgen.vehicle.expressions import Expression, ExpressionError
 from vehgen.vehicle.loading import load_vehicle, validate
 from vehgen.vehicle.model import Noun, Vehicle
+from vehgen.vehicle.names import Column, FreeText, Name, is_name
 from vehgen.vehicle.units import LENGTH
 
 DEFAULT_STEP = 1e-3
@@ -26,6 +27,8 @@ DEFAULT_KEEP = 10
 DEFAULT_SPEED = 1.0
 """What stands for the speed [m/s] of a rig without wheels; nothing depends on it."""
 MAX_STEPS = 10_000_000
+TIME_COLUMN = "t"
+"""The heading of the time in recordings and responses."""
 
 
 class HumpEntry(Noun):
@@ -38,8 +41,8 @@ class HumpEntry(Noun):
     ramp: float | None = Field(None, gt=0, le=0.5)
     radius: PositiveLength | None = None
     file: str | None = None
-    distance: str = "distance"
-    height_column: str = "height"
+    distance: Column = "distance"
+    height_column: Column = "height"
 
     @model_validator(mode="after")
     def _complete(self) -> HumpEntry:
@@ -61,8 +64,8 @@ class ProfileEntry(Noun):
     """A measured profile: a CSV file with columns of distance and height [m]."""
 
     file: str
-    distance: str = "distance"
-    height: str = "height"
+    distance: Column = "distance"
+    height: Column = "height"
 
 
 class RoadEntry(Noun):
@@ -83,8 +86,8 @@ class SpeedFile(Noun):
     """A speed history: a CSV file with columns of time [s] and speed [m/s]."""
 
     file: str
-    time: str = "t"
-    speed: str = "speed"
+    time: Column = "t"
+    speed: Column = "speed"
 
 
 class ForceHarmonic(Noun):
@@ -130,8 +133,8 @@ class ForceEntry(PlaceEntry):
 
     harmonic: ForceHarmonic | None = None
     file: str | None = None
-    time: str = "t"
-    force: str = "force"
+    time: Column = "t"
+    force: Column = "force"
     noise: PositiveForce | None = None
 
     @model_validator(mode="after")
@@ -146,8 +149,8 @@ class DisplacementEntry(Noun):
 
     harmonic: DisplacementHarmonic | None = None
     file: str | None = None
-    time: str = "t"
-    displacement: str = "displacement"
+    time: Column = "t"
+    displacement: Column = "displacement"
 
     @model_validator(mode="after")
     def _one_source(self) -> DisplacementEntry:
@@ -159,20 +162,30 @@ class DisplacementEntry(Noun):
 class ChannelEntry(Noun):
     """A recorded column: its unit where it is not SI, its sign where its axis is reversed, the standard deviation of its white noise."""
 
-    column: str
+    column: Column
     unit: str | None = None
     sign: Literal[1, -1] = 1
     noise: str | float | None = None
 
 
-def _default_channels() -> dict[str, str | ChannelEntry]:
+def _default_channels() -> dict[str, Column | ChannelEntry]:
     return {"acceleration": "", "pitch_rate": ""}
 
 
 class SensorEntry(PlaceEntry):
     """A sensor: a place, and the column of each quantity it records."""
 
-    channels: dict[str, str | ChannelEntry] = Field(default_factory=_default_channels)
+    channels: dict[Name, Column | ChannelEntry] = Field(default_factory=_default_channels)
+
+    def column(self, name: str, quantity: str) -> str:
+        """Return the column that holds a quantity; `name` is the sensor's."""
+        entry = self.channels[quantity]
+        return (entry if isinstance(entry, str) else entry.column) or f"{name}_{quantity}"
+
+    def channel(self, name: str, quantity: str) -> str:
+        """Return what the channel of a quantity is called: as its column where that is a name, else SENSOR_QUANTITY."""
+        column = self.column(name, quantity)
+        return column if is_name(column) else f"{name}_{quantity}"
 
 
 class OutputEntry(Noun):
@@ -193,19 +206,19 @@ class RunFile(Noun):
     """A run as its file declares it, quantities in SI units."""
 
     vehicle: str
-    title: str = ""
+    title: FreeText = ""
     set: str | None = None
-    parameters: dict[str, Expression] = Field(default_factory=dict)
+    parameters: dict[Name, Expression] = Field(default_factory=dict)
     speed: PositiveSpeed | SpeedFile = Field(DEFAULT_SPEED, union_mode="left_to_right")
     duration: PositiveTime | None = None
     step: PositiveTime = DEFAULT_STEP
     sample: PositiveTime | None = None
     road: list[RoadEntry] = Field(default_factory=list)
     footprint: PositiveLength | None = None
-    forces: dict[str, ForceEntry] = Field(default_factory=dict)
-    displacements: dict[str, DisplacementEntry] = Field(default_factory=dict)
-    sensors: dict[str, SensorEntry] = Field(default_factory=dict)
-    outputs: dict[str, OutputEntry] = Field(default_factory=dict)
+    forces: dict[Name, ForceEntry] = Field(default_factory=dict)
+    displacements: dict[Name, DisplacementEntry] = Field(default_factory=dict)
+    sensors: dict[Name, SensorEntry] = Field(default_factory=dict)
+    outputs: dict[Name, OutputEntry] = Field(default_factory=dict)
     recording: str | None = None
     band: tuple[Frequency, Frequency] | None = None
 
@@ -233,9 +246,8 @@ class Run:
         """Return every channel the run asks for; with no sensor and no output, the acceleration of every body's COG."""
         found: list[Output] = []
         for name, sensor in self.file.sensors.items():
-            for quantity, channel in sensor.channels.items():
-                column = channel if isinstance(channel, str) else channel.column
-                found.append(PointOutput(column or f"{name}_{quantity}", sensor.place(name), quantity))
+            place = sensor.place(name)
+            found += [PointOutput(sensor.channel(name, quantity), place, quantity) for quantity in sensor.channels]
         for name, output in self.file.outputs.items():
             found.append(ElementOutput(name, output.axle or output.link or "", output.quantity))
         if not found:
@@ -279,7 +291,7 @@ def _check(run: Run) -> None:
 
     def known(kind: str, name: str, allowed: Mapping[str, object] | list[str], *place: str, key: bool = False) -> None:
         if name not in allowed:
-            raise InputError(f"{vehicle.name} has no {kind} {name!r}; {did_you_mean(name, allowed)}", document.find(place, key=key))
+            raise InputError(f"{vehicle.name} has no {kind} {shown(name)}; {did_you_mean(name, allowed)}", document.find(place, key=key))
 
     if vehicle.axles and "speed" not in file.model_fields_set:
         raise InputError(f"the file lacks the key 'speed': {vehicle.name} has wheels", document.position)
@@ -292,7 +304,7 @@ def _check(run: Run) -> None:
         known("parameter with a value", name, list(vehicle.free_parameters), "parameters", name, key=True)
         try:
             if expression.names:
-                raise ExpressionError(f"expected a plain quantity in {dimensions[name]}, found a symbol in {expression.text!r}")
+                raise ExpressionError(f"expected a plain quantity in {dimensions[name]}, found a symbol in {shown(expression.text)}")
             found, number = expression.dimension({}), expression.evaluate({})
         except ExpressionError as error:
             raise InputError(str(error), document.find(("parameters", name), offset=error.offset)) from error
@@ -330,7 +342,7 @@ def _check(run: Run) -> None:
         for quantity in sensor.channels:
             if quantity not in POINT_QUANTITIES:
                 raise InputError(
-                    f"unknown quantity {quantity!r} of a sensor; {did_you_mean(quantity, POINT_QUANTITIES)}",
+                    f"unknown quantity {shown(quantity)} of a sensor; {did_you_mean(quantity, POINT_QUANTITIES)}",
                     document.find(("sensors", name, "channels", quantity), key=True),
                 )
     for name, output in file.outputs.items():
@@ -346,11 +358,16 @@ def _check(run: Run) -> None:
         if output.quantity not in quantities:
             owner = "an axle" if output.axle else "a link"
             raise InputError(
-                f"unknown quantity {output.quantity!r} of {owner}; {did_you_mean(output.quantity, quantities)}",
+                f"unknown quantity {shown(output.quantity)} of {owner}; {did_you_mean(output.quantity, quantities)}",
                 document.find(("outputs", name, "quantity")),
             )
     names = [output.name for output in run.outputs()]
     for name in names:
+        if name == TIME_COLUMN:
+            raise InputError(
+                f"a channel cannot be named {name!r}, as the column of the time is; choose another name",
+                document.find(("outputs", name) if name in file.outputs else ("sensors",), key=True),
+            )
         if names.count(name) > 1:
             raise InputError(
                 f"two channels are named {name!r}; each column needs a name of its own",

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import keyword
 import math
-import re
 from collections.abc import Iterable, Mapping
 from itertools import chain
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shortened, shown
 from vehgen.vehicle.expressions import Expression, ExpressionError
 from vehgen.vehicle.model import GROUND, Joint, Vehicle
+from vehgen.vehicle.names import is_identifier
 from vehgen.vehicle.units import NONE, UNITS, Dimension
 
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
 _RESERVED = {GROUND, "k", "c", "title", "points", "laws"}
-_FILE_NAME = re.compile(r"[^\W_][^/\\:]*\Z")
 MAX_CHAIN = 100
 SCALE = 1e20
 """Quantities beyond it, and masses below its inverse, are slips of the pen that no arithmetic survives (SI units)."""
@@ -38,13 +36,6 @@ def _fail(vehicle: Vehicle, message: str, *path: str | int, key: bool = False, o
 def _check_names(vehicle: Vehicle) -> None:
     if not vehicle.bodies:
         raise _fail(vehicle, "a vehicle needs at least one body", "bodies", key=True)
-    if not _FILE_NAME.match(vehicle.name) or len(vehicle.name) > 100:
-        raise _fail(
-            vehicle,
-            f"{vehicle.name[:100]!r} cannot name a vehicle, because it names a folder too: a letter or digit, then anything but / \\ : was "
-            "expected, 100 characters at most",
-            "name",
-        )
     for name in vehicle.parameters:
         if name in UNITS:
             raise _fail(
@@ -67,10 +58,10 @@ def _check_names(vehicle: Vehicle) -> None:
 
 
 def _check_name(vehicle: Vehicle, kind: str, name: str) -> None:
-    if not _NAME.match(name) or keyword.iskeyword(name):
+    if not is_identifier(name) or keyword.iskeyword(name):
         raise _fail(
             vehicle,
-            f"{name!r} cannot be a name: a letter, then letters, digits and underscores were expected",
+            f"{shown(name)} cannot be a name: a letter, then letters, digits and underscores were expected (of ASCII)",
             kind,
             name,
             key=True,
@@ -96,7 +87,7 @@ def _check_circles(vehicle: Vehicle) -> None:
             if symbol.name not in vehicle.parameters:
                 raise _fail(
                     vehicle,
-                    f"unknown symbol {symbol.name!r}; {did_you_mean(symbol.name, vehicle.parameters)}",
+                    f"unknown symbol {shown(symbol.name)}; {did_you_mean(symbol.name, vehicle.parameters)}",
                     "parameters",
                     name,
                     "equals",
@@ -118,7 +109,7 @@ def _check_units(vehicle: Vehicle) -> None:
             if expression is not None and expression.names:
                 raise _fail(
                     vehicle,
-                    f"`{entry}` is a plain quantity; to follow other parameters write `equals: {expression}`",
+                    f"`{entry}` is a plain quantity; to follow other parameters write `equals: {shortened(str(expression))}`",
                     "parameters",
                     name,
                     entry,
@@ -171,10 +162,10 @@ def _expect(vehicle: Vehicle, expression: Expression, expected: Dimension, dimen
     if found == expected or _is_zero(expression):
         return
     what = ".".join(str(part) for part in path)
-    message = f"{what} must be in {expected}, found {found} in {expression.text!r}"
+    message = f"{what} must be in {expected}, found {found} in {shown(expression.text)}"
     if found == NONE:
         unitless = [name for name in sorted(expression.names) if dimensions[name] == NONE]
-        where = f"; give {unitless[0]!r} its unit" if unitless else f"; write e.g. '{expression.text} {expected}'"
+        where = f"; give {unitless[0]!r} its unit" if unitless else f"; write e.g. '{shortened(expression.text)} {expected}'"
         message = f"missing unit: {message}{where}"
     raise _fail(vehicle, message, *path)
 
@@ -189,7 +180,7 @@ def _is_zero(expression: Expression) -> bool:
 def _check_connections(vehicle: Vehicle) -> None:
     def known(name: str, allowed: Iterable[str], *path: str | int, key: bool = False) -> None:
         if name not in allowed:
-            raise _fail(vehicle, f"no body {name!r}; {did_you_mean(name, allowed)}", *path, key=key)
+            raise _fail(vehicle, f"no body {shown(name)}; {did_you_mean(name, allowed)}", *path, key=key)
 
     for name, axle in vehicle.axles.items():
         known(axle.body, vehicle.bodies, "axles", name, "body")
@@ -309,7 +300,7 @@ def _check_number(vehicle: Vehicle, expression: Expression | None, *path: str | 
     except ExpressionError as error:
         raise _fail(vehicle, str(error), *path) from error
     if not math.isfinite(number):
-        raise _fail(vehicle, f"{expression.text!r} is not a finite number", *path)
+        raise _fail(vehicle, f"{shown(expression.text)} is not a finite number", *path)
 
 
 def check_values(vehicle: Vehicle, free: Mapping[str, float], where: str = "") -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import unicodedata
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -11,8 +10,9 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
-from vehgen.errors import InputError, Position
+from vehgen.errors import InputError, Position, shortened, shown
 from vehgen.files import note_read
+from vehgen.vehicle.names import unprintable
 
 MAX_BYTES = 1_000_000
 MAX_VALUES = 20_000
@@ -132,7 +132,7 @@ class _Converter:
             return Located([self.convert(item, depth + 1) for item in node.value], position)
         if isinstance(node, ScalarNode):
             return Located(_scalar(node, kind, position), position, indent=_indent(node))
-        raise InputError(f"the tag {node.tag} is not allowed", position)
+        raise InputError(f"the tag {shortened(str(node.tag))} is not allowed", position)
 
     def _mapping(self, node: MappingNode, depth: int) -> dict[str, Located]:
         mapping: dict[str, Located] = {}
@@ -141,10 +141,10 @@ class _Converter:
             if not isinstance(key, ScalarNode):
                 raise InputError("a key must be a name", place)
             if str(key.tag).rpartition(":")[2] not in _PLAIN_KEYS:
-                raise InputError(f"the tag {key.tag} is not allowed", place)
+                raise InputError(f"the tag {shortened(str(key.tag))} is not allowed", place)
             _check_characters(key.value, place)
             if key.value in mapping:
-                raise InputError(f"duplicate name {key.value!r}; each may stand once", place)
+                raise InputError(f"duplicate name {shown(key.value)}; each may stand once", place)
             found = replace(self.convert(item, depth + 1), key_position=place)
             is_nothing = isinstance(item, ScalarNode) and item.start_mark.index == item.end_mark.index
             mapping[key.value] = replace(found, position=place) if is_nothing else found  # ruamel puts nothing where the next thing begins
@@ -168,7 +168,7 @@ def _scalar(node: ScalarNode, kind: str, position: Position) -> Any:
                 return text
     except ValueError:
         return text
-    raise InputError(f"the tag {node.tag} is not allowed", position)
+    raise InputError(f"the tag {shortened(str(node.tag))} is not allowed", position)
 
 
 def _indent(node: ScalarNode) -> int | None:
@@ -179,7 +179,6 @@ def _indent(node: ScalarNode) -> int | None:
 
 
 def _check_characters(text: str, position: Position) -> None:
-    """Refuse control characters, which could command a terminal, and half characters, which cannot be written."""
-    for character in text:
-        if unicodedata.category(character) in ("Cc", "Cs") and character not in "\t\n\r":
-            raise InputError(f"the character U+{ord(character):04X} is not allowed in a text", position)
+    """Refuse characters that could command a terminal, mislead a reader or cannot be written."""
+    if (found := unprintable(text)) is not None:
+        raise InputError(f"the character {found} is not allowed in a text", position)

@@ -19,7 +19,7 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shortened, shown
 from vehgen.vehicle.units import NONE, Dimension, nearest_unit, read_unit
 
 MAX_LENGTH = 1000
@@ -93,7 +93,7 @@ class Expression:
         try:
             return self.fold(lambda number: number.value, lambda name: values[name.name], apply_float)
         except (ZeroDivisionError, OverflowError, ValueError) as error:
-            raise ExpressionError(f"{self.text!r} has no value: {error}") from error
+            raise ExpressionError(f"{shown(self.text)} has no value: {error}") from error
 
     def dimension(self, dimensions: Mapping[str, Dimension]) -> Dimension:
         """Return its dimension; raises ExpressionError where units do not fit together."""
@@ -163,11 +163,11 @@ def parse(text: str, extra_functions: tuple[str, ...] = ()) -> Expression:
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         column = getattr(error, "offset", None) or 1
         offset = offsets[min(max(column - 1, 0), len(offsets) - 1)]
-        raise ExpressionError(f"cannot read {text!r} as an expression", offset) from error
+        raise ExpressionError(f"cannot read {shown(text)} as an expression", offset) from error
     try:
         return Expression(text, _convert(tree.body, quantities, offsets))
     except RecursionError as error:
-        raise ExpressionError(f"{text[:40]!r}... is nested too deeply") from error
+        raise ExpressionError(f"{shown(text)} is nested too deeply") from error
 
 
 def _replace_quantities(text: str) -> tuple[str, list[tuple[float, Dimension]], list[int]]:
@@ -181,7 +181,7 @@ def _replace_quantities(text: str) -> tuple[str, list[tuple[float, Dimension]], 
         number = _NUMBER.match(text, position)
         if name:
             if name.group().startswith("_"):
-                raise ExpressionError(f"a name may not start with an underscore: {name.group()!r}", position)
+                raise ExpressionError(f"a name may not start with an underscore: {shown(name.group())}", position)
             piece, end = name.group(), name.end()
         elif number:
             piece, end = f" _q{len(quantities)} ", number.end()
@@ -201,8 +201,8 @@ def _replace_quantities(text: str) -> tuple[str, list[tuple[float, Dimension]], 
                 word = _NAME.match(text, blank)
                 assert word is not None
                 raise ExpressionError(
-                    f"{word.group()!r} after {number.group()} is not a unit; {nearest_unit(word.group())} "
-                    f"(to multiply, write {number.group()} * {word.group()})",
+                    f"{shown(word.group())} after {shortened(number.group())} is not a unit; {nearest_unit(word.group())} "
+                    f"(to multiply, write {shortened(number.group())} * {shortened(word.group())})",
                     blank,
                 )
             quantities.append((value, dimension))
@@ -316,7 +316,7 @@ def _dimension(node: Node, dimensions: Mapping[str, Dimension]) -> Dimension:
         return node.dimension
     if isinstance(node, Name):
         if node.name not in dimensions:
-            raise ExpressionError(f"unknown symbol {node.name!r}; {did_you_mean(node.name, dimensions)}", node.offset)
+            raise ExpressionError(f"unknown symbol {shown(node.name)}; {did_you_mean(node.name, dimensions)}", node.offset)
         return dimensions[node.name]
     parts = [_dimension(argument, dimensions) for argument in node.arguments]
     match node.operator:

@@ -10,13 +10,16 @@ from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from vehgen.errors import InputError, Position, did_you_mean
+from vehgen.errors import InputError, Position, did_you_mean, shortened, shown
 from vehgen.vehicle.checks import check_vehicle
 from vehgen.vehicle.document import Located, read_document, read_text
 from vehgen.vehicle.model import Joint, Vehicle
+from vehgen.vehicle.names import as_name
 
 Model = TypeVar("Model", bound=BaseModel)
 MAX_EXTENDS = 20
+MAX_PATH = 300
+"""So many characters of a path that a file names are quoted."""
 
 
 def models_folder() -> Path:
@@ -49,14 +52,14 @@ def find_vehicle_file(name: str | Path, beside: Path | None = None) -> Path:
     try:
         return _find_bundled(path)
     except InputError as error:
-        raise InputError(f"no file {local}, and {error.message}") from error
+        raise InputError(f"no file {shortened(str(local), MAX_PATH)}, and {error.message}") from error
 
 
 def _find_bundled(name: str | Path) -> Path:
     path, bundled = Path(name), bundled_models()
     if path.parent == Path() and path.stem in bundled and path.suffix in ("", ".yaml"):
         return bundled[path.stem]
-    raise InputError(f"no bundled model {path.stem!r}; {did_you_mean(path.stem, bundled)}")
+    raise InputError(f"no bundled model {shown(path.stem)}; {did_you_mean(path.stem, bundled)}")
 
 
 def load_vehicle(name: str | Path, beside: Path | None = None) -> Vehicle:
@@ -77,7 +80,7 @@ def load_vehicle(name: str | Path, beside: Path | None = None) -> Vehicle:
     """
     path = find_vehicle_file(name, beside)
     document, files = _read_extended(path, ())
-    return _finish(document, files, path.stem)
+    return _finish(document, files, as_name(path.stem))
 
 
 def parse_vehicle(text: str, name: str = "<text>") -> Vehicle:
@@ -161,7 +164,7 @@ def merge(base: Located, change: Located) -> Located:
         if item.value is None:
             if key not in kept:
                 raise InputError(
-                    f"null removes {key!r}, but the file it extends has none; {did_you_mean(key, kept)}",
+                    f"null removes {shown(key)}, but the file it extends has none; {did_you_mean(key, kept)}",
                     item.key_position,
                 )
             del kept[key]
@@ -180,7 +183,8 @@ def validate(model: type[Model], data: Any, document: Located) -> Model:
 
 def _translate(error: ValidationError, model: type[BaseModel], document: Located) -> InputError:
     errors = error.errors()
-    first = next((item for item in errors if item["type"] == "extra_forbidden"), errors[0])
+    names = (item for item in errors if item["type"] == "extra_forbidden" or item["loc"][-1] == "[key]")
+    first = next(names, errors[0])
     if isinstance(first["input"], dict) and first["type"] in ("quantity", "string_type"):  # the entry is one of two kinds: not this one
         beside = first["loc"][:-1]
         first = next((item for item in errors if item["loc"][: len(beside)] == beside and item["type"] != first["type"]), first)
@@ -188,23 +192,25 @@ def _translate(error: ValidationError, model: type[BaseModel], document: Located
     if first["type"] == "extra_forbidden":
         key = str(path[-1])
         known = sorted({*_fields_beside(model, first["loc"]), *(["extends"] if model is Vehicle and len(path) == 1 else [])})
-        return InputError(f"unknown key {key!r}; {did_you_mean(key, known)}", document.find(path, key=True))
+        return InputError(f"unknown key {shown(key)}; {did_you_mean(key, known)}", document.find(path, key=True))
     if first["type"] in ("missing", "too_long", "tuple_type") and "range" in path[-2:]:
         return InputError("a range has two ends: [low, high]", document.find(path))
     if first["type"] == "missing":
         place = ".".join(str(part) for part in path[:-1]) or "the file"
         return InputError(f"{place} lacks the key {str(path[-1])!r}", document.find(path[:-1], key=True))
+    if path[-1] == "[key]":
+        return InputError(first["msg"], document.find(path[:-1], key=True))
     offset = (first.get("ctx") or {}).get("offset")
     position = document.find(path, offset=offset if isinstance(offset, int) else None)
     message = first["msg"]
     if first["type"] in ("model_type", "dict_type"):
         message = "expected `key: value` entries"
     elif first["type"] in ("tuple_type", "list_type"):
-        message = f"expected a list: [first, second], or lines that begin with `- ` (found {str(first['input'])[:60]!r})"
+        message = f"expected a list: [first, second], or lines that begin with `- ` (found {shown(str(first['input']))})"
     elif first["type"] == "literal_error":
-        message = f"{message[0].lower()}{message[1:]}, found {first['input']!r}"
-    elif first["type"] not in ("expression", "joint", "parameter", "axle", "quantity"):
-        message = f"{message[0].lower()}{message[1:]} (found {str(first['input'])[:60]!r})"
+        message = f"{message[0].lower()}{message[1:]}, found {shown(first['input'])}"
+    elif first["type"] not in ("expression", "joint", "parameter", "axle", "quantity", "name"):
+        message = f"{message[0].lower()}{message[1:]} (found {shown(str(first['input']))})"
     return InputError(message, position)
 
 

@@ -9,15 +9,16 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
-from vehgen.errors import InputError, Position, did_you_mean
+from vehgen.errors import InputError, Position, did_you_mean, shortened, shown
 from vehgen.vehicle.document import Located
 from vehgen.vehicle.expressions import Expression, ExpressionError, parse
+from vehgen.vehicle.names import FreeText, Name
 from vehgen.vehicle.units import DAMPING, FREQUENCY, INERTIA, LENGTH, MASS, MOMENT, NONE, PITCH_DAMPING, STIFFNESS, Dimension
 
 GROUND = "ground"
 Motion = Literal["heave", "pitch"]
 ZERO = parse("0")
-LawEntry = dict[str, Expression | dict[str, Expression]]
+LawEntry = dict[Name, Expression | dict[Name, Expression]]
 """Parameters of a force law; of an own `law`, its `force` and its `parameters`."""
 
 
@@ -33,7 +34,7 @@ class Parameter(Noun):
     value: Expression | None = Field(None, description="a number with its unit")
     equals: Expression | None = Field(None, description="an expression of other parameters")
     range: tuple[Expression, Expression] | None = Field(None, description="[low, high] that calibration may search")
-    meaning: str = ""
+    meaning: FreeText = ""
 
     @model_validator(mode="after")
     def _one_definition(self) -> Parameter:
@@ -80,7 +81,7 @@ class Body(Noun):
     size: Size | None = None
     bending: Bending | None = None
     at: Expression | None = Field(None, description="COG ahead of the first body's COG, for unconnected bodies")
-    title: str = ""
+    title: FreeText = ""
 
 
 class Point(Noun):
@@ -95,14 +96,14 @@ class Spring(Noun):
 
     k: Expression = ZERO
     c: Expression = ZERO
-    laws: tuple[dict[str, LawEntry], ...] = Field((), description="force laws in parallel with k and c, each `{name: {parameter: value}}`")
+    laws: tuple[dict[Name, LawEntry], ...] = Field((), description="force laws in parallel with k and c, each `{name: {parameter: value}}`")
 
 
 class Joint(Spring):
     """What joins two bodies: the keys that are not its own are the bodies' names."""
 
-    points: dict[str, Point] = Field(default_factory=dict)
-    title: str = ""
+    points: dict[Name, Point] = Field(default_factory=dict)
+    title: FreeText = ""
 
     @model_validator(mode="before")
     @classmethod
@@ -116,7 +117,7 @@ class Joint(Spring):
         if len(points) != 2:
             named = ", ".join(points) or "none"
             raise PydanticCustomError(
-                "joint", "a hinge or link joins two bodies, each named with its point; found {named}", {"named": named}
+                "joint", "a hinge or link joins two bodies, each named with its point; found {named}", {"named": shortened(named)}
             )
         return {**own, "points": points}
 
@@ -143,7 +144,7 @@ class Axle(Noun):
     mass: Expression | None = None
     suspension: Spring | None = None
     tyre: Spring
-    title: str = ""
+    title: FreeText = ""
 
     @model_validator(mode="after")
     def _both_or_none(self) -> Axle:
@@ -163,16 +164,16 @@ class Vehicle(Noun):
     Made by :func:`vehgen.vehicle.load_vehicle`, which has checked names, units, connections and values.
     """
 
-    name: str
-    title: str = ""
-    source: str = ""
-    description: str = ""
-    parameters: dict[str, Parameter] = Field(default_factory=dict)
-    bodies: dict[str, Body]
-    hinges: dict[str, Hinge] = Field(default_factory=dict)
-    axles: dict[str, Axle] = Field(default_factory=dict)
-    links: dict[str, Link] = Field(default_factory=dict)
-    sets: dict[str, dict[str, Expression]] = Field(default_factory=dict)
+    name: Name
+    title: FreeText = ""
+    source: FreeText = ""
+    description: FreeText = ""
+    parameters: dict[Name, Parameter] = Field(default_factory=dict)
+    bodies: dict[Name, Body]
+    hinges: dict[Name, Hinge] = Field(default_factory=dict)
+    axles: dict[Name, Axle] = Field(default_factory=dict)
+    links: dict[Name, Link] = Field(default_factory=dict)
+    sets: dict[Name, dict[Name, Expression]] = Field(default_factory=dict)
 
     _document: Located | None = PrivateAttr(None)
     _files: tuple[Path, ...] = PrivateAttr(())
@@ -230,11 +231,11 @@ class Vehicle(Noun):
             values[name] = definition.evaluate({})
         if parameter_set is not None:
             if parameter_set not in self.sets:
-                raise InputError(f"{self.name} has no parameter set {parameter_set!r}; {did_you_mean(parameter_set, self.sets)}")
+                raise InputError(f"{self.name} has no parameter set {shown(parameter_set)}; {did_you_mean(parameter_set, self.sets)}")
             values |= {name: expression.evaluate({}) for name, expression in self.sets[parameter_set].items()}
         for name, value in (overrides or {}).items():
             if name not in values:
-                raise InputError(f"{self.name} has no parameter {name!r} with a value; {did_you_mean(name, values)}")
+                raise InputError(f"{self.name} has no parameter {shown(name)} with a value; {did_you_mean(name, values)}")
             values[name] = float(value)
         return values
 

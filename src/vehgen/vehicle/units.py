@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 from fractions import Fraction
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 
 
 @dataclass(frozen=True)
@@ -157,5 +157,5 @@ def parse_unit(text: str) -> tuple[float, Dimension]:
     found = read_unit(text.strip())
     if found is None or found[2] != len(text.strip()):
         word = text.strip().split("/")[0].split(" ")[0]
-        raise InputError(f"unknown unit {text!r}; {nearest_unit(word)}")
+        raise InputError(f"unknown unit {shown(text)}; {nearest_unit(word)}")
     return found[0], found[1]
