@@ -14,6 +14,7 @@ PAGE = HERE / "architecture.md"
 START, END = "<!-- imports: start -->", "<!-- imports: end -->"
 ROOMS = [
     "errors",
+    "files",
     "vehicle",
     "mechanics",
     "codegen",
