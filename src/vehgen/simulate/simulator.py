@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from vehgen.codegen import Drive, Kernel, KernelResult, write_text
 from vehgen.errors import InputError, ModelWarning, did_you_mean
 from vehgen.mechanics import Channel, ElementOutput, LinearModel, Output, Place, derive, static_loads
+from vehgen.simulate.budgets import check_population
 from vehgen.simulate.doubts import lift_off, spectral_nulls, step_too_coarse
 from vehgen.simulate.runfile import Run
 from vehgen.simulate.scenario import Scenario, make_scenario
@@ -91,6 +92,7 @@ class Simulator:
         -------
         Responses and failures; a failed individual raises a ModelWarning and leaves the others unharmed.
         """
+        check_population(len(parameters), len(scenario.time) / scenario.keep, len(self.model.channels))
         offsets = np.round(self.wheel_offsets(parameters), 12)
         distinct, group = np.unique(offsets, axis=0, return_inverse=True)
         group = group.ravel()
