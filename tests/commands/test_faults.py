@@ -69,7 +69,7 @@ def test_a_bad_vehicle_of_a_run_is_one_line_on_stderr(fault: str, work: Path, ca
         ),
         (
             "vehicle: quarter_car\nspeed: 1 m/s\nduration: 1 s\nroad:\n  - profile: {file: absent.csv}\n",
-            "run.yaml:5:3: no file absent.csv",
+            "run.yaml:5:21: no file absent.csv",
         ),
         ("vehicle: quarter_car\nspeed: {file: absent.csv}\nduration: 1 s\n", "run.yaml:2:15: no file absent.csv"),
     ],
@@ -90,7 +90,7 @@ def test_a_bad_run_is_one_line_on_stderr(text: str, message: str, work: Path, ca
         (["modes", "."], "error: . is a folder; a YAML file was expected"),
         (["modes", "tractor5", "--set", "SHCM1"], "error: tractor5 has no parameter set 'SHCM1'; did you mean 'SHCM-1'"),
         (["simulate", "absent.yaml"], "error: no file absent.yaml"),
-        (["static", "floating.yaml"], "error: singular stiffness: nothing holds heave.body against gravity"),
+        (["static", "floating.yaml"], "error: floating.yaml:2:3: singular stiffness: nothing holds heave.body against gravity"),
     ],
 )
 def test_other_faults(arguments: list[str], message: str, work: Path, capsys: pytest.CaptureFixture[str]):

@@ -53,8 +53,7 @@ def check_run(run: Run, duration: float, way: float, n_wheels: int) -> None:
     steps = duration / file.step
     said = ("duration",) if file.duration is not None else ("speed",)
     if steps < run.keep:
-        with placed(run, *said, key=True):
-            raise InputError(f"a run of {duration:g} s keeps no sample: they are {run.keep * file.step:g} s apart")
+        raise InputError(f"a run of {duration:g} s keeps no sample: they are {run.keep * file.step:g} s apart", run.document.find(said))
     numbers = steps * (2 * n_wheels + len(file.forces) + 1) + steps / run.keep * (len(run.outputs()) + len(run.vehicle.axles))
     reason = None
     if steps > MAX_STEPS:
@@ -65,7 +64,7 @@ def check_run(run: Run, duration: float, way: float, n_wheels: int) -> None:
         reason = f"{steps:.0f} steps over a road of {len(file.road)} entries; a shorter run or fewer entries were expected"
     if reason is not None:
         where = "" if file.duration is not None else " (until the last wheel has left the last hump; `duration` may end the run before)"
-        raise InputError(f"{reason}{where}", run.document.find(said, key=file.duration is None))
+        raise InputError(f"{reason}{where}", run.document.find(said))
     if file.footprint is not None and way > MOST_AVERAGED:
         raise InputError(
             f"a road is averaged over a footprint for at most {MOST_AVERAGED:g} m; this run covers {way:.3g} m",

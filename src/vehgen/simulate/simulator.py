@@ -214,7 +214,7 @@ def simulate(run: Run) -> Response:
     result = simulator.run(parameters, scenario)
     responses = result.responses
     if result.failures:
-        raise InputError(f"the vehicle has no finite response: {result.failures[0]}")
+        raise InputError(f"the vehicle has no finite response: {result.failures[0]}", run.document.find(("vehicle",)))
     n = len(wanted)
     messages = [
         *lift_off(simulator.model, values, responses[0, :, n:]),

@@ -33,8 +33,6 @@ MOST_CHANNELS = 500
 LONGEST_PATH = 1000
 """No file is named by more characters."""
 LARGEST_SEED = 2**63 - 1
-LARGEST_COUNT = 1_000_000
-"""Individuals, generations and the like."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +72,8 @@ FORCE_LIMIT = Limit("a force", 0.0, 1e9, FORCE)
 DISPLACEMENT = Limit("a displacement", 0.0, 100.0, LENGTH)
 ANGLE = Limit("an angle", 0.0, 1e4, NONE)
 VEHICLE_LENGTH = Limit("a length on a vehicle", 0.0, 1e3, LENGTH)
-SAMPLING_RATE = Limit("a rate of samples", 1.0, 1e4, FREQUENCY)
+TOP_LIMIT = Limit("the top of a band", 1.0, 500.0, FREQUENCY)
+RELATIVE_ERROR = Limit("a relative uncertainty", 0.0, 1.0, NONE)
 
 VEHICLE_LIMITS: dict[Dimension, Limit] = {
     MASS: Limit("a mass", 1e-6, 1e7, MASS),
@@ -96,7 +95,7 @@ def check_seed(seed: int, where: str) -> None:
         raise InputError(f"{where}: a seed is a whole number from 0 to {LARGEST_SEED}, found {seed}")
 
 
-def check_count(count: int, where: str, least: int = 0, most: int = LARGEST_COUNT) -> None:
+def check_count(count: int, where: str, least: int, most: int) -> None:
     """Raise InputError for a number of things below `least` or above `most`."""
     if not least <= count <= most:
         raise InputError(f"{where}: a whole number from {least} to {most} was expected, found {count}")
