@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 import subprocess
 import sys
@@ -155,3 +156,65 @@ def test_a_defect_is_not_hidden(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("vehgen.commands.models.run", raising(RuntimeError("a defect")))
     with pytest.raises(RuntimeError, match="a defect"):
         main(["models"])
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--hump", "half_sine,length=1e9,height=0.03"], "--hump: the length of a hump is 0.001 to 50 m in magnitude, found 1e+09 m"),
+        (["--speed", "1e6"], "--speed: a speed is 0.01 to 150 m/s in magnitude, found 1e+06 m/s"),
+        (["--speed", "1e-6"], "--speed: a speed is 0.01 to 150 m/s"),
+        (["--footprint", "1e9"], "--footprint: a tyre's footprint is 0.001 to 2 m"),
+        (["--footprint", "nan"], "--footprint must be a positive number, found nan"),
+        (["--lead", "1e12"], "--lead: a place along the road is at most 1e+06 m"),
+        (["--top", "-1", "--rate", "100"], "the top of the band must be from 1 to 500 Hz, found -1 Hz"),
+        (["--rate", "1e9"], "the rate must be from 50 to 1000 Hz"),
+        (["--sensor", "L1:body=body,behind=body,distance=1e9"], "--sensor L1 distance: a length on a vehicle is at most 1000 m"),
+    ],
+)
+def test_options_of_import_beyond_all_limits(options: list[str], message: str, work: Path, capsys: pytest.CaptureFixture[str]):
+    (work / "a.csv").write_text("t,a\n0,1\n1,2\n")
+    given = dict(zip(options[::2], options[1::2], strict=True))
+    usual = {
+        "--vehicle": "sedan2",
+        "--sensor": "L1:body=body",
+        "--hump": "half_sine,length=0.5,height=0.03",
+        "--speed": "2",
+        "--out": "r.yaml",
+    }
+    arguments = [part for pair in {**usual, **given}.items() for part in pair]
+    assert main(["import", "a.csv", *arguments]) == 2
+    captured = capsys.readouterr()
+    assert message in captured.err
+    assert captured.err.count("\n") == 1
+    assert [path.name for path in work.iterdir()] == ["a.csv"]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--seed", "-1"], "--seed: a seed is a whole number from 0 to 9223372036854775807, found -1"),
+        (["--size", "1000000000"], "--size: a whole number from 2 to 100000 was expected, found 1000000000"),
+        (["--generations", "-5"], "--generations: a whole number from 0 to 1000000 was expected"),
+        (["--bootstrap", "-5"], "--bootstrap: a whole number from 0"),
+        (["--height-error", "-0.1"], "--height-error must not be below 0, found -0.1"),
+        (["--speed-error", "inf"], "--speed-error: a relative uncertainty is at most 1 in magnitude, found inf"),
+    ],
+)
+def test_options_of_calibrate_beyond_all_limits(options: list[str], message: str, work: Path, capsys: pytest.CaptureFixture[str]):
+    assert main(["calibrate", "sedan2", "absent.yaml", *options]) == 2
+    captured = capsys.readouterr()
+    assert captured.err.startswith(f"error: {message}")
+    assert captured.err.count("\n") == 1
+    assert list(work.iterdir()) == []
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs pipes")
+@pytest.mark.parametrize("command", [["modes", "pipe"], ["simulate", "pipe"], ["simulate", "run.yaml"], ["effects", "--library", "pipe"]])
+def test_a_pipe_as_a_file_is_one_line(command: list[str], work: Path, capsys: pytest.CaptureFixture[str]):
+    os.mkfifo(work / "pipe")
+    (work / "run.yaml").write_text("vehicle: quarter_car\nspeed: {file: pipe}\nduration: 1 s\n")
+    assert main(command) == 2
+    captured = capsys.readouterr()
+    assert "pipe is a pipe, socket or device" in captured.err
+    assert captured.err.count("\n") == 1

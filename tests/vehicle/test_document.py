@@ -260,3 +260,25 @@ def test_no_file_a_folder_and_a_locked_file(tmp_path: Path):
     if not os.access(locked, os.R_OK):
         with pytest.raises(InputError, match=r"cannot read .*locked\.yaml: Permission denied"):
             read_document(locked)
+
+
+@pytest.mark.parametrize("digits", [401, 5000, 400_000])
+def test_a_number_of_many_digits_stays_text_and_is_refused_in_one_line(digits: int, tmp_path: Path):
+    assert read_text("a: 0x" + "f" * digits, "a.yaml").plain() == {"a": "0x" + "f" * digits}
+    path = tmp_path / "a.yaml"
+    path.write_text("bodies:\n  b: {mass: 0x" + "f" * digits + "}\n")
+    with pytest.raises(InputError, match=r"a\.yaml:2:"):
+        load_vehicle(path)
+
+
+@pytest.mark.parametrize("text", ["a: [\n", "a: {\n\n\n", "a: 'b\n\n", "- \n- {\n", "a:\n  -\n", "a: |\n", "? \n", "a: [1,\n"])
+def test_no_place_lies_beyond_the_end(text: str):
+    lines = text.splitlines()
+    try:
+        places = [node.position for _, node in walk(read_text(text, "a.yaml"))]
+    except InputError as error:
+        places = [error.position]
+    for place in places:
+        assert place is not None
+        assert 1 <= place.line <= len(lines)
+        assert 1 <= place.column <= len(lines[place.line - 1]) + 1

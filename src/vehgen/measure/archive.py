@@ -16,7 +16,7 @@ from vehgen.files.reading import bounded, open_regular, read_bytes, shown
 
 MAX_FILE = 64 * 2**20
 """Largest file of an export [bytes]: two hours of three axes at 200 Hz."""
-MAX_TOTAL = 256 * 2**20
+MAX_TOTAL = 128 * 2**20
 """Largest export [bytes], unpacked."""
 MAX_FILES = 500
 MAX_RATIO = 200

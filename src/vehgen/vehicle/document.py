@@ -18,6 +18,8 @@ from vehgen.files import reading
 MAX_BYTES = 1_000_000
 MAX_VALUES = 20_000
 MAX_DEPTH = 20
+MAX_DIGITS = 400
+"""A longer whole number stays text: Python refuses to write it again, and no float holds it."""
 _PLAIN_KEYS = {"str", "int", "float", "bool", "null", "timestamp", "merge", "value"}
 
 
@@ -158,7 +160,7 @@ def _scalar(node: ScalarNode, kind: str, position: Position) -> Any:
             case "bool":
                 return text.lower() == "true"
             case "int":
-                return int(text.replace("_", ""), 0)
+                return int(text.replace("_", ""), 0) if len(text) <= MAX_DIGITS else text
             case "float":
                 return float(text.replace("_", "").replace(".inf", "inf").replace(".nan", "nan"))
             case "str" | "timestamp":

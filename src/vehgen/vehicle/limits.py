@@ -72,7 +72,6 @@ FORCE_LIMIT = Limit("a force", 0.0, 1e9, FORCE)
 DISPLACEMENT = Limit("a displacement", 0.0, 100.0, LENGTH)
 ANGLE = Limit("an angle", 0.0, 1e4, NONE)
 VEHICLE_LENGTH = Limit("a length on a vehicle", 0.0, 1e3, LENGTH)
-TOP_LIMIT = Limit("the top of a band", 1.0, 500.0, FREQUENCY)
 RELATIVE_ERROR = Limit("a relative uncertainty", 0.0, 1.0, NONE)
 
 VEHICLE_LIMITS: dict[Dimension, Limit] = {

@@ -11,6 +11,7 @@ from typing import Any, TypeVar, get_args
 from pydantic import BaseModel, ValidationError
 
 from vehgen.errors import InputError, Position, did_you_mean
+from vehgen.files.reading import shown
 from vehgen.vehicle.checks import check_vehicle
 from vehgen.vehicle.document import Located, read_document, read_text
 from vehgen.vehicle.model import Joint, Vehicle
@@ -45,18 +46,18 @@ def find_vehicle_file(name: str | Path, beside: Path | None = None) -> Path:
         if local.exists():
             return local
     except OSError as error:
-        raise InputError(f"cannot read {local}: {error.strerror}") from error
+        raise InputError(f"cannot read {shown(local)}: {error.strerror}") from error
     try:
         return _find_bundled(path)
     except InputError as error:
-        raise InputError(f"no file {local}, and {error.message}") from error
+        raise InputError(f"no file {shown(local)}, and {error.message}") from error
 
 
 def _find_bundled(name: str | Path) -> Path:
     path, bundled = Path(name), bundled_models()
     if path.parent == Path() and path.stem in bundled and path.suffix in ("", ".yaml"):
         return bundled[path.stem]
-    raise InputError(f"no bundled model {path.stem!r}; {did_you_mean(path.stem, bundled)}")
+    raise InputError(f"no bundled model {shown(path.stem)!r}; {did_you_mean(path.stem, bundled)}")
 
 
 def load_vehicle(name: str | Path, beside: Path | None = None) -> Vehicle:
