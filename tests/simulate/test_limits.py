@@ -82,6 +82,12 @@ CASES = [
         "a channel is named 't', as the column of time is",
     ),
     (
+        "channel that is a formula",
+        HUMP,
+        HUMP + '@sensors: {A: {body: body, channels: {acceleration: "=cmd|1"}}}\n',
+        "the channel '=cmd|1' would be a formula",
+    ),
+    (
         "many channels",
         HUMP,
         HUMP + "@sensors:\n" + "".join(f"  A{i}: {{body: body}}\n" for i in range(251)),

@@ -376,6 +376,10 @@ def _check(run: Run) -> None:
             raise InputError(f"two channels are named {name!r}; each column needs a name of its own", where)
         if name == "t":
             raise InputError("a channel is named 't', as the column of time is; choose another name", where)
+        if name.startswith(("=", "+", "-", "@")):
+            raise InputError(
+                f"the channel {name[:40]!r} would be a formula in the CSV files that vehgen writes; begin it with a letter", where
+            )
     if file.duration is not None and file.duration > MAX_STEPS * file.step:
         raise InputError(
             f"a run has at most {MAX_STEPS} steps; {file.duration:g} s in steps of {file.step:g} s are more",
