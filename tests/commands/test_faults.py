@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 import subprocess
 import sys
@@ -69,7 +70,7 @@ def test_a_bad_vehicle_of_a_run_is_one_line_on_stderr(fault: str, work: Path, ca
         ),
         (
             "vehicle: quarter_car\nspeed: 1 m/s\nduration: 1 s\nroad:\n  - profile: {file: absent.csv}\n",
-            "run.yaml:5:3: no file absent.csv",
+            "run.yaml:5:21: no file absent.csv",
         ),
         ("vehicle: quarter_car\nspeed: {file: absent.csv}\nduration: 1 s\n", "run.yaml:2:15: no file absent.csv"),
     ],
@@ -90,7 +91,7 @@ def test_a_bad_run_is_one_line_on_stderr(text: str, message: str, work: Path, ca
         (["modes", "."], "error: . is a folder; a YAML file was expected"),
         (["modes", "tractor5", "--set", "SHCM1"], "error: tractor5 has no parameter set 'SHCM1'; did you mean 'SHCM-1'"),
         (["simulate", "absent.yaml"], "error: no file absent.yaml"),
-        (["static", "floating.yaml"], "error: singular stiffness: nothing holds heave.body against gravity"),
+        (["static", "floating.yaml"], "error: floating.yaml:2:3: singular stiffness: nothing holds heave.body against gravity"),
     ],
 )
 def test_other_faults(arguments: list[str], message: str, work: Path, capsys: pytest.CaptureFixture[str]):
@@ -149,3 +150,65 @@ def test_doubts_are_warnings_on_stderr(monkeypatch: pytest.MonkeyPatch, capsys: 
     captured = capsys.readouterr()
     assert captured.err == "warning: the step is coarse\n" * 2
     assert captured.out == ""
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--hump", "half_sine,length=1e9,height=0.03"], "--hump: the length of a hump is 0.001 to 50 m in magnitude, found 1e+09 m"),
+        (["--speed", "1e6"], "--speed: a speed is 0.01 to 150 m/s in magnitude, found 1e+06 m/s"),
+        (["--speed", "1e-6"], "--speed: a speed is 0.01 to 150 m/s"),
+        (["--footprint", "1e9"], "--footprint: a tyre's footprint is 0.001 to 2 m"),
+        (["--footprint", "nan"], "--footprint must be a positive number, found nan"),
+        (["--lead", "1e12"], "--lead: a place along the road is at most 1e+06 m"),
+        (["--top", "-1", "--rate", "100"], "the top of the band must be from 1 to 500 Hz, found -1 Hz"),
+        (["--rate", "1e9"], "the rate must be from 50 to 1000 Hz"),
+        (["--sensor", "L1:body=body,behind=body,distance=1e9"], "--sensor L1 distance: a length on a vehicle is at most 1000 m"),
+    ],
+)
+def test_options_of_import_beyond_all_limits(options: list[str], message: str, work: Path, capsys: pytest.CaptureFixture[str]):
+    (work / "a.csv").write_text("t,a\n0,1\n1,2\n")
+    given = dict(zip(options[::2], options[1::2], strict=True))
+    usual = {
+        "--vehicle": "sedan2",
+        "--sensor": "L1:body=body",
+        "--hump": "half_sine,length=0.5,height=0.03",
+        "--speed": "2",
+        "--out": "r.yaml",
+    }
+    arguments = [part for pair in {**usual, **given}.items() for part in pair]
+    assert main(["import", "a.csv", *arguments]) == 2
+    captured = capsys.readouterr()
+    assert message in captured.err
+    assert captured.err.count("\n") == 1
+    assert [path.name for path in work.iterdir()] == ["a.csv"]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--seed", "-1"], "--seed: a seed is a whole number from 0 to 9223372036854775807, found -1"),
+        (["--size", "1000000000"], "--size: a whole number from 2 to 100000 was expected, found 1000000000"),
+        (["--generations", "-5"], "--generations: a whole number from 0 to 1000000 was expected"),
+        (["--bootstrap", "-5"], "--bootstrap: a whole number from 0"),
+        (["--height-error", "-0.1"], "--height-error must not be below 0, found -0.1"),
+        (["--speed-error", "inf"], "--speed-error: a relative uncertainty is at most 1 in magnitude, found inf"),
+    ],
+)
+def test_options_of_calibrate_beyond_all_limits(options: list[str], message: str, work: Path, capsys: pytest.CaptureFixture[str]):
+    assert main(["calibrate", "sedan2", "absent.yaml", *options]) == 2
+    captured = capsys.readouterr()
+    assert captured.err.startswith(f"error: {message}")
+    assert captured.err.count("\n") == 1
+    assert list(work.iterdir()) == []
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs pipes")
+@pytest.mark.parametrize("command", [["modes", "pipe"], ["simulate", "pipe"], ["simulate", "run.yaml"], ["effects", "--library", "pipe"]])
+def test_a_pipe_as_a_file_is_one_line(command: list[str], work: Path, capsys: pytest.CaptureFixture[str]):
+    os.mkfifo(work / "pipe")
+    (work / "run.yaml").write_text("vehicle: quarter_car\nspeed: {file: pipe}\nduration: 1 s\n")
+    assert main(command) == 2
+    captured = capsys.readouterr()
+    assert "pipe is a pipe, socket or device" in captured.err
+    assert captured.err.count("\n") == 1

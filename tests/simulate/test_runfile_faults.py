@@ -63,7 +63,13 @@ CASES = [
         "duration of years",
         "duration: 10 s",
         "duration: @1e9 s",
-        f"a run has at most {MAX_STEPS} steps; 1e+09 s in steps of 0.002 s are more",
+        "a duration is 0.001 to 100000 s in magnitude, found 1e+09 s: a question of units?",
+    ),
+    (
+        "duration of a day",
+        "duration: 10 s",
+        "duration: @24 h",
+        f"a run has at most {MAX_STEPS} steps; 86400 s in steps of 0.002 s are more",
     ),
     ("step", "step: 2 ms", "step: @-1 ms", "expected a finite number above 0"),
     ("sample between steps", "sample: 10 ms", "sample: @9 ms", "`sample` must be a whole number of steps of 0.002 s, found 0.009 s"),
@@ -231,7 +237,7 @@ def test_a_fault_of_the_vehicle_names_the_vehicles_file(tmp_path: Path):
         ("", r"run\.yaml:1:1: the file is empty$"),
         ("- a\n", r"run\.yaml:1:1: a file of `key: value` lines was expected$"),
         ("vehicle: run.yaml\nspeed: 1 m/s\n", r"run\.yaml:1:1: unknown key 'vehicle'"),
-        ("vehicle: [\n", r"run\.yaml:2:1: not valid YAML"),
+        ("vehicle: [\n", r"run\.yaml:1:10: not valid YAML"),
     ],
 )
 def test_what_is_no_run_file(text: str, message: str, tmp_path: Path):

@@ -165,10 +165,10 @@ def test_an_alias_stands_for_its_anchor():
         ("1: a\n'1': b\n", (2, 1), "duplicate name '1'"),
         ("a:\n\tb: 1\n", (2, 1), "not valid YAML: found character '\\t'"),
         ("a: 1\n\tb: 2\n", (2, 1), "not valid YAML"),
-        ("a: {b: 1\n", (2, 1), "not valid YAML: expected ',' or '}', but got '<stream end>'"),
+        ("a: {b: 1\n", (1, 8), "not valid YAML: expected ',' or '}', but got '<stream end>'"),
         ("a: [1, 2}\n", (1, 9), "not valid YAML"),
         ("a: b: c\n", (1, 5), "not valid YAML: mapping values are not allowed here"),
-        ("a: 'b\n", (2, 1), "not valid YAML"),
+        ("a: 'b\n", (1, 5), "not valid YAML"),
         ("a: *nowhere\n", (1, 4), "not valid YAML: found undefined alias 'nowhere'"),
         ("a: 1\n---\nb: 2\n", (2, 1), "not valid YAML: but found another document"),
         ("a: @b\n", (1, 4), "not valid YAML: found character '@' that cannot start any token"),
@@ -187,7 +187,7 @@ def test_an_alias_stands_for_its_anchor():
         ('a: "b\\0c"\n', (1, 4), "the character U+0000 is not allowed"),
         ('a: "\\ud800"\n', (1, 4), "the character U+D800 is not allowed"),
         ('"a\\x07": 1\n', (1, 1), "the character U+0007 is not allowed"),
-        ("a: \x00\n", (1, 1), "not valid YAML: unacceptable character #x0000"),
+        ("a: \x00\n", (1, 4), "not valid YAML: unacceptable character #x0000"),
     ],
 )
 def test_refused_with_its_place(text: str, place: tuple[int, int], message: str):
@@ -216,26 +216,26 @@ def test_a_file_of_ten_megabytes_is_not_read(tmp_path: Path):
     path = tmp_path / "large.yaml"
     path.write_bytes(b"a: 1\n" * 2_000_000)
     start = time.perf_counter()
-    with pytest.raises(InputError, match=f"has 10000000 bytes; a file of at most {MAX_BYTES} bytes was expected"):
+    with pytest.raises(InputError, match=f"has 10000000 bytes; a YAML file of at most {MAX_BYTES} bytes was expected"):
         read_document(path)
     assert time.perf_counter() - start < 0.5
 
 
 @pytest.mark.skipif(not Path("/dev/zero").exists(), reason="needs a file without an end")
 def test_a_file_without_an_end_is_not_read_for_ever():
-    with pytest.raises(InputError, match="/dev/zero does not end"):
+    with pytest.raises(InputError, match="/dev/zero is a pipe, socket or device"):
         read_document(Path("/dev/zero"))
 
 
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"name: \xff\xfe", "is not UTF-8 text"),
-        ("name: small\n".encode("utf-16"), "is not UTF-8 text"),
-        ("name: caf\u00e9\n".encode("latin-1"), "is not UTF-8 text"),
+        (b"name: \xff\xfe", r"a\.yaml:1:7: not UTF-8 text"),
+        ("name: small\n".encode("utf-16"), "not UTF-8 text"),
+        ("# \u00fc\nname: caf".encode() + b"\xe9\n", r"a\.yaml:2:10: not UTF-8 text: the byte 0xe9"),
         (b"", "the file is empty"),
         (b"\x00" * 100, "not valid YAML"),
-        (b"\x89PNG\r\n\x1a\n", "is not UTF-8 text"),
+        (b"\x89PNG\r\n\x1a\n", "not UTF-8 text"),
     ],
 )
 def test_files_that_are_no_text(content: bytes, message: str, tmp_path: Path):
@@ -260,3 +260,25 @@ def test_no_file_a_folder_and_a_locked_file(tmp_path: Path):
     if not os.access(locked, os.R_OK):
         with pytest.raises(InputError, match=r"cannot read .*locked\.yaml: Permission denied"):
             read_document(locked)
+
+
+@pytest.mark.parametrize("digits", [401, 5000, 400_000])
+def test_a_number_of_many_digits_stays_text_and_is_refused_in_one_line(digits: int, tmp_path: Path):
+    assert read_text("a: 0x" + "f" * digits, "a.yaml").plain() == {"a": "0x" + "f" * digits}
+    path = tmp_path / "a.yaml"
+    path.write_text("bodies:\n  b: {mass: 0x" + "f" * digits + "}\n")
+    with pytest.raises(InputError, match=r"a\.yaml:2:"):
+        load_vehicle(path)
+
+
+@pytest.mark.parametrize("text", ["a: [\n", "a: {\n\n\n", "a: 'b\n\n", "- \n- {\n", "a:\n  -\n", "a: |\n", "? \n", "a: [1,\n"])
+def test_no_place_lies_beyond_the_end(text: str):
+    lines = text.splitlines()
+    try:
+        places = [node.position for _, node in walk(read_text(text, "a.yaml"))]
+    except InputError as error:
+        places = [error.position]
+    for place in places:
+        assert place is not None
+        assert 1 <= place.line <= len(lines)
+        assert 1 <= place.column <= len(lines[place.line - 1]) + 1

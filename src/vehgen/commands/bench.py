@@ -20,9 +20,11 @@ def run(options: argparse.Namespace) -> None:
     """Print nanoseconds per step and individual of the five-axle vehicle, and how much slower its peers are."""
     from vehgen.errors import InputError
     from vehgen.simulate.benchmark import measure
+    from vehgen.simulate.budgets import check_population
 
     if options.individuals < 1 or not 0.05 <= options.seconds <= 1000:
         raise InputError("--individuals must be at least 1 and --seconds between 0.05 and 1000")
+    check_population(options.individuals, 100 * options.seconds, 2)
     result = measure(options.individuals, options.seconds)
     if options.json:
         print_json(result)

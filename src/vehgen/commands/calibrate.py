@@ -58,6 +58,7 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.vehicle import load_vehicle
     from vehgen.vehicle.names import as_name
 
+    _check_numbers(options)
     vehicle = load_vehicle(options.vehicle)
     problem = make_problem(load_trials(options.runs, vehicle))
     facts = load_facts(options.facts, problem) if options.facts else None
@@ -86,6 +87,19 @@ def run(options: argparse.Namespace) -> None:
         _show(outcome, files)
     if found.stopped:
         raise KeyboardInterrupt
+
+
+def _check_numbers(options: argparse.Namespace) -> None:
+    """Refuse numbers that no search can use, before anything is read or made."""
+    from vehgen.vehicle.limits import RELATIVE_ERROR, check_count, check_seed
+
+    check_seed(options.seed, "--seed")
+    for name, least, most in (("size", 2, 100_000), ("generations", 0, 1_000_000), ("starts", 0, 10_000), ("bootstrap", 0, 100_000)):
+        check_count(getattr(options, name), f"--{name}", least, most)
+    for name, value in (("--height-error", options.height_error), ("--speed-error", options.speed_error)):
+        if not value >= 0:
+            raise InputError(f"{name} must not be below 0, found {value}")
+        RELATIVE_ERROR.check(value, name)
 
 
 def _settings(options: argparse.Namespace) -> Settings:

@@ -60,13 +60,19 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.report import save_figure
     from vehgen.report.import_plot import plot_import
     from vehgen.vehicle import load_vehicle
+    from vehgen.vehicle.limits import FOOTPRINT, ROAD_POSITION, SPEED_LIMIT
     from vehgen.vehicle.units import SPEED
 
     by_axles = options.speed == "axles"
     speed = None if options.speed is None or by_axles else quantity(options.speed, SPEED, "--speed")
-    for name, value in (("speed", speed), ("lead", options.lead), ("footprint", options.footprint)):
-        if value is not None and not (0 < value < 1e6 or (value == 0 and name == "footprint")):
+    for name, value, limit in (
+        ("speed", speed, SPEED_LIMIT),
+        ("lead", options.lead, ROAD_POSITION),
+        ("footprint", options.footprint, FOOTPRINT),
+    ):
+        if value is not None and not (value > 0 or (value == 0 and name == "footprint")):
             raise InputError(f"--{name} must be a positive number, found {value}")
+        limit.check(value or 0.0, f"--{name}")
     vehicle = load_vehicle(options.vehicle)
     plan = Plan(
         vehicle,

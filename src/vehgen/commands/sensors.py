@@ -23,10 +23,12 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.identify.sensors import advise_sensors
     from vehgen.simulate import load_run
     from vehgen.vehicle import load_vehicle
+    from vehgen.vehicle.limits import check_count
 
+    check_count(options.count, "--count", 1, 100)
     run_ = load_run(options.run_file, load_vehicle(options.vehicle))
     names = [part.strip() for part in options.parameters.split(",")] if options.parameters else None
-    found = advise_sensors(run_, max(1, options.count), names)
+    found = advise_sensors(run_, options.count, names)
     if options.json:
         print_json(
             {

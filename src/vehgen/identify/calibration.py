@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from vehgen.errors import InputError
 from vehgen.files import write_text
+from vehgen.files.reading import read_text
 from vehgen.identify.facts import Facts
 from vehgen.identify.genetic import GeneticSearch, SearchState
 from vehgen.identify.methods import Step, plan
@@ -22,6 +23,7 @@ from vehgen.identify.objective import BAND, PsdObjective
 from vehgen.identify.parallel import Runner
 from vehgen.identify.polish import Polished, polish
 from vehgen.identify.problem import Problem
+from vehgen.road.tables import MOST_BYTES
 
 Array = NDArray[np.float64]
 SAVE_EVERY = 10
@@ -211,9 +213,9 @@ def _load(path: Path | None, problem: Problem, settings: Settings) -> list[Searc
     if path is None or not path.is_file():
         raise InputError(f"there is no search to resume{'' if path is None else f' at {path}'}")
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
+        data = json.loads(read_text(path, MOST_BYTES, "a checkpoint of a calibration"))
         found, states = data["fingerprint"], [SearchState.from_json(json.dumps(item)) for item in data["states"]]
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise InputError(f"{path} is not a checkpoint of a calibration: {error}") from error
     if found != fingerprint(problem, settings):
         raise InputError(f"{path} belongs to another calibration: vehicle, runs, method, seed and population size must be the same")

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.files.reading import read_bytes
 from vehgen.identify.calibration import Calibration, Settings, StepResult
 from vehgen.identify.facts import Facts
 from vehgen.identify.identifiability import Structure, find_structure
@@ -21,6 +22,7 @@ from vehgen.identify.objective import PsdObjective
 from vehgen.identify.parallel import Runner
 from vehgen.mechanics import static_loads
 from vehgen.mechanics.outputs import ElementOutput
+from vehgen.road.tables import MOST_BYTES
 from vehgen.simulate import Simulator
 from vehgen.vehicle.writing import quantity, variant_text
 
@@ -302,7 +304,7 @@ def provenance(calibration: Calibration) -> dict[str, Any]:
             *run.vehicle.files,
         ):
             if isinstance(path, Path) and path.is_file():
-                files[path.name] = hashlib.sha256(path.read_bytes()).hexdigest()
+                files[path.name] = hashlib.sha256(read_bytes(path, MOST_BYTES)).hexdigest()
     return {
         "vehgen": __version__,
         "python": platform.python_version(),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import lzma
+import os
 import struct
 import zipfile
 import zlib
@@ -11,17 +12,21 @@ from pathlib import Path, PurePosixPath
 from typing import IO
 
 from vehgen.errors import InputError, shown
-from vehgen.files import note_read
+from vehgen.files.reading import bounded, open_regular, read_bytes, short_path
 
 MAX_FILE = 64 * 2**20
 """Largest file of an export [bytes]: two hours of three axes at 200 Hz."""
-MAX_TOTAL = 256 * 2**20
+MAX_TOTAL = 128 * 2**20
 """Largest export [bytes], unpacked."""
 MAX_FILES = 500
 MAX_RATIO = 200
 """Numbers as text shrink to a third; what shrinks to less than 1/200 of 1 MB or more is a bomb."""
+MAX_DIRECTORY = 2**20
+"""Largest list of files at the end of a zip [bytes]; of a zip64, which names its length elsewhere, the whole file counts."""
+_END_SEARCHED = 2**16 + 22
 OLE = bytes.fromhex("d0cf11e0a1b11ae1")
 """The first bytes of a legacy Excel file."""
+EXPECTED = "a phone's export as zip, folder or CSV file"
 TEXT_SUFFIXES = (".csv", ".txt", ".tsv")
 EXCEL = "is an Excel file; export again as CSV (in phyphox: Export data, then CSV with a decimal point; in Sensor Logger: Zipped CSV)"
 
@@ -34,27 +39,27 @@ def read_members(path: Path) -> dict[str, bytes]:
     InputError
         For a missing, damaged, encrypted, oversized or hostile archive, an Excel file, and an export without a CSV file.
     """
+    name = short_path(path)
     try:
+        if not path.exists():
+            raise InputError(f"no file or folder {name}")
         members = _folder(path) if path.is_dir() else _file(path)
-    except FileNotFoundError as error:
-        raise InputError(f"no file or folder {path}") from error
     except (OSError, ValueError) as error:
-        raise InputError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from error
+        raise InputError(f"cannot read {name}: {getattr(error, 'strerror', None) or error}") from error
     if not members:
-        raise InputError(f"{path} holds no CSV file; a phone's export as zip, folder or CSV file was expected")
+        raise InputError(f"{name} holds no CSV file; {EXPECTED} was expected")
     return members
 
 
 def _file(path: Path) -> dict[str, bytes]:
-    note_read(path)
-    with path.open("rb") as stream:
+    with open_regular(path, MAX_TOTAL, EXPECTED) as stream:
         start = stream.read(8)
         if start == OLE:
             raise InputError(f"{path} {EXCEL}")
         stream.seek(0)
         if start.startswith(b"PK"):
             return _zip(path, stream)
-        return {path.name: _bounded(stream, str(path), MAX_FILE)}
+        return {path.name: bounded(stream, str(path), MAX_FILE, EXPECTED)}
 
 
 def _folder(path: Path) -> dict[str, bytes]:
@@ -66,9 +71,7 @@ def _folder(path: Path) -> dict[str, bytes]:
         if file.suffix.lower() in (".xls", ".xlsx"):
             raise InputError(f"{file} {EXCEL}")
         if file.suffix.lower() in TEXT_SUFFIXES:
-            note_read(file)
-            with file.open("rb") as stream:
-                data = _bounded(stream, str(file), MAX_FILE)
+            data = read_bytes(file, MAX_FILE, "the CSV file of a phone's export")
             total += len(data)
             if total > MAX_TOTAL:
                 raise InputError(f"{path} holds more than {MAX_TOTAL >> 20} MB")
@@ -90,6 +93,7 @@ def _walk(folder: Path, depth: int) -> Iterator[Path]:
 def _zip(path: Path, stream: IO[bytes]) -> dict[str, bytes]:
     found: dict[str, bytes] = {}
     try:
+        _check_directory(path, stream)
         with zipfile.ZipFile(stream) as archive:
             entries = archive.infolist()
             _check_entries(path, entries)
@@ -98,10 +102,25 @@ def _zip(path: Path, stream: IO[bytes]) -> dict[str, bytes]:
                     if entry.filename in found:
                         raise InputError(f"{path} holds {shown(entry.filename)} twice")
                     with archive.open(entry) as member:
-                        found[entry.filename] = _bounded(member, f"{path}: {entry.filename}", entry.file_size)
+                        found[entry.filename] = bounded(member, f"{path}: {entry.filename}", entry.file_size)
     except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, struct.error, NotImplementedError, RuntimeError) as error:
         raise InputError(f"{path} is a damaged zip file ({error}); export again") from error
     return found
+
+
+def _check_directory(path: Path, stream: IO[bytes]) -> None:
+    """Refuse a zip whose list of files is longer than MAX_FILES names need, before zipfile reads it into memory."""
+    size = stream.seek(0, os.SEEK_END)
+    stream.seek(max(size - _END_SEARCHED, 0))
+    tail = stream.read(_END_SEARCHED)
+    stream.seek(0)
+    end = tail.rfind(b"PK\x05\x06")
+    found = tail[end + 12 : end + 16] if end >= 0 else b""
+    if len(found) < 4:
+        raise zipfile.BadZipFile("its end is missing")
+    listed = size if tail[max(end - 20, 0) : end].startswith(b"PK\x06\x07") else int.from_bytes(found, "little")
+    if listed > MAX_DIRECTORY:
+        raise InputError(f"{path} lists files in {listed} bytes; at most {MAX_FILES} files were expected")
 
 
 def _check_entries(path: Path, entries: list[zipfile.ZipInfo]) -> None:
@@ -119,10 +138,3 @@ def _check_entries(path: Path, entries: list[zipfile.ZipInfo]) -> None:
             raise InputError(f"{path} is encrypted; export without a password")
         if entry.file_size > MAX_FILE or entry.file_size > 2**20 + MAX_RATIO * max(entry.compress_size, 1):
             raise InputError(f"{path}: {shown(name)} would unpack to {entry.file_size} bytes, far more than a recording")
-
-
-def _bounded(stream: IO[bytes], name: str, limit: int) -> bytes:
-    data = stream.read(limit + 1)
-    if len(data) > limit:
-        raise InputError(f"{name} is larger than {limit} bytes")
-    return data

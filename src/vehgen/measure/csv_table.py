@@ -5,21 +5,28 @@ A plain CSV of columns that are already in the vehicle's axes is read here too, 
 
 from __future__ import annotations
 
-import csv
 import io
+import itertools
 import re
+from array import array
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError, Position, did_you_mean, shortened, shown
+from vehgen.files.csv_rows import csv_rows
+from vehgen.files.reading import split_lines
 from vehgen.measure.export import PITCH_RATE, SPEED, VERTICAL, PhoneExport, Stream
 from vehgen.vehicle.units import ACCELERATION, FREQUENCY, TIME, Dimension, parse_unit
 from vehgen.vehicle.units import SPEED as SPEED_DIMENSION
 
 Array = NDArray[np.float64]
 MAX_COLUMNS = 200
+LARGEST = 1e20
+"""Beyond it a number was not measured; times in ns since 1970 are the largest that are."""
 _DECIMAL_COMMA = re.compile(r'^"?[+-]?\d*,\d+(?:[eE][+-]?\d+)?"?$')
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _MISSING = {"", "nan", "null", "na", "n/a", "-"}
@@ -27,13 +34,19 @@ _MISSING = {"", "nan", "null", "na", "n/a", "-"}
 
 @dataclass(frozen=True)
 class Table:
-    """A table of text: `name` for errors, `file` within its export, `header`, `rows` of cells; numbers are read when asked for."""
+    """A table of text: `name` for errors, `file` within its export, `header`; its bytes are read row by row when numbers are asked for."""
 
     name: str
     file: str
     header: tuple[str, ...]
-    rows: list[list[str]]
+    data: bytes
+    encoding: str
+    delimiter: str
     decimal_comma: bool = False
+
+    def rows(self) -> Iterator[tuple[int, list[str]]]:
+        """Yield the line and the cells of every row below the header that is not blank; raises InputError for what is no table."""
+        yield from itertools.islice(_rows(self.data, self.encoding, self.delimiter, self.name), 1, None)
 
     def column(self, index: int) -> Array:
         """Return a column as numbers `shape (n,)`; missing ones are NaN.
@@ -43,29 +56,35 @@ class Table:
         InputError
             At the line and column of a text that is no number.
         """
-        found = np.full(len(self.rows), np.nan)
-        for i, row in enumerate(self.rows):
+        found = array("d")
+        for line, row in self.rows():
             text = row[index].strip() if index < len(row) else ""
             if self.decimal_comma:
                 text = text.replace(",", ".")
-            if _NUMBER.fullmatch(text):
-                found[i] = float(text)
-            elif text.lower() not in _MISSING:
+            number = float(text) if _NUMBER.fullmatch(text) else np.nan
+            if np.isfinite(number) and abs(number) > LARGEST:
                 raise InputError(
-                    f"expected a number in column {shown(self.header[index])}, found {shown(text)}", Position(self.name, i + 2, index + 1)
+                    f"{shown(text)} in column {shown(self.header[index])} is beyond {LARGEST:g}, which nothing measures",
+                    Position(self.name, line, index + 1),
                 )
-        found[np.isinf(found)] = np.nan
-        return found
+            if np.isnan(number) and text.lower() not in _MISSING:
+                raise InputError(
+                    f"expected a number in column {self.header[index]!r}, found {text[:40]!r}", Position(self.name, line, index + 1)
+                )
+            found.append(number if np.isfinite(number) else np.nan)
+        return np.array(found)
 
     def text(self, index: int) -> list[str]:
         """Return a column as text."""
-        return [row[index].strip() if index < len(row) else "" for row in self.rows]
+        return [row[index].strip() if index < len(row) else "" for _, row in self.rows()]
 
     def find(self, name: str) -> int:
-        """Return the index of a column by its name, capitals aside; raises InputError naming the nearest."""
+        """Return the index of a column by its name, capitals aside; raises InputError naming the nearest, and for a name that repeats."""
         lower = [item.lower() for item in self.header]
         if name.lower() not in lower:
             raise InputError(f"{self.name} has no column {shown(name)}; {did_you_mean(name, self.header)}")
+        if lower.count(name.lower()) > 1:
+            raise InputError(f"{self.name} has two columns {shown(name)}; each needs a name of its own")
         return lower.index(name.lower())
 
 
@@ -78,30 +97,40 @@ def read_table(data: bytes, file: str, export: str = "") -> Table:
         For bytes that are no text, no header line, no row, or no table.
     """
     name = f"{export}: {shortened(file)}" if export and not export.endswith(file) else export or shortened(file)
-    for encoding in ("utf-8-sig", "utf-16") if data[:2] in (b"\xff\xfe", b"\xfe\xff") else ("utf-8-sig", "cp1252"):
-        try:
-            text = data.decode(encoding)
-            break
-        except UnicodeDecodeError:
-            continue
-    else:
+    encodings = ("utf-8-sig", "utf-16") if data[:2] in (b"\xff\xfe", b"\xfe\xff") else ("utf-8-sig", "cp1252")
+    encoding = next((item for item in encodings if _is_text(data, item)), None)
+    if encoding is None:
         raise InputError(f"{name} is not text; a CSV file was expected")
-    if "\0" in text:
-        raise InputError(f"{name} is not text; a CSV file was expected")
-    first = text.lstrip("\r\n").partition("\n")[0]
+    first = next((line for line in split_lines(_text(data, encoding), name) if line.strip("\r\n")), "")
     bare = re.sub(r'"[^"]*"', "", first)
     delimiter = next((sign for sign in ("\t", ";") if sign in bare), ",")
-    try:
-        rows = [row for row in csv.reader(io.StringIO(text, newline=""), delimiter=delimiter) if any(cell.strip() for cell in row)]
-    except csv.Error as error:
-        raise InputError(f"{name} is not a table: {error}") from error
+    rows = [row for _, row in itertools.islice(_rows(data, encoding, delimiter, name), 50)]
     if not rows:
         raise InputError(f"{name} is empty; a header line and rows of numbers were expected")
     header = tuple("".join(sign if sign.isprintable() else " " for sign in cell).strip() for cell in rows[0])
     if len(header) > MAX_COLUMNS:
         raise InputError(f"{name} has {len(header)} columns; at most {MAX_COLUMNS} were expected")
-    decimal_comma = delimiter != "," and any(_DECIMAL_COMMA.match(cell.strip()) for row in rows[1:50] for cell in row)
-    return Table(name, file, header, rows[1:], decimal_comma)
+    decimal_comma = delimiter != "," and any(_DECIMAL_COMMA.match(cell.strip()) for row in rows[1:] for cell in row)
+    return Table(name, file, header, data, encoding, delimiter, decimal_comma)
+
+
+def _text(data: bytes, encoding: str) -> io.TextIOWrapper:
+    return io.TextIOWrapper(io.BytesIO(data), encoding=encoding, newline="")
+
+
+def _is_text(data: bytes, encoding: str) -> bool:
+    """Say whether bytes are text of this encoding, without holding it."""
+    try:
+        return not any("\0" in block for block in iter(partial(_text(data, encoding).read, 1 << 16), ""))
+    except UnicodeDecodeError:
+        return False
+
+
+def _rows(data: bytes, encoding: str, delimiter: str, name: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield the line and the cells of every row that is not blank."""
+    for line, row in csv_rows(split_lines(_text(data, encoding), name), name, delimiter):
+        if any(cell.strip() for cell in row):
+            yield line, row
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ def read_export(path: str | Path, columns: ColumnMap | None = None) -> PhoneExpo
         For what cannot be read, and for what is of no known app where `columns` does not help.
     """
     path = Path(path)
-    if path.is_file() and is_matlab(path):
+    if is_matlab(path):
         return read_matlab(path)
     tables: list[Table] = []
     refused: list[InputError] = []

@@ -89,6 +89,8 @@ def import_phones(exports: Sequence[str | Path], plan: Plan) -> Imported:
     """
     if len(exports) != len(plan.sensors) or not exports:
         raise InputError(f"{len(exports)} exports and {len(plan.sensors)} sensors: give one --sensor for each export, in the same order")
+    if not 1.0 <= plan.top <= 500.0:
+        raise InputError(f"the top of the band must be from 1 to 500 Hz, found {plan.top:g} Hz")
     if not 2 * plan.top <= plan.rate <= 1000.0 or abs(1000 / plan.rate - round(1000 / plan.rate)) > 1e-9:
         raise InputError(f"the rate must be from {2 * plan.top:g} to 1000 Hz with a step of whole milliseconds, found {plan.rate:g} Hz")
     names = [sensor.name for sensor in plan.sensors]

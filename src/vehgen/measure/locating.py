@@ -15,6 +15,8 @@ from vehgen.road import ConstantSpeed, Track
 from vehgen.simulate import Scenario, Simulator
 
 Array = NDArray[np.float64]
+LONGEST_PASS = 2000.0
+"""No pass over a hump or profile is longer [s]."""
 CLOCK_DOUBT = 0.5
 """Difference of two phones' world clocks over one event [s] that deserves a warning."""
 
@@ -62,6 +64,10 @@ def locate(
     lead = 1.0 * speed if plan.road.hump else 0.0
     track = Track((plan.road.at(lead),), plan.footprint)
     length = (lead + distance) / (speed * COARSE[0]) + 1.5
+    if length > LONGEST_PASS:
+        raise InputError(
+            f"the pass would take {length:.4g} s at {speed:.3g} m/s over {distance:.4g} m; at most {LONGEST_PASS:g} s were expected"
+        )
     answer = predictor(simulator, parameters, Scenario(track, ConstantSpeed(speed), length, 1e-3, round(1000 * step)))
     recordings, near, columns, first = [], [], [], 0
     for phone, event in zip(phones, events, strict=True):

@@ -5,7 +5,9 @@ MATLAB stores timetables in a way that scipy.io cannot read; the optional packag
 
 from __future__ import annotations
 
+import struct
 import warnings
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -13,21 +15,44 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
-from vehgen.files import note_read
-from vehgen.measure.archive import MAX_FILE
+from vehgen.files.reading import open_regular, read_bytes, short_path
+from vehgen.measure.archive import MAX_FILE, MAX_TOTAL
 from vehgen.measure.export import ROTATION, SPEED, EpochMap, PhoneExport, Stream, acceleration_kind
 
 _MARKS = (b"MATLAB 5.0 MAT-file", b"MATLAB 7.3 MAT-file", b"\x89HDF")
+_HEADER, _COMPRESSED = 128, 15
+"""Length of the header of a MATLAB 5 file [bytes], and its mark of a packed element."""
 _TABLES = ("Acceleration", "AngularVelocity", "Position")
 
 
 def is_matlab(path: Path) -> bool:
     """Say whether a file begins as MATLAB's files do."""
     try:
-        with path.open("rb") as stream:
+        with open_regular(path, MAX_FILE) as stream:
             return stream.read(19).startswith(_MARKS)
-    except OSError:
+    except InputError:
         return False
+
+
+def _check_packed(path: Path) -> None:
+    """Refuse a MATLAB 5 file that would unpack to more than MAX_TOTAL, before anything unpacks it whole."""
+    data = read_bytes(path, MAX_FILE, "a MATLAB file")
+    place, total = _HEADER, 0
+    while data.startswith(_MARKS[0]) and place + 8 <= len(data):
+        kind, size = struct.unpack_from(">II" if data[126:128] == b"MI" else "<II", data, place)
+        place += 8
+        if kind == _COMPRESSED:
+            unpacker = zlib.decompressobj()
+            rest = data[place : place + size]
+            while rest and total <= MAX_TOTAL:
+                try:
+                    total += len(unpacker.decompress(rest, 2**20))
+                except zlib.error as error:
+                    raise InputError(f"{short_path(path)} is a damaged MATLAB file ({error}); export again") from error
+                rest = unpacker.unconsumed_tail
+        place += size
+    if total > MAX_TOTAL:
+        raise InputError(f"{short_path(path)} would unpack to more than {MAX_TOTAL >> 20} MB")
 
 
 def read_matlab(path: Path) -> PhoneExport:
@@ -38,9 +63,7 @@ def read_matlab(path: Path) -> PhoneExport:
     InputError
         Without mat-io, for a file that it cannot read, and for one without acceleration.
     """
-    note_read(path)
-    if path.stat().st_size > MAX_FILE:
-        raise InputError(f"{path} is larger than {MAX_FILE} bytes")
+    _check_packed(path)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # what mat-io and pandas have to tell each other is not for the user
         try:

@@ -72,8 +72,6 @@ def read_measurement(run: Run) -> Measurement:
         raise InputError("this run has a recording but no `sensors`", document.position)
     path = run.folder / file.recording
     place = document.find(("recording",))
-    if not path.is_file():
-        raise InputError(f"no file {path}", place)
     channels, factors, columns = [], [], []
     for sensor_name, sensor in file.sensors.items():
         for quantity, entry in sensor.channels.items():

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from pydantic import ValidationError
 
 from vehgen.errors import InputError, did_you_mean, shown
@@ -17,6 +18,7 @@ from vehgen.road import Hump, MeasuredProfile, Profile, read_columns
 from vehgen.simulate.runfile import HumpEntry
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.expressions import ExpressionError, parse
+from vehgen.vehicle.limits import HUMP_HEIGHT, HUMP_LENGTH, VEHICLE_LENGTH
 from vehgen.vehicle.names import is_identifier
 from vehgen.vehicle.units import LENGTH, NONE, TIME, Dimension
 
@@ -138,6 +140,7 @@ def read_sensor(text: str, vehicle: Vehicle) -> PhoneSensor:
     except ExpressionError as error:
         raise InputError(f"{where}: x={found['x']}: {error}") from error
     distance = quantity(found.get("distance", "0"), LENGTH, f"{where} distance")
+    VEHICLE_LENGTH.check(distance, f"{where} distance")
     return PhoneSensor(
         name,
         Place(name, found["body"], x, behind, distance),
@@ -178,6 +181,8 @@ def read_hump(text: str) -> RoadOption:
     written = {"shape": entry.shape, **found}
     if entry.file is not None:
         s, height = read_columns(Path(entry.file), (entry.distance, entry.height_column))
+        HUMP_LENGTH.check(float(np.ptp(s)), f"--hump {entry.file}")
+        HUMP_HEIGHT.check(float(np.abs(height).max()), f"--hump {entry.file}")
         return RoadOption("hump", written, hump=Hump.from_points(0.0, s, height))
     assert entry.length is not None
     assert entry.height is not None

@@ -174,7 +174,9 @@ def _carrier_order(vehicle: Vehicle) -> list[str]:
     followers = {body for body, *_ in _hinge_order(vehicle)}
 
     def depth(name: str) -> int:
-        carrier = vehicle.bodies[name].carried_by
-        return 0 if carrier is None else 1 + depth(carrier.body)
+        carriers = 0
+        while (carrier := vehicle.bodies[name].carried_by) is not None:
+            name, carriers = carrier.body, carriers + 1
+        return carriers
 
     return sorted((name for name in vehicle.bodies if name not in followers), key=depth)

@@ -42,7 +42,7 @@ def static_loads(model: LinearModel, values: Mapping[str, float] | None = None) 
     if model.is_preloaded:
         found = equilibria(model, np.array([[values[name] for name in model.parameters]], dtype=np.float64))
         if found.failures:
-            raise InputError(f"{model.vehicle.name}: {found.failures[0]}")
+            raise InputError(f"{model.vehicle.name}: {found.failures[0]}", model.vehicle.position())
         displacement, forces = found.displacement[0], found.forces[0]
     else:
         numeric = model.numeric(values)
@@ -73,8 +73,11 @@ def _solve(model: LinearModel, K: NDArray[np.float64], weight: NDArray[np.float6
     scaled = K / np.outer(scale, scale)
     eigenvalues, vectors = scipy.linalg.eigh(scaled)
     if eigenvalues[0] < 1e-12 * max(eigenvalues[-1], 1.0):
-        free = model.coordinates[int(np.argmax(np.abs(vectors[:, 0])))].name
-        raise InputError(f"singular stiffness: nothing holds {free} against gravity; give it a spring, a tyre or a link")
+        free = model.coordinates[int(np.argmax(np.abs(vectors[:, 0])))]
+        raise InputError(
+            f"singular stiffness: nothing holds {free.name} against gravity; give it a spring, a tyre or a link",
+            model.vehicle.position("axles" if free.motion == "hop" else "bodies", free.owner, key=True),
+        )
     return np.asarray(scipy.linalg.solve(scaled, weight / scale, assume_a="pos") / scale, dtype=np.float64)
 
 

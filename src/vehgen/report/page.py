@@ -16,7 +16,9 @@ from markupsafe import Markup, escape
 
 import vehgen
 from vehgen.codegen import KernelSource
+from vehgen.errors import InputError
 from vehgen.files import write_text
+from vehgen.files.reading import read_bytes
 from vehgen.mechanics import GRAVITY, LinearModel, StaticLoads
 from vehgen.report import equations
 from vehgen.report.drawing import draw_vehicle
@@ -25,6 +27,7 @@ from vehgen.report.latex import equations_latex
 from vehgen.report.mode_shapes import draw_modes
 from vehgen.report.notation import tidy
 from vehgen.simulate import Mode
+from vehgen.vehicle.document import MAX_BYTES
 
 _LONG = 14.0
 """A drawing wider than this is scrolled on the page instead of shrunk [inches]."""
@@ -192,7 +195,7 @@ def _inputs(model: LinearModel) -> list[tuple[str, str]]:
     found = []
     for path in model.vehicle.files:
         try:
-            found.append((path.name, f"SHA-256 {hashlib.sha256(path.read_bytes()).hexdigest()}"))
-        except OSError:
+            found.append((path.name, f"SHA-256 {hashlib.sha256(read_bytes(path, MAX_BYTES)).hexdigest()}"))
+        except InputError:
             found.append((path.name, "no longer there when this page was written"))
     return found

@@ -1,7 +1,7 @@
 """What excites it? Humps, random and measured roads, the tyre's footprint, and what every wheel sees at a speed."""
 
 from vehgen.road.humps import Hump
-from vehgen.road.iso8608 import CLASSES, Iso8608Road, displacement_psd
+from vehgen.road.iso8608 import CLASSES, Iso8608Road, check_length, displacement_psd
 from vehgen.road.speed import AdjustedSpeed, ConstantSpeed, SpeedHistory, SpeedLaw
 from vehgen.road.tables import read_columns
 from vehgen.road.track import MeasuredProfile, Profile, Track
@@ -19,6 +19,7 @@ __all__ = [
     "SpeedLaw",
     "Track",
     "WheelInputs",
+    "check_length",
     "displacement_psd",
     "pass_time",
     "read_columns",

@@ -13,6 +13,10 @@ from vehgen.errors import InputError, did_you_mean
 
 Array = NDArray[np.float64]
 Shape = Callable[[Array], Array]
+_PER_LOBE = 1000
+"""Spacing of the frequencies at which a hump's spectrum is looked at: so many to one cycle over its length."""
+_LOBES = 500
+"""So many cycles over a hump's length are looked at: beyond, its nulls lie closer than any mode is wide."""
 
 
 @dataclass(frozen=True)
@@ -73,19 +77,34 @@ class Hump:
         """
         s = np.linspace(0.0, self.length, 4001)
         profile = self.shape(s)
-        step = 0.001 * speed / self.length
-        frequency = np.arange(step, f_max + 5 * step, step)
-        magnitude = np.concatenate([self._transform(part / speed, s, profile) for part in np.array_split(frequency, 50)])
+        step = 1 / _PER_LOBE * speed / self.length
+        frequency = np.arange(step, min(f_max, _LOBES * speed / self.length) + 5 * step, step)
+        magnitude = np.abs(_transform(profile, len(frequency)))
         scale = np.maximum.accumulate(magnitude[::-1])[::-1]
         middle = magnitude[1:-1]
         low = (middle <= magnitude[:-2]) & (middle < magnitude[2:]) & (middle < 5e-3 * np.maximum(scale[1:-1], 1e-3 * magnitude.max()))
         found = frequency[1:-1][low]
         return np.asarray(found[found <= f_max])
 
-    @staticmethod
-    def _transform(wavenumber: Array, s: Array, profile: Array) -> Array:
-        kernel = np.exp(-2j * np.pi * wavenumber[:, None] * s[None, :])
-        return np.asarray(np.abs(np.trapezoid(kernel * profile, s, axis=1)), dtype=np.float64)
+
+def _transform(profile: Array, count: int) -> NDArray[np.complex128]:
+    """Return the Fourier transform of `profile shape (n,)` over its length at k/_PER_LOBE cycles a length, k = 1..count.
+
+    By Bluestein's chirp transform: k j = (k^2 + j^2 - (k - j)^2)/2 turns the sum over j into a convolution
+    (L. I. Bluestein, IEEE Trans. Audio Electroacoust. 18 (1970) 451-455), count log(count) instead of count n.
+    """
+    n = len(profile)
+    period = _PER_LOBE * (n - 1)
+    index = np.arange(max(n, count + 1), dtype=np.int64)
+    chirp = np.exp(-1j * np.pi * (index**2 % (2 * period)) / period)
+    weights = np.ones(n)
+    weights[[0, -1]] = 0.5
+    size = 1 << int(n + count).bit_length()
+    answer = np.zeros(size, dtype=np.complex128)
+    answer[: count + 1] = chirp[: count + 1].conj()
+    answer[size - n + 1 :] = chirp[1:n].conj()[::-1]
+    found = np.fft.ifft(np.fft.fft(weights * profile * chirp[:n], size) * np.fft.fft(answer))
+    return np.asarray(found[1 : count + 1] * chirp[1 : count + 1] / (n - 1))
 
 
 def half_sine(length: float, height: float) -> Shape:

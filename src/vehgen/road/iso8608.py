@@ -19,6 +19,8 @@ CLASSES: dict[str, tuple[float, float, float]] = {
     name: (factor * 8e-6, factor * 16e-6, factor * 32e-6) for name, factor in zip("ABCDEFGH", (4.0**i for i in range(8)), strict=True)
 }
 """Class -> (lower, geometric mean, upper) bound of the displacement PSD Gd(n0) [m^3]; A has no lower and H no upper bound of its own."""
+LONGEST = 50_000.0
+"""No random road is longer [m]: at the spacing of its points these are five million."""
 TAPER = 2.0
 """The road rises smoothly from level over its first metres, so that a vehicle can start at rest."""
 
@@ -41,6 +43,7 @@ class Iso8608Road:
             raise InputError(f"unknown road class {self.roughness!r}; {did_you_mean(self.roughness, CLASSES)}")
         if not self.length > 0:
             raise InputError(f"a road needs a positive length, found {self.length} m")
+        check_length(self.length)
         n_points = int(np.ceil(max(self.length, 1.0 / BAND[0]) / self.spacing)) + 1
         period = n_points * self.spacing
         n = np.arange(n_points // 2 + 1) / period
@@ -64,6 +67,12 @@ class Iso8608Road:
         closed = np.append(self._heights, self._heights[0])
         taper = 0.5 - 0.5 * np.cos(np.pi * np.clip(s / TAPER, 0.0, 1.0))
         return np.asarray(taper * np.interp(np.mod(s, period), grid, closed))
+
+
+def check_length(length: float) -> None:
+    """Refuse random roads that are longer than LONGEST, together, before they are made; raises InputError."""
+    if not length <= LONGEST:
+        raise InputError(f"random roads are made up to {LONGEST:g} m, found {length:.3g} m: a shorter or slower run, or fewer of them")
 
 
 def displacement_psd(roughness: str, n: Array) -> Array:

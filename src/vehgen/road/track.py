@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from vehgen.errors import InputError
 
 Array = NDArray[np.float64]
+_WINDOW = 5000.0
+"""Longer stretches are integrated piece by piece [m]: a piece has ten million points."""
 _GRID = 5e-4
 """Spacing of the grid on which the road is integrated [m]."""
 
@@ -74,6 +76,18 @@ class Track:
         s = np.asarray(s, dtype=np.float64)
         if self.footprint <= 0:
             return self._raw(s)
+        if np.ptp(s) <= _WINDOW:
+            return self._averaged(s)
+        flat = s.ravel()
+        window = np.floor((flat - flat.min()) / _WINDOW).astype(np.int64)
+        order = np.argsort(window, kind="stable")
+        found = np.empty_like(flat)
+        for members in np.split(order, np.flatnonzero(np.diff(window[order])) + 1):
+            found[members] = self._averaged(flat[members])
+        return found.reshape(s.shape)
+
+    def _averaged(self, s: Array) -> Array:
+        """Return the averaged height over one grid from the first to the last of the positions [m]."""
         half = self.footprint / 2
         first = np.floor((s.min() - half) / _GRID) - 1
         grid = np.arange(first, np.ceil((s.max() + half) / _GRID) + 2) * _GRID

@@ -7,10 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.errors import InputError
 from vehgen.road.speed import SpeedLaw
 from vehgen.road.track import Track
 
 Array = NDArray[np.float64]
+LONGEST = 1e6
+"""Longer than this nobody drives to a hump [s]."""
 
 
 @dataclass(frozen=True)
@@ -48,12 +51,20 @@ def wheel_inputs(track: Track, speed: SpeedLaw, offsets: Array, time: Array) -> 
 
 
 def pass_time(track: Track, speed: SpeedLaw, offsets: Array) -> float:
-    """Return the time [s] at which the last axle has left the last hump (0 where there is none)."""
+    """Return the time [s] at which the last axle has left the last hump (0 where there is none).
+
+    Raises
+    ------
+    InputError
+        Where that takes longer than LONGEST.
+    """
     target = track.end + float(np.max(offsets, initial=0.0))
     if not np.isfinite(target) or target <= 0:
         return 0.0
     late = 1.0
     while speed.distance(np.array([late]))[0] < target:
+        if late > LONGEST:
+            raise InputError(f"the last axle has not left the road's last hump, at {target:.4g} m, after {LONGEST:g} s; give `duration`")
         late *= 2.0
     early = 0.0
     while late - early > 1e-6:

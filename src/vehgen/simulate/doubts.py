@@ -52,7 +52,8 @@ def step_too_coarse(model: LinearModel, values: Mapping[str, float], scenario: S
             f"the step of {scenario.dt * 1e3:g} ms is too coarse: it stretches the period of {fastest.name} "
             f"({fastest.undamped_hz:.1f} Hz) by {error:.1%}; 1 ms or less is usual"
         )
-    for length in scenario.hump_lengths:
+    for hump in scenario.humps:
+        length = hump.length
         steps = length / (scenario.top_speed * scenario.dt)
         if steps < 20:
             yield f"the step of {scenario.dt * 1e3:g} ms crosses a hump of {length:g} m in {steps:.0f} steps; take at least 20"

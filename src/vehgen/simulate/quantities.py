@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, WithJsonSchema
+from pydantic import BeforeValidator, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from vehgen.errors import shortened, shown
+from vehgen.vehicle import limits
 from vehgen.vehicle.expressions import ExpressionError, parse
-from vehgen.vehicle.units import FORCE, FREQUENCY, LENGTH, NONE, SPEED, TIME, Dimension
+from vehgen.vehicle.limits import Limit
+from vehgen.vehicle.units import NONE, Dimension
 
 
 def read_quantity(value: Any, dimension: Dimension) -> float:
@@ -29,21 +32,41 @@ def read_quantity(value: Any, dimension: Dimension) -> float:
     return number
 
 
-def _positive(value: float) -> float:
-    if not 0 < value < float("inf"):
-        raise PydanticCustomError("quantity", "expected a finite number above 0, found {value}", {"value": value})
-    return value
+def _within(limit: Limit, value: Any, *, positive: bool) -> float:
+    """Read a quantity; raises a pydantic error where it is not finite, not above 0 though it must be, or outside its limit."""
+    number = read_quantity(value, limit.dimension)
+    if positive and not 0 < number < math.inf:
+        raise PydanticCustomError("quantity", "expected a finite number above 0, found {value}", {"value": number})
+    if (reason := limit.refusal(number)) is not None:
+        raise PydanticCustomError("quantity", "{reason}", {"reason": reason})
+    return number
+
+
+def _any(limit: Limit) -> tuple[BeforeValidator, WithJsonSchema]:
+    return BeforeValidator(lambda value: _within(limit, value, positive=False)), _schema(limit.dimension)
+
+
+def _positive(limit: Limit) -> tuple[BeforeValidator, WithJsonSchema]:
+    return BeforeValidator(lambda value: _within(limit, value, positive=True)), _schema(limit.dimension)
 
 
 def _schema(dimension: Dimension) -> WithJsonSchema:
     return WithJsonSchema({"type": ["string", "number"], "description": f"a number in {dimension}, with its unit"})
 
 
-Length = Annotated[float, BeforeValidator(lambda value: read_quantity(value, LENGTH)), _schema(LENGTH)]
-PositiveLength = Annotated[float, BeforeValidator(lambda value: _positive(read_quantity(value, LENGTH))), _schema(LENGTH)]
-PositiveTime = Annotated[float, BeforeValidator(lambda value: _positive(read_quantity(value, TIME))), _schema(TIME)]
-PositiveSpeed = Annotated[float, BeforeValidator(lambda value: _positive(read_quantity(value, SPEED))), _schema(SPEED)]
-Frequency = Annotated[float, BeforeValidator(lambda value: _positive(read_quantity(value, FREQUENCY))), _schema(FREQUENCY)]
-Force = Annotated[float, BeforeValidator(lambda value: read_quantity(value, FORCE)), _schema(FORCE)]
-PositiveForce = Annotated[float, BeforeValidator(lambda value: _positive(read_quantity(value, FORCE))), _schema(FORCE)]
-Angle = Annotated[float, BeforeValidator(lambda value: read_quantity(value, NONE)), _schema(NONE)]
+HumpLength = Annotated[float, *_positive(limits.HUMP_LENGTH)]
+HumpHeight = Annotated[float, *_any(limits.HUMP_HEIGHT)]
+EdgeRadius = Annotated[float, *_positive(limits.EDGE_RADIUS)]
+RoadPosition = Annotated[float, *_any(limits.ROAD_POSITION)]
+Footprint = Annotated[float, *_positive(limits.FOOTPRINT)]
+PlaceLength = Annotated[float, *_any(limits.VEHICLE_LENGTH)]
+Displacement = Annotated[float, *_any(limits.DISPLACEMENT)]
+Duration = Annotated[float, *_positive(limits.DURATION)]
+Step = Annotated[float, *_positive(limits.STEP)]
+Sample = Annotated[float, *_positive(limits.SAMPLE)]
+Speed = Annotated[float, *_positive(limits.SPEED_LIMIT)]
+Frequency = Annotated[float, *_positive(limits.FREQUENCY_LIMIT)]
+Force = Annotated[float, *_any(limits.FORCE_LIMIT)]
+PositiveForce = Annotated[float, *_positive(limits.FORCE_LIMIT)]
+Angle = Annotated[float, *_any(limits.ANGLE)]
+FileName = Annotated[str, Field(max_length=limits.LONGEST_PATH)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,10 +14,28 @@ from pydantic_core import PydanticCustomError
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files import note_read
 from vehgen.mechanics.outputs import AXLE_QUANTITIES, LINK_QUANTITIES, POINT_QUANTITIES, ElementOutput, Output, Place, PointOutput
-from vehgen.simulate.quantities import Angle, Force, Frequency, Length, PositiveForce, PositiveLength, PositiveSpeed, PositiveTime
+from vehgen.simulate.quantities import (
+    Angle,
+    Displacement,
+    Duration,
+    EdgeRadius,
+    FileName,
+    Footprint,
+    Force,
+    Frequency,
+    HumpHeight,
+    HumpLength,
+    PlaceLength,
+    PositiveForce,
+    RoadPosition,
+    Sample,
+    Speed,
+    Step,
+)
 from vehgen.vehicle.checks import check_values
 from vehgen.vehicle.document import Located, read_document
 from vehgen.vehicle.expressions import Expression, ExpressionError
+from vehgen.vehicle.limits import LARGEST_SEED, MOST_CHANNELS, MOST_ROADS, VEHICLE_LENGTH
 from vehgen.vehicle.loading import load_vehicle, validate
 from vehgen.vehicle.model import Noun, Vehicle
 from vehgen.vehicle.names import Column, FreeText, Name, is_name
@@ -35,12 +54,12 @@ class HumpEntry(Noun):
     """A hump on the road."""
 
     shape: Literal["half_sine", "versine", "trapezoid", "rectangle", "points"]
-    length: PositiveLength | None = None
-    height: Length | None = None
-    at: Length
+    length: HumpLength | None = None
+    height: HumpHeight | None = None
+    at: RoadPosition
     ramp: float | None = Field(None, gt=0, le=0.5)
-    radius: PositiveLength | None = None
-    file: str | None = None
+    radius: EdgeRadius | None = None
+    file: FileName | None = None
     distance: Column = "distance"
     height_column: Column = "height"
 
@@ -57,13 +76,13 @@ class IsoEntry(Noun):
     """A random road of an ISO 8608 class."""
 
     class_: Literal["A", "B", "C", "D", "E", "F", "G", "H"] = Field(alias="class")
-    seed: int = 0
+    seed: int = Field(0, ge=0, le=LARGEST_SEED)
 
 
 class ProfileEntry(Noun):
     """A measured profile: a CSV file with columns of distance and height [m]."""
 
-    file: str
+    file: FileName
     distance: Column = "distance"
     height: Column = "height"
 
@@ -85,7 +104,7 @@ class RoadEntry(Noun):
 class SpeedFile(Noun):
     """A speed history: a CSV file with columns of time [s] and speed [m/s]."""
 
-    file: str
+    file: FileName
     time: Column = "t"
     speed: Column = "speed"
 
@@ -101,7 +120,7 @@ class ForceHarmonic(Noun):
 class DisplacementHarmonic(Noun):
     """amplitude * sin(2 pi frequency t + phase)."""
 
-    amplitude: Length
+    amplitude: Displacement
     frequency: Frequency
     phase: Angle = 0.0
 
@@ -112,7 +131,7 @@ class PlaceEntry(Noun):
     body: str
     x: Expression | None = None
     behind: str | None = None
-    distance: Length = 0.0
+    distance: PlaceLength = 0.0
 
     @model_validator(mode="after")
     def _one_way(self) -> PlaceEntry:
@@ -132,7 +151,7 @@ class ForceEntry(PlaceEntry):
     """
 
     harmonic: ForceHarmonic | None = None
-    file: str | None = None
+    file: FileName | None = None
     time: Column = "t"
     force: Column = "force"
     noise: PositiveForce | None = None
@@ -148,7 +167,7 @@ class DisplacementEntry(Noun):
     """How the ground end of a link moves: harmonic, or measured in a CSV file (columns in s and m)."""
 
     harmonic: DisplacementHarmonic | None = None
-    file: str | None = None
+    file: FileName | None = None
     time: Column = "t"
     displacement: Column = "displacement"
 
@@ -205,21 +224,21 @@ class OutputEntry(Noun):
 class RunFile(Noun):
     """A run as its file declares it, quantities in SI units."""
 
-    vehicle: str
+    vehicle: FileName
     title: FreeText = ""
     set: str | None = None
     parameters: dict[Name, Expression] = Field(default_factory=dict)
-    speed: PositiveSpeed | SpeedFile = Field(DEFAULT_SPEED, union_mode="left_to_right")
-    duration: PositiveTime | None = None
-    step: PositiveTime = DEFAULT_STEP
-    sample: PositiveTime | None = None
-    road: list[RoadEntry] = Field(default_factory=list)
-    footprint: PositiveLength | None = None
+    speed: Speed | SpeedFile = Field(DEFAULT_SPEED, union_mode="left_to_right")
+    duration: Duration | None = None
+    step: Step = DEFAULT_STEP
+    sample: Sample | None = None
+    road: list[RoadEntry] = Field(default_factory=list, max_length=MOST_ROADS)
+    footprint: Footprint | None = None
     forces: dict[Name, ForceEntry] = Field(default_factory=dict)
     displacements: dict[Name, DisplacementEntry] = Field(default_factory=dict)
     sensors: dict[Name, SensorEntry] = Field(default_factory=dict)
     outputs: dict[Name, OutputEntry] = Field(default_factory=dict)
-    recording: str | None = None
+    recording: FileName | None = None
     band: tuple[Frequency, Frequency] | None = None
 
 
@@ -335,6 +354,8 @@ def _check(run: Run) -> None:
                     raise InputError(str(error), document.find((kind, name, "x"), offset=error.offset)) from error
                 if found != LENGTH and (entry.x.names or number != 0.0):
                     raise InputError(f"x must be in m, found {found}", document.find((kind, name, "x")))
+                if (reason := VEHICLE_LENGTH.refusal(number)) is not None:
+                    raise InputError(reason, document.find((kind, name, "x")))
     grounded = [name for name, link in vehicle.links.items() if "ground" in link.points]
     for name in file.displacements:
         known("link to the ground", name, grounded, "displacements", name, key=True)
@@ -361,18 +382,15 @@ def _check(run: Run) -> None:
                 f"unknown quantity {shown(output.quantity)} of {owner}; {did_you_mean(output.quantity, quantities)}",
                 document.find(("outputs", name, "quantity")),
             )
-    names = [output.name for output in run.outputs()]
-    for name in names:
+    names = Counter(output.name for output in run.outputs())
+    if names.total() > MOST_CHANNELS:
+        raise InputError(f"{names.total()} channels; a run has at most {MOST_CHANNELS}", document.find(("sensors",), key=True))
+    for name, count in names.items():
+        where = document.find(("outputs", name) if name in file.outputs else ("sensors",), key=True)
         if name == TIME_COLUMN:
-            raise InputError(
-                f"a channel cannot be named {name!r}, as the column of the time is; choose another name",
-                document.find(("outputs", name) if name in file.outputs else ("sensors",), key=True),
-            )
-        if names.count(name) > 1:
-            raise InputError(
-                f"two channels are named {name!r}; each column needs a name of its own",
-                document.find(("sensors",), key=True),
-            )
+            raise InputError(f"a channel cannot be named {name!r}, as the column of the time is; choose another name", where)
+        if count > 1:
+            raise InputError(f"two channels are named {shown(name)}; each column needs a name of its own", where)
     if file.duration is not None and file.duration > MAX_STEPS * file.step:
         raise InputError(
             f"a run has at most {MAX_STEPS} steps; {file.duration:g} s in steps of {file.step:g} s are more",

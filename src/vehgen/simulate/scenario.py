@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -21,18 +22,23 @@ from vehgen.road import (
     SpeedHistory,
     SpeedLaw,
     Track,
+    check_length,
     pass_time,
     read_columns,
     wheel_inputs,
 )
+from vehgen.simulate.budgets import check_run, placed
 from vehgen.simulate.drive_cache import DriveCache
-from vehgen.simulate.runfile import DisplacementHarmonic, ForceHarmonic, HumpEntry, RoadEntry, Run
+from vehgen.simulate.runfile import DisplacementHarmonic, ForceHarmonic, HumpEntry, Run
+from vehgen.vehicle.limits import HUMP_HEIGHT, HUMP_LENGTH, SPEED_LIMIT
 
 Array = NDArray[np.float64]
 AFTER_LAST_HUMP = 3.0
 """Seconds simulated after the last wheel left the last hump, where a run does not say how long it is."""
 
 
+NULLS_TO = 30.0
+"""Above it [Hz] no axle hops."""
 _DRIVES = DriveCache()
 
 
@@ -68,14 +74,23 @@ class Scenario:
     keep: int
     ground: tuple[Signal | None, ...] = ()
     forces: tuple[Signal, ...] = ()
-    nulls: tuple[float, ...] = ()
-    hump_lengths: tuple[float, ...] = ()
     start: float = 0.0
     time: Array = field(init=False)
 
     def __post_init__(self) -> None:
         steps = round(self.duration / (self.dt * self.keep)) * self.keep
         object.__setattr__(self, "time", self.start + np.arange(steps + 1) * self.dt)
+
+    @property
+    def humps(self) -> tuple[Hump, ...]:
+        """The humps of the track, in its order."""
+        return tuple(part for part in self.track.parts if isinstance(part, Hump))
+
+    @cached_property
+    def nulls(self) -> tuple[float, ...]:
+        """The frequencies [Hz], rounded to mHz, up to NULLS_TO at which a hump of the track excites nothing; found when first asked for."""
+        top = float(np.max(np.diff(self.speed.distance(np.linspace(0.0, self.duration, 200)))) / (self.duration / 199))
+        return tuple(sorted({round(float(null), 3) for hump in self.humps for null in hump.spectral_nulls(top, NULLS_TO)}))
 
     @property
     def top_speed(self) -> float:
@@ -122,33 +137,28 @@ def make_scenario(run: Run, model: LinearModel, values: dict[str, float]) -> Sce
     Raises
     ------
     InputError
-        For files that cannot be read, or a run with no end.
+        For files that cannot be read, dimensions that do not fit, a run with no end, and one that would cost too much.
     """
     file = run.file
     offsets = model.wheel_offsets(values)
     speed = _speed(run)
-    parts, humps = [], []
-    for entry in file.road:
-        part = _road_part(entry, run, speed, offsets)
-        parts.append(part)
-        if isinstance(part, Hump):
-            humps.append(part)
-    track = Track(tuple(parts), footprint=file.footprint or 0.0)
+    parts = tuple(_road_part(number, run, speed, offsets) for number in range(len(file.road)))
+    track = Track(parts, footprint=file.footprint or 0.0)
     if file.duration is not None:
         duration = file.duration
-    elif humps:
-        duration = pass_time(track, speed, offsets) + AFTER_LAST_HUMP
+    elif any(isinstance(part, Hump) for part in parts):
+        with placed(run, "road", key=True):
+            duration = pass_time(track, speed, offsets) + AFTER_LAST_HUMP
     else:
         raise InputError("a run without a hump needs `duration`, e.g. 10 s", run.document.position)
+    check_run(run, duration, float(speed.distance(np.array([duration]))[0]), len(model.inputs))
     names = model.inputs[len(run.vehicle.axles) :]
     ground = tuple(_ground(run, name.partition(".")[2]) for name in names)
     forces = tuple(
         Signal(harmonic=entry.harmonic) if entry.harmonic else _measured(run, entry.file or "", entry.time, entry.force, ("forces", name))
         for name, entry in file.forces.items()
     )
-    top = float(np.max(np.diff(speed.distance(np.linspace(0.0, duration, 200)))) / (duration / 199))
-    nulls = {round(float(null), 3) for hump in humps for null in hump.spectral_nulls(top, 30.0)}
-    return Scenario(track, speed, duration, file.step, run.keep, ground, forces, tuple(sorted(nulls)), tuple(hump.length for hump in humps))
+    return Scenario(track, speed, duration, file.step, run.keep, ground, forces)
 
 
 def _speed(run: Run) -> SpeedLaw:
@@ -156,34 +166,52 @@ def _speed(run: Run) -> SpeedLaw:
     if isinstance(spec, float):
         return ConstantSpeed(spec)
     time, speed = _columns(run, spec.file, (spec.time, spec.speed), ("speed", "file"))
-    return SpeedHistory(time, speed)
+    with placed(run, "speed", "file"):
+        history = SpeedHistory(time, speed)
+        for extreme in (speed.min(), speed.max()):
+            SPEED_LIMIT.check(float(extreme), f"the column {spec.speed!r} of {spec.file}")
+    return history
 
 
-def _road_part(entry: RoadEntry, run: Run, speed: SpeedLaw, offsets: Array) -> Profile:
+def _road_part(number: int, run: Run, speed: SpeedLaw, offsets: Array) -> Profile:
+    entry = run.file.road[number]
     if entry.hump is not None:
-        return _hump(entry.hump, run)
+        return _hump(entry.hump, run, ("road", number, "hump"))
     if entry.profile is not None:
-        distance, height = _columns(run, entry.profile.file, (entry.profile.distance, entry.profile.height), ("road",))
-        return MeasuredProfile(distance, height)
+        place = ("road", number, "profile", "file")
+        distance, height = _columns(run, entry.profile.file, (entry.profile.distance, entry.profile.height), place)
+        with placed(run, *place):
+            return MeasuredProfile(distance, height)
     assert entry.iso8608 is not None
+    with placed(run, "road", number, "iso8608", key=True):
+        return Iso8608Road(entry.iso8608.class_, entry.iso8608.seed, _random_length(run, speed, offsets))
+
+
+def _random_length(run: Run, speed: SpeedLaw, offsets: Array) -> float:
+    """Return how long random roads must be [m]; raises InputError where all of them together would be too long."""
     if run.file.duration is None:
         length = 100.0 + float(offsets.max(initial=0.0))
         length = max([length, *(item.hump.at + 100.0 for item in run.file.road if item.hump is not None)])
     else:
         length = float(speed.distance(np.array([run.file.duration]))[0]) + 10.0
-    return Iso8608Road(entry.iso8608.class_, entry.iso8608.seed, length)
+    check_length(length * sum(entry.iso8608 is not None for entry in run.file.road))
+    return length
 
 
-def _hump(entry: HumpEntry, run: Run) -> Hump:
+def _hump(entry: HumpEntry, run: Run, place: tuple[str | int, ...]) -> Hump:
     if entry.shape == "points":
-        s, height = _columns(run, entry.file or "", (entry.distance, entry.height_column), ("road",))
-        return Hump.from_points(entry.at, s, height)
+        s, height = _columns(run, entry.file or "", (entry.distance, entry.height_column), (*place, "file"))
+        with placed(run, *place, "file"):
+            HUMP_LENGTH.check(float(np.ptp(s)), f"{entry.file}")
+            HUMP_HEIGHT.check(float(np.abs(height).max()), f"{entry.file}")
+            return Hump.from_points(entry.at, s, height)
     extra = {"ramp": entry.ramp} if entry.ramp is not None else {}
     if entry.radius is not None:
         extra["radius"] = entry.radius
     assert entry.length is not None
     assert entry.height is not None
-    return Hump.from_shape(entry.shape, entry.at, entry.length, entry.height, **extra)
+    with placed(run, *place, "radius" if entry.shape == "rectangle" else "length"):
+        return Hump.from_shape(entry.shape, entry.at, entry.length, entry.height, **extra)
 
 
 def _ground(run: Run, link: str) -> Signal | None:
@@ -202,9 +230,7 @@ def _measured(run: Run, file: str, time: str, column: str, place: tuple[str, ...
     return Signal(time=t, values=values)
 
 
-def _columns(run: Run, file: str, names: tuple[str, str], place: tuple[str, ...]) -> tuple[Array, Array]:
-    path = Path(run.folder) / file
-    if not path.is_file():
-        raise InputError(f"no file {path}", run.document.find(place))
-    first, second = read_columns(path, names)
+def _columns(run: Run, file: str, names: tuple[str, str], place: tuple[str | int, ...]) -> tuple[Array, Array]:
+    with placed(run, *place):
+        first, second = read_columns(Path(run.folder) / file, names)
     return first, second

@@ -18,6 +18,7 @@ from vehgen.codegen import Drive, Kernel, KernelResult
 from vehgen.errors import InputError, ModelWarning, did_you_mean
 from vehgen.files import write_text
 from vehgen.mechanics import Channel, ElementOutput, LinearModel, Output, Place, derive, static_loads
+from vehgen.simulate.budgets import check_population
 from vehgen.simulate.doubts import lift_off, spectral_nulls, step_too_coarse
 from vehgen.simulate.runfile import Run
 from vehgen.simulate.scenario import Scenario, make_scenario
@@ -92,6 +93,7 @@ class Simulator:
         -------
         Responses and failures; a failed individual raises a ModelWarning and leaves the others unharmed.
         """
+        check_population(len(parameters), len(scenario.time) / scenario.keep, len(self.model.channels))
         offsets = np.round(self.wheel_offsets(parameters), 12)
         distinct, group = np.unique(offsets, axis=0, return_inverse=True)
         group = group.ravel()
@@ -213,7 +215,7 @@ def simulate(run: Run) -> Response:
     result = simulator.run(parameters, scenario)
     responses = result.responses
     if result.failures:
-        raise InputError(f"the vehicle has no finite response: {result.failures[0]}")
+        raise InputError(f"the vehicle has no finite response: {result.failures[0]}", run.document.find(("vehicle",)))
     n = len(wanted)
     messages = [
         *lift_off(simulator.model, values, responses[0, :, n:]),

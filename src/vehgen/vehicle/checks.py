@@ -9,18 +9,20 @@ from itertools import chain
 
 from vehgen.errors import InputError, did_you_mean, shortened, shown
 from vehgen.vehicle.expressions import Expression, ExpressionError
+from vehgen.vehicle.limits import MOST_PARTS, VEHICLE_LIMITS
 from vehgen.vehicle.model import GROUND, Joint, Vehicle
 from vehgen.vehicle.names import is_identifier
 from vehgen.vehicle.units import NONE, UNITS, Dimension
 
 _RESERVED = {GROUND, "k", "c", "title", "points", "laws"}
 MAX_CHAIN = 100
-SCALE = 1e20
-"""Quantities beyond it, and masses below its inverse, are slips of the pen that no arithmetic survives (SI units)."""
 
 
 def check_vehicle(vehicle: Vehicle) -> None:
-    """Check names, connections, symbols, units and values; raises InputError at the first fault."""
+    """Check numbers of parts, names, connections, symbols, units and values; raises InputError at the first fault."""
+    for kind, most in MOST_PARTS.items():
+        if (count := len(getattr(vehicle, kind))) > most:
+            raise _fail(vehicle, f"{count} {kind}; a vehicle has at most {most}", kind, key=True)
     _check_names(vehicle)
     _check_circles(vehicle)
     _check_units(vehicle)
@@ -317,15 +319,15 @@ def check_values(vehicle: Vehicle, free: Mapping[str, float], where: str = "") -
     except InputError as error:
         raise InputError(f"{error.message}{where}", error.position) from error
     numbers: dict[tuple[str, ...], float] = {}
-    for path, expression, _ in vehicle.quantities():
+    for path, expression, dimension in vehicle.quantities():
         try:
             number = numbers[path] = expression.evaluate(values)
         except ExpressionError as error:
             raise _fail(vehicle, f"{error}{where}", *path) from error
         if not math.isfinite(number):
             raise _fail(vehicle, f"{'.'.join(path)} is not a finite number{where}", *path)
-        if abs(number) > SCALE or (path[-1] in ("mass", "pitch_inertia") and 0 < number < 1 / SCALE):
-            raise _fail(vehicle, f"{'.'.join(path)} is {number:g}{where}, out of any scale (SI units)", *path)
+        if (reason := VEHICLE_LIMITS[dimension].refusal(number)) is not None:
+            raise _fail(vehicle, f"{'.'.join(path)} is out of any scale{where}: {reason}", *path)
         if path[-1] in ("mass", "pitch_inertia", "k", "c") and number < 0:
             raise _fail(vehicle, f"negative {path[-1]}: {'.'.join(path)} is {number:g}{where}; it must not be below 0", *path)
         if "bending" in path and path[-1] != "damping_ratio" and number <= 0:

@@ -9,14 +9,17 @@ from typing import Any
 from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
+from ruamel.yaml.reader import ReaderError
 
 from vehgen.errors import InputError, Position, shortened, shown
-from vehgen.files import note_read
+from vehgen.files import reading
 from vehgen.vehicle.names import unprintable
 
 MAX_BYTES = 1_000_000
 MAX_VALUES = 20_000
 MAX_DEPTH = 20
+MAX_DIGITS = 400
+"""A longer whole number stays text: Python refuses to write it again, and no float holds it."""
 _PLAIN_KEYS = {"str", "int", "float", "bool", "null", "timestamp", "merge", "value"}
 
 
@@ -71,55 +74,51 @@ def read_document(path: Path) -> Located:
     Raises
     ------
     InputError
-        For a missing, oversized, malformed or hostile file (aliases that multiply, custom tags, deep nesting, duplicate keys).
+        For a missing, oversized, malformed or hostile file (a pipe, aliases that multiply, custom tags, deep nesting, duplicate keys).
 
     """
-    note_read(path)
-    try:
-        size = path.stat().st_size
-        if size > MAX_BYTES:
-            raise InputError(f"{path} has {size} bytes; a file of at most {MAX_BYTES} bytes was expected")
-        with path.open(encoding="utf-8") as file:
-            text = file.read(MAX_BYTES + 1)
-        if len(text) > MAX_BYTES:
-            raise InputError(f"{path} does not end; a file of at most {MAX_BYTES} bytes was expected")
-    except FileNotFoundError as error:
-        raise InputError(f"no file {path}") from error
-    except IsADirectoryError as error:
-        raise InputError(f"{path} is a folder; a YAML file was expected") from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path} is not UTF-8 text") from error
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror}") from error
-    return read_text(text, path)
+    return read_text(reading.read_text(path, MAX_BYTES, "a YAML file"), path)
 
 
 def read_text(text: str, path: Path | str) -> Located:
     """Read YAML text into located data; `path` is what errors call it."""
+    lines = text.splitlines()
     try:
         root = YAML(typ="safe", pure=True).compose(text)
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        place = Position(path, mark.line + 1, mark.column + 1) if mark else Position(path, 1, 1)
+        place = _within(lines, path, mark.line, mark.column) if mark else Position(path, 1, 1)
         raise InputError(f"not valid YAML: {error.problem or error.context}", place) from error
+    except ReaderError as error:
+        before = text[: error.position]
+        place = _within(lines, path, before.count("\n"), len(before) - before.rfind("\n") - 1)
+        raise InputError(f"not valid YAML: {str(error).splitlines()[0]}", place) from error
     except (YAMLError, ValueError) as error:
         raise InputError(f"not valid YAML: {str(error).splitlines()[0]}", Position(path, 1, 1)) from error
     except RecursionError as error:
         raise InputError("nested too deeply", Position(path, 1, 1)) from error
     if root is None:
         raise InputError("the file is empty", Position(path, 1, 1))
-    return _Converter(path).convert(root, 0)
+    return _Converter(path, lines).convert(root, 0)
+
+
+def _within(lines: list[str], path: Path | str, line: int, column: int) -> Position:
+    """Return the place at a line and column that count from 0; ruamel's place beyond the last line becomes the file's last character."""
+    if line >= len(lines):
+        return Position(path, max(len(lines), 1), max(len(lines[-1]) if lines else 0, 1))
+    return Position(path, line + 1, min(column, len(lines[line])) + 1)
 
 
 class _Converter:
     """Turns composed YAML nodes into Located values, counting them so that aliases cannot multiply without end."""
 
-    def __init__(self, path: Path | str) -> None:
+    def __init__(self, path: Path | str, lines: list[str]) -> None:
         self.path = path
+        self.lines = lines
         self.count = 0
 
     def convert(self, node: Node, depth: int) -> Located:
-        position = Position(self.path, node.start_mark.line + 1, node.start_mark.column + 1)
+        position = _within(self.lines, self.path, node.start_mark.line, node.start_mark.column)
         self.count += 1
         if self.count > MAX_VALUES:
             raise InputError(f"more than {MAX_VALUES} values (do aliases multiply?)", position)
@@ -137,7 +136,7 @@ class _Converter:
     def _mapping(self, node: MappingNode, depth: int) -> dict[str, Located]:
         mapping: dict[str, Located] = {}
         for key, item in node.value:
-            place = Position(self.path, key.start_mark.line + 1, key.start_mark.column + 1)
+            place = _within(self.lines, self.path, key.start_mark.line, key.start_mark.column)
             if not isinstance(key, ScalarNode):
                 raise InputError("a key must be a name", place)
             if str(key.tag).rpartition(":")[2] not in _PLAIN_KEYS:
@@ -161,7 +160,7 @@ def _scalar(node: ScalarNode, kind: str, position: Position) -> Any:
             case "bool":
                 return text.lower() == "true"
             case "int":
-                return int(text.replace("_", ""), 0)
+                return int(text.replace("_", ""), 0) if len(text) <= MAX_DIGITS else text
             case "float":
                 return float(text.replace("_", "").replace(".inf", "inf").replace(".nan", "nan"))
             case "str" | "timestamp":

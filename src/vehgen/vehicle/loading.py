@@ -10,7 +10,8 @@ from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from vehgen.errors import InputError, Position, did_you_mean, shortened, shown
+from vehgen.errors import InputError, Position, did_you_mean, shown
+from vehgen.files.reading import short_path
 from vehgen.vehicle.checks import check_vehicle
 from vehgen.vehicle.document import Located, read_document, read_text
 from vehgen.vehicle.model import Joint, Vehicle
@@ -48,11 +49,11 @@ def find_vehicle_file(name: str | Path, beside: Path | None = None) -> Path:
         if local.exists():
             return local
     except OSError as error:
-        raise InputError(f"cannot read {local}: {error.strerror}") from error
+        raise InputError(f"cannot read {short_path(local)}: {error.strerror}") from error
     try:
         return _find_bundled(path)
     except InputError as error:
-        raise InputError(f"no file {shortened(str(local), MAX_PATH)}, and {error.message}") from error
+        raise InputError(f"no file {short_path(local)}, and {error.message}") from error
 
 
 def _find_bundled(name: str | Path) -> Path:

@@ -1,0 +1,88 @@
+"""What a run may cost, computed before the work: steps, numbers in memory, and the reach of its roads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from vehgen.errors import InputError
+from vehgen.simulate.runfile import MAX_STEPS, Run
+
+MOST_NUMBERS = 25_000_000
+"""So many numbers may describe what excites one vehicle and what it answers: 200 MB."""
+MOST_RESPONSES = 250_000_000
+"""So many numbers may a population's answers hold: 2 GB."""
+MOST_LOOKUPS = 5_000_000_000
+"""So often may a wheel look up the height of one entry of the road."""
+MOST_AVERAGED = 100_000.0
+"""Over no longer way [m] is a road averaged over a footprint."""
+
+
+@contextmanager
+def placed(run: Run, *path: str | int, key: bool = False) -> Iterator[None]:
+    """Give an InputError without a place the place of a value (or key) of the run file."""
+    try:
+        yield
+    except InputError as error:
+        if error.position is not None:
+            raise
+        raise InputError(error.message, run.document.find(path, key=key)) from error
+
+
+def check_run(run: Run, duration: float, way: float, n_wheels: int) -> None:
+    """Refuse a run that keeps no sample, and one whose steps, numbers or ways are beyond what is worth computing.
+
+    Parameters
+    ----------
+    run
+        The run.
+    duration
+        How long it is [s], whether its file says so or the road does.
+    way
+        How far the vehicle comes [m].
+    n_wheels
+        How many axles and moving links are excited.
+
+    Raises
+    ------
+    InputError
+        At the quantity of the run file that decides, with the number found and the limit.
+
+    """
+    file = run.file
+    steps = duration / file.step
+    said = ("duration",) if file.duration is not None else ("speed",)
+    if steps < run.keep:
+        raise InputError(f"a run of {duration:g} s keeps no sample: they are {run.keep * file.step:g} s apart", run.document.find(said))
+    numbers = steps * (2 * n_wheels + len(file.forces) + 1) + steps / run.keep * (len(run.outputs()) + len(run.vehicle.axles))
+    reason = None
+    if steps > MAX_STEPS:
+        reason = f"a run has at most {MAX_STEPS} steps; {duration:g} s in steps of {file.step:g} s are more"
+    elif numbers > MOST_NUMBERS:
+        reason = f"{steps:.0f} steps of this vehicle are {numbers:.3g} numbers in memory; at most {MOST_NUMBERS:.3g} were expected"
+    elif steps * n_wheels * len(file.road) > MOST_LOOKUPS:
+        reason = f"{steps:.0f} steps over a road of {len(file.road)} entries; a shorter run or fewer entries were expected"
+    if reason is not None:
+        where = "" if file.duration is not None else " (until the last wheel has left the last hump; `duration` may end the run before)"
+        raise InputError(f"{reason}{where}", run.document.find(said))
+    if file.footprint is not None and way > MOST_AVERAGED:
+        raise InputError(
+            f"a road is averaged over a footprint for at most {MOST_AVERAGED:g} m; this run covers {way:.3g} m",
+            run.document.find(("footprint",)),
+        )
+
+
+def check_population(n_individuals: int, n_samples: float, n_channels: int) -> None:
+    """Refuse a population whose answers would fill the memory.
+
+    Raises
+    ------
+    InputError
+        With the number found and the limit.
+
+    """
+    if (numbers := n_individuals * n_samples * n_channels) > MOST_RESPONSES:
+        raise InputError(
+            f"{n_individuals} individuals with {n_samples:.0f} samples of {n_channels} channels are {numbers:.3g} numbers; "
+            f"at most {MOST_RESPONSES:.3g} fit: take fewer individuals, a shorter run or fewer samples"
+        )

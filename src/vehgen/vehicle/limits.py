@@ -1,0 +1,100 @@
+"""Physical limits of every quantity: what lies outside is a slip of the pen or of the units, and could cost hours of computing.
+
+They are wide: they refuse no vehicle, rig or road that could stand in a laboratory.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from vehgen.errors import InputError
+from vehgen.vehicle.units import (
+    DAMPING,
+    FORCE,
+    FREQUENCY,
+    INERTIA,
+    LENGTH,
+    MASS,
+    MOMENT,
+    NONE,
+    PITCH_DAMPING,
+    SPEED,
+    STIFFNESS,
+    TIME,
+    Dimension,
+)
+
+MOST_PARTS = {"parameters": 1000, "bodies": 200, "hinges": 200, "axles": 200, "links": 400, "sets": 200}
+"""How many of each a vehicle may have."""
+MOST_ROADS = 200
+"""So many entries a road may have."""
+MOST_CHANNELS = 500
+"""So many channels a run may have."""
+LONGEST_PATH = 1000
+"""No file is named by more characters."""
+LARGEST_SEED = 2**63 - 1
+
+
+@dataclass(frozen=True)
+class Limit:
+    """The least and the greatest magnitude that `what` can have, in the SI unit of `dimension`; 0 and signs are others' concern."""
+
+    what: str
+    low: float
+    high: float
+    dimension: Dimension
+
+    def refusal(self, number: float) -> str | None:
+        """Say what is wrong with a number; None where its magnitude lies within the limits or it is 0."""
+        if number == 0 or self.low <= abs(number) <= self.high:
+            return None
+        unit = "" if self.dimension == NONE else f" {self.dimension}"
+        reach = f"{self.low:g} to {self.high:g}" if self.low else f"at most {self.high:g}"
+        return f"{self.what} is {reach}{unit} in magnitude, found {number:g}{unit}: a question of units?"
+
+    def check(self, number: float, where: str) -> None:
+        """Raise InputError, `where` before it, for a number outside the limits."""
+        if (reason := self.refusal(number)) is not None:
+            raise InputError(f"{where}: {reason}")
+
+
+SPEED_LIMIT = Limit("a speed", 0.01, 150.0, SPEED)
+HUMP_LENGTH = Limit("the length of a hump", 1e-3, 50.0, LENGTH)
+HUMP_HEIGHT = Limit("the height of a hump", 0.0, 2.0, LENGTH)
+EDGE_RADIUS = Limit("the radius of an edge", 1e-6, 50.0, LENGTH)
+FOOTPRINT = Limit("a tyre's footprint", 1e-3, 2.0, LENGTH)
+ROAD_POSITION = Limit("a place along the road", 0.0, 1e6, LENGTH)
+DURATION = Limit("a duration", 1e-3, 1e5, TIME)
+STEP = Limit("a step", 1e-6, 0.1, TIME)
+SAMPLE = Limit("the time between samples", 1e-6, 100.0, TIME)
+FREQUENCY_LIMIT = Limit("a frequency", 1e-4, 1e5, FREQUENCY)
+FORCE_LIMIT = Limit("a force", 0.0, 1e9, FORCE)
+DISPLACEMENT = Limit("a displacement", 0.0, 100.0, LENGTH)
+ANGLE = Limit("an angle", 0.0, 1e4, NONE)
+VEHICLE_LENGTH = Limit("a length on a vehicle", 0.0, 1e3, LENGTH)
+RELATIVE_ERROR = Limit("a relative uncertainty", 0.0, 1.0, NONE)
+
+VEHICLE_LIMITS: dict[Dimension, Limit] = {
+    MASS: Limit("a mass", 1e-6, 1e7, MASS),
+    INERTIA: Limit("a moment of inertia", 1e-12, 1e12, INERTIA),
+    LENGTH: VEHICLE_LENGTH,
+    STIFFNESS: Limit("a stiffness", 0.0, 1e15, STIFFNESS),
+    DAMPING: Limit("a damping", 0.0, 1e12, DAMPING),
+    MOMENT: Limit("a hinge's stiffness", 0.0, 1e15, MOMENT),
+    PITCH_DAMPING: Limit("a hinge's damping", 0.0, 1e15, PITCH_DAMPING),
+    FREQUENCY: FREQUENCY_LIMIT,
+    NONE: Limit("a damping ratio", 0.0, 100.0, NONE),
+}
+"""What the quantities of a vehicle may be, by their dimension."""
+
+
+def check_seed(seed: int, where: str) -> None:
+    """Raise InputError for a seed that is negative or beyond LARGEST_SEED."""
+    if not 0 <= seed <= LARGEST_SEED:
+        raise InputError(f"{where}: a seed is a whole number from 0 to {LARGEST_SEED}, found {seed}")
+
+
+def check_count(count: int, where: str, least: int, most: int) -> None:
+    """Raise InputError for a number of things below `least` or above `most`."""
+    if not least <= count <= most:
+        raise InputError(f"{where}: a whole number from {least} to {most} was expected, found {count}")
