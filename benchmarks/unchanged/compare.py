@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-EXACT = ("modes", "static", "responses", "populations")
+EXACT = ("modes", "static", "responses", "populations", "advice")
 """Sections in which no digit may differ, whatever the tolerance."""
 IGNORED = {"machine", "provenance", "files", "vehicle_file"}
 """Versions, dates, hashes of inputs, settings and paths."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import os
 import platform
 import re
@@ -115,9 +116,20 @@ def advice(bench: Bench) -> dict[str, Any]:
         found[f"laden, {name}"] = bench.json("laden", vehicle="tractor5", cargo=cargo / f"{name}.yaml", out=out)
         found[f"modes, {name}"] = bench.json("modes", vehicle=out)
     found["module"] = bench.json("module", module=cargo / "steel_module.yaml", out=bench.folder / "module_cargo.yaml")
-    found["sensitivity"] = bench.json("sensitivity", vehicle="tractor5", run=run)
+    found["sensitivity"] = condensed(bench.json("sensitivity", vehicle="tractor5", run=run))
     found["sensors"] = bench.json("sensors", vehicle="tractor5", run=run)
     return found
+
+
+def condensed(value: Any) -> Any:
+    """Return JSON with a hash, the sum and the length in place of each list of more than 20 numbers."""
+    if isinstance(value, dict):
+        return {key: condensed(item) for key, item in value.items()}
+    if not isinstance(value, list):
+        return value
+    if len(value) > 20 and all(isinstance(item, int | float) for item in value):
+        return {"sha256": hashlib.sha256(json.dumps(value).encode()).hexdigest()[:16], "sum": math.fsum(value), "length": len(value)}
+    return [condensed(item) for item in value]
 
 
 def _diagnosis(bench: Bench, name: str, folder: str) -> dict[str, Any]:

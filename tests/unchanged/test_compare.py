@@ -10,7 +10,7 @@ from benchmarks.unchanged import compare as module
 from benchmarks.unchanged.commands import COMMANDS, command
 from benchmarks.unchanged.compare import compare, report
 from benchmarks.unchanged.inputs import write_runs
-from benchmarks.unchanged.record import SECTIONS, failures, numbers
+from benchmarks.unchanged.record import SECTIONS, condensed, failures, numbers
 
 from vehgen import bundled_models, load_run, load_vehicle
 
@@ -115,6 +115,13 @@ def test_failed_commands_are_named():
 
 def test_numbers_of_a_text():
     assert numbers("linear m1 0.53, k1 1.02e+05\n   RMSE [mV]: multisine 6.963") == [0.53, 1.02e5, 6.963]
+
+
+def test_a_condensed_list_shows_a_changed_digit():
+    values = [0.1 * i for i in range(30)]
+    old, new = (condensed({"rms": {"k1": [item, [1.0]]}}) for item in (values, [*values[:-1], values[-1] + 1e-12]))
+    assert old["rms"]["k1"][1] == [1.0]
+    assert [item.place for item in compare(old, new)] == ["rms / k1[0] / sha256", "rms / k1[0] / sum"]
 
 
 def test_every_place_of_a_command_line_can_be_filled():
