@@ -50,9 +50,10 @@ class Bench:
         return {FAILED: (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[-1]}
 
     def json(self, name: str, **places: object) -> Any:
-        """Run a command line that prints JSON; return it, or how the command failed."""
+        """Run a command line that prints JSON; return it less the paths it wrote, or how the command failed."""
         printed = self.output(name, **places)
-        return json.loads(printed) if isinstance(printed, str) else printed
+        found = json.loads(printed) if isinstance(printed, str) else printed
+        return {key: value for key, value in found.items() if key != "files"}
 
     def hashes(self, pattern: str) -> dict[str, str]:
         """Return the hashes of files in the folder."""
