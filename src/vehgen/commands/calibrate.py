@@ -55,7 +55,7 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.identify.trial import load_trials
     from vehgen.report.calibration_plots import save_calibration_figures
     from vehgen.vehicle import load_vehicle
-    from vehgen.vehicle.names import as_name
+    from vehgen.vehicle.names import joined_name
 
     vehicle = load_vehicle(options.vehicle)
     problem = make_problem(load_trials(options.runs, vehicle))
@@ -73,7 +73,7 @@ def run(options: argparse.Namespace) -> None:
             if found.stopped:
                 progress.say("stopped: the best so far is kept; --resume goes on")
         outcome = conclude(found, facts, options.combination, 0 if found.stopped else options.bootstrap, runner)
-    name = as_name(f"{vehicle.name}_calibrated")
+    name = joined_name(vehicle.name, "calibrated")
     data = outcome.to_dict()
     files = [folder / f"{name}.yaml", folder / "calibration.json"]
     write_text(files[0], outcome.vehicle_text(folder, name))
