@@ -15,7 +15,6 @@ from vehgen.mechanics.superset import add_laws
 from vehgen.road import ConstantSpeed, Hump, Track, wheel_inputs
 from vehgen.simulate import exact_response, newmark_response
 from vehgen.vehicle import bundled_models, load_vehicle, parse_vehicle
-from vehgen.vehicle.expressions import parse
 
 OUTPUTS = (
     PointOutput("L1_az", Place("L1", "tractor", behind="axle1", distance=-0.29), "acceleration"),
@@ -239,8 +238,9 @@ def test_a_hundred_thousand_individuals_need_the_memory_of_one_block():
 def test_many_kernels_are_compiled_by_several_processes(tmp_path):
     """The cache is filled by others: this process only loads."""
     names = ("acceleration", "velocity", "displacement")
-    place = Place("s", "body", parse("0.0625 m"))  # no other test compiles this one: kernels alike but for names are shared
-    kernels = [Kernel(derive(load_vehicle("quarter_car"), (PointOutput(name, place, name),)), tmp_path) for name in names]
+    place = Place("s", "body")
+    vehicle = parse_vehicle("extends: quarter_car\nbodies: {body: {mass: 1.0625*mB}}\n")  # no other test compiles its kernels
+    kernels = [Kernel(derive(vehicle, (PointOutput(name, place, name),)), tmp_path) for name in names]
     assert not any(kernel.is_compiled for kernel in kernels)
     compile_all([*kernels, kernels[0]], 2)
     for kernel in kernels:

@@ -1,4 +1,5 @@
 import importlib.util
+import re
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from vehgen.mechanics import derive
 from vehgen.simulate import natural_modes
 from vehgen.vehicle import load_vehicle, parse_vehicle
 from vehgen.vehicle.loading import extend_vehicle
+from vehgen.vehicle.writing import yaml_document
 
 ASKED = {
     "dry_friction", "cubic_stiffness", "progressive_stiffness", "bump_stop", "asymmetric_damping", "quadratic_damping", "hysteresis",
@@ -39,9 +41,28 @@ def test_every_edit_gives_a_vehicle_that_vehgen_accepts(name):
     for effect in EFFECTS.values():
         if effect.edit is not None:
             for place in effect.places(vehicle, ())[:2]:
-                changed = extend_vehicle(vehicle, effect.change(surveyor.site(place)))
+                change = effect.change(surveyor.site(place))
+                changed = extend_vehicle(vehicle, change)
+                written = parse_vehicle(yaml_document({"extends": name, **change}))
+                assert (written.bodies, written.axles, written.parameters) == (changed.bodies, changed.axles, changed.parameters)
                 assert set(effect.symbols(place).values()) <= set(changed.ranges())
                 assert derive(changed).n_dof >= derive(vehicle).n_dof
+
+
+def test_every_edit_fits_a_vehicle_with_the_longest_names():
+    """Effects name their parts and parameters after the place; what would be too long is cut and stays one of its own."""
+    base = load_vehicle("truck_dolly_trailer")
+    parts = {name: f"{name}_".ljust(64, "x") for name in (*base.bodies, *base.hinges, *base.axles, *base.links)}
+    text = Path(base.files[0]).read_text(encoding="utf-8")
+    vehicle = parse_vehicle(re.sub(r"\w+", lambda match: parts.get(match[0], match[0]), text))
+    assert set(vehicle.bodies) == {parts[name] for name in base.bodies}
+    surveyor = Surveyor(vehicle, vehicle.values())
+    for effect in EFFECTS.values():
+        if effect.edit is not None:
+            names = [name for place in effect.places(vehicle, ()) for name in effect.symbols(place).values()]
+            assert len(set(names)) == len(names)
+            for place in effect.places(vehicle, ())[:1]:
+                extend_vehicle(vehicle, effect.change(surveyor.site(place)))
 
 
 def frequencies(vehicle):

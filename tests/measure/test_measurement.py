@@ -30,6 +30,15 @@ def test_channels_come_in_si_units_with_their_sign(tmp_path):
     assert found.dt == pytest.approx(0.01)
 
 
+def test_a_column_is_found_by_any_heading_and_its_channel_has_a_name(tmp_path):
+    heading = "=Acceleration z (m/s^2)"
+    run = write(tmp_path, text=RUN.replace("acceleration: az", f"acceleration: '{heading}'"))
+    (tmp_path / "data.csv").write_text((tmp_path / "data.csv").read_text().replace("t,az,q", f"t,{heading},q"))
+    found = read_measurement(run)
+    assert [channel.name for channel in found.channels] == ["F_acceleration", "q"]
+    assert found.values[:, 0] == pytest.approx(np.sin(found.time))
+
+
 @pytest.mark.parametrize(
     ("change", "said"),
     [

@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.identify.trial import load_trials
     from vehgen.report.calibration_plots import calibration_figure_files, save_calibration_figures
     from vehgen.vehicle import load_vehicle
-    from vehgen.vehicle.names import as_name
+    from vehgen.vehicle.names import joined_name
 
     _check_numbers(options)
     vehicle = load_vehicle(options.vehicle)
@@ -77,6 +77,10 @@ def run(options: argparse.Namespace) -> None:
             if found.stopped:
                 progress.say("stopped: the best so far is kept; --resume goes on")
         outcome = conclude(found, facts, options.combination, 0 if found.stopped else options.bootstrap, runner)
+<<<<<<< HEAD
+=======
+    name = joined_name(vehicle.name, "calibrated")
+>>>>>>> names
     data = outcome.to_dict()
     write_text(files[0], outcome.vehicle_text(folder, name))
     write_text(files[1], json.dumps(data, indent=1))

@@ -8,6 +8,7 @@ from typing import Any
 
 from vehgen.effects.site import Site
 from vehgen.vehicle import Vehicle
+from vehgen.vehicle.names import MAX_TEXT, joined_name
 
 Change = dict[str, Any]
 """Plain mappings, lists, texts and numbers in the form of a vehicle file."""
@@ -78,7 +79,7 @@ class Effect:
     def symbols(self, place: str) -> dict[str, str]:
         """Return the names its parameters take in a vehicle file."""
         safe = "".join(letter if letter.isalnum() else "_" for letter in place)
-        return {parameter.name: f"{self.name}_{safe}_{parameter.name}" for parameter in self.parameters}
+        return {parameter.name: joined_name(self.name, safe, parameter.name) for parameter in self.parameters}
 
     def change(self, site: Site, values: Mapping[str, float] | None = None) -> Change:
         """Return the change of a vehicle's file with its parameters declared, at `values` or at their first start."""
@@ -92,7 +93,7 @@ class Effect:
             declared[symbols[parameter.name]] = {
                 "value": f"{value!r}{unit}",
                 "range": [f"{low!r}{unit}", f"{high!r}{unit}"],
-                "meaning": f"{self.title}: {parameter.meaning}",
+                "meaning": f"{self.title}: {parameter.meaning}"[:MAX_TEXT],
             }
         change = self.edit(site, symbols)
         change["parameters"] = {**declared, **change.get("parameters", {})}

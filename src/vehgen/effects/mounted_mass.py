@@ -7,13 +7,14 @@ from collections.abc import Callable
 from vehgen.effects.base import Change, EffectParameter
 from vehgen.effects.law_effect import Given
 from vehgen.effects.site import Site
+from vehgen.vehicle.names import joined_name
 
 
 def mass_edit(name: str) -> Callable[[Site, Given], Change]:
     """Return the edit that cuts a heave-only mass out of a body and mounts it on a link."""
 
     def edit(site: Site, symbols: Given) -> Change:
-        body, new = site.place, f"{name}_{site.place}"
+        body, new = site.place, joined_name(name, site.place)
         mass, f, zeta, x = (symbols[key] for key in ("mass", "frequency", "damping_ratio", "x"))
         omega = f"(6.283185307179586*{f})"
         return {
@@ -22,7 +23,7 @@ def mass_edit(name: str) -> Callable[[Site, Given], Change]:
                 new: {"mass": mass, "motions": ["heave"], "carried_by": {"body": body, "x": x}},
             },
             "links": {
-                f"{new}_mount": {body: {"x": x}, new: {"x": "0 m"}, "k": f"{mass}*{omega}**2", "c": f"2*{zeta}*{mass}*{omega}"},
+                joined_name(new, "mount"): {body: {"x": x}, new: {"x": "0 m"}, "k": f"{mass}*{omega}**2", "c": f"2*{zeta}*{mass}*{omega}"},
             },
         }
 

@@ -7,6 +7,7 @@ from vehgen.effects.law_effect import Given
 from vehgen.effects.places import tandems
 from vehgen.effects.site import Site
 from vehgen.vehicle.model import Spring
+from vehgen.vehicle.names import joined_name
 
 
 def _spring(suspension: Spring) -> tuple[str, str]:
@@ -20,7 +21,7 @@ def _edit(site: Site, symbols: Given) -> Change:
     assert two.mass is not None
     assert one.suspension is not None
     assert two.suspension is not None
-    body, beam = one.body, f"beam_{first}_{second}"
+    body, beam = one.body, joined_name("beam", first, second)
     near, far, m1, m2 = (f"({text})" for text in (one.x.text, two.x.text, one.mass.text, two.mass.text))
     k1, c1, k2, c2 = (f"({text})" for text in (*_spring(one.suspension), *_spring(two.suspension)))
     middle, half = f"({near} + {far})/2", f"({near} - {far})/2"
@@ -36,14 +37,14 @@ def _edit(site: Site, symbols: Given) -> Change:
             }
         },
         "links": {
-            f"{beam}_pivot": {
+            joined_name(beam, "pivot"): {
                 body: {"x": f"{middle} + {pivot}"},
                 beam: {"x": f"{pivot} - {offset}"},
                 "k": f"{share}*({k1} + {k2})",
                 "c": f"{share}*({c1} + {c2})",
             },
             **{
-                f"{beam}_{name}": {body: {"x": x}, beam: {"x": end}, "k": f"(1 - {share})*{k}", "c": f"(1 - {share})*{c}"}
+                joined_name(beam, name): {body: {"x": x}, beam: {"x": end}, "k": f"(1 - {share})*{k}", "c": f"(1 - {share})*{c}"}
                 for name, (x, end, k, c) in ends.items()
             },
         },

@@ -6,6 +6,7 @@ say anything that can be printed as it is.
 
 from __future__ import annotations
 
+import hashlib
 import unicodedata
 from typing import Annotated
 
@@ -45,6 +46,14 @@ def as_name(text: str) -> str:
     found = "".join(character if _is_letter_or_digit(character) or character in _SIGNS else "_" for character in plain)
     found = found if found[:1] not in ("", ".", "-") else f"_{found}"
     return found[:MAX_NAME] if is_name(found[:MAX_NAME]) else "_"
+
+
+def joined_name(*parts: str) -> str:
+    """Return names joined by underscores; one that would be too long ends in a hash of the whole, so that it stays one of its own."""
+    whole = "_".join(parts)
+    if len(whole) <= MAX_NAME:
+        return whole
+    return f"{whole[: MAX_NAME - 9]}_{hashlib.sha256(whole.encode()).hexdigest()[:8]}"
 
 
 def unprintable(text: str) -> str | None:
