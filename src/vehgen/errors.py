@@ -6,6 +6,7 @@ What they quote of a file is a stranger's text: it is cut to a few words and esc
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -63,7 +64,7 @@ class InputError(Exception):
     """
 
     def __init__(self, message: str, position: Position | None = None) -> None:
-        self.message = shortened(message, MAX_MESSAGE)
+        self.message = shortened(re.sub(r"\s*[\r\n]\s*", " ", message.strip()), MAX_MESSAGE)
         self.position = position
         super().__init__(f"{escaped(str(position))}: {self.message}" if position else self.message)
 

@@ -216,7 +216,7 @@ def test_any_vehicle_can_be_drawn(seed):
 
 def test_an_absurdly_long_vehicle_still_fits_a_file():
     text = "name: long\nbodies: {b: {mass: 1 t, pitch_inertia: 1 t m^2}}\naxles:\n"
-    text += "".join(f"  w{x}: {{body: b, x: {x} km, tyre: {{k: 1 MN/m}}}}\n" for x in (0, 3))
+    text += "".join(f"  w{x}: {{body: b, x: {x} m, tyre: {{k: 1 MN/m}}}}\n" for x in (0, 990))
     assert draw_vehicle(derive(parse_vehicle(text))).get_size_inches()[0] < 80
 
 

@@ -79,13 +79,7 @@ CASES = [
         "channel of time",
         HUMP,
         HUMP + "@sensors: {A: {body: body, channels: {acceleration: t}}}\n",
-        "a channel is named 't', as the column of time is",
-    ),
-    (
-        "channel that is a formula",
-        HUMP,
-        HUMP + '@sensors: {A: {body: body, channels: {acceleration: "=cmd|1"}}}\n',
-        "the channel '=cmd|1' would be a formula",
+        "a channel cannot be named 't', as the column of the time is",
     ),
     (
         "many channels",

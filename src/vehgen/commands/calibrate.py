@@ -63,7 +63,7 @@ def run(options: argparse.Namespace) -> None:
     problem = make_problem(load_trials(options.runs, vehicle))
     facts = load_facts(options.facts, problem) if options.facts else None
     folder = folder_named(options.out, f"{Path(options.vehicle).stem}_calibrated")
-    name = as_name(f"{vehicle.name}_calibrated")
+    name = joined_name(vehicle.name, "calibrated")
     files, checkpoint = [folder / f"{name}.yaml", folder / "calibration.json"], folder / "search.json"
     check_results([*files, checkpoint, *calibration_figure_files(folder)])
     settings = _settings(options)
@@ -77,10 +77,6 @@ def run(options: argparse.Namespace) -> None:
             if found.stopped:
                 progress.say("stopped: the best so far is kept; --resume goes on")
         outcome = conclude(found, facts, options.combination, 0 if found.stopped else options.bootstrap, runner)
-<<<<<<< HEAD
-=======
-    name = joined_name(vehicle.name, "calibrated")
->>>>>>> names
     data = outcome.to_dict()
     write_text(files[0], outcome.vehicle_text(folder, name))
     write_text(files[1], json.dumps(data, indent=1))

@@ -59,13 +59,9 @@ def _merge(data: dict[str, Any], change: dict[str, Any]) -> None:
 
 def file_name(vehicle: str, fit: Fit) -> str:
     """Return what a vehicle with the effects of a fit is called, cut to the length of a name."""
-<<<<<<< HEAD
-    return as_name(f"{vehicle}_with_{'_and_'.join(dict.fromkeys(item.effect.name for item in fit.effects))}")
+    return joined_name(vehicle, "with", "_and_".join(dict.fromkeys(item.effect.name for item in fit.effects)))
 
 
 def files_named_so(vehicle: str, folder: Path) -> list[Path]:
     """Return the files in a folder that a diagnosis may have to replace: those named as :func:`file_name` does, whatever the effects."""
     return sorted(folder.glob(f"{escape(vehicle)}_with_*.yaml")) if folder.is_dir() else []
-=======
-    return joined_name(vehicle, "with", "_and_".join(dict.fromkeys(item.effect.name for item in fit.effects)))
->>>>>>> names

@@ -26,7 +26,7 @@ def short_path(path: Path | str) -> str:
     return text if len(text) <= _SHOWN else f"{text[: _SHOWN // 2]}...{text[-_SHOWN // 2 :]}"
 
 
-def open_regular(path: Path, most: int, kind: str = "a file") -> BinaryIO:
+def open_regular(path: Path, most: int, kind: str = "a file", *, state: bool = False) -> BinaryIO:
     """Open a file for reading, if it is a regular one of at most `most` bytes; a pipe or device is refused without waiting for it.
 
     Parameters
@@ -37,6 +37,8 @@ def open_regular(path: Path, most: int, kind: str = "a file") -> BinaryIO:
         Its largest size [bytes]. A file that grows meanwhile is for the reader to notice.
     kind
         What was expected, as errors say it: `a YAML file`.
+    state
+        Vehgen's own state, such as a checkpoint, which the command that reads it may write again.
 
     Raises
     ------
@@ -45,7 +47,8 @@ def open_regular(path: Path, most: int, kind: str = "a file") -> BinaryIO:
 
     """
     name = short_path(path)
-    note_read(path)
+    if not state:
+        note_read(path)
     try:
         _check(os.stat(path), name, most, kind)
         handle = os.open(path, _FLAGS)
@@ -72,9 +75,9 @@ def _check(status: os.stat_result, name: str, most: int, kind: str) -> None:
         raise InputError(f"{name} has {status.st_size} bytes; {kind} of at most {most} bytes was expected")
 
 
-def read_bytes(path: Path, most: int, kind: str = "a file") -> bytes:
+def read_bytes(path: Path, most: int, kind: str = "a file", *, state: bool = False) -> bytes:
     """Return the bytes of a regular file of at most `most`; raises InputError as :func:`open_regular`."""
-    with open_regular(path, most, kind) as stream:
+    with open_regular(path, most, kind, state=state) as stream:
         return bounded(stream, short_path(path), most, kind)
 
 
@@ -89,7 +92,7 @@ def bounded(stream: IO[bytes], name: str, most: int, kind: str = "a file") -> by
     return data
 
 
-def read_text(path: Path, most: int, kind: str = "a text file") -> str:
+def read_text(path: Path, most: int, kind: str = "a text file", *, state: bool = False) -> str:
     r"""Return the UTF-8 text of a regular file, its lines ended by `\n`.
 
     Raises
@@ -98,7 +101,7 @@ def read_text(path: Path, most: int, kind: str = "a text file") -> str:
         As :func:`open_regular`, and at the line and column of bytes that are not UTF-8.
 
     """
-    data = read_bytes(path, most, kind)
+    data = read_bytes(path, most, kind, state=state)
     try:
         return data.decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError as error:

@@ -213,7 +213,7 @@ def _load(path: Path | None, problem: Problem, settings: Settings) -> list[Searc
     if path is None or not path.is_file():
         raise InputError(f"there is no search to resume{'' if path is None else f' at {path}'}")
     try:
-        data = json.loads(read_text(path, MOST_BYTES, "a checkpoint of a calibration"))
+        data = json.loads(read_text(path, MOST_BYTES, "a checkpoint of a calibration", state=True))
         found, states = data["fingerprint"], [SearchState.from_json(json.dumps(item)) for item in data["states"]]
     except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise InputError(f"{path} is not a checkpoint of a calibration: {error}") from error
