@@ -106,7 +106,7 @@ def _settings(options: argparse.Namespace) -> Settings:
     from vehgen.identify.calibration import Settings
     from vehgen.identify.genetic import GeneticSearch
     from vehgen.identify.misfit import Nuisances
-    from vehgen.identify.objective import BAND
+    from vehgen.identify.objective import CALIBRATION_BAND_HZ
 
     kind = options.search or ("ga" if options.method == "shcm" else "mpga")
     return Settings(
@@ -117,7 +117,7 @@ def _settings(options: argparse.Namespace) -> Settings:
         seed=options.seed,
         polish=not options.no_polish,
         starts=max(1, options.starts),
-        band=_band(options.band) if options.band else BAND,
+        band=_band(options.band) if options.band else CALIBRATION_BAND_HZ,
         nuisances=Nuisances(speed=options.speed_error, height=options.height_error),
     )
 

@@ -7,19 +7,19 @@ from collections.abc import Sequence
 from vehgen.errors import InputError
 from vehgen.identify.trial import Trial
 
-BAND = (0.5, 40.0)
+DIAGNOSIS_BAND_HZ = (0.5, 40.0)
 """What is compared [Hz] where the run files do not say: a vehicle's motions from heave to hop."""
 
 
 def compared_band(trials: Sequence[Trial]) -> tuple[float, float]:
-    """Return the `band` [Hz] of the run files, or BAND.
+    """Return the `band` [Hz] of the run files, or DIAGNOSIS_BAND_HZ.
 
     Raises
     ------
     InputError
         Where run files disagree, or a band reaches beyond what a recording's sampling rate shows.
     """
-    bands = {trial.name: trial.run.file.band or BAND for trial in trials}
+    bands = {trial.name: trial.run.file.band or DIAGNOSIS_BAND_HZ for trial in trials}
     (first, band), *rest = bands.items()
     for name, other in rest:
         if other != band:

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.band import BAND, compared_band
+from vehgen.diagnose.band import DIAGNOSIS_BAND_HZ, compared_band
 from vehgen.diagnose.fitting import Fit, fit_base, mean_square_as_filed, narrow
 from vehgen.diagnose.noise_floor import NoiseFloor, find_noise_floor
 from vehgen.errors import InputError
@@ -35,7 +35,7 @@ class Detection:
     base: Fit
     as_filed: float
     as_filed_untouched: float
-    band: tuple[float, float] = BAND
+    band: tuple[float, float] = DIAGNOSIS_BAND_HZ
 
     @property
     def chi(self) -> float:

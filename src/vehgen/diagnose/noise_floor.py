@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from vehgen.identify.misfit import Noises
 from vehgen.identify.noise import COLOUR_AT, EVEN, SMALLEST_LEVEL, Noise, estimate_noise, road_answer, transform
-from vehgen.identify.objective import BAND
+from vehgen.identify.objective import CALIBRATION_BAND_HZ
 from vehgen.identify.trial import Trial
 from vehgen.measure import record_psd
 from vehgen.road import Hump
@@ -50,7 +50,7 @@ class NoiseFloor:
     corrected: tuple[str, ...]
 
 
-def find_noise_floor(trials: Sequence[Trial], band: tuple[float, float] = BAND) -> NoiseFloor:
+def find_noise_floor(trials: Sequence[Trial], band: tuple[float, float] = CALIBRATION_BAND_HZ) -> NoiseFloor:
     """Return the noise of all runs.
 
     A channel's variance is taken as a + b rms^2 over the runs, a >= 0 and b >= 0: what a phone adds by itself, and what grows with what
@@ -152,7 +152,7 @@ def lead_in(trial: Trial) -> Trial | None:
     return replace(trial, measurement=measurement)
 
 
-def top_of_band(trial: Trial, band: tuple[float, float] = BAND) -> Array:
+def top_of_band(trial: Trial, band: tuple[float, float] = CALIBRATION_BAND_HZ) -> Array:
     """Return the standard deviation of white noise that the top of a band [Hz] shows, `shape (n_channels,)`."""
     frequency, density = record_psd(trial.measurement.values, trial.measurement.dt, axis=0)
     top = min(TOP[1] * band[1], frequency[-1])  # a slow recording shows less

@@ -19,7 +19,7 @@ from vehgen.identify.facts import Facts
 from vehgen.identify.genetic import GeneticSearch, SearchState
 from vehgen.identify.methods import Step, plan
 from vehgen.identify.misfit import Nuisances
-from vehgen.identify.objective import BAND, PsdObjective
+from vehgen.identify.objective import CALIBRATION_BAND_HZ, PsdObjective
 from vehgen.identify.parallel import Runner
 from vehgen.identify.polish import Polished, polish
 from vehgen.identify.problem import Problem
@@ -43,7 +43,7 @@ class Settings:
     seed: int = 1
     polish: bool = True
     starts: int = 6
-    band: tuple[float, float] = BAND
+    band: tuple[float, float] = CALIBRATION_BAND_HZ
     nuisances: Nuisances = field(default_factory=Nuisances)
 
 

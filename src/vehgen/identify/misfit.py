@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from vehgen.identify.adjustments import Adjustment
 from vehgen.identify.noise import Noise, RoadAnswer, road_answer, transform
-from vehgen.identify.objective import BAND
+from vehgen.identify.objective import CALIBRATION_BAND_HZ
 from vehgen.identify.problem import Problem
 from vehgen.identify.trial import Trial
 from vehgen.simulate import Scenario
@@ -92,7 +92,7 @@ class Misfit:
         noises: Noises,
         reference: Array,
         nuisances: Nuisances | None = None,
-        band: tuple[float, float] = BAND,
+        band: tuple[float, float] = CALIBRATION_BAND_HZ,
         shared: Sequence[Adjustment] = (),
         renew: int = 1,
     ) -> None:

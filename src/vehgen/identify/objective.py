@@ -16,7 +16,7 @@ from vehgen.identify.problem import Problem
 from vehgen.measure import record_psd
 
 Array = NDArray[np.float64]
-BAND = (0.3, 40.0)
+CALIBRATION_BAND_HZ = (0.3, 40.0)
 """Frequencies that a calibration compares [Hz]: below, phones drift; above, anti-aliasing filters bite."""
 
 
@@ -31,7 +31,7 @@ class PsdObjective:
         Frequencies compared [Hz].
     """
 
-    def __init__(self, problem: Problem, band: tuple[float, float] = BAND) -> None:
+    def __init__(self, problem: Problem, band: tuple[float, float] = CALIBRATION_BAND_HZ) -> None:
         self.problem = problem
         self.band = band
         self._measured: list[tuple[NDArray[np.bool_], Array]] = []

@@ -14,7 +14,7 @@ from vehgen.identify.adjustments import Adjustment
 from vehgen.identify.facts import Facts
 from vehgen.identify.misfit import Misfit, Noises, Nuisances
 from vehgen.identify.noise import EVEN, Noise, estimate_noise, transform
-from vehgen.identify.objective import BAND
+from vehgen.identify.objective import CALIBRATION_BAND_HZ
 from vehgen.identify.problem import Problem
 
 Array = NDArray[np.float64]
@@ -61,7 +61,7 @@ def polish(
     problem: Problem,
     unit: Array,
     nuisances: Nuisances | None = None,
-    band: tuple[float, float] = BAND,
+    band: tuple[float, float] = CALIBRATION_BAND_HZ,
     rounds: int = ROUNDS,
     noises: Noises | None = None,
     start: Array | None = None,
