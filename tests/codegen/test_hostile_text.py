@@ -8,10 +8,10 @@ import pytest
 
 from vehgen.codegen import Drive, Kernel, write_kernel
 from vehgen.errors import InputError
+from vehgen.files.names import is_name
 from vehgen.mechanics import LinearModel, Place, PointOutput, derive
 from vehgen.simulate import load_run
 from vehgen.vehicle import load_vehicle
-from vehgen.vehicle.names import is_name
 from vehgen.vehicle.writing import yaml_text
 
 TEXT = '"""\n\'\'\'\nopen("PWNED", "w").write("x")\n\\N{BULLET}\\x41\\\n${HOME} {{7*7}} {0} %s </script><b>alert</b> $x$ [/b]\n#'

@@ -12,13 +12,13 @@ from vehgen.commands import main
 from vehgen.effects import EFFECTS, Surveyor, extended_library, load_effects
 from vehgen.effects.entry import effects_schema
 from vehgen.errors import InputError
+from vehgen.files.document import read_text
 from vehgen.mechanics import Place
 from vehgen.mechanics.law_terms import RATE, TRAVEL, read_laws
 from vehgen.mechanics.outputs import PointOutput
 from vehgen.road import ConstantSpeed, Hump, Track
 from vehgen.simulate import Scenario, Simulator
 from vehgen.vehicle import load_vehicle
-from vehgen.vehicle.document import read_text
 from vehgen.vehicle.loading import extend_vehicle
 
 PAGE = Path(__file__).parents[2] / "docs" / "effects.md"

@@ -9,10 +9,10 @@ import pytest
 
 from vehgen.errors import InputError
 from vehgen.files.csv_rows import MOST_ROWS
+from vehgen.files.document import read_document
 from vehgen.files.reading import LONGEST_LINE, open_regular, read_bytes, read_text
+from vehgen.files.tables import read_columns
 from vehgen.measure.archive import read_members
-from vehgen.road import read_columns
-from vehgen.vehicle.document import read_document
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="needs pipes and devices")
 

@@ -5,6 +5,7 @@ import pytest
 import scipy.signal
 
 from vehgen.errors import InputError
+from vehgen.files.tables import read_columns
 from vehgen.road import (
     CLASSES,
     ConstantSpeed,
@@ -15,7 +16,6 @@ from vehgen.road import (
     Track,
     displacement_psd,
     pass_time,
-    read_columns,
     wheel_inputs,
 )
 

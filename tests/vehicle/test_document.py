@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from vehgen.errors import InputError
+from vehgen.files.document import MAX_BYTES, Located, read_document, read_text
 from vehgen.vehicle import bundled_models, load_vehicle
-from vehgen.vehicle.document import MAX_BYTES, Located, read_document, read_text
 
 
 def walk(node: Located, path: tuple[str | int, ...] = ()) -> Iterator[tuple[tuple[str | int, ...], Located]]:

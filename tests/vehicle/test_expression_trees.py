@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from vehgen.vehicle.expressions import Expression, ExpressionError, parse
-from vehgen.vehicle.units import Dimension
+from vehgen.files.expressions import Expression, ExpressionError, parse
+from vehgen.files.units import Dimension
 
 VALUES = {"b1": 1.32, "L13": 4.8, "mT": 8000.0, "ratio": -0.375}
 EXPONENTS = {"b1": (1, 0), "L13": (1, 0), "mT": (0, 1), "ratio": (0, 0)}

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from vehgen.errors import InputError
-from vehgen.vehicle.expressions import ExpressionError, parse
-from vehgen.vehicle.units import DAMPING, INERTIA, LENGTH, MASS, NONE, STIFFNESS, Dimension, parse_unit
+from vehgen.files.expressions import ExpressionError, parse
+from vehgen.files.units import DAMPING, INERTIA, LENGTH, MASS, NONE, STIFFNESS, Dimension, parse_unit
 
 
 @pytest.mark.parametrize(

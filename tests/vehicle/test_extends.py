@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from vehgen.errors import InputError
+from vehgen.files.document import read_text
 from vehgen.vehicle import bundled_models, find_vehicle_file, load_vehicle, parse_vehicle
-from vehgen.vehicle.document import read_text
 from vehgen.vehicle.loading import merge
 
 BASE = """\

@@ -11,8 +11,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from vehgen.errors import InputError
+from vehgen.files.document import read_document
 from vehgen.vehicle import bundled_models, parse_vehicle
-from vehgen.vehicle.document import read_document
 
 MODELS = {name: path.read_text(encoding="utf-8") for name, path in bundled_models().items()}
 DATA = {name: read_document(path).plain() for name, path in bundled_models().items()}

@@ -9,8 +9,8 @@ import time
 import pytest
 
 from vehgen.errors import InputError
+from vehgen.files.expressions import MAX_LENGTH, ExpressionError, parse
 from vehgen.vehicle import parse_vehicle
-from vehgen.vehicle.expressions import MAX_LENGTH, ExpressionError, parse
 
 CHARACTERS = "only numbers, units, parameter names, + - * / ** and sqrt, abs, sign, min, max may stand in an expression, found "
 SYNTAX = "cannot read "

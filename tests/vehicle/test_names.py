@@ -11,10 +11,10 @@ from vehgen.cargo import load_cargo
 from vehgen.cargo.frame_file import load_frame
 from vehgen.effects.entry import load_effects
 from vehgen.errors import InputError, did_you_mean, shown
+from vehgen.files.document import read_text
+from vehgen.files.names import MAX_TEXT, as_name, is_column, is_identifier, is_name, unprintable
 from vehgen.simulate import load_run
 from vehgen.vehicle import load_vehicle, parse_vehicle
-from vehgen.vehicle.document import read_text
-from vehgen.vehicle.names import MAX_TEXT, as_name, is_column, is_identifier, is_name, unprintable
 from vehgen.vehicle.writing import variant_text, yaml_document, yaml_text, yaml_title
 
 GOOD_NAMES = ("a", "_", "7", "DHCM-1-2", "v1.2_b-c", "挂车", "été", "Ωmega", "x" * 64, "٣")

@@ -3,9 +3,9 @@
 import jsonschema
 import pytest
 
+from vehgen.files.document import read_document
 from vehgen.simulate.runfile import RunFile
 from vehgen.vehicle import bundled_models
-from vehgen.vehicle.document import read_document
 from vehgen.vehicle.schema import vehicle_schema
 
 

@@ -10,9 +10,9 @@ from typing import Any
 import jsonschema
 import pytest
 
+from vehgen.files.document import read_document, read_text
 from vehgen.simulate.runfile import RunFile
 from vehgen.vehicle import bundled_models
-from vehgen.vehicle.document import read_document, read_text
 from vehgen.vehicle.schema import vehicle_schema
 
 DOCS = Path(__file__).parents[2] / "docs"

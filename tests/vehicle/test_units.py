@@ -10,8 +10,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from vehgen.errors import InputError
-from vehgen.vehicle.expressions import ExpressionError, parse
-from vehgen.vehicle.units import NAMED_DIMENSIONS, UNITS, Dimension, parse_unit, read_unit
+from vehgen.files.expressions import ExpressionError, parse
+from vehgen.files.units import NAMED_DIMENSIONS, UNITS, Dimension, parse_unit, read_unit
 
 # unit -> (factor to SI, exponents of metre, kilogram, second)
 TABLE = {

@@ -21,10 +21,10 @@ from vehgen.cargo.quantities import (
     Stiffness,
 )
 from vehgen.errors import InputError
-from vehgen.vehicle.document import Located, read_document
+from vehgen.files.document import Located, read_document
+from vehgen.files.names import FreeText, Identifier
 from vehgen.vehicle.loading import validate
 from vehgen.vehicle.model import Noun
-from vehgen.vehicle.names import FreeText, Identifier
 
 
 class RigidCargo(Noun):

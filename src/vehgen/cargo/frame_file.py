@@ -14,10 +14,10 @@ from vehgen.cargo.panels import Layer, equivalent_layer
 from vehgen.cargo.quantities import DampingRatio, Density, Distance, Frequency, Modulus, Poisson, PositiveLength
 from vehgen.cargo.sections import SectionEntry
 from vehgen.errors import InputError, did_you_mean, shown
-from vehgen.vehicle.document import Located, read_document
+from vehgen.files.document import Located, read_document
+from vehgen.files.names import FreeText, Identifier, Name
 from vehgen.vehicle.loading import validate
 from vehgen.vehicle.model import Noun
-from vehgen.vehicle.names import FreeText, Identifier, Name
 
 MIN_SIDE, MAX_SIDE = 0.1, 100.0
 

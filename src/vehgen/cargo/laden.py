@@ -11,8 +11,8 @@ from pathlib import Path
 
 from vehgen.cargo.cargo_file import Cargo, ModuleCargo, RigidCargo
 from vehgen.errors import InputError, did_you_mean, shown
+from vehgen.files.names import MAX_NAME, is_identifier
 from vehgen.vehicle.model import Vehicle
-from vehgen.vehicle.names import MAX_NAME, is_identifier
 from vehgen.vehicle.writing import base_reference, yaml_text, yaml_title
 
 Definition = tuple[str, float, str, str]

@@ -6,8 +6,8 @@ from typing import Annotated
 
 from pydantic import BeforeValidator, Field
 
-from vehgen.simulate.quantities import read_quantity
-from vehgen.vehicle.units import DAMPING, FORCE, FREQUENCY, INERTIA, LENGTH, MASS, NONE, STIFFNESS, Dimension
+from vehgen.files.quantities import read_quantity
+from vehgen.files.units import DAMPING, FORCE, FREQUENCY, INERTIA, LENGTH, MASS, NONE, STIFFNESS, Dimension
 
 LARGEST = 1e18
 """What no quantity of a cargo reaches in SI units; vehicle files refuse 1e20."""

@@ -48,6 +48,7 @@ def run(options: argparse.Namespace) -> None:
     import json
 
     from vehgen.commands.progress import Bars
+    from vehgen.files.names import joined_name
     from vehgen.identify.calibration import calibrate
     from vehgen.identify.facts import load_facts
     from vehgen.identify.outcome import conclude
@@ -56,7 +57,6 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.identify.trial import load_trials
     from vehgen.report.calibration_plots import calibration_figure_files, save_calibration_figures
     from vehgen.vehicle import load_vehicle
-    from vehgen.vehicle.names import joined_name
 
     _check_numbers(options)
     vehicle = load_vehicle(options.vehicle)
@@ -91,7 +91,7 @@ def run(options: argparse.Namespace) -> None:
 
 def _check_numbers(options: argparse.Namespace) -> None:
     """Refuse numbers that no search can use, before anything is read or made."""
-    from vehgen.vehicle.limits import RELATIVE_ERROR, check_count, check_seed
+    from vehgen.files.limits import RELATIVE_ERROR, check_count, check_seed
 
     check_seed(options.seed, "--seed")
     for name, least, most in (("size", 2, 100_000), ("generations", 0, 1_000_000), ("starts", 0, 10_000), ("bootstrap", 0, 100_000)):

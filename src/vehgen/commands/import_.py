@@ -53,6 +53,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Import phone exports."""
+    from vehgen.files.limits import FOOTPRINT, ROAD_POSITION, SPEED_LIMIT
+    from vehgen.files.units import SPEED
     from vehgen.measure.csv_table import read_column_map
     from vehgen.measure.importing import import_phones, with_forward
     from vehgen.measure.options import Plan, quantity, read_hump, read_profile, read_sensor
@@ -60,8 +62,6 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.report import save_figure
     from vehgen.report.import_plot import plot_import
     from vehgen.vehicle import load_vehicle
-    from vehgen.vehicle.limits import FOOTPRINT, ROAD_POSITION, SPEED_LIMIT
-    from vehgen.vehicle.units import SPEED
 
     by_axles = options.speed == "axles"
     speed = None if options.speed is None or by_axles else quantity(options.speed, SPEED, "--speed")

@@ -29,8 +29,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> None:
     """Write the laden vehicle and print the comparison."""
     from vehgen.cargo import compare_laden, laden_text, load_cargo
+    from vehgen.files.names import as_name
     from vehgen.vehicle import load_vehicle
-    from vehgen.vehicle.names import as_name
 
     vehicle, cargo = load_vehicle(options.vehicle), load_cargo(options.cargo)
     vehicle.values(options.parameter_set)

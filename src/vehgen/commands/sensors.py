@@ -20,10 +20,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Print the best places for 1, 2, ... sensors."""
+    from vehgen.files.limits import check_count
     from vehgen.identify.sensors import advise_sensors
     from vehgen.simulate import load_run
     from vehgen.vehicle import load_vehicle
-    from vehgen.vehicle.limits import check_count
 
     check_count(options.count, "--count", 1, 100)
     run_ = load_run(options.run_file, load_vehicle(options.vehicle))

@@ -10,9 +10,9 @@ from vehgen.diagnose.estimates import estimate
 from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.verdict import Verdict
 from vehgen.effects import Surveyor
+from vehgen.files.names import MAX_TEXT, joined_name
 from vehgen.identify.problem import Problem
 from vehgen.vehicle.loading import extend_vehicle
-from vehgen.vehicle.names import MAX_TEXT, joined_name
 from vehgen.vehicle.writing import base_reference, quantity, yaml_document
 
 

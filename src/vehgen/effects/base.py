@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from vehgen.effects.site import Site
+from vehgen.files.names import MAX_TEXT, joined_name
 from vehgen.vehicle import Vehicle
-from vehgen.vehicle.names import MAX_TEXT, joined_name
 
 Change = dict[str, Any]
 """Plain mappings, lists, texts and numbers in the form of a vehicle file."""

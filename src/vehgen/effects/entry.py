@@ -15,14 +15,14 @@ from vehgen.effects.places import axles, hinges, suspensions
 from vehgen.effects.registry import library
 from vehgen.effects.site import Site
 from vehgen.errors import InputError, did_you_mean, shown
+from vehgen.files.document import Located, read_document
+from vehgen.files.expressions import Expression, ExpressionError
+from vehgen.files.names import FreeText, Identifier, Name
+from vehgen.files.units import DAMPING, FORCE, INERTIA, LENGTH, MASS, MOMENT, NONE, STIFFNESS, TIME, Dimension, parse_unit
 from vehgen.mechanics.laws import LAWS
 from vehgen.vehicle import Vehicle
-from vehgen.vehicle.document import Located, read_document
-from vehgen.vehicle.expressions import Expression, ExpressionError
 from vehgen.vehicle.loading import validate
 from vehgen.vehicle.model import Noun
-from vehgen.vehicle.names import FreeText, Identifier, Name
-from vehgen.vehicle.units import DAMPING, FORCE, INERTIA, LENGTH, MASS, MOMENT, NONE, STIFFNESS, TIME, Dimension, parse_unit
 
 Kind = Literal["suspension", "tyre", "hinge"]
 Finite = Annotated[float, Field(allow_inf_nan=False)]

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from vehgen.effects.base import Change, EffectParameter
 from vehgen.effects.law_effect import Given
 from vehgen.effects.site import Site
-from vehgen.vehicle.names import joined_name
+from vehgen.files.names import joined_name
 
 
 def mass_edit(name: str) -> Callable[[Site, Given], Change]:

@@ -29,7 +29,7 @@ from vehgen.effects.tyre_footprint import TYRE_FOOTPRINT
 from vehgen.effects.tyre_liftoff import TYRE_LIFTOFF
 from vehgen.effects.walking_beam import WALKING_BEAM
 from vehgen.errors import InputError, shown
-from vehgen.vehicle.names import is_identifier
+from vehgen.files.names import is_identifier
 
 GROUP = "vehgen.effects"
 """Entry points of this group name Effect objects of other packages."""

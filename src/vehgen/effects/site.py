@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from vehgen.files.expressions import Expression
 from vehgen.mechanics import LinearModel, derive, static_loads
 from vehgen.vehicle import Vehicle
-from vehgen.vehicle.expressions import Expression
 from vehgen.vehicle.model import Spring
 
 

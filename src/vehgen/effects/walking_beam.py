@@ -6,8 +6,8 @@ from vehgen.effects.base import Change, Effect, EffectParameter
 from vehgen.effects.law_effect import Given
 from vehgen.effects.places import tandems
 from vehgen.effects.site import Site
+from vehgen.files.names import joined_name
 from vehgen.vehicle.model import Spring
-from vehgen.vehicle.names import joined_name
 
 
 def _spring(suspension: Spring) -> tuple[str, str]:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from vehgen.errors import InputError
 from vehgen.files import write_text
 from vehgen.files.reading import read_text
+from vehgen.files.tables import MOST_BYTES
 from vehgen.identify.facts import Facts
 from vehgen.identify.genetic import GeneticSearch, SearchState
 from vehgen.identify.methods import Step, plan
@@ -23,7 +24,6 @@ from vehgen.identify.objective import CALIBRATION_BAND_HZ, PsdObjective
 from vehgen.identify.parallel import Runner
 from vehgen.identify.polish import Polished, polish
 from vehgen.identify.problem import Problem
-from vehgen.road.tables import MOST_BYTES
 
 Array = NDArray[np.float64]
 SAVE_EVERY = 10

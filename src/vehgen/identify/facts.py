@@ -21,15 +21,15 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from vehgen.errors import InputError, did_you_mean, shown
+from vehgen.files.document import read_document
+from vehgen.files.expressions import Expression, ExpressionError
+from vehgen.files.names import Name
+from vehgen.files.quantities import Force
 from vehgen.identify.problem import Problem
 from vehgen.mechanics import LinearModel, derive, static_loads
-from vehgen.simulate.quantities import Force
 from vehgen.vehicle import Vehicle
-from vehgen.vehicle.document import read_document
-from vehgen.vehicle.expressions import Expression, ExpressionError
 from vehgen.vehicle.loading import validate
 from vehgen.vehicle.model import GROUND, Noun
-from vehgen.vehicle.names import Name
 
 Array = NDArray[np.float64]
 _DIFFERENCE = 1e-6

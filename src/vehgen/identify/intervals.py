@@ -15,11 +15,11 @@ import scipy.stats
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
+from vehgen.files.expressions import ExpressionError, parse
 from vehgen.identify.facts import Facts
 from vehgen.identify.identifiability import Structure
 from vehgen.identify.polish import Polished, polish
 from vehgen.simulate import Mode, natural_modes
-from vehgen.vehicle.expressions import ExpressionError, parse
 
 Array = NDArray[np.float64]
 LEVEL = 0.90

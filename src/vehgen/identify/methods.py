@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from vehgen.errors import InputError, did_you_mean
+from vehgen.files.expressions import Expression
 from vehgen.identify.problem import Problem
 from vehgen.vehicle import Vehicle
-from vehgen.vehicle.expressions import Expression
 
 METHODS = ("shcm", "dhcm", "joint")
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.files.reading import read_bytes
+from vehgen.files.tables import MOST_BYTES
 from vehgen.identify.calibration import Calibration, Settings, StepResult
 from vehgen.identify.facts import Facts
 from vehgen.identify.identifiability import Structure, find_structure
@@ -22,7 +23,6 @@ from vehgen.identify.objective import PsdObjective
 from vehgen.identify.parallel import Runner
 from vehgen.mechanics import static_loads
 from vehgen.mechanics.outputs import ElementOutput
-from vehgen.road.tables import MOST_BYTES
 from vehgen.simulate import Simulator
 from vehgen.vehicle.writing import quantity, variant_text
 

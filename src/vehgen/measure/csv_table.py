@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from vehgen.errors import InputError, Position, did_you_mean, shortened, shown
 from vehgen.files.csv_rows import csv_rows
 from vehgen.files.reading import split_lines
+from vehgen.files.units import ACCELERATION, FREQUENCY, TIME, Dimension, parse_unit
+from vehgen.files.units import SPEED as SPEED_DIMENSION
 from vehgen.measure.export import PITCH_RATE, SPEED, VERTICAL, PhoneExport, Stream
-from vehgen.vehicle.units import ACCELERATION, FREQUENCY, TIME, Dimension, parse_unit
-from vehgen.vehicle.units import SPEED as SPEED_DIMENSION
 
 Array = NDArray[np.float64]
 MAX_COLUMNS = 200

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
 from vehgen.errors import InputError, did_you_mean, shown
+from vehgen.files.quantities import read_quantity
+from vehgen.files.tables import read_columns
+from vehgen.files.units import UNITS, read_unit
 from vehgen.mechanics.outputs import POINT_QUANTITIES, PointOutput
-from vehgen.road import read_columns
 from vehgen.simulate import Run
-from vehgen.simulate.quantities import read_quantity
 from vehgen.simulate.runfile import ChannelEntry, SensorEntry
-from vehgen.vehicle.units import UNITS, read_unit
 
 Array = NDArray[np.float64]
 LOWEST_RATE = 50.0

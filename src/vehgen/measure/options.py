@@ -12,15 +12,16 @@ import numpy as np
 from pydantic import ValidationError
 
 from vehgen.errors import InputError, did_you_mean, shown
+from vehgen.files.expressions import ExpressionError, parse
+from vehgen.files.limits import HUMP_HEIGHT, HUMP_LENGTH, VEHICLE_LENGTH
+from vehgen.files.names import is_identifier
+from vehgen.files.tables import read_columns
+from vehgen.files.units import LENGTH, NONE, TIME, Dimension
 from vehgen.measure.csv_table import ColumnMap, split_pairs
 from vehgen.mechanics import Place, PointOutput
-from vehgen.road import Hump, MeasuredProfile, Profile, read_columns
+from vehgen.road import Hump, MeasuredProfile, Profile
 from vehgen.simulate.runfile import HumpEntry
 from vehgen.vehicle import Vehicle
-from vehgen.vehicle.expressions import ExpressionError, parse
-from vehgen.vehicle.limits import HUMP_HEIGHT, HUMP_LENGTH, VEHICLE_LENGTH
-from vehgen.vehicle.names import is_identifier
-from vehgen.vehicle.units import LENGTH, NONE, TIME, Dimension
 
 _SENSOR_KEYS = ("body", "x", "behind", "distance", "forward", "up", "acceleration_sign", "from", "to")
 _HUMP_KEYS = ("length", "height", "ramp", "radius", "file", "distance", "height_column")

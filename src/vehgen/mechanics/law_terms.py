@@ -9,11 +9,11 @@ from typing import Literal, get_args
 import sympy as sp
 
 from vehgen.errors import InputError, did_you_mean, shortened, shown
+from vehgen.files.expressions import Expression, ExpressionError
+from vehgen.files.units import FORCE, LENGTH, MOMENT, NONE, TIME, Dimension
 from vehgen.mechanics.laws import LAWS, Kind, Law, LawStep, Motion, custom_law
 from vehgen.mechanics.symbols import number, to_sympy
-from vehgen.vehicle.expressions import Expression, ExpressionError
 from vehgen.vehicle.model import LawEntry, Spring, Vehicle
-from vehgen.vehicle.units import FORCE, LENGTH, MOMENT, NONE, TIME, Dimension
 
 Origin = Literal["static", "unloaded"]
 """Where a law's travel counts from: static equilibrium, or the position in which the spring carries nothing."""

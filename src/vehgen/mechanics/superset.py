@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from vehgen.errors import InputError, did_you_mean
+from vehgen.files.expressions import Expression, Name, parse
+from vehgen.files.units import NONE
 from vehgen.mechanics.laws import LAWS, Kind, Law, LawParameter
-from vehgen.vehicle.expressions import Expression, Name, parse
 from vehgen.vehicle.model import Parameter, Spring, Vehicle
-from vehgen.vehicle.units import NONE
 
 Candidate = tuple[str, Kind, str]
 """Where and which: the axle's, link's or hinge's name, `suspension`, `tyre`, `link` or `hinge`, the law's name in LAWS."""

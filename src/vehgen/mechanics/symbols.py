@@ -6,7 +6,7 @@ from functools import cache
 
 import sympy as sp
 
-from vehgen.vehicle.expressions import Expression
+from vehgen.files.expressions import Expression
 
 _FUNCTIONS = {"sqrt": sp.sqrt, "abs": sp.Abs, "sign": sp.sign, "min": sp.Min, "max": sp.Max}
 

@@ -18,6 +18,7 @@ import vehgen
 from vehgen.codegen import KernelSource
 from vehgen.errors import InputError
 from vehgen.files import write_text
+from vehgen.files.document import MAX_BYTES
 from vehgen.files.reading import read_bytes
 from vehgen.mechanics import GRAVITY, LinearModel, StaticLoads
 from vehgen.report import equations
@@ -27,7 +28,6 @@ from vehgen.report.latex import equations_latex
 from vehgen.report.mode_shapes import draw_modes
 from vehgen.report.notation import tidy
 from vehgen.simulate import Mode
-from vehgen.vehicle.document import MAX_BYTES
 
 _LONG = 14.0
 """A drawing wider than this is scrolled on the page instead of shrunk [inches]."""

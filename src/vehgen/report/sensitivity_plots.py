@@ -7,12 +7,12 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from vehgen.files.units import DAMPING, LENGTH, MASS, STIFFNESS
 from vehgen.identify.sensitivity import SensitivityIndices
 from vehgen.report.canvas import INK
 from vehgen.report.files import save_figure
 from vehgen.report.response_plot import COLOURS, STYLES
 from vehgen.vehicle import Vehicle
-from vehgen.vehicle.units import DAMPING, LENGTH, MASS, STIFFNESS
 
 HIGHEST = 25.0
 """Frequencies shown [Hz]."""

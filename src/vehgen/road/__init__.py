@@ -3,7 +3,6 @@
 from vehgen.road.humps import Hump
 from vehgen.road.iso8608 import CLASSES, Iso8608Road, check_length, displacement_psd
 from vehgen.road.speed import AdjustedSpeed, ConstantSpeed, SpeedHistory, SpeedLaw
-from vehgen.road.tables import read_columns
 from vehgen.road.track import MeasuredProfile, Profile, Track
 from vehgen.road.wheels import WheelInputs, pass_time, wheel_inputs
 
@@ -22,6 +21,5 @@ __all__ = [
     "check_length",
     "displacement_psd",
     "pass_time",
-    "read_columns",
     "wheel_inputs",
 ]

@@ -13,8 +13,11 @@ from pydantic_core import PydanticCustomError
 
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files import note_read
-from vehgen.mechanics.outputs import AXLE_QUANTITIES, LINK_QUANTITIES, POINT_QUANTITIES, ElementOutput, Output, Place, PointOutput
-from vehgen.simulate.quantities import (
+from vehgen.files.document import Located, read_document
+from vehgen.files.expressions import Expression, ExpressionError
+from vehgen.files.limits import LARGEST_SEED, MOST_CHANNELS, MOST_ROADS, VEHICLE_LENGTH
+from vehgen.files.names import Column, FreeText, Name, is_name
+from vehgen.files.quantities import (
     Angle,
     Displacement,
     Duration,
@@ -32,14 +35,11 @@ from vehgen.simulate.quantities import (
     Speed,
     Step,
 )
+from vehgen.files.units import LENGTH
+from vehgen.mechanics.outputs import AXLE_QUANTITIES, LINK_QUANTITIES, POINT_QUANTITIES, ElementOutput, Output, Place, PointOutput
 from vehgen.vehicle.checks import check_values
-from vehgen.vehicle.document import Located, read_document
-from vehgen.vehicle.expressions import Expression, ExpressionError
-from vehgen.vehicle.limits import LARGEST_SEED, MOST_CHANNELS, MOST_ROADS, VEHICLE_LENGTH
 from vehgen.vehicle.loading import load_vehicle, validate
 from vehgen.vehicle.model import Noun, Vehicle
-from vehgen.vehicle.names import Column, FreeText, Name, is_name
-from vehgen.vehicle.units import LENGTH
 
 DEFAULT_STEP = 1e-3
 DEFAULT_KEEP = 10

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from vehgen.codegen import Drive
 from vehgen.errors import InputError
+from vehgen.files.limits import HUMP_HEIGHT, HUMP_LENGTH, SPEED_LIMIT
+from vehgen.files.tables import read_columns
 from vehgen.mechanics.linear_model import LinearModel
 from vehgen.road import (
     AdjustedSpeed,
@@ -24,13 +26,11 @@ from vehgen.road import (
     Track,
     check_length,
     pass_time,
-    read_columns,
     wheel_inputs,
 )
 from vehgen.simulate.budgets import check_run, placed
 from vehgen.simulate.drive_cache import DriveCache
 from vehgen.simulate.runfile import DisplacementHarmonic, ForceHarmonic, HumpEntry, Run
-from vehgen.vehicle.limits import HUMP_HEIGHT, HUMP_LENGTH, SPEED_LIMIT
 
 Array = NDArray[np.float64]
 AFTER_LAST_HUMP = 3.0

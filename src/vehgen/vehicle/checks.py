@@ -8,11 +8,11 @@ from collections.abc import Iterable, Mapping
 from itertools import chain
 
 from vehgen.errors import InputError, did_you_mean, shortened, shown
-from vehgen.vehicle.expressions import Expression, ExpressionError
-from vehgen.vehicle.limits import MOST_PARTS, VEHICLE_LIMITS
+from vehgen.files.expressions import Expression, ExpressionError
+from vehgen.files.limits import MOST_PARTS, VEHICLE_LIMITS
+from vehgen.files.names import is_identifier
+from vehgen.files.units import NONE, UNITS, Dimension
 from vehgen.vehicle.model import GROUND, Joint, Vehicle
-from vehgen.vehicle.names import is_identifier
-from vehgen.vehicle.units import NONE, UNITS, Dimension
 
 _RESERVED = {GROUND, "k", "c", "title", "points", "laws"}
 MAX_CHAIN = 100

@@ -11,11 +11,11 @@ from typing import Any, TypeVar, get_args
 from pydantic import BaseModel, ValidationError
 
 from vehgen.errors import InputError, Position, did_you_mean, shown
+from vehgen.files.document import Located, read_document, read_text
+from vehgen.files.names import as_name
 from vehgen.files.reading import short_path
 from vehgen.vehicle.checks import check_vehicle
-from vehgen.vehicle.document import Located, read_document, read_text
 from vehgen.vehicle.model import Joint, Vehicle
-from vehgen.vehicle.names import as_name
 
 Model = TypeVar("Model", bound=BaseModel)
 MAX_EXTENDS = 20

@@ -10,10 +10,10 @@ from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
 from vehgen.errors import InputError, Position, did_you_mean, shortened, shown
-from vehgen.vehicle.document import Located
-from vehgen.vehicle.expressions import Expression, ExpressionError, parse
-from vehgen.vehicle.names import FreeText, Name
-from vehgen.vehicle.units import DAMPING, FREQUENCY, INERTIA, LENGTH, MASS, MOMENT, NONE, PITCH_DAMPING, STIFFNESS, Dimension
+from vehgen.files.document import Located
+from vehgen.files.expressions import Expression, ExpressionError, parse
+from vehgen.files.names import FreeText, Name
+from vehgen.files.units import DAMPING, FREQUENCY, INERTIA, LENGTH, MASS, MOMENT, NONE, PITCH_DAMPING, STIFFNESS, Dimension
 
 GROUND = "ground"
 Motion = Literal["heave", "pitch"]

@@ -9,10 +9,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from vehgen.files.names import MAX_TEXT
+from vehgen.files.units import NONE
 from vehgen.vehicle.loading import bundled_models
 from vehgen.vehicle.model import Vehicle
-from vehgen.vehicle.names import MAX_TEXT
-from vehgen.vehicle.units import NONE
 
 _PLAIN = re.compile(r"[A-Za-z_][A-Za-z0-9_./-]*|-?\d[\d.]*(?:e[+-]?\d+)? [A-Za-z](?:[A-Za-z0-9^/ -]*[A-Za-z0-9])?", re.ASCII)
 """Words, paths and quantities such as `1.5 kg m^2`, which need no quotes."""

@@ -13,7 +13,7 @@ from typing import Literal
 
 import sympy as sp
 
-from vehgen.vehicle.units import FORCE, LENGTH, MOMENT, NONE, TIME, Dimension
+from vehgen.files.units import FORCE, LENGTH, MOMENT, NONE, TIME, Dimension
 
 Kind = Literal["suspension", "tyre", "link", "hinge"]
 EVERYWHERE: tuple[Kind, ...] = ("suspension", "tyre", "link", "hinge")

@@ -13,7 +13,7 @@ from ruamel.yaml.reader import ReaderError
 
 from vehgen.errors import InputError, Position, shortened, shown
 from vehgen.files import reading
-from vehgen.vehicle.names import unprintable
+from vehgen.files.names import unprintable
 
 MAX_BYTES = 1_000_000
 MAX_VALUES = 20_000

@@ -20,7 +20,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from vehgen.errors import InputError, did_you_mean, shortened, shown
-from vehgen.vehicle.units import NONE, Dimension, nearest_unit, read_unit
+from vehgen.files.units import NONE, Dimension, nearest_unit, read_unit
 
 MAX_LENGTH = 1000
 MAX_DEPTH = 100

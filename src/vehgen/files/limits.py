@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vehgen.errors import InputError
-from vehgen.vehicle.units import (
+from vehgen.files.units import (
     DAMPING,
     FORCE,
     FREQUENCY,

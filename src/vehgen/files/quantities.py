@@ -9,10 +9,10 @@ from pydantic import BeforeValidator, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from vehgen.errors import shortened, shown
-from vehgen.vehicle import limits
-from vehgen.vehicle.expressions import ExpressionError, parse
-from vehgen.vehicle.limits import Limit
-from vehgen.vehicle.units import NONE, Dimension
+from vehgen.files import limits
+from vehgen.files.expressions import ExpressionError, parse
+from vehgen.files.limits import Limit
+from vehgen.files.units import NONE, Dimension
 
 
 def read_quantity(value: Any, dimension: Dimension) -> float:
