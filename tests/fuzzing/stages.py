@@ -24,7 +24,7 @@ from vehgen.identify.trial import load_trials
 from vehgen.measure import read_export, read_measurement
 from vehgen.mechanics import ElementOutput, LinearModel, derive, static_loads
 from vehgen.simulate import lint, load_run, make_scenario, natural_modes
-from vehgen.simulate.doubts import spectral_nulls, step_too_coarse
+from vehgen.simulate.warnings import spectral_nulls, step_too_coarse
 from vehgen.vehicle import Vehicle, load_vehicle, parse_vehicle
 from vehgen.vehicle.loading import extend_vehicle
 

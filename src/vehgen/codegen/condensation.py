@@ -20,10 +20,10 @@ import sympy as sp
 from vehgen.codegen.factorisation import Factor, Matrix, factorise
 from vehgen.codegen.program import SAMPLE, SETUP, STEP, Node, Program
 from vehgen.mechanics.energies import Element
+from vehgen.mechanics.equations_of_motion import LinearModel
 from vehgen.mechanics.law_terms import RATE, REST, STATIC, TRAVEL
 from vehgen.mechanics.law_terms import STEP as TIME_STEP
 from vehgen.mechanics.laws import LawStep
-from vehgen.mechanics.linear_model import LinearModel
 
 
 @dataclass

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from vehgen.codegen.cache import cache_folder, import_kernel, is_compiled, kernel_name
 from vehgen.codegen.kernel_source import KernelSource, Precision, write_kernel
 from vehgen.errors import InputError, did_you_mean
+from vehgen.mechanics.equations_of_motion import GRAVITY, LinearModel
 from vehgen.mechanics.equilibrium import equilibria
-from vehgen.mechanics.linear_model import GRAVITY, LinearModel
 
 Array = NDArray[np.float64]
 UNCONVERGED = 0.01

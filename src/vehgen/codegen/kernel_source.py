@@ -17,7 +17,7 @@ from vehgen.codegen.legend import kernel_legend
 from vehgen.codegen.newmark import StepProgram, write_step
 from vehgen.codegen.printing import Printer
 from vehgen.codegen.program import SAMPLE, STEP, Node
-from vehgen.mechanics.linear_model import LinearModel
+from vehgen.mechanics.equations_of_motion import LinearModel
 
 Precision = Literal["double", "single"]
 LANES = 32

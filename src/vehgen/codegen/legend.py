@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from vehgen.codegen.labels import dependent_label, drive_labels, parameter_label
-from vehgen.mechanics.linear_model import LinearModel
+from vehgen.mechanics.equations_of_motion import LinearModel
 
 
 def kernel_legend(model: LinearModel) -> str:

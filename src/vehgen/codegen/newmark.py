@@ -17,7 +17,7 @@ from vehgen.codegen.condensation import Condensation
 from vehgen.codegen.factorisation import Matrix, factorise
 from vehgen.codegen.labels import dependent_label, drive_labels, parameter_label
 from vehgen.codegen.program import SAMPLE, SETUP, STEP, Node, Program
-from vehgen.mechanics.linear_model import LinearModel
+from vehgen.mechanics.equations_of_motion import LinearModel
 from vehgen.mechanics.rows import Entries, Row
 
 

@@ -19,8 +19,8 @@ from vehgen.identify.noise import transform
 from vehgen.identify.problem import Problem
 from vehgen.mechanics import LinearModel, static_loads
 from vehgen.mechanics.energies import Element
+from vehgen.mechanics.equations_of_motion import Channel
 from vehgen.mechanics.law_terms import RATE, REST, STATIC, TRAVEL
-from vehgen.mechanics.linear_model import Channel
 from vehgen.simulate.frequency import force_response
 
 Array = NDArray[np.float64]

@@ -19,7 +19,7 @@ from vehgen.diagnose.place_test import Place, PlaceResult, posterior, test_place
 from vehgen.identify.misfit import Misfit
 from vehgen.identify.noise import taper
 from vehgen.identify.polish import first_delays
-from vehgen.mechanics.linear_model import Channel, LinearModel
+from vehgen.mechanics.equations_of_motion import Channel, LinearModel
 from vehgen.simulate.frequency import force_response
 
 Array = NDArray[np.float64]

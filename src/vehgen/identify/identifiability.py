@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from vehgen.identify.problem import Problem
 from vehgen.identify.space import SearchSpace
-from vehgen.mechanics.linear_model import LinearModel
+from vehgen.mechanics.equations_of_motion import LinearModel
 from vehgen.simulate.frequency import response_derivatives
 
 Array = NDArray[np.float64]

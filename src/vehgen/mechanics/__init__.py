@@ -1,8 +1,8 @@
 """Why does it move? Kinematics, energies and Lagrange's equations; from a Vehicle to its LinearModel."""
 
 from vehgen.mechanics.derivation import derive
+from vehgen.mechanics.equations_of_motion import GRAVITY, Channel, LinearModel, NumericModel
 from vehgen.mechanics.kinematics import Coordinate
-from vehgen.mechanics.linear_model import GRAVITY, Channel, LinearModel, NumericModel
 from vehgen.mechanics.outputs import ElementOutput, Output, Place, PointOutput
 from vehgen.mechanics.static_loads import StaticLoads, static_loads
 

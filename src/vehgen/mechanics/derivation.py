@@ -14,9 +14,9 @@ from collections.abc import Iterable
 import sympy as sp
 
 from vehgen.mechanics.energies import Energies, Inertia, write_energies
+from vehgen.mechanics.equations_of_motion import GRAVITY, LinearModel
 from vehgen.mechanics.kinematics import derive_kinematics
 from vehgen.mechanics.layout import lay_out
-from vehgen.mechanics.linear_model import GRAVITY, LinearModel
 from vehgen.mechanics.outputs import Output, Place, PointOutput, element_channel, point_channel
 from vehgen.mechanics.rows import Entries, Row, add_outer, combine
 from vehgen.mechanics.symbols import number, parameter, to_sympy

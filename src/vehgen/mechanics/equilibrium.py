@@ -17,9 +17,9 @@ import scipy.optimize
 import sympy as sp
 from numpy.typing import NDArray
 
-from vehgen.mechanics.columns import Columns
+from vehgen.mechanics.equations_of_motion import LinearModel
+from vehgen.mechanics.evaluation import Columns
 from vehgen.mechanics.law_terms import REST
-from vehgen.mechanics.linear_model import LinearModel
 from vehgen.mechanics.rows import Entries
 
 Array = NDArray[np.float64]

@@ -9,9 +9,9 @@ import sympy as sp
 from vehgen.errors import InputError, did_you_mean
 from vehgen.files.expressions import Expression
 from vehgen.mechanics.energies import Element
+from vehgen.mechanics.equations_of_motion import Channel
 from vehgen.mechanics.kinematics import Kinematics
 from vehgen.mechanics.layout import Layout
-from vehgen.mechanics.linear_model import Channel
 from vehgen.mechanics.rows import Row, combine
 from vehgen.mechanics.symbols import number, parameter, to_sympy
 from vehgen.vehicle.model import Vehicle

@@ -10,8 +10,8 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
+from vehgen.mechanics.equations_of_motion import GRAVITY, LinearModel
 from vehgen.mechanics.equilibrium import equilibria
-from vehgen.mechanics.linear_model import GRAVITY, LinearModel
 from vehgen.vehicle.model import GROUND
 
 

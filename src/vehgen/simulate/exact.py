@@ -15,7 +15,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from vehgen.codegen.kernel import Drive
-from vehgen.mechanics.linear_model import LinearModel, NumericModel
+from vehgen.mechanics.equations_of_motion import LinearModel, NumericModel
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.mechanics.linear_model import LinearModel, NumericModel
+from vehgen.mechanics.equations_of_motion import LinearModel, NumericModel
 from vehgen.mechanics.rows import Row
 from vehgen.simulate.sensitivity import matrix_derivatives
 

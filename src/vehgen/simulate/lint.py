@@ -9,7 +9,7 @@ import numpy as np
 
 from vehgen.errors import InputError
 from vehgen.mechanics.energies import pitch_inertia
-from vehgen.mechanics.linear_model import LinearModel
+from vehgen.mechanics.equations_of_motion import LinearModel
 from vehgen.mechanics.static_loads import static_loads
 from vehgen.mechanics.symbols import to_sympy
 from vehgen.simulate.modes import natural_modes

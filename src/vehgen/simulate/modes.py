@@ -11,7 +11,7 @@ import scipy.optimize
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
-from vehgen.mechanics.linear_model import LinearModel, NumericModel
+from vehgen.mechanics.equations_of_motion import LinearModel, NumericModel
 
 Array = NDArray[np.float64]
 _SHARED = 0.6

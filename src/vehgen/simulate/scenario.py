@@ -13,7 +13,7 @@ from vehgen.codegen import Drive
 from vehgen.errors import InputError
 from vehgen.files.limits import HUMP_HEIGHT, HUMP_LENGTH, SPEED_LIMIT
 from vehgen.files.tables import read_columns
-from vehgen.mechanics.linear_model import LinearModel
+from vehgen.mechanics.equations_of_motion import LinearModel
 from vehgen.road import (
     AdjustedSpeed,
     ConstantSpeed,

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from vehgen.codegen import Drive
 from vehgen.errors import InputError, did_you_mean
-from vehgen.mechanics.linear_model import LinearModel
+from vehgen.mechanics.equations_of_motion import LinearModel
 from vehgen.mechanics.rows import Entries
 from vehgen.simulate.exact import channel_values, newmark_states
 
@@ -73,7 +73,7 @@ def direct_sensitivities(
 def matrix_derivatives(model: LinearModel, name: str, values: Mapping[str, float]) -> dict[str, Array]:
     """Return the derivatives of all matrices and output rows by a parameter, through the parameters that follow it.
 
-    The keys are those of :class:`vehgen.mechanics.linear_model.NumericModel` (`M`, `C`, `K`, `P`, `Q`, `F`) and of its `outputs`.
+    The keys are those of :class:`vehgen.mechanics.equations_of_motion.NumericModel` (`M`, `C`, `K`, `P`, `Q`, `F`) and of its `outputs`.
     """
     chain: dict[sp.Symbol, sp.Expr] = {sp.Symbol(name, real=True): sp.S.One}
     for symbol, expression in model.definitions:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.mechanics.linear_model import LinearModel
+from vehgen.mechanics.equations_of_motion import LinearModel
 from vehgen.mechanics.static_loads import static_loads
 from vehgen.simulate.modes import natural_modes
 from vehgen.simulate.scenario import Scenario

@@ -10,7 +10,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from vehgen.mechanics.linear_model import LinearModel
+from vehgen.mechanics.equations_of_motion import LinearModel
 
 Array = NDArray[np.float64]
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
