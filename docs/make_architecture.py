@@ -22,6 +22,7 @@ ROOMS = [
     "simulate",
     "cargo",
     "measure",
+    "phones",
     "effects",
     "identify",
     "diagnose",

@@ -21,8 +21,9 @@ from vehgen.errors import InputError
 from vehgen.identify.facts import load_facts
 from vehgen.identify.problem import Problem, make_problem
 from vehgen.identify.trial import load_trials
-from vehgen.measure import read_export, read_measurement
+from vehgen.measure import read_measurement
 from vehgen.mechanics import ElementOutput, LinearModel, derive, static_loads
+from vehgen.phones import read_export
 from vehgen.simulate import lint, load_run, make_scenario, natural_modes
 from vehgen.simulate.warnings import spectral_nulls, step_too_coarse
 from vehgen.vehicle import Vehicle, load_vehicle, parse_vehicle

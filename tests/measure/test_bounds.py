@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from vehgen.errors import InputError
-from vehgen.measure import ColumnMap, read_export
-from vehgen.measure import archive as archive_module
-from vehgen.measure.csv_table import read_table
-from vehgen.measure.export import Stream
-from vehgen.measure.matlab import read_matlab
-from vehgen.measure.resampling import clean
+from vehgen.phones import ColumnMap, read_export
+from vehgen.phones import archive as archive_module
+from vehgen.phones.csv_table import read_table
+from vehgen.phones.export import Stream
+from vehgen.phones.matlab import read_matlab
+from vehgen.phones.resampling import clean
 
 COLUMNS = ColumnMap("t", "a")
 
@@ -38,7 +38,7 @@ def test_a_zip64_of_many_bytes_is_refused_before_it_is_read(tmp_path, monkeypatc
 
 
 def test_a_packed_matlab_file_is_measured_before_it_is_unpacked(tmp_path, monkeypatch):
-    monkeypatch.setattr("vehgen.measure.matlab.MAX_TOTAL", 2**20)
+    monkeypatch.setattr("vehgen.phones.matlab.MAX_TOTAL", 2**20)
     packed = zlib.compress(bytes(2**22))
     header = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H", 0x0100) + b"IM"
     path = tmp_path / "a.mat"

@@ -10,12 +10,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from vehgen.errors import InputError
-from vehgen.measure import ColumnMap, read_export
-from vehgen.measure.csv_table import read_column_map, read_table
-from vehgen.measure.locating import find_speed
-from vehgen.measure.options import PhoneSensor, Plan, read_hump, read_sensor
-from vehgen.measure.phone import make_phone
 from vehgen.mechanics import Place
+from vehgen.phones import ColumnMap, read_export
+from vehgen.phones.csv_table import read_column_map, read_table
+from vehgen.phones.locating import find_speed
+from vehgen.phones.options import PhoneSensor, Plan, read_hump, read_sensor
+from vehgen.phones.phone import make_phone
 from vehgen.vehicle import load_vehicle
 
 from .exports import phyphox, sensor_logger, still, write_zip

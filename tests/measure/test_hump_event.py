@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from vehgen.errors import InputError
-from vehgen.measure.export import Stream
-from vehgen.measure.gps import crossing_speed
-from vehgen.measure.hump_event import find_hump
-from vehgen.measure.noise import clipped, noise_floor
+from vehgen.phones.export import Stream
+from vehgen.phones.gps import crossing_speed
+from vehgen.phones.hump_event import find_hump
+from vehgen.phones.noise import clipped, noise_floor
 
 T = np.arange(0, 25, 0.01)
 

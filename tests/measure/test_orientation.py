@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from vehgen.errors import InputError
-from vehgen.measure.orientation import AXES, find_orientation
+from vehgen.phones.orientation import AXES, find_orientation
 
 FORWARD, LEFT, UP = np.eye(3)
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from vehgen.errors import InputError
-from vehgen.measure import ColumnMap, EpochMap, read_column_map, read_export
+from vehgen.phones import ColumnMap, EpochMap, read_column_map, read_export
 
 from .exports import SEPARATORS, SHARED, phyphox, sensor_logger, still, table, write_folder, write_zip
 

@@ -5,8 +5,8 @@ import pytest
 import scipy.signal
 
 from vehgen.errors import InputError
-from vehgen.measure.export import Stream
-from vehgen.measure.resampling import check_rate, clean, gaps, resample
+from vehgen.phones.export import Stream
+from vehgen.phones.resampling import check_rate, clean, gaps, resample
 
 TONES = [(1.0, 1.3, 0.1), (0.7, 4.7, 1.0), (1.0, 11.9, 2.0), (0.5, 17.3, 0.4), (1.0, 20.0, 0.9)]
 

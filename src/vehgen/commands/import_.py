@@ -11,7 +11,7 @@ from vehgen.errors import InputError
 from vehgen.files import check_results, note_read
 
 if TYPE_CHECKING:
-    from vehgen.measure.importing import Imported
+    from vehgen.phones.importing import Imported
     from vehgen.report.import_plot import ImportPanel
 
 NAME = "import"
@@ -55,10 +55,10 @@ def run(options: argparse.Namespace) -> None:
     """Import phone exports."""
     from vehgen.files.limits import FOOTPRINT, ROAD_POSITION, SPEED_LIMIT
     from vehgen.files.units import SPEED
-    from vehgen.measure.csv_table import read_column_map
-    from vehgen.measure.importing import import_phones, with_forward
-    from vehgen.measure.options import Plan, quantity, read_hump, read_profile, read_sensor
-    from vehgen.measure.run_text import import_files, phone_notes, write_import
+    from vehgen.phones.csv_table import read_column_map
+    from vehgen.phones.importing import import_phones, with_forward
+    from vehgen.phones.options import Plan, quantity, read_hump, read_profile, read_sensor
+    from vehgen.phones.run_text import import_files, phone_notes, write_import
     from vehgen.report import save_figure
     from vehgen.report.import_plot import plot_import
     from vehgen.vehicle import load_vehicle

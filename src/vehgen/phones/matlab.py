@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from vehgen.errors import InputError
 from vehgen.files.reading import open_regular, read_bytes, short_path
-from vehgen.measure.archive import MAX_FILE, MAX_TOTAL
-from vehgen.measure.export import ROTATION, SPEED, EpochMap, PhoneExport, Stream, acceleration_kind
+from vehgen.phones.archive import MAX_FILE, MAX_TOTAL
+from vehgen.phones.export import ROTATION, SPEED, EpochMap, PhoneExport, Stream, acceleration_kind
 
 _MARKS = (b"MATLAB 5.0 MAT-file", b"MATLAB 7.3 MAT-file", b"\x89HDF")
 _HEADER, _COMPRESSED = 128, 15

@@ -21,7 +21,7 @@ from vehgen.files.csv_rows import csv_rows
 from vehgen.files.reading import split_lines
 from vehgen.files.units import ACCELERATION, FREQUENCY, TIME, Dimension, parse_unit
 from vehgen.files.units import SPEED as SPEED_DIMENSION
-from vehgen.measure.export import PITCH_RATE, SPEED, VERTICAL, PhoneExport, Stream
+from vehgen.phones.export import PITCH_RATE, SPEED, VERTICAL, PhoneExport, Stream
 
 Array = NDArray[np.float64]
 MAX_COLUMNS = 200

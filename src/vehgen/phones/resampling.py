@@ -17,7 +17,7 @@ import scipy.signal
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
-from vehgen.measure.export import Stream
+from vehgen.phones.export import Stream
 
 Array = NDArray[np.float64]
 MARGIN = 40

@@ -10,7 +10,7 @@ from typing import Any
 
 from vehgen.errors import InputError
 from vehgen.files import write_text
-from vehgen.measure.importing import Imported, ImportedPhone, clock_difference
+from vehgen.phones.importing import Imported, ImportedPhone, clock_difference
 from vehgen.simulate import load_run
 from vehgen.vehicle.loading import find_vehicle_file, models_folder
 from vehgen.vehicle.writing import yaml_text

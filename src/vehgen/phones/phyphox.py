@@ -11,8 +11,8 @@ import re
 import numpy as np
 
 from vehgen.errors import InputError
-from vehgen.measure.csv_table import Table
-from vehgen.measure.export import ACCELERATION, LINEAR_ACCELERATION, ROTATION, SPEED, EpochMap, PhoneExport, Stream, acceleration_kind
+from vehgen.phones.csv_table import Table
+from vehgen.phones.export import ACCELERATION, LINEAR_ACCELERATION, ROTATION, SPEED, EpochMap, PhoneExport, Stream, acceleration_kind
 
 _HEAD = re.compile(r"(?P<words>.*?)\s*\((?P<unit>[^()]*)\)\s*\Z")
 _AXIS = re.compile(r"(?:.*\s)?([xyz])\Z", re.IGNORECASE)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from vehgen.errors import InputError
-from vehgen.measure.archive import read_members
-from vehgen.measure.csv_table import ColumnMap, Table, read_plain, read_table
-from vehgen.measure.export import PhoneExport
-from vehgen.measure.matlab import is_matlab, read_matlab
-from vehgen.measure.phyphox import is_phyphox, read_phyphox
-from vehgen.measure.sensor_logger import is_sensor_logger, read_sensor_logger
+from vehgen.phones.archive import read_members
+from vehgen.phones.csv_table import ColumnMap, Table, read_plain, read_table
+from vehgen.phones.export import PhoneExport
+from vehgen.phones.matlab import is_matlab, read_matlab
+from vehgen.phones.phyphox import is_phyphox, read_phyphox
+from vehgen.phones.sensor_logger import is_sensor_logger, read_sensor_logger
 
 
 def read_export(path: str | Path, columns: ColumnMap | None = None) -> PhoneExport:

@@ -14,7 +14,7 @@ import numpy as np
 import scipy.signal
 from numpy.typing import NDArray
 
-from vehgen.measure.export import PhoneExport
+from vehgen.phones.export import PhoneExport
 from vehgen.simulate import Scenario, Simulator
 
 Array = NDArray[np.float64]

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
-from vehgen.measure.export import ACCELERATION, GRAVITY, LINEAR_ACCELERATION, PITCH_RATE, ROTATION, SPEED, VERTICAL, PhoneExport, Stream
-from vehgen.measure.options import PhoneSensor
-from vehgen.measure.orientation import Orientation, find_orientation
-from vehgen.measure.resampling import check_rate, clean, gaps, resample, sampling_rate
+from vehgen.phones.export import ACCELERATION, GRAVITY, LINEAR_ACCELERATION, PITCH_RATE, ROTATION, SPEED, VERTICAL, PhoneExport, Stream
+from vehgen.phones.options import PhoneSensor
+from vehgen.phones.orientation import Orientation, find_orientation
+from vehgen.phones.resampling import check_rate, clean, gaps, resample, sampling_rate
 
 Array = NDArray[np.float64]
 LONGEST_GAP = 0.1

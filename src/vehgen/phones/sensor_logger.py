@@ -12,8 +12,8 @@ from pathlib import PurePosixPath
 import numpy as np
 
 from vehgen.errors import InputError
-from vehgen.measure.csv_table import Table
-from vehgen.measure.export import ACCELERATION, GRAVITY, LINEAR_ACCELERATION, ROTATION, SPEED, EpochMap, PhoneExport, Stream
+from vehgen.phones.csv_table import Table
+from vehgen.phones.export import ACCELERATION, GRAVITY, LINEAR_ACCELERATION, ROTATION, SPEED, EpochMap, PhoneExport, Stream
 
 _SENSORS = {
     "accelerometer": (LINEAR_ACCELERATION, "m/s^2"),

@@ -8,8 +8,8 @@ import numpy as np
 import scipy.signal
 from numpy.typing import NDArray
 
-from vehgen.measure.export import Stream
 from vehgen.measure.spectra import welch_psd
+from vehgen.phones.export import Stream
 
 Array = NDArray[np.float64]
 BAND = 3.0

@@ -17,8 +17,8 @@ from vehgen.files.limits import HUMP_HEIGHT, HUMP_LENGTH, VEHICLE_LENGTH
 from vehgen.files.names import is_identifier
 from vehgen.files.tables import read_columns
 from vehgen.files.units import LENGTH, NONE, TIME, Dimension
-from vehgen.measure.csv_table import ColumnMap, split_pairs
 from vehgen.mechanics import Place, PointOutput
+from vehgen.phones.csv_table import ColumnMap, split_pairs
 from vehgen.road import Hump, MeasuredProfile, Profile
 from vehgen.simulate.runfile import HumpEntry
 from vehgen.vehicle import Vehicle

@@ -13,15 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
-from vehgen.measure.clocks import TRUSTED, Match, epoch_disagreement
-from vehgen.measure.detect import read_export
-from vehgen.measure.export import Stream
-from vehgen.measure.hump_event import HumpEvent
-from vehgen.measure.locating import CLOCK_DOUBT, find_speed, locate
-from vehgen.measure.noise import NoiseFloor, clipped, noise_floor
-from vehgen.measure.options import PhoneSensor, Plan
-from vehgen.measure.orientation import Orientation
-from vehgen.measure.phone import MARGIN, QUIET, Phone, make_phone
+from vehgen.phones.clocks import TRUSTED, Match, epoch_disagreement
+from vehgen.phones.detect import read_export
+from vehgen.phones.export import Stream
+from vehgen.phones.hump_event import HumpEvent
+from vehgen.phones.locating import CLOCK_DOUBT, find_speed, locate
+from vehgen.phones.noise import NoiseFloor, clipped, noise_floor
+from vehgen.phones.options import PhoneSensor, Plan
+from vehgen.phones.orientation import Orientation
+from vehgen.phones.phone import MARGIN, QUIET, Phone, make_phone
 from vehgen.simulate import Simulator
 
 Array = NDArray[np.float64]

@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
-from vehgen.measure.clocks import COARSE, TRUSTED, Match, epoch_disagreement, match, predictor
-from vehgen.measure.gps import CrossingSpeed, crossing_speed
-from vehgen.measure.hump_event import HumpEvent, expected_onset, find_hump
-from vehgen.measure.options import Plan
-from vehgen.measure.phone import Phone, speed_stream
+from vehgen.phones.clocks import COARSE, TRUSTED, Match, epoch_disagreement, match, predictor
+from vehgen.phones.gps import CrossingSpeed, crossing_speed
+from vehgen.phones.hump_event import HumpEvent, expected_onset, find_hump
+from vehgen.phones.options import Plan
+from vehgen.phones.phone import Phone, speed_stream
 from vehgen.road import ConstantSpeed, Track
 from vehgen.simulate import Scenario, Simulator
 

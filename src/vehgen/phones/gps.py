@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehgen.errors import InputError
-from vehgen.measure.export import Stream
+from vehgen.phones.export import Stream
 
 SLOWEST = 0.3
 """A GPS cannot tell slower speeds from standing still [m/s]."""
