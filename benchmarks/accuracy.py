@@ -22,11 +22,11 @@ import scipy.stats
 from benchmarks.pages import ROOT, fill, table
 from benchmarks.paper_study.recordings import RIGS, hump_run
 from benchmarks.paper_study.truth import drawn
-from vehgen.identify.identifiability import find_structure
-from vehgen.identify.intervals import LEVEL, Estimate, Uncertainty
-from vehgen.identify.polish import polish
-from vehgen.identify.problem import make_problem
-from vehgen.identify.trial import load_trials
+from vehgen.calibrate.identifiability import find_structure
+from vehgen.calibrate.intervals import LEVEL, Estimate, Uncertainty
+from vehgen.fit.least_squares import polish
+from vehgen.fit.problem import make_problem
+from vehgen.fit.trial import load_trials
 
 WORKERS = 2
 SPEED_ERROR = 0.005

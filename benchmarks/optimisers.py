@@ -24,11 +24,11 @@ from benchmarks.pages import ROOT, table
 from benchmarks.paper_study.judging import errors
 from benchmarks.paper_study.recordings import RIGS, hump_run
 from benchmarks.paper_study.truth import drawn
-from vehgen.identify.genetic import GeneticSearch
-from vehgen.identify.objective import PsdObjective
-from vehgen.identify.polish import polish
-from vehgen.identify.problem import Problem, make_problem
-from vehgen.identify.trial import load_trials
+from vehgen.calibrate.genetic import GeneticSearch
+from vehgen.calibrate.objective import PsdObjective
+from vehgen.fit.least_squares import polish
+from vehgen.fit.problem import Problem, make_problem
+from vehgen.fit.trial import load_trials
 from vehgen.report.files import save_figure
 from vehgen.report.response_plot import COLOURS, STYLES
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from vehgen.diagnose.pipeline import diagnose
-from vehgen.identify.trial import load_trials
+from vehgen.fit.trial import load_trials
 from vehgen.report import save_figure
 from vehgen.report.diagnosis_plots import plot_places, plot_waterfall
 

@@ -94,11 +94,11 @@ def draw() -> None:
     """Draw every effect."""
     from vehgen.diagnose.candidate import list_candidates, pose, starts
     from vehgen.effects import Surveyor
-    from vehgen.identify.harmonic import Harmonic
-    from vehgen.identify.misfit import Misfit
-    from vehgen.identify.noise import EVEN, Noise
-    from vehgen.identify.problem import make_problem
-    from vehgen.identify.trial import load_trials
+    from vehgen.fit.harmonic import Harmonic
+    from vehgen.fit.misfit import Misfit
+    from vehgen.fit.noise import EVEN, Noise
+    from vehgen.fit.problem import make_problem
+    from vehgen.fit.trial import load_trials
     from vehgen.report import save_figure
 
     IMAGES.mkdir(parents=True, exist_ok=True)

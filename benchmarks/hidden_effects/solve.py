@@ -14,7 +14,7 @@ def solve(item: HiddenCase) -> dict:
     """Write a case, diagnose it, return what came out beside the truth."""
     from benchmarks.hidden_effects.generator import write_case
     from vehgen.diagnose.pipeline import diagnose
-    from vehgen.identify.trial import load_trials
+    from vehgen.fit.trial import load_trials
 
     warnings.simplefilter("ignore")
     start = time.perf_counter()

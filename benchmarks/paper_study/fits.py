@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.paper_study.recordings import Rig
-from vehgen.identify.calibration import Settings, calibrate
-from vehgen.identify.genetic import GeneticSearch
-from vehgen.identify.objective import PsdObjective
-from vehgen.identify.problem import Problem, make_problem
-from vehgen.identify.trial import load_trials
+from vehgen.calibrate.calibration import Settings, calibrate
+from vehgen.calibrate.genetic import GeneticSearch
+from vehgen.calibrate.objective import PsdObjective
+from vehgen.fit.problem import Problem, make_problem
+from vehgen.fit.trial import load_trials
 from vehgen.measure import record_psd
 
 Array = np.ndarray

@@ -10,8 +10,8 @@ import numpy as np
 
 from benchmarks.paper_study.fits import Fit
 from benchmarks.paper_study.recordings import Rig
-from vehgen.identify.trial import Trial, load_trials
-from vehgen.identify.validation import ChannelComparison, Validation, validate
+from vehgen.calibrate.validation import ChannelComparison, Validation, validate
+from vehgen.fit.trial import Trial, load_trials
 
 Array = np.ndarray
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.paper_study.truth import TRACTOR_MASS
-from vehgen.identify.sensitivity import sensitivity_indices
+from vehgen.calibrate.sensitivity import sensitivity_indices
 from vehgen.simulate import load_run
 
 Array = np.ndarray

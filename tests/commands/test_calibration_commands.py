@@ -48,7 +48,7 @@ def test_calibrate_prints_tables_for_people(run, tmp_path, capsys):
 
 
 def test_a_search_stopped_by_hand_leaves_its_best_and_goes_on(run, tmp_path, capsys, monkeypatch):
-    from vehgen.identify.genetic import GeneticSearch
+    from vehgen.calibrate.genetic import GeneticSearch
 
     advance, calls = GeneticSearch.advance, []
 

@@ -141,13 +141,13 @@ def test_laden_and_module_keep_what_they_did_not_write(own: Path, capsys: pytest
 @pytest.mark.parametrize(
     ("arguments", "work_of", "name"),
     [
-        (("calibrate", "sedan2.yaml", "hump.yaml"), "vehgen.identify.calibration.calibrate", "sedan2_calibrated.yaml"),
-        (("calibrate", "sedan2.yaml", "hump.yaml"), "vehgen.identify.calibration.calibrate", "search.json"),
-        (("calibrate", "sedan2.yaml", "hump.yaml"), "vehgen.identify.calibration.calibrate", "intervals.png"),
+        (("calibrate", "sedan2.yaml", "hump.yaml"), "vehgen.calibrate.calibration.calibrate", "sedan2_calibrated.yaml"),
+        (("calibrate", "sedan2.yaml", "hump.yaml"), "vehgen.calibrate.calibration.calibrate", "search.json"),
+        (("calibrate", "sedan2.yaml", "hump.yaml"), "vehgen.calibrate.calibration.calibrate", "intervals.png"),
         (("diagnose", "sedan2.yaml", "hump.yaml"), "vehgen.diagnose.pipeline.diagnose", "report.html"),
         (("diagnose", "sedan2.yaml", "hump.yaml"), "vehgen.diagnose.pipeline.diagnose", "sedan2_with_dry_friction.yaml"),
-        (("validate", "sedan2.yaml", "hump.yaml"), "vehgen.identify.validation.validate", "validation_bands.png"),
-        (("sensitivity", "sedan2.yaml", "hump.yaml"), "vehgen.identify.sensitivity.sensitivity_indices", "sensitivity_R_q.png"),
+        (("validate", "sedan2.yaml", "hump.yaml"), "vehgen.calibrate.validation.validate", "validation_bands.png"),
+        (("sensitivity", "sedan2.yaml", "hump.yaml"), "vehgen.calibrate.sensitivity.sensitivity_indices", "sensitivity_R_q.png"),
         (("build", "sedan2.yaml"), "vehgen.mechanics.derive", "kernel.py"),
     ],
 )

@@ -8,7 +8,7 @@ from benchmarks.hidden_effects.generator import Effect
 from vehgen.commands import main
 from vehgen.diagnose.noise_floor import find_noise_floor
 from vehgen.diagnose.pipeline import diagnose, split_runs
-from vehgen.identify.trial import load_trials
+from vehgen.fit.trial import load_trials
 from vehgen.vehicle import load_vehicle
 
 

@@ -14,7 +14,7 @@ from vehgen.diagnose.further_runs import free_places, list_runs
 from vehgen.diagnose.naming import name
 from vehgen.diagnose.rivals import Rival, at_most, separate
 from vehgen.effects import library
-from vehgen.identify.trial import load_trials, make_trial
+from vehgen.fit.trial import load_trials, make_trial
 from vehgen.mechanics import Place
 from vehgen.mechanics.outputs import ElementOutput, PointOutput
 from vehgen.simulate import Simulator, load_run

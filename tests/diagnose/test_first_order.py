@@ -8,8 +8,8 @@ from vehgen.diagnose.detection import detect
 from vehgen.diagnose.first_order import Motion
 from vehgen.diagnose.fitting import NUISANCES, Footing
 from vehgen.effects import Surveyor, library
-from vehgen.identify.misfit import Misfit, flatten
-from vehgen.identify.trial import load_trials
+from vehgen.fit.misfit import Misfit, flatten
+from vehgen.fit.trial import load_trials
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from vehgen.diagnose.free_form import fit_free_form, recover
 from vehgen.diagnose.pipeline import detect
 from vehgen.diagnose.place_test import Place, list_places
 from vehgen.diagnose.recovered import Recovered, strongest
-from vehgen.identify.trial import load_trials
+from vehgen.fit.trial import load_trials
 from vehgen.report.files import figure_svg
 from vehgen.report.force_plots import plot_force
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from vehgen.diagnose.harmonics import distortions, driving_frequency
-from vehgen.identify.noise import EVEN, Noise
-from vehgen.identify.trial import load_trials
+from vehgen.fit.noise import EVEN, Noise
+from vehgen.fit.trial import load_trials
 
 RUN = """
 vehicle: sedan2.yaml

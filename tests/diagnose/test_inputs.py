@@ -10,7 +10,7 @@ from benchmarks.hidden_effects.generator import Case, Effect, Hump, RunSpec, nom
 from vehgen.diagnose.inputs import check_inputs, explain_gap
 from vehgen.diagnose.labels import correlate
 from vehgen.diagnose.pipeline import detect
-from vehgen.identify.trial import load_trials
+from vehgen.fit.trial import load_trials
 
 RUNS = (
     RunSpec((Hump(0.5, 0.03, 4.0),), 2.0, 5.0, "low"),

@@ -14,9 +14,9 @@ from vehgen.diagnose.pipeline import diagnose
 from vehgen.diagnose.place_test import list_places
 from vehgen.diagnose.place_test import test_places as place_test
 from vehgen.effects import EFFECTS
-from vehgen.identify.misfit import Misfit
-from vehgen.identify.resolution import resolve
-from vehgen.identify.trial import load_trials
+from vehgen.fit.misfit import Misfit
+from vehgen.fit.resolution import resolve
+from vehgen.fit.trial import load_trials
 
 FRICTION = Effect("dry_friction", "front", {"force": 600.0})
 

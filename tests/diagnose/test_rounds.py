@@ -10,7 +10,7 @@ from vehgen.diagnose.estimates import estimates_by_run
 from vehgen.diagnose.pipeline import diagnose
 from vehgen.diagnose.writing import effect_file
 from vehgen.effects import EFFECTS
-from vehgen.identify.trial import load_trials
+from vehgen.fit.trial import load_trials
 from vehgen.vehicle import load_vehicle
 
 FEW = [EFFECTS[name] for name in ("cubic_stiffness", "bump_stop", "sensor_gain", "quadratic_damping")]

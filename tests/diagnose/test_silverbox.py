@@ -11,8 +11,8 @@ from vehgen.diagnose.noise_floor import find_noise_floor
 from vehgen.diagnose.pipeline import detect, diagnose
 from vehgen.effects import EFFECTS
 from vehgen.errors import InputError
-from vehgen.identify.noise import road_answer
-from vehgen.identify.trial import load_trials
+from vehgen.fit.noise import road_answer
+from vehgen.fit.trial import load_trials
 from vehgen.simulate import load_run
 from vehgen.vehicle import load_vehicle
 

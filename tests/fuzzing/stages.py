@@ -18,9 +18,9 @@ from vehgen.cargo.module_model import cargo_text, module_model
 from vehgen.codegen import write_kernel
 from vehgen.effects import Surveyor, extended_library, library
 from vehgen.errors import InputError
-from vehgen.identify.facts import load_facts
-from vehgen.identify.problem import Problem, make_problem
-from vehgen.identify.trial import load_trials
+from vehgen.fit.prior_data import load_facts
+from vehgen.fit.problem import Problem, make_problem
+from vehgen.fit.trial import load_trials
 from vehgen.measure import read_measurement
 from vehgen.mechanics import ElementOutput, LinearModel, derive, static_loads
 from vehgen.phones import read_export

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from vehgen.identify.adjustments import Adjustment, Gain, SensorDelay
-from vehgen.identify.misfit import Nuisances
-from vehgen.identify.noise import EVEN, Noise
-from vehgen.identify.polish import polish
-from vehgen.identify.problem import make_problem
-from vehgen.identify.trial import load_trials
+from vehgen.fit.adjustments import Adjustment, Gain, SensorDelay
+from vehgen.fit.least_squares import polish
+from vehgen.fit.misfit import Nuisances
+from vehgen.fit.noise import EVEN, Noise
+from vehgen.fit.problem import make_problem
+from vehgen.fit.trial import load_trials
 from vehgen.simulate import load_run, simulate
 
 RUN = """

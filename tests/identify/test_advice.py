@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 
 from tests.identify.recordings import sedan_truth, write_run
-from vehgen.identify.calibration import Settings, calibrate
-from vehgen.identify.genetic import GeneticSearch
-from vehgen.identify.outcome import conclude
-from vehgen.identify.parallel import Runner, runner_at
-from vehgen.identify.problem import make_problem
-from vehgen.identify.sensitivity import sensitivity_indices
-from vehgen.identify.sensors import advise_sensors
-from vehgen.identify.trial import load_trials
-from vehgen.identify.validation import validate
+from vehgen.calibrate.calibration import Settings, calibrate
+from vehgen.calibrate.genetic import GeneticSearch
+from vehgen.calibrate.sensitivity import sensitivity_indices
+from vehgen.calibrate.sensor_placement import advise_sensors
+from vehgen.calibrate.summary import conclude
+from vehgen.calibrate.validation import validate
+from vehgen.fit.parallel import Runner, runner_at
+from vehgen.fit.problem import make_problem
+from vehgen.fit.trial import load_trials
 from vehgen.measure import record_psd
 from vehgen.simulate import load_run
 from vehgen.vehicle import load_vehicle

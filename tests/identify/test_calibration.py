@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 
 from tests.identify.recordings import sedan_truth, write_run
+from vehgen.calibrate.calibration import Settings, calibrate
+from vehgen.calibrate.genetic import GeneticSearch
+from vehgen.calibrate.identifiability import find_structure
+from vehgen.calibrate.intervals import Uncertainty
+from vehgen.calibrate.methods import plan
+from vehgen.calibrate.objective import PsdObjective
+from vehgen.calibrate.summary import conclude
 from vehgen.errors import InputError
-from vehgen.identify.calibration import Settings, calibrate
-from vehgen.identify.facts import load_facts
-from vehgen.identify.genetic import GeneticSearch
-from vehgen.identify.identifiability import find_structure
-from vehgen.identify.intervals import Uncertainty
-from vehgen.identify.methods import plan
-from vehgen.identify.objective import PsdObjective
-from vehgen.identify.outcome import conclude
-from vehgen.identify.polish import polish
-from vehgen.identify.problem import make_problem
-from vehgen.identify.trial import load_trials
+from vehgen.fit.least_squares import polish
+from vehgen.fit.prior_data import load_facts
+from vehgen.fit.problem import make_problem
+from vehgen.fit.trial import load_trials
 
 TRUTH = sedan_truth()
 

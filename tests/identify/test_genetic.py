@@ -3,12 +3,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from vehgen.calibrate.genetic import GeneticSearch, SearchState
+from vehgen.calibrate.genetic.crossover import recombine
+from vehgen.calibrate.genetic.migration import migrate
+from vehgen.calibrate.genetic.mutation import mutate
+from vehgen.calibrate.genetic.selection import rank_fitness, sample_parents
 from vehgen.errors import InputError
-from vehgen.identify.genetic import GeneticSearch, SearchState
-from vehgen.identify.genetic.crossover import recombine
-from vehgen.identify.genetic.migration import migrate
-from vehgen.identify.genetic.mutation import mutate
-from vehgen.identify.genetic.selection import rank_fitness, sample_parents
 
 
 def test_rank_fitness_is_the_papers_formula():

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from vehgen.identify.harmonic import Harmonic, find_line, line_numbers
-from vehgen.identify.misfit import Misfit
-from vehgen.identify.noise import EVEN, Noise
-from vehgen.identify.problem import make_problem
-from vehgen.identify.trial import load_trials
+from vehgen.fit.harmonic import Harmonic, find_line, line_numbers
+from vehgen.fit.misfit import Misfit
+from vehgen.fit.noise import EVEN, Noise
+from vehgen.fit.problem import make_problem
+from vehgen.fit.trial import load_trials
 from vehgen.simulate import load_run, simulate
 
 RUN = """

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from tests.identify.recordings import sedan_truth, write_run
-from vehgen.identify.identifiability import find_structure
-from vehgen.identify.intervals import Uncertainty
-from vehgen.identify.misfit import Misfit
-from vehgen.identify.polish import Polished, first_noises
-from vehgen.identify.problem import make_problem
-from vehgen.identify.trial import load_trials
+from vehgen.calibrate.identifiability import find_structure
+from vehgen.calibrate.intervals import Uncertainty
+from vehgen.fit.least_squares import Polished, first_noises
+from vehgen.fit.misfit import Misfit
+from vehgen.fit.problem import make_problem
+from vehgen.fit.trial import load_trials
 
 SENSORS = {
     "both": """  L1: {body: tractor, behind: axle1, distance: -0.29 m, channels: {acceleration: az, pitch_rate: q}}

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from vehgen.identify.noise import EVEN, KNOTS, Noise, RoadAnswer, estimate_noise, taper, transform
+from vehgen.fit.noise import EVEN, KNOTS, Noise, RoadAnswer, estimate_noise, taper, transform
 
 
 def make_answer(random, n=400, channels=4, axles=3):

@@ -17,11 +17,11 @@ from prepare import DISPLACEMENT, FINER, HERE, RUNS, STEP, TESTS, read_silverbox
 
 from vehgen.codegen import Drive
 from vehgen.effects import EFFECTS, Surveyor
-from vehgen.identify.misfit import Nuisances
-from vehgen.identify.noise import EVEN, Noise
-from vehgen.identify.polish import polish
-from vehgen.identify.problem import make_problem
-from vehgen.identify.trial import load_trials
+from vehgen.fit.least_squares import polish
+from vehgen.fit.misfit import Nuisances
+from vehgen.fit.noise import EVEN, Noise
+from vehgen.fit.problem import make_problem
+from vehgen.fit.trial import load_trials
 from vehgen.mechanics import Place, PointOutput
 from vehgen.simulate import Simulator
 from vehgen.vehicle import Vehicle, load_vehicle

@@ -12,8 +12,8 @@ from vehgen.errors import InputError
 from vehgen.files import check_results, write_text
 
 if TYPE_CHECKING:
-    from vehgen.identify.calibration import Settings
-    from vehgen.identify.outcome import Outcome
+    from vehgen.calibrate.calibration import Settings
+    from vehgen.calibrate.summary import Outcome
 
 EXAMPLE = "python -m vehgen calibrate tractor5.yaml hump_2ms.yaml hump_3ms.yaml --method joint --out calibrated"
 
@@ -47,14 +47,14 @@ def run(options: argparse.Namespace) -> None:
     """Calibrate and write the vehicle file, the result and figures."""
     import json
 
+    from vehgen.calibrate.calibration import calibrate
+    from vehgen.calibrate.summary import conclude
     from vehgen.commands.progress import Bars
     from vehgen.files.names import joined_name
-    from vehgen.identify.calibration import calibrate
-    from vehgen.identify.facts import load_facts
-    from vehgen.identify.outcome import conclude
-    from vehgen.identify.parallel import runner_at
-    from vehgen.identify.problem import make_problem
-    from vehgen.identify.trial import load_trials
+    from vehgen.fit.parallel import runner_at
+    from vehgen.fit.prior_data import load_facts
+    from vehgen.fit.problem import make_problem
+    from vehgen.fit.trial import load_trials
     from vehgen.report.calibration_plots import calibration_figure_files, save_calibration_figures
     from vehgen.vehicle import load_vehicle
 
@@ -103,10 +103,10 @@ def _check_numbers(options: argparse.Namespace) -> None:
 
 
 def _settings(options: argparse.Namespace) -> Settings:
-    from vehgen.identify.calibration import Settings
-    from vehgen.identify.genetic import GeneticSearch
-    from vehgen.identify.misfit import Nuisances
-    from vehgen.identify.objective import CALIBRATION_BAND_HZ
+    from vehgen.calibrate.calibration import Settings
+    from vehgen.calibrate.genetic import GeneticSearch
+    from vehgen.fit.band import CALIBRATION_BAND_HZ
+    from vehgen.fit.misfit import Nuisances
 
     kind = options.search or ("ga" if options.method == "shcm" else "mpga")
     return Settings(

@@ -38,7 +38,7 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.diagnose.writing import effect_file, file_name, files_named_so
     from vehgen.effects import extended_library
     from vehgen.errors import InputError, did_you_mean
-    from vehgen.identify.trial import load_trials
+    from vehgen.fit.trial import load_trials
     from vehgen.report.diagnosis_page import write_diagnosis_page
     from vehgen.vehicle import load_vehicle
 

@@ -20,8 +20,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Print the best places for 1, 2, ... sensors."""
+    from vehgen.calibrate.sensor_placement import advise_sensors
     from vehgen.files.limits import check_count
-    from vehgen.identify.sensors import advise_sensors
     from vehgen.simulate import load_run
     from vehgen.vehicle import load_vehicle
 

@@ -27,9 +27,9 @@ def run(options: argparse.Namespace) -> None:
     """Validate and write the table and figures."""
     import json
 
+    from vehgen.calibrate.validation import validate
     from vehgen.errors import InputError, did_you_mean
-    from vehgen.identify.trial import load_trials
-    from vehgen.identify.validation import validate
+    from vehgen.fit.trial import load_trials
     from vehgen.measure import SPECTRA
     from vehgen.report.validation_plots import save_validation_figures, validation_figure_files
     from vehgen.vehicle import load_vehicle

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.effects import Effect, Surveyor
-from vehgen.identify.adjustments import Adjustment, Footprint, Gain, SensorDelay, SpeedScale, Tilt
-from vehgen.identify.harmonic import line_numbers
-from vehgen.identify.misfit import Noises
-from vehgen.identify.problem import Problem
-from vehgen.identify.space import SearchSpace
-from vehgen.identify.trial import Trial
+from vehgen.fit.adjustments import Adjustment, Footprint, Gain, SensorDelay, SpeedScale, Tilt
+from vehgen.fit.harmonic import line_numbers
+from vehgen.fit.misfit import Noises
+from vehgen.fit.problem import Problem
+from vehgen.fit.space import SearchSpace
+from vehgen.fit.trial import Trial
 from vehgen.measure import MeasuredChannel
 from vehgen.simulate import Simulator
 from vehgen.vehicle import Vehicle

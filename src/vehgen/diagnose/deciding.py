@@ -23,7 +23,7 @@ from vehgen.diagnose.naming import Progress, Round, look
 from vehgen.diagnose.verdict import Gap, NamedEffect, Verdict, VerdictName, sentence
 from vehgen.effects import Effect
 from vehgen.errors import InputError
-from vehgen.identify.trial import Trial
+from vehgen.fit.trial import Trial
 
 MOST_EFFECTS = 3
 """So many effects are added at most."""

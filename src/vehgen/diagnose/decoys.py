@@ -18,8 +18,8 @@ from vehgen.diagnose.naming import Round
 from vehgen.diagnose.place_test import PlaceResult
 from vehgen.diagnose.projection import Projection
 from vehgen.diagnose.recovered import recover
-from vehgen.identify.misfit import flatten
-from vehgen.identify.noise import transform
+from vehgen.fit.misfit import flatten
+from vehgen.fit.noise import transform
 from vehgen.simulate.frequency import force_response
 
 Array = NDArray[np.float64]

@@ -9,12 +9,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.band import DIAGNOSIS_BAND_HZ, compared_band
 from vehgen.diagnose.fitting import Fit, fit_base, mean_square_as_filed, narrow
 from vehgen.diagnose.noise_floor import NoiseFloor, find_noise_floor
 from vehgen.errors import InputError
-from vehgen.identify.problem import Problem, make_problem
-from vehgen.identify.trial import Trial
+from vehgen.fit.band import DIAGNOSIS_BAND_HZ, compared_band
+from vehgen.fit.problem import Problem, make_problem
+from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
 EDGES = (0.0, 3.0, 8.0, 15.0, np.inf)

@@ -10,7 +10,7 @@ from vehgen.diagnose.free_form import FreeForm
 from vehgen.diagnose.naming import Round
 from vehgen.diagnose.place_test import PlaceResult
 from vehgen.diagnose.verdict import Verdict
-from vehgen.identify.trial import Trial
+from vehgen.fit.trial import Trial
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ from vehgen.diagnose.candidate import Candidate
 from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.verdict import NamedParameter
 from vehgen.effects import EffectParameter
-from vehgen.identify.harmonic import Harmonic
-from vehgen.identify.misfit import Misfit, flatten
-from vehgen.identify.noise import taper
+from vehgen.fit.harmonic import Harmonic
+from vehgen.fit.misfit import Misfit, flatten
+from vehgen.fit.noise import taper
 
 Array = NDArray[np.float64]
 NINETY = 1.645

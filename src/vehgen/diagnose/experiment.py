@@ -21,7 +21,7 @@ from vehgen.diagnose.naming import Progress
 from vehgen.diagnose.proposal import Proposal, drive, sensor_text
 from vehgen.diagnose.rivals import Rival, Separation, at_most, peak, separate
 from vehgen.diagnose.verdict import sentence
-from vehgen.identify.trial import Trial
+from vehgen.fit.trial import Trial
 from vehgen.measure import MeasuredChannel
 
 if TYPE_CHECKING:

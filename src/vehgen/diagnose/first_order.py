@@ -14,9 +14,9 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from vehgen.codegen import Kernel
-from vehgen.identify.misfit import Misfit, flatten
-from vehgen.identify.noise import transform
-from vehgen.identify.problem import Problem
+from vehgen.fit.misfit import Misfit, flatten
+from vehgen.fit.noise import transform
+from vehgen.fit.problem import Problem
 from vehgen.mechanics import LinearModel, static_loads
 from vehgen.mechanics.energies import Element
 from vehgen.mechanics.equations_of_motion import Channel

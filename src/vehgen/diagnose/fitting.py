@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.candidate import Candidate, retarget
-from vehgen.identify.adjustments import Adjustment
-from vehgen.identify.misfit import Misfit, Noises, Nuisances
-from vehgen.identify.polish import Polished, polish
-from vehgen.identify.problem import Problem
-from vehgen.identify.resolution import resolve
-from vehgen.identify.space import SearchSpace
-from vehgen.identify.trial import Trial
+from vehgen.fit.adjustments import Adjustment
+from vehgen.fit.least_squares import Polished, polish
+from vehgen.fit.misfit import Misfit, Noises, Nuisances
+from vehgen.fit.problem import Problem
+from vehgen.fit.resolution import resolve
+from vehgen.fit.space import SearchSpace
+from vehgen.fit.trial import Trial
 from vehgen.simulate import Simulator
 
 Array = NDArray[np.float64]

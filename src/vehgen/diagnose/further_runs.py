@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vehgen.identify.trial import Trial
+from vehgen.fit.trial import Trial
 from vehgen.mechanics import Place
 from vehgen.mechanics.outputs import PointOutput
 from vehgen.road import ConstantSpeed, Hump, Track

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.detection import Detection
-from vehgen.identify.trial import Trial
+from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
 HIGHEST = 5

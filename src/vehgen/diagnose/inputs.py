@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.finding import Finding
 from vehgen.diagnose.mistakes import Suspicion, strange, suspect
-from vehgen.identify.trial import Trial
+from vehgen.fit.trial import Trial
 
 if TYPE_CHECKING:
     from vehgen.diagnose.detection import Detection

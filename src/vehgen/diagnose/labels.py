@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.finding import Finding
-from vehgen.identify.trial import Trial
+from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
 LAG = 0.3

@@ -21,12 +21,12 @@ from vehgen.diagnose.fitting import BOUND, HOLD, NUISANCES, RENEW, ROUGH
 from vehgen.diagnose.labels import correlate, relabelled, true_labels
 from vehgen.diagnose.noise_floor import find_noise_floor
 from vehgen.diagnose.thresholds import NOISE_FLOOR
-from vehgen.identify.adjustments import Adjustment, SpeedScale
-from vehgen.identify.noise import transform
-from vehgen.identify.polish import HOLD as LOOSE
-from vehgen.identify.polish import Polished, polish
-from vehgen.identify.problem import Problem, make_problem
-from vehgen.identify.trial import Trial
+from vehgen.fit.adjustments import Adjustment, SpeedScale
+from vehgen.fit.least_squares import HOLD as LOOSE
+from vehgen.fit.least_squares import Polished, polish
+from vehgen.fit.noise import transform
+from vehgen.fit.problem import Problem, make_problem
+from vehgen.fit.trial import Trial
 from vehgen.simulate import Scenario
 
 if TYPE_CHECKING:

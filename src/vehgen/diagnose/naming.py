@@ -18,7 +18,7 @@ from vehgen.diagnose.screening import screen
 from vehgen.diagnose.settling import settle
 from vehgen.diagnose.trying import Origin, fit_candidate
 from vehgen.effects import Surveyor
-from vehgen.identify.harmonic import find_line
+from vehgen.fit.harmonic import find_line
 from vehgen.simulate import Simulator
 
 Array = NDArray[np.float64]

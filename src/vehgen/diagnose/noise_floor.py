@@ -15,10 +15,10 @@ import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
 
-from vehgen.identify.misfit import Noises
-from vehgen.identify.noise import COLOUR_AT, EVEN, SMALLEST_LEVEL, Noise, estimate_noise, road_answer, transform
-from vehgen.identify.objective import CALIBRATION_BAND_HZ
-from vehgen.identify.trial import Trial
+from vehgen.fit.band import CALIBRATION_BAND_HZ
+from vehgen.fit.misfit import Noises
+from vehgen.fit.noise import COLOUR_AT, EVEN, SMALLEST_LEVEL, Noise, estimate_noise, road_answer, transform
+from vehgen.fit.trial import Trial
 from vehgen.measure import record_psd
 from vehgen.road import Hump
 

@@ -12,7 +12,7 @@ from vehgen.diagnose.diagnosis import Diagnosis
 from vehgen.diagnose.localisation import localise, shortlist
 from vehgen.diagnose.naming import Progress, look
 from vehgen.effects import Effect, library
-from vehgen.identify.trial import Trial
+from vehgen.fit.trial import Trial
 
 
 def diagnose(

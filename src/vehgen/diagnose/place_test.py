@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.identify.misfit import Misfit, flatten
+from vehgen.fit.misfit import Misfit, flatten
 from vehgen.mechanics.rows import Row
 from vehgen.simulate.frequency import force_response
 

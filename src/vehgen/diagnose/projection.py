@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.fitting import HOLD
-from vehgen.identify.misfit import Misfit, flatten
+from vehgen.fit.misfit import Misfit, flatten
 
 Array = NDArray[np.float64]
 

@@ -16,9 +16,9 @@ from scipy.linalg import block_diag
 from vehgen.codegen import Kernel
 from vehgen.diagnose.detection import Detection
 from vehgen.diagnose.place_test import Place, PlaceResult, posterior, test_places
-from vehgen.identify.misfit import Misfit
-from vehgen.identify.noise import taper
-from vehgen.identify.polish import first_delays
+from vehgen.fit.least_squares import first_delays
+from vehgen.fit.misfit import Misfit
+from vehgen.fit.noise import taper
 from vehgen.mechanics.equations_of_motion import Channel, LinearModel
 from vehgen.simulate.frequency import force_response
 

@@ -20,11 +20,11 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.fitting import HOLD, NUISANCES, Fit
 from vehgen.diagnose.further_runs import FurtherRun
-from vehgen.identify.misfit import Misfit, flatten
-from vehgen.identify.noise import Noise, transform
-from vehgen.identify.polish import best_delay
-from vehgen.identify.problem import Problem
-from vehgen.identify.trial import Trial
+from vehgen.fit.least_squares import best_delay
+from vehgen.fit.misfit import Misfit, flatten
+from vehgen.fit.noise import Noise, transform
+from vehgen.fit.problem import Problem
+from vehgen.fit.trial import Trial
 from vehgen.measure import MeasuredChannel
 from vehgen.mechanics import Output
 from vehgen.mechanics.outputs import ElementOutput, PointOutput

@@ -18,7 +18,7 @@ from vehgen.diagnose.first_order import Motion
 from vehgen.diagnose.fitting import NUISANCES, Fit, Footing
 from vehgen.diagnose.projection import Projection
 from vehgen.effects import Surveyor
-from vehgen.identify.misfit import Misfit, flatten
+from vehgen.fit.misfit import Misfit, flatten
 from vehgen.simulate import Simulator
 
 Array = NDArray[np.float64]

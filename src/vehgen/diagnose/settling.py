@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from vehgen.diagnose.fitting import Fit, judge, refine
-from vehgen.identify.misfit import Noises
-from vehgen.identify.trial import Trial
+from vehgen.fit.misfit import Noises
+from vehgen.fit.trial import Trial
 
 SHAKES = (0.02, 0.06) * 4
 """Standard deviations, in the unit cube, of the points about a fit from which is begun anew."""

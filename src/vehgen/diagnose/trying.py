@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from vehgen.diagnose.candidate import Candidate, pose, starts
 from vehgen.diagnose.fitting import HOLD, NUISANCES, RENEW, ROUGH, Fit, Footing, judge, refine
 from vehgen.effects import Surveyor
-from vehgen.identify.misfit import Misfit, Noises
-from vehgen.identify.polish import Polished, polish
-from vehgen.identify.problem import Problem
-from vehgen.identify.resolution import resolve
-from vehgen.identify.trial import Trial
+from vehgen.fit.least_squares import Polished, polish
+from vehgen.fit.misfit import Misfit, Noises
+from vehgen.fit.problem import Problem
+from vehgen.fit.resolution import resolve
+from vehgen.fit.trial import Trial
 from vehgen.simulate import Simulator
 
 Array = NDArray[np.float64]

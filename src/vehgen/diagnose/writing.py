@@ -11,7 +11,7 @@ from vehgen.diagnose.fitting import Fit
 from vehgen.diagnose.verdict import Verdict
 from vehgen.effects import Surveyor
 from vehgen.files.names import MAX_TEXT, joined_name
-from vehgen.identify.problem import Problem
+from vehgen.fit.problem import Problem
 from vehgen.vehicle.loading import extend_vehicle
 from vehgen.vehicle.writing import base_reference, quantity, yaml_document
 

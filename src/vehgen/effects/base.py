@@ -61,7 +61,7 @@ class Effect:
     edit
         Returns the change of the vehicle's file; the symbols of its parameters are given by name. None for effects of runs.
     adjusts
-        For effects of runs: which quantity of a run its one parameter changes (see :mod:`vehgen.identify.adjustments`).
+        For effects of runs: which quantity of a run its one parameter changes (see :mod:`vehgen.fit.adjustments`).
     """
 
     name: str

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from vehgen.identify.outcome import Outcome
+from vehgen.calibrate.summary import Outcome
 from vehgen.measure import record_psd
 from vehgen.report.canvas import INK
 from vehgen.report.comparison import SIMULATED, Curve, plot_histories, plot_psds

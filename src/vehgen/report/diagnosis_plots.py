@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from vehgen.diagnose.pipeline import Diagnosis
 from vehgen.diagnose.place_test import PlaceResult
-from vehgen.identify.trial import Trial
+from vehgen.fit.trial import Trial
 from vehgen.measure import record_psd
 from vehgen.report.canvas import INK
 from vehgen.report.comparison import MEASURED, REFERENCE, SIMULATED, Curve

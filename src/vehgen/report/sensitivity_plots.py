@@ -7,8 +7,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from vehgen.calibrate.sensitivity import SensitivityIndices
 from vehgen.files.units import DAMPING, LENGTH, MASS, STIFFNESS
-from vehgen.identify.sensitivity import SensitivityIndices
 from vehgen.report.canvas import INK
 from vehgen.report.files import save_figure
 from vehgen.report.response_plot import COLOURS, STYLES

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from vehgen.identify.validation import Validation
+from vehgen.calibrate.validation import Validation
 from vehgen.measure import SPECTRA
 from vehgen.measure.astm import NOTE
 from vehgen.report.canvas import INK

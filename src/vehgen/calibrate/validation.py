@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
-from vehgen.identify.trial import Trial
+from vehgen.fit.trial import Trial
 from vehgen.measure import ARTICULATED_BANDS, TWO_AXLE_BANDS, band_rms, record_psd, relative_errors, welch_psd
 
 Array = NDArray[np.float64]

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError, ModelWarning
-from vehgen.identify.space import SearchSpace, search_space
-from vehgen.identify.trial import Trial
+from vehgen.fit.space import SearchSpace, search_space
+from vehgen.fit.trial import Trial
 from vehgen.simulate import Scenario, Simulator
 
 Array = NDArray[np.float64]

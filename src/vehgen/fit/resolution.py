@@ -12,9 +12,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.identify.misfit import Misfit
-from vehgen.identify.problem import Problem
-from vehgen.identify.trial import Trial, samples_kept
+from vehgen.fit.misfit import Misfit
+from vehgen.fit.problem import Problem
+from vehgen.fit.trial import Trial, samples_kept
 
 Array = NDArray[np.float64]
 ENOUGH = 0.1

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from vehgen.simulate.frequency import frequency_response
 
 if TYPE_CHECKING:
-    from vehgen.identify.trial import Trial
+    from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -15,8 +15,8 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from vehgen.identify.problem import Problem
-from vehgen.identify.space import SearchSpace
+from vehgen.fit.problem import Problem
+from vehgen.fit.space import SearchSpace
 from vehgen.mechanics.equations_of_motion import LinearModel
 from vehgen.simulate.frequency import response_derivatives
 

@@ -15,8 +15,8 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
+from vehgen.calibrate.identifiability import null_space, stacked_derivatives
 from vehgen.errors import InputError
-from vehgen.identify.identifiability import null_space, stacked_derivatives
 from vehgen.mechanics import derive
 from vehgen.mechanics.outputs import Place, PointOutput
 from vehgen.simulate import Run, make_scenario

@@ -25,7 +25,7 @@ class Trial:
 
     `values` are the vehicle's free parameters in this run before anything is searched [SI]; `fixed` names those that the run file sets
     itself, which no search changes. `jumps` tells of a response that jumps, as one with dry friction does: shorter steps help it but
-    slowly (see :mod:`vehgen.identify.resolution`).
+    slowly (see :mod:`vehgen.fit.resolution`).
     """
 
     name: str

@@ -12,7 +12,7 @@ import numpy as np
 import scipy.integrate
 from numpy.typing import NDArray
 
-from vehgen.identify.trial import Trial
+from vehgen.fit.trial import Trial
 from vehgen.simulate import Scenario
 
 Array = NDArray[np.float64]

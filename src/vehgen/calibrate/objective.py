@@ -12,12 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
-from vehgen.identify.problem import Problem
+from vehgen.fit.band import CALIBRATION_BAND_HZ
+from vehgen.fit.problem import Problem
 from vehgen.measure import record_psd
 
 Array = NDArray[np.float64]
-CALIBRATION_BAND_HZ = (0.3, 40.0)
-"""Frequencies that a calibration compares [Hz]: below, phones drift; above, anti-aliasing filters bite."""
 
 
 class PsdObjective:

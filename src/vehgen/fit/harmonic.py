@@ -14,9 +14,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.identify.adjustments import Adjustment
-from vehgen.identify.misfit import Misfit
-from vehgen.identify.trial import Trial
+from vehgen.fit.adjustments import Adjustment
+from vehgen.fit.misfit import Misfit
+from vehgen.fit.trial import Trial
 from vehgen.mechanics.rows import Row
 from vehgen.simulate.frequency import force_response
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from vehgen.errors import InputError, did_you_mean
 from vehgen.files.expressions import Expression
-from vehgen.identify.problem import Problem
+from vehgen.fit.problem import Problem
 from vehgen.vehicle import Vehicle
 
 METHODS = ("shcm", "dhcm", "joint")

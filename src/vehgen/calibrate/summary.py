@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.calibrate.calibration import Calibration, Settings, StepResult
+from vehgen.calibrate.identifiability import Structure, find_structure
+from vehgen.calibrate.intervals import LEVEL, Estimate, Uncertainty, refit
+from vehgen.calibrate.objective import PsdObjective
 from vehgen.files.reading import read_bytes
 from vehgen.files.tables import MOST_BYTES
-from vehgen.identify.calibration import Calibration, Settings, StepResult
-from vehgen.identify.facts import Facts
-from vehgen.identify.identifiability import Structure, find_structure
-from vehgen.identify.intervals import LEVEL, Estimate, Uncertainty, refit
-from vehgen.identify.objective import PsdObjective
-from vehgen.identify.parallel import Runner
+from vehgen.fit.parallel import Runner
+from vehgen.fit.prior_data import Facts
 from vehgen.mechanics import static_loads
 from vehgen.mechanics.outputs import ElementOutput
 from vehgen.simulate import Simulator

@@ -1,14 +1,16 @@
-"""Which frequencies a diagnosis compares."""
+"""Which frequencies a calibration or a diagnosis compares."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from vehgen.errors import InputError
-from vehgen.identify.trial import Trial
+from vehgen.fit.trial import Trial
 
 DIAGNOSIS_BAND_HZ = (0.5, 40.0)
 """What is compared [Hz] where the run files do not say: a vehicle's motions from heave to hop."""
+CALIBRATION_BAND_HZ = (0.3, 40.0)
+"""Frequencies that a calibration compares [Hz]: below, phones drift; above, anti-aliasing filters bite."""
 
 
 def compared_band(trials: Sequence[Trial]) -> tuple[float, float]:

@@ -12,18 +12,19 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.calibrate.genetic import GeneticSearch, SearchState
+from vehgen.calibrate.methods import Step, plan
+from vehgen.calibrate.objective import PsdObjective
 from vehgen.errors import InputError
 from vehgen.files import write_text
 from vehgen.files.reading import read_text
 from vehgen.files.tables import MOST_BYTES
-from vehgen.identify.facts import Facts
-from vehgen.identify.genetic import GeneticSearch, SearchState
-from vehgen.identify.methods import Step, plan
-from vehgen.identify.misfit import Nuisances
-from vehgen.identify.objective import CALIBRATION_BAND_HZ, PsdObjective
-from vehgen.identify.parallel import Runner
-from vehgen.identify.polish import Polished, polish
-from vehgen.identify.problem import Problem
+from vehgen.fit.band import CALIBRATION_BAND_HZ
+from vehgen.fit.least_squares import Polished, polish
+from vehgen.fit.misfit import Nuisances
+from vehgen.fit.parallel import Runner
+from vehgen.fit.prior_data import Facts
+from vehgen.fit.problem import Problem
 
 Array = NDArray[np.float64]
 SAVE_EVERY = 10

@@ -14,11 +14,11 @@ import numpy as np
 import scipy.stats
 from numpy.typing import NDArray
 
+from vehgen.calibrate.identifiability import Structure
 from vehgen.errors import InputError
 from vehgen.files.expressions import ExpressionError, parse
-from vehgen.identify.facts import Facts
-from vehgen.identify.identifiability import Structure
-from vehgen.identify.polish import Polished, polish
+from vehgen.fit.least_squares import Polished, polish
+from vehgen.fit.prior_data import Facts
 from vehgen.simulate import Mode, natural_modes
 
 Array = NDArray[np.float64]

@@ -10,12 +10,12 @@ import scipy.optimize
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from vehgen.identify.adjustments import Adjustment
-from vehgen.identify.facts import Facts
-from vehgen.identify.misfit import Misfit, Noises, Nuisances
-from vehgen.identify.noise import EVEN, Noise, estimate_noise, transform
-from vehgen.identify.objective import CALIBRATION_BAND_HZ
-from vehgen.identify.problem import Problem
+from vehgen.fit.adjustments import Adjustment
+from vehgen.fit.band import CALIBRATION_BAND_HZ
+from vehgen.fit.misfit import Misfit, Noises, Nuisances
+from vehgen.fit.noise import EVEN, Noise, estimate_noise, transform
+from vehgen.fit.prior_data import Facts
+from vehgen.fit.problem import Problem
 
 Array = NDArray[np.float64]
 AT_BOUND = 1e-3

@@ -1,5 +1,5 @@
 """Genetic algorithms over the unit cube: one file an operator, one for the search itself."""
 
-from vehgen.identify.genetic.search import GeneticSearch, SearchState
+from vehgen.calibrate.genetic.search import GeneticSearch, SearchState
 
 __all__ = ["GeneticSearch", "SearchState"]

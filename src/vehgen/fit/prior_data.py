@@ -25,7 +25,7 @@ from vehgen.files.document import read_document
 from vehgen.files.expressions import Expression, ExpressionError
 from vehgen.files.names import Name
 from vehgen.files.quantities import Force
-from vehgen.identify.problem import Problem
+from vehgen.fit.problem import Problem
 from vehgen.mechanics import LinearModel, derive, static_loads
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.loading import validate

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.identify.adjustments import Adjustment
-from vehgen.identify.noise import Noise, RoadAnswer, road_answer, transform
-from vehgen.identify.objective import CALIBRATION_BAND_HZ
-from vehgen.identify.problem import Problem
-from vehgen.identify.trial import Trial
+from vehgen.fit.adjustments import Adjustment
+from vehgen.fit.band import CALIBRATION_BAND_HZ
+from vehgen.fit.noise import Noise, RoadAnswer, road_answer, transform
+from vehgen.fit.problem import Problem
+from vehgen.fit.trial import Trial
 from vehgen.simulate import Scenario
 
 Array = NDArray[np.float64]

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.calibrate.genetic.crossover import recombine
+from vehgen.calibrate.genetic.migration import migrate
+from vehgen.calibrate.genetic.mutation import mutate
+from vehgen.calibrate.genetic.selection import rank_fitness, sample_parents
 from vehgen.errors import InputError
-from vehgen.identify.genetic.crossover import recombine
-from vehgen.identify.genetic.migration import migrate
-from vehgen.identify.genetic.mutation import mutate
-from vehgen.identify.genetic.selection import rank_fitness, sample_parents
 
 Array = NDArray[np.float64]
 Objective = Callable[[Array], Array]

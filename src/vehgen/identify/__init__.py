@@ -1,1 +1,0 @@
-"""Which parameters? Calibration of vehicles from recordings over humps and roads."""
