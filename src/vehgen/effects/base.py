@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from vehgen.effects.site import Site
+from vehgen.effects.locator import Site
 from vehgen.files.names import MAX_TEXT, joined_name
 from vehgen.vehicle import Vehicle
 

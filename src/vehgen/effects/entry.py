@@ -10,10 +10,10 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from vehgen.effects.base import Change, Effect, EffectParameter
-from vehgen.effects.law_effect import Given, law_edit
+from vehgen.effects.library.law_effect import Given, law_edit
+from vehgen.effects.locator import Site
 from vehgen.effects.places import axles, hinges, suspensions
 from vehgen.effects.registry import library
-from vehgen.effects.site import Site
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.document import Located, read_document
 from vehgen.files.expressions import Expression, ExpressionError
@@ -37,7 +37,7 @@ SIZES: dict[str, Dimension] = {
     "length": LENGTH,
     "travel": LENGTH,
 }
-"""What `times` may use: the sizes of a :class:`~vehgen.effects.site.Site`."""
+"""What `times` may use: the sizes of a :class:`~vehgen.effects.locator.Site`."""
 
 
 class ParameterEntry(Noun):

@@ -4,30 +4,30 @@ from __future__ import annotations
 
 from importlib.metadata import entry_points
 
-from vehgen.effects.asymmetric_damping import ASYMMETRIC_DAMPING
 from vehgen.effects.base import Effect
-from vehgen.effects.bump_stop import BUMP_STOP
-from vehgen.effects.cargo_module import CARGO_MODULE
-from vehgen.effects.cubic_stiffness import CUBIC_STIFFNESS
-from vehgen.effects.dry_friction import DRY_FRICTION
-from vehgen.effects.engine_harmonic import ENGINE_HARMONIC
-from vehgen.effects.frame_bending import FRAME_BENDING
-from vehgen.effects.hinge_friction import HINGE_FRICTION
-from vehgen.effects.hinge_stiffness import HINGE_STIFFNESS
-from vehgen.effects.hysteresis import HYSTERESIS
-from vehgen.effects.progressive_stiffness import PROGRESSIVE_STIFFNESS
-from vehgen.effects.quadratic_damping import QUADRATIC_DAMPING
-from vehgen.effects.relaxation import RELAXATION
-from vehgen.effects.sensor_delay import SENSOR_DELAY
-from vehgen.effects.sensor_gain import SENSOR_GAIN
-from vehgen.effects.sensor_position import SENSOR_POSITION
-from vehgen.effects.sensor_tilt import SENSOR_TILT
-from vehgen.effects.speed_error import SPEED_ERROR
-from vehgen.effects.suspended_cab import SUSPENDED_CAB
-from vehgen.effects.tyre_damping import TYRE_DAMPING
-from vehgen.effects.tyre_footprint import TYRE_FOOTPRINT
-from vehgen.effects.tyre_liftoff import TYRE_LIFTOFF
-from vehgen.effects.walking_beam import WALKING_BEAM
+from vehgen.effects.library.asymmetric_damping import ASYMMETRIC_DAMPING
+from vehgen.effects.library.bump_stop import BUMP_STOP
+from vehgen.effects.library.cargo_module import CARGO_MODULE
+from vehgen.effects.library.cubic_stiffness import CUBIC_STIFFNESS
+from vehgen.effects.library.dry_friction import DRY_FRICTION
+from vehgen.effects.library.engine_harmonic import ENGINE_HARMONIC
+from vehgen.effects.library.frame_bending import FRAME_BENDING
+from vehgen.effects.library.hinge_friction import HINGE_FRICTION
+from vehgen.effects.library.hinge_stiffness import HINGE_STIFFNESS
+from vehgen.effects.library.hysteresis import HYSTERESIS
+from vehgen.effects.library.progressive_stiffness import PROGRESSIVE_STIFFNESS
+from vehgen.effects.library.quadratic_damping import QUADRATIC_DAMPING
+from vehgen.effects.library.relaxation import RELAXATION
+from vehgen.effects.library.sensor_delay import SENSOR_DELAY
+from vehgen.effects.library.sensor_gain import SENSOR_GAIN
+from vehgen.effects.library.sensor_position import SENSOR_POSITION
+from vehgen.effects.library.sensor_tilt import SENSOR_TILT
+from vehgen.effects.library.speed_error import SPEED_ERROR
+from vehgen.effects.library.suspended_cab import SUSPENDED_CAB
+from vehgen.effects.library.tyre_damping import TYRE_DAMPING
+from vehgen.effects.library.tyre_footprint import TYRE_FOOTPRINT
+from vehgen.effects.library.tyre_liftoff import TYRE_LIFTOFF
+from vehgen.effects.library.walking_beam import WALKING_BEAM
 from vehgen.errors import InputError, shown
 from vehgen.files.names import is_identifier
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from vehgen.effects.base import Effect
-from vehgen.effects.mounted_mass import mass_edit, mass_parameters
+from vehgen.effects.library.mounted_mass import mass_edit, mass_parameters
 from vehgen.effects.places import front_body
 
 SUSPENDED_CAB = Effect(

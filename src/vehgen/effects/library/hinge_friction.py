@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from vehgen.effects.base import EffectParameter
-from vehgen.effects.law_effect import hinge_law
+from vehgen.effects.library.law_effect import hinge_law
 
 HINGE_FRICTION = hinge_law(
     "hinge_friction",

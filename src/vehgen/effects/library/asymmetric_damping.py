@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from vehgen.effects.base import Change, Effect, EffectParameter
-from vehgen.effects.law_effect import Given, on_spring
+from vehgen.effects.library.law_effect import Given, on_spring
+from vehgen.effects.locator import Site
 from vehgen.effects.places import suspensions
-from vehgen.effects.site import Site
 from vehgen.mechanics.laws import LAWS
 
 

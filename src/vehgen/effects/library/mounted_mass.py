@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from vehgen.effects.base import Change, EffectParameter
-from vehgen.effects.law_effect import Given
-from vehgen.effects.site import Site
+from vehgen.effects.library.law_effect import Given
+from vehgen.effects.locator import Site
 from vehgen.files.names import joined_name
 
 

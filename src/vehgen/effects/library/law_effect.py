@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from vehgen.effects.base import Change, Effect, EffectParameter
+from vehgen.effects.locator import Site
 from vehgen.effects.places import ALL_TYRES, hinges, suspensions
-from vehgen.effects.site import Site
 from vehgen.mechanics.laws import LAWS
 
 Given = Mapping[str, str]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from vehgen.effects.base import Change, Effect
-from vehgen.effects.law_effect import Given, law_edit
+from vehgen.effects.library.law_effect import Given, law_edit
+from vehgen.effects.locator import Site
 from vehgen.effects.places import tyres
-from vehgen.effects.site import Site
 from vehgen.mechanics.laws import LAWS
 
 _ADD = law_edit("tyre", "tyre_liftoff")

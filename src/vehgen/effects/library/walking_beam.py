@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from vehgen.effects.base import Change, Effect, EffectParameter
-from vehgen.effects.law_effect import Given
+from vehgen.effects.library.law_effect import Given
+from vehgen.effects.locator import Site
 from vehgen.effects.places import tandems
-from vehgen.effects.site import Site
 from vehgen.files.names import joined_name
 from vehgen.vehicle.model import Spring
 

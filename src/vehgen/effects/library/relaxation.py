@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from vehgen.effects.base import EffectParameter
-from vehgen.effects.law_effect import suspension_law
+from vehgen.effects.library.law_effect import suspension_law
 
 RELAXATION = suspension_law(
     "relaxation",

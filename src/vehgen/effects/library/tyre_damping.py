@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from vehgen.effects.base import Change, Effect, EffectParameter
-from vehgen.effects.law_effect import Given
+from vehgen.effects.library.law_effect import Given
+from vehgen.effects.locator import Site
 from vehgen.effects.places import ALL_TYRES, tyres
-from vehgen.effects.site import Site
 
 
 def _edit(site: Site, symbols: Given) -> Change:

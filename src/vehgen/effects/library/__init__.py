@@ -1,0 +1,1 @@
+"""The effects that vehgen knows, one file each."""
