@@ -92,7 +92,7 @@ def page() -> str:
 
 def draw() -> None:
     """Draw every effect."""
-    from vehgen.diagnose.candidate import list_candidates, pose, starts
+    from vehgen.diagnose.fits.candidate import list_candidates, pose, starts
     from vehgen.effects import Surveyor
     from vehgen.fit.harmonic import Harmonic
     from vehgen.fit.misfit import Misfit

@@ -2,7 +2,7 @@ import json
 
 import pytest
 
-from tests.identify.recordings import sedan_truth, write_run
+from tests.fit.recordings import sedan_truth, write_run
 from vehgen.commands import main
 
 SMALL = ["--generations", "5", "--size", "20", "--starts", "1"]

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.identify.recordings import sedan_truth, write_run
+from tests.fit.recordings import sedan_truth, write_run
 from vehgen.commands import main
 from vehgen.files.manifest import MANIFEST
 

@@ -6,7 +6,7 @@ import pytest
 from benchmarks.hidden_effects.generator import Effect
 
 from vehgen.commands import main
-from vehgen.diagnose.noise_floor import find_noise_floor
+from vehgen.diagnose.detect.noise_floor import find_noise_floor
 from vehgen.diagnose.pipeline import diagnose, split_runs
 from vehgen.fit.trial import load_trials
 from vehgen.vehicle import load_vehicle

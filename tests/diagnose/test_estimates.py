@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.stats
 
-from vehgen.diagnose.estimates import gain_interval, held_out_gain, p_value
+from vehgen.diagnose.select.estimates import gain_interval, held_out_gain, p_value
 
 
 def fit(power, train=1.0, count=1000):

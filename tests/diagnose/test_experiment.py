@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from benchmarks.hidden_effects.generator import Case, Effect, Hump, Noise, RunSpec, simulate_case, write_case
 
-from vehgen.diagnose import experiment
-from vehgen.diagnose.candidate import list_candidates
-from vehgen.diagnose.detection import detect
-from vehgen.diagnose.experiment import propose, propose_stronger
-from vehgen.diagnose.further_runs import free_places, list_runs
-from vehgen.diagnose.naming import name
-from vehgen.diagnose.rivals import Rival, at_most, separate
+from vehgen.diagnose.design import experiment
+from vehgen.diagnose.design.candidate_runs import free_places, list_runs
+from vehgen.diagnose.design.discrimination import Rival, at_most, separate
+from vehgen.diagnose.design.experiment import propose, propose_stronger
+from vehgen.diagnose.detect.detection import detect
+from vehgen.diagnose.fits.candidate import list_candidates
+from vehgen.diagnose.select.search import name
 from vehgen.effects import library
 from vehgen.fit.trial import load_trials, make_trial
 from vehgen.mechanics import Place
@@ -121,7 +121,7 @@ def test_equal_models_are_said_to_be_equal(tied):
 def test_where_no_run_is_enough_the_best_is_named_with_the_repeats_it_takes(tied, monkeypatch):
     monkeypatch.setattr(experiment, "ENOUGH", 5e3)
     monkeypatch.setattr(experiment, "REPEATS", 100)
-    monkeypatch.setattr("vehgen.diagnose.further_runs.HEIGHTS", (0.5, 1.0))
+    monkeypatch.setattr("vehgen.diagnose.design.candidate_runs.HEIGHTS", (0.5, 1.0))
     found = propose(*tied)
     assert not found.separates
     assert found.height <= 0.03

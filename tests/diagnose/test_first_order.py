@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from vehgen.diagnose.candidate import list_candidates, pose
-from vehgen.diagnose.detection import detect
-from vehgen.diagnose.first_order import Motion
-from vehgen.diagnose.fitting import NUISANCES, Footing
+from vehgen.diagnose.detect.detection import detect
+from vehgen.diagnose.fits.candidate import list_candidates, pose
+from vehgen.diagnose.fits.first_order import Motion
+from vehgen.diagnose.fits.model_fit import NUISANCES, Footing
 from vehgen.effects import Surveyor, library
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.fit.trial import load_trials

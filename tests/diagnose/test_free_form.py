@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from benchmarks.hidden_effects.generator import Case, Effect, Hump, RandomRoad, RunSpec, true_parameters, write_case
 
-from vehgen.diagnose import place_test
-from vehgen.diagnose.free_form import fit_free_form, recover
+from vehgen.diagnose.localise import unknown_force as place_test
+from vehgen.diagnose.localise.free_form import fit_free_form, recover
+from vehgen.diagnose.localise.recovered_force import Recovered, strongest
+from vehgen.diagnose.localise.unknown_force import Place, list_places
 from vehgen.diagnose.pipeline import detect
-from vehgen.diagnose.place_test import Place, list_places
-from vehgen.diagnose.recovered import Recovered, strongest
 from vehgen.fit.trial import load_trials
 from vehgen.report.files import figure_svg
 from vehgen.report.force_plots import plot_force

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vehgen.diagnose.harmonics import distortions, driving_frequency
+from vehgen.diagnose.detect.harmonics import distortions, driving_frequency
 from vehgen.fit.noise import EVEN, Noise
 from vehgen.fit.trial import load_trials
 

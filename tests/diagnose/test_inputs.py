@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from benchmarks.hidden_effects.generator import Case, Effect, Hump, RunSpec, nominal, perturbed, write_case
 
-from vehgen.diagnose.inputs import check_inputs, explain_gap
-from vehgen.diagnose.labels import correlate
+from vehgen.diagnose.inputs.checks import check_inputs, explain_gap
+from vehgen.diagnose.inputs.labels import correlate
 from vehgen.diagnose.pipeline import detect
 from vehgen.fit.trial import load_trials
 

@@ -8,11 +8,11 @@ from benchmarks.hidden_effects.generator import Case, Effect
 from benchmarks.hidden_effects.generator.simulate import true_parameters
 
 from tests.diagnose.conftest import RUNS
-from vehgen.diagnose.detection import detect
-from vehgen.diagnose.estimates import RunEstimate, disagreement
+from vehgen.diagnose.detect.detection import detect
+from vehgen.diagnose.localise.unknown_force import list_places
+from vehgen.diagnose.localise.unknown_force import test_places as place_test
 from vehgen.diagnose.pipeline import diagnose
-from vehgen.diagnose.place_test import list_places
-from vehgen.diagnose.place_test import test_places as place_test
+from vehgen.diagnose.select.estimates import RunEstimate, disagreement
 from vehgen.effects import EFFECTS
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.resolution import resolve

@@ -5,9 +5,9 @@ import shutil
 import pytest
 from benchmarks.hidden_effects.generator import Effect
 
-from vehgen.diagnose.detection import band_gaps, run_gaps
-from vehgen.diagnose.estimates import estimates_by_run
+from vehgen.diagnose.detect.detection import band_gaps, run_gaps
 from vehgen.diagnose.pipeline import diagnose
+from vehgen.diagnose.select.estimates import estimates_by_run
 from vehgen.diagnose.writing import effect_file
 from vehgen.effects import EFFECTS
 from vehgen.fit.trial import load_trials

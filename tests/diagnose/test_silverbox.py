@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from vehgen.diagnose.noise_floor import find_noise_floor
+from vehgen.diagnose.detect.noise_floor import find_noise_floor
 from vehgen.diagnose.pipeline import detect, diagnose
 from vehgen.effects import EFFECTS
 from vehgen.errors import InputError

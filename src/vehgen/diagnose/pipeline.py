@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 from threadpoolctl import threadpool_limits
 
-from vehgen.diagnose.deciding import Case
-from vehgen.diagnose.detection import Detection, detect, kind_of_run, split_runs
-from vehgen.diagnose.diagnosis import Diagnosis
-from vehgen.diagnose.localisation import localise, shortlist
-from vehgen.diagnose.naming import Progress, look
+from vehgen.diagnose.decision import Case
+from vehgen.diagnose.detect.detection import Detection, detect, kind_of_run, split_runs
+from vehgen.diagnose.localise.localisation import localise, shortlist
+from vehgen.diagnose.result import Diagnosis
+from vehgen.diagnose.select.search import Progress, look
 from vehgen.effects import Effect, library
 from vehgen.fit.trial import Trial
 

@@ -6,8 +6,8 @@ from glob import escape
 from pathlib import Path
 from typing import Any
 
-from vehgen.diagnose.estimates import estimate
-from vehgen.diagnose.fitting import Fit
+from vehgen.diagnose.fits.model_fit import Fit
+from vehgen.diagnose.select.estimates import estimate
 from vehgen.diagnose.verdict import Verdict
 from vehgen.effects import Surveyor
 from vehgen.files.names import MAX_TEXT, joined_name

@@ -10,13 +10,13 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from vehgen.diagnose.detection import band_gaps, run_gaps
-from vehgen.diagnose.estimates import estimate, estimates_by_run
-from vehgen.diagnose.fitting import Fit
-from vehgen.diagnose.free_form import fit_free_form, recover, strongest
-from vehgen.diagnose.harmonics import distortions
-from vehgen.diagnose.naming import Round
+from vehgen.diagnose.detect.detection import band_gaps, run_gaps
+from vehgen.diagnose.detect.harmonics import distortions
+from vehgen.diagnose.fits.model_fit import Fit
+from vehgen.diagnose.localise.free_form import fit_free_form, recover, strongest
 from vehgen.diagnose.pipeline import Diagnosis
+from vehgen.diagnose.select.estimates import estimate, estimates_by_run
+from vehgen.diagnose.select.search import Round
 from vehgen.files import write_text
 from vehgen.report.comparison import plot_histories, plot_psds
 from vehgen.report.diagnosis_plots import curves, plot_places, plot_waterfall

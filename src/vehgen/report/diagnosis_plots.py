@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.diagnose.pipeline import Diagnosis
-from vehgen.diagnose.place_test import PlaceResult
 from vehgen.fit.trial import Trial
 from vehgen.measure import record_psd
 from vehgen.report.canvas import INK

@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from vehgen.diagnose.free_form import Curve, FreeForm
-from vehgen.diagnose.recovered import Recovered
+from vehgen.diagnose.localise.free_form import Curve, FreeForm
+from vehgen.diagnose.localise.recovered_force import Recovered
 from vehgen.report.canvas import INK
 from vehgen.report.comparison import SIMULATED
 

@@ -1,0 +1,299 @@
+"""From what was detected to a verdict: look for effects, hold them against chance and one another, look again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from vehgen.diagnose import thresholds as limit
+from vehgen.diagnose.design.experiment import VISIBLE, propose, propose_stronger
+from vehgen.diagnose.detect.detection import Detection
+from vehgen.diagnose.fits.candidate import Candidate, list_candidates
+from vehgen.diagnose.fits.model_fit import Fit, judge
+from vehgen.diagnose.inputs.checks import check_inputs, explain_gap
+from vehgen.diagnose.localise.free_form import fit_free_form, recover, strongest
+from vehgen.diagnose.localise.localisation import suffices
+from vehgen.diagnose.result import Diagnosis
+from vehgen.diagnose.select.criteria import adds, chance, excess, needs_both, passes, seeds, tied, unfinished
+from vehgen.diagnose.select.estimates import estimate, gain_interval, held_out_gain, unstable
+from vehgen.diagnose.select.placebo_laws import COUNT, compare
+from vehgen.diagnose.select.search import Progress, Round, look
+from vehgen.diagnose.verdict import Gap, NamedEffect, Verdict, VerdictName, sentence
+from vehgen.effects import Effect
+from vehgen.errors import InputError
+from vehgen.fit.trial import Trial
+
+MOST_EFFECTS = 3
+"""So many effects are added at most."""
+CLOCKS = (
+    "no run tells which of the sensors is late and which early: only the difference of their clocks shows; record both by one clock, "
+    "or let both feel a knock at a known time"
+)
+
+
+class Case:
+    """One diagnosis on its way: what was detected, the library, and the rounds so far."""
+
+    def __init__(self, detection: Detection, effects: Sequence[Effect], everything: bool, tell: Progress, workers: int) -> None:
+        self.detection = detection
+        self.base = detection.base
+        self.everything = everything
+        self.tell = tell
+        self.workers = workers
+        self.effects = effects
+        self.untouched = [trial.name for trial in detection.held_out]
+        self.rounds: list[Round] = []
+        self.chain: list[Fit] = []
+        self.notes: list[str] = []
+        self.interrupted = False
+        self.tried = len(self._candidates(self.base))
+
+    def decide(self) -> Diagnosis:
+        """Return the diagnosis; after Ctrl-C what was found until then."""
+        try:
+            return self._decide()
+        except KeyboardInterrupt:
+            self.interrupted = True
+            return self._name(self.chain) if self.chain else self._stopped()
+
+    def _decide(self) -> Diagnosis:
+        detection = self.detection
+        shown = check_inputs(detection.trials)
+        fatal = [item.message for item in shown if item.fatal]
+        self.notes += [item.message for item in shown if not item.fatal]
+        if fatal:
+            return self._end("insufficient_data", "; ".join(fatal), "record these channels anew, or leave them out of the run files")
+        if max(detection.chi, float(np.sqrt(self.base.train))) <= limit.NOISE_FLOOR:
+            return self._end("no_missing_effect", f"the recalibrated model is at the noise floor: chi {detection.chi:.3f}")
+        if not detection.held_out:
+            count = len(detection.trials)
+            return self._end(
+                "insufficient_data",
+                f"chi is {detection.chi:.2f}, but at least three runs are needed, so that one stays untouched ({count} given)",
+                f"record at least three runs{', with two hump heights or speeds' if detection.trials[0].run.vehicle.axles else ''}",
+            )
+        if not self._candidates(self.base):
+            raise InputError("no effect of the library can live on this vehicle")
+        first = self._look(self.base)
+        if first.stopped:
+            return self._stopped()
+        if not first.fits:
+            return self._unknown(first)
+        best = first.fits[0]
+        good = passes(best, self.base)
+        weak = self._too_weak(first, best, good)
+        if weak is not None:
+            return weak
+        if good:
+            self.chain = [best]
+            self._further()
+        else:
+            self._pair(first)
+        if not self.chain or unfinished(self.chain[-1], self.base):
+            wrong = explain_gap(detection)
+            if wrong:
+                return self._end("insufficient_data", wrong[0].message, "; ".join(item.message for item in wrong[1:]) or None)
+        return self._name(self.chain) if self.chain else self._unknown(first)
+
+    def _too_weak(self, first: Round, best: Fit, good: bool) -> Diagnosis | None:
+        """Return the verdict where the best effect is not told from chance, from random laws, or by the untouched runs."""
+        chi, p = self.detection.chi, chance(first, best, self.tried)
+        if p > limit.SIGNIFICANT and (good or chi <= VISIBLE):
+            return self._propose(f"chi is {chi:.3f}, but no effect is told from chance (p {p:.2g})", best)
+        if chi <= limit.WEAK and not good:
+            return self._propose(f"chi is {chi:.3f}: a small gap, of which no effect closes enough to be named", best)
+        if not good:
+            return None
+        interval = gain_interval(self.base, best, self.untouched)
+        if interval is None or interval[0] <= 0:
+            return self._propose(f"{best.label} suits the runs for fitting, but the untouched runs do not show it", best)
+        rivals = compare(first, best, self.detection)
+        if rivals is not None and rivals[1] >= rivals[0] - limit.DECOY:
+            told = f"{best.label} closes {100 * rivals[0]:.0f} % of the excess, a random law at the same place {100 * rivals[1]:.0f} %"
+            return self._propose(told, best)
+        if rivals is not None:
+            self.notes.append(f"the best of {COUNT} random laws at the same place closes {100 * rivals[1]:.0f} % of the excess")
+        return None
+
+    def _propose(self, reason: str, best: Fit) -> Diagnosis:
+        self.tell("propose", 0, 1, "")
+        louder = propose_stronger(self.detection, best)
+        return self._end("too_weak", reason, louder.text if louder and louder.separates else "no run within reach would show it clearly")
+
+    def _candidates(self, footing: Fit) -> list[Candidate]:
+        """Return what may live on the vehicle of a fit: a walking beam leaves its axles no suspension."""
+        vehicle = footing.polished.misfit.problem.trials[0].run.vehicle
+        return list_candidates(vehicle, self.detection.trials, self.effects, self.detection.floor.noises)
+
+    def _look(self, footing: Fit) -> Round:
+        found = look(self.detection, footing, self._candidates(footing), self.everything, self.tell, self.workers)
+        self.rounds.append(found)
+        return found
+
+    def _further(self) -> None:
+        """Look again on what the last fit leaves, until nothing is left or nothing passes."""
+        while len(self.chain) < MOST_EFFECTS and unfinished(self.chain[-1], self.base):
+            found = self._look(self.chain[-1])
+            if found.stopped:
+                raise KeyboardInterrupt
+            if not found.fits or not adds(found, found.fits[0]) or chance(found, found.fits[0], self.tried) > limit.SIGNIFICANT:
+                return
+            self.chain.append(found.fits[0])
+
+    def _pair(self, first: Round) -> None:
+        """Look for a pair of effects that passes; where one force leaves noise, only a tyre and its suspension can be two."""
+        tried = seeds(first)[:1] if suffices(first.passed, self.base) else seeds(first)
+        for seed in tried:
+            known = judge(seed.effects, seed.polished, self.detection.held_out, self.detection.floor.noises)
+            found = self._look(known)
+            if found.stopped:
+                raise KeyboardInterrupt
+            if found.fits and self._both(first, found, found.fits[0]):
+                self.chain = [known, found.fits[0]]
+                self._further()
+                return
+
+    def _both(self, first: Round, found: Round, pair: Fit) -> bool:
+        interval = gain_interval(self.base, pair, self.untouched)
+        return (
+            passes(pair, self.base)
+            and adds(found, pair)
+            and needs_both(pair, first.fits)
+            and chance(found, pair, self.tried) <= limit.SIGNIFICANT
+            and interval is not None
+            and interval[0] > 0
+        )
+
+    def _gap(self, fit: Fit | None = None) -> Gap:
+        last = fit or self.base
+        return Gap(self.base.chi, last.chi, 1.0, _runs(self.base, last, self.detection.held_out))
+
+    def _places(self) -> tuple[tuple[str, float], ...]:
+        return tuple((item.place.label, item.chi) for item in self.rounds[0].passed[:5])
+
+    def _end(self, verdict: VerdictName, reason: str, next_experiment: str | None = None) -> Diagnosis:
+        places = self._places() if self.rounds else ()
+        found = Verdict(verdict, reason, (), self._gap(), places, next_experiment=next_experiment, notes=tuple(self.notes))
+        return Diagnosis(self.detection.trials, self.detection, tuple(self.rounds), (), found, self.interrupted)
+
+    def _stopped(self) -> Diagnosis:
+        self.interrupted = True
+        fits = self.rounds[0].fits if self.rounds else ()
+        done = f"{len(fits)} candidates" if fits else "no candidate"
+        best = f"; the best so far is {fits[0].label}, chi {np.sqrt(fits[0].train):.2f}" if fits else ""
+        return self._end("insufficient_data", f"stopped by hand after {done}{best}", "let the diagnosis run to its end")
+
+    def _unknown(self, first: Round) -> Diagnosis:
+        where = sentence([item.place.label for item in first.passed[:3]]) if first.passed else "no single place"
+        if first.fits:
+            best = first.fits[0]
+            reason = f"the best of {len(first.fits)} candidates, {best.label}, leaves chi {np.sqrt(best.train):.2f}"
+        else:
+            reason = "none of the effects tried can live where the model errs"
+        if self.base.polished.on_bound:
+            edge = ", ".join(self.base.polished.on_bound)
+            self.notes.append(
+                f"the refit, within 35 % of the file's values, ends at its edge for {edge}: if they are uncertain, calibrate first"
+            )
+        ended = self._end("not_in_library", f"{reason}; the residual wants an unknown force at {where}")
+        shown = strongest(first.passed)
+        law = None if shown is None else fit_free_form(recover(self.detection, shown))
+        if law is None:
+            return ended
+        verdict = replace(ended.verdict, free_form=law.to_dict(), notes=(*ended.verdict.notes, law.describe()))
+        return replace(ended, verdict=verdict, law=law)
+
+    def _name(self, chain: list[Fit]) -> Diagnosis:
+        return self._name_one(chain[0]) if len(chain) == 1 else self._name_several(chain)
+
+    def _name_one(self, fit: Fit) -> Diagnosis:
+        step = self._round_of(fit)
+        ties = tied(step, fit)
+        effects = [self._effect(step, fit, 0, [item.last.label for item in ties])]
+        effects += [self._effect(step, item, 0, []) for item in ties[:2]]
+        reason = f"{fit.label} closes {self._share(fit)}"
+        if ties:
+            reason = f"{sentence([fit.label, *(item.label for item in ties)])} explain the runs equally well"
+        return self._named([fit], ties, effects, reason)
+
+    def _name_several(self, chain: list[Fit]) -> Diagnosis:
+        last, steps = chain[-1], [self._round_of(fit) for fit in chain]
+        alternatives = [tied(step, fit) for step, fit in zip(steps, chain, strict=True)]
+        effects = [
+            self._effect(step, last, i, [item.last.label for item in others])
+            for i, (step, others) in enumerate(zip(steps, alternatives, strict=True))
+        ]
+        ties = [item for others in alternatives for item in others]
+        reason = f"{last.label} close {self._share(last)}"
+        if ties:
+            reason += f", and so {'does' if len(ties) == 1 else 'do'} {sentence([item.last.label for item in ties])}"
+        return self._named(chain, ties, effects, reason)
+
+    def _named(self, chain: list[Fit], ties: list[Fit], effects: list[NamedEffect], reason: str) -> Diagnosis:
+        verdict = Verdict(
+            "ambiguous" if ties else "named",
+            reason,
+            tuple(effects),
+            self._gap(chain[-1]),
+            self._places(),
+            next_experiment=self._apart(chain, ties) if ties else None,
+            notes=self._notes(chain[-1]),
+        )
+        return Diagnosis(self.detection.trials, self.detection, tuple(self.rounds), tuple(chain), verdict, self.interrupted)
+
+    def _round_of(self, fit: Fit) -> Round:
+        return next(item for item in self.rounds if any(own.key == fit.key for own in item.fits))
+
+    def _share(self, fit: Fit) -> str:
+        closed = held_out_gain(self.base, fit)
+        return f"{100 * closed:.1f} % of the excess on untouched runs" if closed is not None else "the gap on the runs for fitting"
+
+    def _apart(self, chain: list[Fit], ties: list[Fit]) -> str | None:
+        """Return which run would tell tied models apart, by what each predicts."""
+        if self.interrupted:
+            return None
+        if all(fit.last.effect.adjusts == "sensor_delay" for fit in (chain[-1], *ties)):
+            return CLOCKS
+        self.tell("propose", 0, 1, "")
+        found = propose(self.detection, (chain[-1], *ties))
+        return found.text if found else None
+
+    def _effect(self, step: Round, fit: Fit, number: int, others: list[str]) -> NamedEffect:
+        """Return the effect `number` of a fit, judged by what it closed in its own round."""
+        own = next((item for item in step.fits if item.key == fit.key[: number + 1]), fit)
+        candidate = fit.effects[number]
+        return NamedEffect(
+            candidate.effect.name,
+            candidate.place,
+            estimate(fit, candidate),
+            chance(step, own, self.tried),
+            held_out_gain(step.footing, own),
+            gain_interval(step.footing, own, self.untouched),
+            tuple(others),
+        )
+
+    def _notes(self, fit: Fit) -> tuple[str, ...]:
+        told = list(self.notes)
+        for candidate in fit.effects:
+            told += [f"{candidate.label}: {text}" for text in unstable(fit, candidate)]
+        if fit.polished.on_bound:
+            told.append(f"on the bound of its range: {', '.join(fit.polished.on_bound)}")
+        left = excess(fit.train)
+        if left > limit.AGAIN**2 - 1:
+            told.append(f"chi {np.sqrt(1 + left):.2f} is left unexplained")
+        return tuple(told)
+
+
+def _runs(base: Fit, fit: Fit, held_out: Sequence[Trial]) -> tuple[dict[str, object], ...]:
+    later = {trial.name for trial in held_out}
+    return tuple(
+        {
+            "run": item,
+            "untouched": item in later,
+            "before": float(np.sqrt(base.runs[item])),
+            "after": float(np.sqrt(fit.runs.get(item, base.runs[item]))),
+        }
+        for item in base.runs
+    )

@@ -1,0 +1,147 @@
+"""Stage 1, detect: how far the recalibrated base model is above the noise, run by run, channel by channel, band by band."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.diagnose.detect.noise_floor import NoiseFloor, find_noise_floor
+from vehgen.diagnose.fits.model_fit import Fit, fit_base, mean_square_as_filed, narrow
+from vehgen.errors import InputError
+from vehgen.fit.band import DIAGNOSIS_BAND_HZ, compared_band
+from vehgen.fit.problem import Problem, make_problem
+from vehgen.fit.trial import Trial
+
+Array = NDArray[np.float64]
+EDGES = (0.0, 3.0, 8.0, 15.0, np.inf)
+"""Bands of the table of gaps [Hz]: rigid-body motion, between, wheel hop, above."""
+
+
+@dataclass(frozen=True)
+class Detection:
+    """What the first stage finds: the noise floor and how far the base model is above it.
+
+    `base` is recalibrated; `as_filed` and `as_filed_untouched` are the mean squares of the file's parameters, on the training runs and on
+    the untouched ones (not a number where there are none).
+    """
+
+    problem: Problem
+    held_out: tuple[Trial, ...]
+    floor: NoiseFloor
+    base: Fit
+    as_filed: float
+    as_filed_untouched: float
+    band: tuple[float, float] = DIAGNOSIS_BAND_HZ
+
+    @property
+    def chi(self) -> float:
+        """The base model's chi over all runs."""
+        return self.base.chi
+
+    @property
+    def trials(self) -> tuple[Trial, ...]:
+        """All runs, those for fitting first."""
+        return (*self.problem.trials, *self.held_out)
+
+
+@dataclass(frozen=True)
+class BandGap:
+    """chi of one run and channel within a band [Hz]."""
+
+    run: str
+    channel: str
+    band: tuple[float, float]
+    chi: float
+
+
+def split_runs(trials: Sequence[Trial]) -> tuple[list[Trial], list[Trial]]:
+    """Return training runs and untouched ones: of three runs or more, every second one between the gentlest and the roughest."""
+    ordered = sorted(trials, key=kind_of_run)
+    held = ordered[1:-1:2]
+    apart = {id(trial) for trial in held}
+    return [trial for trial in ordered if id(trial) not in apart], held
+
+
+def kind_of_run(trial: Trial) -> tuple[float, ...]:
+    """Return what a run is like, whatever it is called: its humps' height, its speed, what was measured."""
+    return (hump_height(trial), trial.scenario.top_speed, float(np.sort(trial.measurement.values**2, axis=None).sum()))
+
+
+def hump_height(trial: Trial) -> float:
+    """Return the height of a run's highest hump [m], 0 without one."""
+    return max((entry.hump.height or 0.0 for entry in trial.run.file.road if entry.hump is not None), default=0.0)
+
+
+def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> Detection:
+    """Find the noise floor, recalibrate the base model on the training runs, measure the gap in a band [Hz] (default: that of the runs)."""
+    _refuse_copies(trials)
+    training, held_out = split_runs(trials)
+    band = band or compared_band(trials)
+    floor = find_noise_floor(trials, band)
+    problem = narrow(make_problem(training))
+    base = fit_base(problem, held_out, floor.noises, band)
+    filed = [mean_square_as_filed(part, floor.noises, band) for part in (training, held_out)]
+    return Detection(problem, tuple(held_out), floor, base, filed[0], filed[1], band)
+
+
+def band_gaps(detection: Detection, fit: Fit | None = None) -> list[BandGap]:
+    """Return chi by run, channel and band, of the base or of another fit."""
+    fit = fit or detection.base
+    found = []
+    for trial in detection.trials:
+        power = fit.powers.get(trial.name)
+        if power is None:
+            continue
+        n, dt = len(trial.measurement.time), trial.measurement.dt
+        frequency = np.fft.rfftfreq(n, dt)
+        frequency = frequency[(frequency >= detection.band[0]) & (frequency <= detection.band[1])]
+        for low, high in pairwise(EDGES):
+            inside = (frequency >= low) & (frequency < high)
+            if inside.any():
+                bounds = (max(low, detection.band[0]), min(high, detection.band[1]))
+                chis = np.sqrt(power[inside].mean(axis=0))
+                found += [BandGap(trial.name, name, bounds, float(chi)) for name, chi in zip(trial.channels, chis, strict=True)]
+    return found
+
+
+def _refuse_copies(trials: Sequence[Trial]) -> None:
+    """Raise InputError where two runs hold the same recording: a copy is no check."""
+    known: dict[bytes, str] = {}
+    for trial in trials:
+        content = trial.measurement.values.tobytes()
+        if content in known:
+            raise InputError(
+                f"{known[content]} and {trial.name} hold the same recording; a copy can neither teach nor check: leave one out"
+            )
+        known[content] = trial.name
+
+
+@dataclass(frozen=True)
+class RunGap:
+    """How large a run's gap is beside its amplitude and speed.
+
+    `height` of its highest hump [m] (0 without one), `speed` [m/s], `chi`, and `share`, the gap's root mean square over that of the
+    recording, both in units of the noise: a linear cause keeps the share over amplitudes, a stop's grows, friction's falls.
+    """
+
+    run: str
+    height: float
+    speed: float
+    chi: float
+    share: float
+
+
+def run_gaps(detection: Detection) -> list[RunGap]:
+    """Return how large the base model's gap is in every run."""
+    found = []
+    for trial in detection.trials:
+        sigma = detection.floor.noises[trial.name].sigma
+        loudness = float(np.sqrt(np.mean((trial.measurement.values / sigma) ** 2)))
+        square = detection.base.runs[trial.name]
+        share = float(np.sqrt(max(square - 1.0, 0.0))) / loudness
+        found.append(RunGap(trial.name, hump_height(trial), trial.scenario.top_speed, float(np.sqrt(square)), share))
+    return found

@@ -1,0 +1,1 @@
+"""Fits of the base model and of candidate effects."""

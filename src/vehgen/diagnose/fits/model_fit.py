@@ -1,0 +1,212 @@
+"""Fits of the base and of what is added to it, on the training runs, judged on untouched ones."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.diagnose.fits.candidate import Candidate, retarget
+from vehgen.fit.adjustments import Adjustment
+from vehgen.fit.least_squares import Polished, polish
+from vehgen.fit.misfit import Misfit, Noises, Nuisances
+from vehgen.fit.problem import Problem
+from vehgen.fit.resolution import resolve
+from vehgen.fit.space import SearchSpace
+from vehgen.fit.trial import Trial
+from vehgen.simulate import Simulator
+
+Array = NDArray[np.float64]
+NUISANCES = Nuisances(delay=0.05, speed=0.005, height=0.02)
+"""What a run may not know of itself: its clock, 0.5 % of its speed, 2 % of its road's height."""
+BOUND = 0.3
+"""The base may move its parameters by this share of a logarithm about the file's values: looser, it absorbs the effect."""
+HOLD = 0.17
+"""Standard deviation of a base parameter in the unit cube: 0.1 of a logarithm."""
+ROUGH = 1e-4
+RENEW = 5
+"""As in Misfit: saves two thirds of the time."""
+FINE = 1e-6
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted model: the base with `effects`; `train` and `held_out` mean squares of whitened residuals (1 is noise alone).
+
+    `runs` are the mean squares run by run, training runs first; `counts` how many residuals stand behind each; `powers` the mean squares
+    line by line and channel by channel, `shape (n_lines, n_channels)`; `checks` the misfit and nuisances of the untouched runs. `equals`
+    are the unknowns of other minima that do as well, where the response jumps.
+    """
+
+    effects: tuple[Candidate, ...]
+    polished: Polished
+    train: float
+    held_out: float
+    runs: dict[str, float]
+    counts: dict[str, int]
+    powers: dict[str, Array]
+    checks: Polished | None = None
+    equals: tuple[Array, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """Its name in words."""
+        return " and ".join(item.label for item in self.effects) or "base"
+
+    @property
+    def key(self) -> tuple[tuple[str, str], ...]:
+        """Its effects by name and place."""
+        return tuple((item.effect.name, item.place) for item in self.effects)
+
+    @property
+    def last(self) -> Candidate:
+        """The effect added last."""
+        return self.effects[-1]
+
+    @property
+    def free(self) -> int:
+        """How many of the searched parameters are the effects'."""
+        return sum(len(item.parameters) for item in self.effects)
+
+    @property
+    def chi(self) -> float:
+        """Its chi over all runs."""
+        return float(np.sqrt(_pooled(self.runs, self.counts)))
+
+
+@dataclass(frozen=True)
+class Footing:
+    """What candidates are added to: the base or what has been found so far.
+
+    `problem` begins at that fit's parameters, of which the last `free` are the effects'; `shared` are its adjustments, whose neutral
+    numbers are the fitted ones; `unit` and `errors` are where parameters and nuisances begin; `train` is the mean square it leaves.
+    """
+
+    effects: tuple[Candidate, ...]
+    problem: Problem
+    shared: tuple[Adjustment, ...]
+    free: int
+    unit: Array
+    errors: Array
+    train: float
+
+    @classmethod
+    def of(cls, fit: Fit) -> Footing:
+        """Return a fit as what further effects are added to."""
+        misfit = fit.polished.misfit
+        free = fit.free
+        unit, errors = misfit.split(fit.polished.x)
+        numbers = misfit.adjusted(fit.polished.x)
+        shared = tuple(replace(item, neutral=float(value)) for item, value in zip(misfit.shared, numbers, strict=True))
+        space = misfit.problem.space
+        if free:
+            start = np.concatenate([space.start[: space.size - free], fit.polished.values[space.size - free :]])
+            space = replace(space, start=start)
+        return cls(fit.effects, Problem(misfit.problem.trials, space), shared, free, unit, errors.ravel(), fit.train)
+
+
+def narrow(problem: Problem) -> Problem:
+    """Return the problem with its space cut to BOUND about the file's values."""
+    space = problem.space
+    reach = np.maximum(np.abs(space.start) * (np.exp(BOUND) - 1), 0.02 * (space.upper - space.lower))
+    positive = space.lower > 0
+    low = np.where(positive, np.maximum(space.lower, space.start * np.exp(-BOUND)), np.maximum(space.lower, space.start - reach))
+    high = np.where(positive, np.minimum(space.upper, space.start * np.exp(BOUND)), np.minimum(space.upper, space.start + reach))
+    return Problem(problem.trials, SearchSpace(space.names, low, high, space.start))
+
+
+def fit_base(problem: Problem, held_out: Sequence[Trial], noises: Noises, band: tuple[float, float]) -> Fit:
+    """Fit the base model."""
+    problem = resolve(*_begin(problem, noises, band))
+    fit = polish(problem, problem.space.unit(problem.space.start), NUISANCES, band, noises=noises, hold=HOLD, tolerance=FINE, renew=RENEW)
+    return judge((), fit, held_out, noises)
+
+
+def mean_square_as_filed(trials: Sequence[Trial], noises: Noises, band: tuple[float, float]) -> float:
+    """Return the mean square that the model as its file has it leaves: only each run's clock, speed and road height are fitted."""
+    if not trials:
+        return float("nan")
+    problem = resolve(*_begin(Problem(tuple(trials), _nothing()), noises, band))
+    fit = polish(problem, np.zeros(0), NUISANCES, band, noises=noises, tolerance=ROUGH, renew=RENEW)
+    return _pooled(*_by_run(_powers(fit)))
+
+
+def refine(problem: Problem, fit: Polished, x: Array, free: int) -> Polished:
+    """Fit finely from the unknowns `x` of another fit, on a problem with the same unknowns; `free` as in :func:`polish`."""
+    misfit = fit.misfit
+    unit, errors = misfit.split(x)
+    return polish(
+        problem,
+        unit,
+        NUISANCES,
+        misfit.band,
+        noises=misfit.noises,
+        start=errors.ravel(),
+        hold=HOLD,
+        free=free,
+        shared=misfit.shared,
+        numbers=tuple(misfit.adjusted(x)),
+        max_steps=25,
+        tolerance=FINE,
+        renew=RENEW,
+    )
+
+
+def judge(effects: tuple[Candidate, ...], fit: Polished, held_out: Sequence[Trial], noises: Noises) -> Fit:
+    """Simulate a fitted model on untouched runs, of which only the clock, speed and road height are fitted, and the phase of a line."""
+    powers = _powers(fit)
+    runs, counts = _by_run(powers)
+    train = _pooled(runs, counts)
+    later = float("nan")
+    again: Polished | None = None
+    if held_out:
+        problem = fit.misfit.problem
+        fixed = problem.best_values(fit.values)
+        vehicle = problem.trials[0].run.vehicle
+        shared: dict[object, Simulator] = {
+            (id(vehicle), repr(tuple(c.output for c in trial.measurement.channels)), repr(trial.run.forces())): trial.simulator
+            for trial in problem.trials
+        }
+        trials = [retarget(trial, vehicle, shared) for trial in held_out]
+        numbers = fit.misfit.adjusted(fit.x)
+        frozen = Problem(
+            tuple(replace(t, values=t.values | {k: v for k, v in fixed.items() if k not in t.fixed}) for t in trials), _nothing()
+        )
+        frozen_shared = tuple(
+            replace(item, neutral=float(value), scale=0.0) for item, value in zip(fit.misfit.shared, numbers, strict=True)
+        )
+        frozen = resolve(*_begin(frozen, noises, fit.misfit.band, frozen_shared))
+        again = polish(frozen, np.zeros(0), NUISANCES, fit.misfit.band, noises=noises, shared=frozen_shared, tolerance=FINE, renew=RENEW)
+        checked = _powers(again)
+        own, own_counts = _by_run(checked)
+        later = _pooled(own, own_counts)
+        runs, counts, powers = runs | own, counts | own_counts, powers | checked
+    return Fit(effects, fit, train, later, runs, counts, powers, again)
+
+
+def _begin(problem: Problem, noises: Noises, band: tuple[float, float], shared: Sequence[Adjustment] = ()) -> tuple[Misfit, Array]:
+    """Return a problem's misfit and unknowns where its space begins, with neutral adjustments and nuisances."""
+    misfit = Misfit(problem, noises, problem.space.start, NUISANCES, band, shared)
+    unit = problem.space.unit(problem.space.start)
+    return misfit, np.concatenate([unit, np.zeros(misfit.n_unknowns - len(unit))])
+
+
+def _nothing() -> SearchSpace:
+    return SearchSpace((), np.zeros(0), np.zeros(0), np.zeros(0))
+
+
+def _powers(fit: Polished) -> dict[str, Array]:
+    """Return the squares of a fit's whitened lines by run, `shape (n_lines, n_channels)`."""
+    names = [trial.name for trial in fit.misfit.problem.trials]
+    return {name: np.abs(item) ** 2 for name, item in zip(names, fit.misfit.white_lines(fit.x), strict=True)}
+
+
+def _by_run(powers: dict[str, Array]) -> tuple[dict[str, float], dict[str, int]]:
+    return {name: float(item.mean()) for name, item in powers.items()}, {name: 2 * item.size for name, item in powers.items()}
+
+
+def _pooled(runs: dict[str, float], counts: dict[str, int]) -> float:
+    total = sum(counts[name] for name in runs)
+    return sum(runs[name] * counts[name] for name in runs) / total

@@ -1,0 +1,136 @@
+"""One candidate fitted: quickly from many starts, further from the best of them, finely from the one that ends lowest."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.diagnose.fits.candidate import Candidate, pose, starts
+from vehgen.diagnose.fits.model_fit import HOLD, NUISANCES, RENEW, ROUGH, Fit, Footing, judge, refine
+from vehgen.effects import Surveyor
+from vehgen.fit.least_squares import Polished, polish
+from vehgen.fit.misfit import Misfit, Noises
+from vehgen.fit.problem import Problem
+from vehgen.fit.resolution import resolve
+from vehgen.fit.trial import Trial
+from vehgen.simulate import Simulator
+
+Array = NDArray[np.float64]
+Origin = tuple[Array, Array]
+"""Where base parameters, in the unit cube, and the nuisances of runs begin."""
+HOPELESS = 0.5
+"""A candidate that leaves more than this share of the excess after the rough fits is not refined."""
+MOST_STARTS = 8
+"""So many starts are tried, of which KEPT are followed."""
+KEPT = 2
+FEW, MORE = 4, 8
+"""Steps from every start, and from those that are followed."""
+CLOSED = 0.01
+"""Share of the excess at which no other start is needed."""
+
+
+def fit_candidate(
+    candidate: Candidate,
+    footing: Footing,
+    held_out: Sequence[Trial],
+    noises: Noises,
+    band: tuple[float, float],
+    surveyor: Surveyor,
+    simulators: dict[object, Simulator],
+    origins: Sequence[Origin],
+    begin: Sequence[tuple[float, ...]] | None = None,
+) -> Fit | None:
+    """Fit a candidate's effect together with what it is added to.
+
+    Parameters
+    ----------
+    candidate, footing
+        What to add, and to what. A candidate that leaves HOPELESS of the footing's excess after the rough fits is not refined.
+    held_out, noises, band, surveyor, simulators
+        As elsewhere.
+    origins
+        Where the base begins: each is tried with each start of the effect.
+    begin
+        Where the effect's own numbers begin (default: its own starts).
+
+    Returns
+    -------
+    None where the simulation fails at every start.
+    """
+    problem = pose(candidate, footing.problem, surveyor, simulators)
+    rough = _Rough(candidate, footing, problem, noises, band)
+    best = rough.search(origins, begin or list(starts(candidate, surveyor)))
+    if best is None:
+        return None
+    effects = (*footing.effects, candidate)
+    if best.chi2 - 1 > HOPELESS * max(footing.train - 1, 0.0):
+        return judge(effects, best, (), noises)
+    return judge(effects, refine(resolve(best.misfit, best.x), best, best.x, rough.free), held_out, noises)
+
+
+class _Rough:
+    """Rough fits of one candidate."""
+
+    def __init__(self, candidate: Candidate, footing: Footing, problem: Problem, noises: Noises, band: tuple[float, float]) -> None:
+        self.candidate, self.footing, self.problem, self.noises, self.band = candidate, footing, problem, noises, band
+        self.shared = (*footing.shared, *candidate.shared)
+        self.free = footing.free + len(candidate.parameters)
+
+    def search(self, origins: Sequence[Origin], begin: Sequence[tuple[float, ...]]) -> Polished | None:
+        """Return the lowest of the rough fits."""
+        fits: list[Polished] = []
+        for unit, errors, numbers in self._starts(origins, begin)[:MOST_STARTS]:
+            fits.append(self._fit(unit, errors, numbers, FEW))
+            if self._closed(fits[-1]):
+                return fits[-1]
+        fits.sort(key=lambda item: item.loss)
+        followed = []
+        for fit in fits[:KEPT]:
+            unit, errors = fit.misfit.split(fit.x)
+            followed.append(self._fit(unit, errors.ravel(), tuple(fit.misfit.adjusted(fit.x)), MORE))
+            if self._closed(followed[-1]):
+                break
+        return min(followed, key=lambda item: item.loss, default=None)
+
+    def _closed(self, fit: Polished) -> bool:
+        return fit.chi2 - 1 <= CLOSED * max(self.footing.train - 1, 0.0)
+
+    def _fit(self, unit: Array, errors: Array, numbers: tuple[float, ...], steps: int) -> Polished:
+        return polish(
+            self.problem,
+            unit,
+            NUISANCES,
+            self.band,
+            noises=self.noises,
+            start=errors,
+            hold=HOLD,
+            free=self.free,
+            shared=self.shared,
+            numbers=numbers,
+            max_steps=steps,
+            tolerance=ROUGH,
+            renew=RENEW,
+        )
+
+    def _starts(self, origins: Sequence[Origin], begin: Sequence[tuple[float, ...]]) -> list[tuple[Array, Array, tuple[float, ...]]]:
+        """Return the points at which fits may begin, the lowest first: parameters, nuisances, numbers of adjustments."""
+        n, own = len(self.footing.unit), len(self.candidate.parameters)
+        space = self.problem.space
+        misfit = Misfit(self.problem, self.noises, space.start, NUISANCES, self.band, self.shared)
+        neutral = tuple(item.neutral for item in self.footing.shared)
+        ranked = []
+        for base, errors in origins:
+            for combination in begin:
+                point = space.start.copy()
+                if own:
+                    point[n:] = combination[:own]
+                unit = np.concatenate([np.clip(base, 0.01, 0.99), space.unit(point)[n:]])
+                numbers = (*neutral, *combination[: len(self.candidate.shared)])
+                units = [(value - item.neutral) / item.scale for item, value in zip(self.shared, numbers, strict=True)]
+                loss = float((misfit.residuals(np.concatenate([unit, units, errors])) ** 2).sum())
+                if np.isfinite(loss):
+                    ranked.append((loss, unit, errors, numbers))
+        ranked.sort(key=lambda item: item[0])
+        return [(unit, errors, numbers) for _, unit, errors, numbers in ranked]

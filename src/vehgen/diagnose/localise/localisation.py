@@ -1,0 +1,84 @@
+"""Stage 2, localise: where the model errs, and which effects are worth fitting there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from vehgen.diagnose import thresholds as limit
+from vehgen.diagnose.fits.candidate import Candidate
+from vehgen.diagnose.fits.model_fit import Fit
+from vehgen.diagnose.localise.unknown_force import Place, PlaceResult, list_places, test_places
+from vehgen.effects.places import ALL_TYRES
+
+GLOBAL = ("speed_error", "tyre_footprint", "tyre_damping", "tyre_liftoff", "frame_bending", "suspended_cab", "cargo_module", "walking_beam")
+"""Effects that no single place explains, or that reach several: they are tried whatever the place test says."""
+
+ONCE = 1_000_000
+"""The derivatives by nuisances serve for all places: they differ little, and take most of the time."""
+
+
+def localise(fit: Fit) -> tuple[list[PlaceResult], list[PlaceResult]]:
+    """Test every place on what a fit leaves; return all results, best first, and the smallest hypotheses that reach the floor."""
+    misfit = fit.polished.misfit
+    with misfit.quickly(ONCE):
+        results = test_places(misfit, fit.polished.x, list_places(misfit))
+    results.sort(key=lambda item: (item.chi, item.unknowns))
+    nowhere = next(item for item in results if item.place.kind == "none")
+    excess = max(nowhere.chi**2 - 1, 0.0)
+    reached = [item for item in results if item.place.kind != "none" and _reaches(item, excess)]
+    fewest = min((item.unknowns for item in reached), default=0)
+    return results, [item for item in reached if item.unknowns == fewest]
+
+
+def _reaches(item: PlaceResult, excess: float) -> bool:
+    return item.chi <= limit.PLACE_PASSES or item.chi**2 - 1 <= limit.PLACE_SHARE * excess
+
+
+def one_force(passed: Sequence[PlaceResult]) -> bool:
+    """Return whether one unknown force at a single place suffices."""
+    return any(item.place.rows and item.unknowns == 1 for item in passed)
+
+
+def suffices(passed: Sequence[PlaceResult], base: Fit) -> bool:
+    """Return whether one unknown force at a single place leaves noise, so that a second cause is not needed."""
+    least = max(limit.PLACE_PASSES**2 - 1, limit.PLACE_CLEAR * max(base.train - 1, 0.0))
+    return any(item.place.rows and item.unknowns == 1 and item.chi**2 - 1 <= least for item in passed)
+
+
+def shortlist(base: Fit, candidates: Sequence[Candidate], places: Sequence[PlaceResult], passed: Sequence[PlaceResult]) -> list[Candidate]:
+    """Return the candidates worth fitting: those that live at the places left, and those that no single force explains.
+
+    A sensor's effects are tried where leaving out the sensor or one of its channels helps; effects of the whole vehicle, and those at a
+    body's axles and hinges, where one unknown force at one place does not suffice.
+    """
+    if not passed:
+        return list(candidates)
+    names = {owner(item.place) for item in passed if item.place.rows}
+    single = suffices(passed, base)
+    if not single:
+        vehicle = base.polished.misfit.problem.trials[0].run.vehicle
+        names |= {name for name, axle in vehicle.axles.items() if axle.body in names}
+        names |= {name for name, hinge in vehicle.hinges.items() if not names.isdisjoint(hinge.points)}
+    excess = max(base.train - 1, 1e-9)
+    channels = {channel.name: channel.sensor for trial in base.polished.misfit.problem.trials for channel in trial.measurement.channels}
+    silenced = {
+        part for item in places if item.place.channels and _reaches(item, excess) for part in (item.place.name, *item.place.channels)
+    }
+    silenced |= {channels[part] for part in silenced if part in channels}
+    found = []
+    for candidate in candidates:
+        if candidate.effect.attaches == "sensor":
+            wanted = candidate.place in silenced
+        elif candidate.place == ALL_TYRES:
+            wanted = not single or any(item.place.kind == "tyre" for item in passed)
+        else:
+            touches = any(part in names for part in candidate.place.split("+"))
+            wanted = touches or (candidate.effect.name in GLOBAL and not single)
+        if wanted:
+            found.append(candidate)
+    return found
+
+
+def owner(place: Place) -> str:
+    """Return the axle, hinge, link, body or channel that a place is of."""
+    return place.name.partition(" (")[0]

@@ -1,0 +1,98 @@
+"""When an effect counts as found: enough of the gap closed, on untouched runs too, not by chance, and alone in that."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from vehgen.diagnose import thresholds as limit
+from vehgen.diagnose.fits.candidate import Candidate
+from vehgen.diagnose.fits.model_fit import Fit
+from vehgen.diagnose.select.estimates import p_value
+from vehgen.diagnose.select.search import Round, own_numbers
+from vehgen.effects.places import ALL_TYRES
+
+
+def excess(mean_square: float) -> float:
+    """Return how far a mean square of whitened residuals is above the noise; infinite where it is not a number."""
+    return max(mean_square - 1.0, 0.0) if np.isfinite(mean_square) else np.inf
+
+
+def passes(fit: Fit, base: Fit) -> bool:
+    """Return whether a fit closes the gap of the base, on the training runs and on untouched ones, however small the gap is."""
+    return excess(fit.train) <= limit.AT_LEAST * excess(base.train) and all(
+        after <= limit.LAW_PASSES * max(before, 1e-9) or after <= limit.LAW_CHI**2 - 1
+        for after, before in ((excess(fit.train), excess(base.train)), (excess(fit.held_out), excess(base.held_out)))
+    )
+
+
+def chance(found: Round, fit: Fit, tried: int) -> float:
+    """Return the p-value of a fit's last effect, times the number of candidates that could have been tried."""
+    return min(1.0, tried * p_value(found.footing, fit, own_numbers(fit)))
+
+
+def tied(found: Round, best: Fit) -> list[Fit]:
+    """Return the fits of a round that do as well as the best within the slack of TIE."""
+    floor = limit.NOISE_FLOOR**2 - 1
+    before = excess(found.footing.train)
+    near = max(0.02 * before, 0.5 * floor)
+    return [
+        item
+        for item in found.fits
+        if item.key != best.key
+        and not _same(item.last, best.last)
+        and item.train - best.train <= near
+        and item.train - 1 <= limit.TIE * max(best.train - 1, 0.25 * floor)
+    ]
+
+
+def _same(one: Candidate, other: Candidate) -> bool:
+    """Return whether two candidates are one effect of which the one holds for all tyres: they hold the one axle that matters."""
+    return one.effect.name == other.effect.name and ALL_TYRES in (one.place, other.place)
+
+
+def unfinished(fit: Fit, base: Fit) -> bool:
+    """Return whether a fit leaves enough to look for a further effect: more than noise, and more than a law's form may be wrong by."""
+    return any(
+        after > max(limit.AGAIN**2 - 1, limit.FORM * before)
+        for after, before in ((excess(fit.train), excess(base.train)), (excess(fit.held_out), excess(base.held_out)))
+    )
+
+
+def adds(found: Round, fit: Fit) -> bool:
+    """Return whether a further effect is needed and enough.
+
+    It leaves FURTHER of what was left, or noise, on untouched runs too. At the place of an effect found before it must leave noise and
+    attach to another part (a tyre, a suspension): two laws of one suspension can imitate a third. One with which more than CROWD others
+    tie says nothing.
+    """
+    if len(tied(found, fit)) > limit.CROWD:
+        return False
+    before = (excess(found.footing.train), excess(found.footing.held_out))
+    after = (excess(fit.train), excess(fit.held_out))
+    floor = limit.NOISE_FLOOR**2 - 1
+    noise = all(item <= floor and item <= limit.AT_LEAST * old for item, old in zip(after, before, strict=True))
+    neighbours = [item.effect.attaches for item in found.footing.effects if item.place == fit.last.place]
+    if neighbours:
+        return noise and fit.last.effect.attaches not in neighbours
+    return noise or all(item <= limit.FURTHER * max(old, 1e-9) for item, old in zip(after, before, strict=True))
+
+
+def seeds(found: Round) -> list[Fit]:
+    """Return the fits of a round that explain part of the gap, at different places: first effects of pairs."""
+    before = excess(found.footing.train)
+    chosen: list[Fit] = []
+    for fit in found.fits:
+        if excess(fit.train) <= limit.PARTLY * before and all(fit.last.place != item.last.place for item in chosen):
+            chosen.append(fit)
+        if len(chosen) == limit.SEEDS:
+            break
+    return chosen
+
+
+def needs_both(pair: Fit, fits: Sequence[Fit]) -> bool:
+    """Return whether the second effect of a pair alone leaves TIE times the pair's excess or more."""
+    alone = [item for item in fits if item.key == pair.key[-1:]]
+    least = max(excess(pair.train), limit.NOISE_FLOOR**2 - 1)
+    return all(excess(item.train) >= limit.TIE * least for item in alone)

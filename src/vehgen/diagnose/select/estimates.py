@@ -1,0 +1,253 @@
+"""How large an effect is and how sure: intervals, gains on untouched runs, and whether every run asks for the same numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.stats
+from numpy.typing import NDArray
+
+from vehgen.diagnose import thresholds as limit
+from vehgen.diagnose.fits.candidate import Candidate
+from vehgen.diagnose.fits.model_fit import Fit
+from vehgen.diagnose.verdict import NamedParameter
+from vehgen.effects import EffectParameter
+from vehgen.fit.harmonic import Harmonic
+from vehgen.fit.misfit import Misfit, flatten
+from vehgen.fit.noise import taper
+
+Array = NDArray[np.float64]
+NINETY = 1.645
+"""Half width of a 90 % interval in standard deviations."""
+BASE_PRIOR = 0.5
+"""Standard deviation of the prior of a base parameter in the unit cube, three times that of the fit, as files may be wrong throughout.
+
+Accelerations tell masses, stiffnesses and forces in proportion only; how large they are then rests on the file.
+"""
+WEAK_PRIOR = 6.0
+"""Standard deviation of the prior of an effect's parameter in the unit cube."""
+TOLD = 0.05
+"""Runs tell of a parameter that moves them by more than this share of what it moves all runs."""
+SAME_WITHIN = 0.3
+"""Runs that differ by less than this share of the value ask for the same number, however sure each is."""
+BLOCK = 10
+"""Spectral lines in a block of the bootstrap."""
+
+
+@dataclass(frozen=True)
+class RunEstimate:
+    """What one run alone asks of an effect's parameter: its value and 90 % half width, in the parameter's unit."""
+
+    run: str
+    parameter: str
+    value: float
+    half_width: float
+
+
+def estimate(fit: Fit, candidate: Candidate | None = None) -> dict[str, NamedParameter]:
+    """Return an effect's own parameters (default: of the effect added last) with 90 % intervals.
+
+    Three parts add up in quadrature: noise, from the Fisher information of the fit, widened by the root of its mean square; what the runs
+    ask for beyond it (:func:`disagreement`); and the scatter of other minima that do as well. A line's amplitude is the median over the
+    runs, its interval their spread and that of the body's parameters.
+    """
+    candidate = candidate or fit.last
+    misfit, x = fit.polished.misfit, fit.polished.x
+    covariance = np.asarray(
+        np.linalg.pinv(_normal(misfit, x, fit.free)[1], hermitian=True) * max(fit.train, 1.0) / _seen(misfit), dtype=np.float64
+    )
+    alone = estimates_by_run(fit, candidate)
+    found: dict[str, NamedParameter] = {}
+    for parameter, column, value, scale in _columns(fit, candidate):
+        noise = NINETY * abs(scale) * float(np.sqrt(max(covariance[column, column], 0.0)))
+        minima = NINETY * abs(scale) * float(np.std([own[column] for own in fit.equals], ddof=1)) if len(fit.equals) > 1 else 0.0
+        spread = float(np.hypot(np.hypot(noise, minima), disagreement([item for item in alone if item.parameter == parameter.name])))
+        interval = (value - spread, value + spread) if spread > 0 else None
+        found[parameter.name] = NamedParameter(value, interval, parameter.unit)
+    if candidate.effect.adjusts == "harmonic":
+        found["amplitude"] = _amplitude(fit, candidate, covariance)
+    return found
+
+
+def disagreement(alone: Sequence[RunEstimate]) -> float:
+    """Return the half width of the 90 % interval of what one more run would ask for, without its noise.
+
+    Where the library's law has not quite the form of the real one, runs ask for different numbers, each of them sure. Their variance
+    beyond their own errors is that of DerSimonian and Laird (1986, doi:10.1016/0197-2456(86)90046-2), the interval the prediction interval
+    of Higgins, Thompson and Spiegelhalter (2009, doi:10.1111/j.1467-985X.2008.00552.x), here with Student's t of one degree of freedom less
+    than runs (there of two).
+    """
+    sure = [item for item in alone if item.half_width > 0]
+    if len(sure) < 2:
+        return 0.0
+    values = np.array([item.value for item in sure])
+    weights = (NINETY / np.array([item.half_width for item in sure])) ** 2
+    excess = float(weights @ (values - weights @ values / weights.sum()) ** 2) - (len(sure) - 1)
+    share = float(weights.sum() - (weights**2).sum() / weights.sum())
+    variance = excess / share if share > 0 else 0.0
+    return float(scipy.stats.t.ppf(0.95, len(sure) - 1) * np.sqrt(max(variance, 0.0) * (1 + 1 / len(sure))))
+
+
+def _normal(misfit: Misfit, x: Array, free: int) -> tuple[dict[int, Array], Array]:
+    """Return the Jacobians of trials `shape (n_residuals, n_unknowns)` by number, and the information they and the priors add up to.
+
+    The last `free` parameters are the effects'. Trials whose response jumps are left out where the others tell of all effects: what
+    jumps across a difference quotient is no derivative.
+    """
+    trials = misfit.problem.trials
+    n, known = misfit.n_parameters, misfit.n_parameters + len(misfit.shared)
+    jacobians = {i: flatten(slopes, first=1).T for i, slopes in enumerate(misfit.white_derivatives(x))}
+    smooth = {i: jacobian for i, jacobian in jacobians.items() if not trials[i].jumps}
+    asked = slice(n - free, known)
+    whole, part = (_moved(items.values(), misfit.n_unknowns)[asked] for items in (jacobians, smooth))
+    if smooth and np.all(part > TOLD * whole):
+        jacobians = smooth
+    prior = np.concatenate(
+        [np.full(n - free, BASE_PRIOR**-2), np.full(free, WEAK_PRIOR**-2), np.zeros(known - n), np.ones(misfit.n_unknowns - known)]
+    )
+    return jacobians, np.diag(prior) + sum(item.T @ item for item in jacobians.values())
+
+
+def _moved(jacobians: Iterable[Array], n_unknowns: int) -> Array:
+    """Return by how much each unknown moves the residuals of some trials, `shape (n_unknowns,)`."""
+    return np.sqrt(sum(((item**2).sum(axis=0) for item in jacobians), np.zeros(n_unknowns)))
+
+
+def _seen(misfit: Misfit) -> float:
+    """Return the share of the records that their tapers let through: neighbouring lines of tapered records are not independent."""
+    return float(np.mean([np.mean(taper(len(trial.measurement.time), trial.measurement.dt) ** 2) for trial in misfit.problem.trials]))
+
+
+def _columns(fit: Fit, candidate: Candidate) -> list[tuple[EffectParameter, int, float, float]]:
+    """Return an effect's parameters with their column among the unknowns, their value and their unit per unit of the unknown."""
+    misfit, x = fit.polished.misfit, fit.polished.x
+    space = misfit.problem.space
+    slopes = space.slopes(space.values(misfit.split(x)[0]))
+    found = []
+    for parameter, symbol in zip(candidate.effect.parameters, candidate.parameters, strict=False):
+        column = space.names.index(symbol)
+        found.append((parameter, column, float(fit.polished.values[column]), float(slopes[column])))
+    places = [item.place for item in misfit.shared]
+    for parameter, item in zip(candidate.effect.parameters, candidate.shared, strict=False):
+        i = next(i for i, own in enumerate(misfit.shared) if type(own) is type(item) and places[i] == item.place)
+        found.append((parameter, misfit.n_parameters + i, float(misfit.adjusted(x)[i]), item.scale))
+    return found
+
+
+def _amplitude(fit: Fit, candidate: Candidate, covariance: Array) -> NamedParameter:
+    misfit, x = fit.polished.misfit, fit.polished.x
+    i = next(i for i, own in enumerate(misfit.shared) if isinstance(own, Harmonic) and own.place == candidate.place)
+    line = misfit.shared[i]
+    assert isinstance(line, Harmonic)
+    numbers = misfit.adjusted(x)[i:]
+    unit, errors = misfit.split(x)
+
+    def middle(at: Array) -> float:
+        values = misfit.problem.space.values(at)
+        found = []
+        for trial, error in zip(misfit.problem.trials, errors, strict=True):
+            without = misfit.problem.respond(values[None], trial, misfit.nuisances.adjust(trial.scenario, error))[0][0]
+            found.append(line.amplitude(trial, without, numbers, misfit.problem.values_of(values, trial)))
+        spreads.append(float(np.std(found)) / np.sqrt(len(found)))
+        return float(np.median(found))
+
+    spreads: list[float] = []
+    value = middle(unit)
+    scatter = spreads[0]
+    step = 1e-3
+    gradient = np.array([(middle(unit + step * row) - value) / step for row in np.eye(len(unit))])
+    n = len(unit)
+    spread = float(np.sqrt(max(gradient @ covariance[:n, :n] @ gradient, 0.0) + scatter**2))
+    return NamedParameter(value, (value - NINETY * spread, value + NINETY * spread), candidate.effect.parameters[2].unit)
+
+
+def estimates_by_run(fit: Fit, candidate: Candidate | None = None) -> list[RunEstimate]:
+    """Return what every training run alone asks of an effect's parameters: one Gauss-Newton step from the joint fit.
+
+    The base parameters are held by what the other runs say of them, whatever the effect is; the effect's are free. Runs whose response
+    jumps are left out, as they are in :func:`estimate`.
+    """
+    candidate = candidate or fit.last
+    misfit, x = fit.polished.misfit, fit.polished.x
+    columns = _columns(fit, candidate)
+    own = [column for _, column, _, _ in columns]
+    lines = misfit.white_lines(x)
+    jacobians, whole = _normal(misfit, x, fit.free)
+    pulls = {t: jacobian.T @ flatten(lines[t]) for t, jacobian in jacobians.items()}
+    blocks = misfit.n_parameters + len(misfit.shared)
+    gradient = np.concatenate([np.zeros(blocks), x[blocks:]]) + sum(pulls.values())
+    each, seen = len(misfit.nuisances.names), _seen(misfit)
+    found = []
+    for t, jacobian in jacobians.items():
+        trial, slope = misfit.problem.trials[t], pulls[t]
+        information = jacobian.T @ jacobian
+        own_block = np.arange(blocks + t * each, blocks + (t + 1) * each)
+        kept = np.array([i for i in range(blocks) if i not in own] + list(own_block))
+        dropped = np.setdiff1d(np.arange(len(whole)), kept)
+        rest, pull = whole - information, gradient - slope
+        through = rest[np.ix_(kept, dropped)] @ np.linalg.pinv(rest[np.ix_(dropped, dropped)], hermitian=True)
+        asked = np.concatenate([kept, own]).astype(int)
+        normal, force = information[np.ix_(asked, asked)].copy(), slope[asked].copy()
+        n = len(kept)
+        normal[:n, :n] += rest[np.ix_(kept, kept)] - through @ rest[np.ix_(dropped, kept)]
+        force[:n] += pull[kept] - through @ pull[dropped]
+        normal[n:, n:] += np.eye(len(own)) / WEAK_PRIOR**2
+        covariance = np.linalg.pinv(normal, hermitian=True)
+        step = -covariance @ force
+        for k, (parameter, _, value, scale) in enumerate(columns):
+            half = NINETY * abs(scale) * float(np.sqrt(max(covariance[n + k, n + k], 0.0) * max(fit.runs[trial.name], 1.0) / seen))
+            found.append(RunEstimate(trial.name, parameter.name, value + scale * float(step[n + k]), half))
+    return found
+
+
+def unstable(fit: Fit, candidate: Candidate | None = None) -> list[str]:
+    """Return the parameters on which runs disagree: beyond three standard deviations and beyond SAME_WITHIN of the value."""
+    joint, alone = estimate(fit, candidate), estimates_by_run(fit, candidate)
+    told = []
+    for name, item in joint.items():
+        for own in alone:
+            apart = abs(own.value - item.value)
+            if own.parameter == name and apart > 3 * own.half_width / NINETY and apart > SAME_WITHIN * abs(item.value):
+                told.append(f"{name} is {item.value:.4g} {item.unit}".rstrip() + f" in all runs, {own.value:.4g} in {own.run} alone")
+                break
+    return told
+
+
+def held_out_gain(base: Fit, fit: Fit) -> float | None:
+    """Return the share of the excess on untouched runs that a fit closes; None where those runs show no gap, or were not simulated."""
+    if not (np.isfinite(fit.held_out) and base.held_out > limit.NOISE_FLOOR**2):
+        return None
+    return float(1 - max(fit.held_out - 1, 0.0) / (base.held_out - 1))
+
+
+def gain_interval(base: Fit, fit: Fit, untouched: Sequence[str], draws: int = 400, seed: int = 7) -> tuple[float, float] | None:
+    """Return the 90 % interval of :func:`held_out_gain`, by a bootstrap over blocks of spectral lines; None where that is None.
+
+    Blocks of BLOCK neighbouring lines of all channels are drawn with replacement (Kuensch 1989, doi:10.1214/aos/1176347265).
+    """
+    if held_out_gain(base, fit) is None:
+        return None
+    parts = []
+    for name in untouched:
+        before, after = base.powers[name], fit.powers[name]
+        for lines in np.array_split(np.arange(len(before)), max(1, len(before) // BLOCK)):
+            parts.append((before[lines].sum(), after[lines].sum(), before[lines].size))
+    blocks = np.array(parts)
+    random = np.random.Generator(np.random.PCG64(seed))
+    old, new, count = blocks[random.integers(len(blocks), size=(draws, len(blocks)))].sum(axis=1).T
+    least = 0.1 * (base.held_out - 1)  # a draw may miss the lines that hold the gap
+    shares = 1 - np.maximum(new / count - 1, 0.0) / np.maximum(old / count - 1, least)
+    low, high = np.percentile(shares, [5, 95])
+    return float(low), float(high)
+
+
+def p_value(base: Fit, other: Fit, extra: int) -> float:
+    """Return the probability of such a gain on the training runs by chance: likelihood ratio, chi-squared with `extra` freedoms.
+
+    The gain counts in units of what the better model leaves, so that a gap that neither explains lends no significance.
+    """
+    names = [trial.name for trial in base.polished.misfit.problem.trials]
+    gain = sum((base.runs[name] - other.runs[name]) * base.counts[name] for name in names) / max(other.train, 1.0)
+    return float(scipy.stats.chi2.sf(max(gain, 0.0), max(extra, 1)))

@@ -1,0 +1,97 @@
+"""Would any law do? Random laws at the winner's place, with as many numbers as it has, that no physics stands behind.
+
+A decoy is a sum of k random smooth functions of the place's travel d and rate v, sin(a d/sd + b v/sv + c) with normal a, b and uniform c,
+whose k factors are least squares, with all that the base parameters and nuisances can do besides. Where one of many decoys does as well as
+the named effect, the data do not ask for that effect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.diagnose.detect.detection import Detection
+from vehgen.diagnose.fits.model_fit import Fit
+from vehgen.diagnose.fits.projection import Projection
+from vehgen.diagnose.localise.recovered_force import recover
+from vehgen.diagnose.localise.unknown_force import PlaceResult
+from vehgen.diagnose.select.search import Round
+from vehgen.fit.misfit import flatten
+from vehgen.fit.noise import transform
+from vehgen.simulate.frequency import force_response
+
+Array = NDArray[np.float64]
+COUNT = 40
+SEED = 20240
+
+
+def decoy_shares(
+    base: Fit, place: PlaceResult, motion: Mapping[str, tuple[Array, Array]], numbers: int, count: int = COUNT, seed: int = SEED
+) -> Array:
+    """Return the share of the base's excess on the training runs that each of `count` decoys closes, `shape (count,)`.
+
+    Parameters
+    ----------
+    base
+        The fit that the effect was added to.
+    place
+        Where the effect acts, with the base parameters that the place test found.
+    motion
+        Travel [m] and rate [m/s] of the place by training run, each `shape (n,)`.
+    numbers
+        How many numbers a decoy may fit.
+    """
+    misfit = base.polished.misfit
+    projection = Projection.of(misfit, place.x)
+    left, size = projection.left, projection.size
+    scales = [float(np.sqrt(np.mean(np.concatenate([item[i] for item in motion.values()]) ** 2))) for i in (0, 1)]
+    responses = _responses(base, place)
+    random = np.random.Generator(np.random.PCG64(seed))
+    excess = max(float(left @ left) / size - 1, 1e-9)
+    found = []
+    for _ in range(count):
+        columns = []
+        for slope, rate, phase in zip(
+            random.normal(size=numbers), random.normal(size=numbers), random.uniform(0, 2 * np.pi, numbers), strict=True
+        ):
+            parts = []
+            for t, trial in enumerate(misfit.problem.trials):
+                d, v = motion[trial.name]
+                force = np.sin(slope * d / scales[0] + rate * v / scales[1] + phase) - np.sin(phase)
+                frequency = np.fft.rfftfreq(len(d), trial.measurement.dt)
+                inside = (frequency >= misfit.band[0]) & (frequency <= misfit.band[1])
+                lines = transform(force[:, None], trial.measurement.dt, inside) * responses[t]
+                parts.append(flatten(misfit.whiten(t, lines)))
+            columns.append(np.concatenate(parts))
+        own = projection.free(np.array(columns).T)
+        remaining = left - own @ np.linalg.lstsq(own, left, rcond=None)[0]
+        found.append(1 - max(float(remaining @ remaining) / size - 1, 0.0) / excess)
+    return np.array(found)
+
+
+def _responses(base: Fit, place: PlaceResult) -> list[NDArray[np.complex128]]:
+    misfit = base.polished.misfit
+    values = misfit.problem.space.values(misfit.split(place.x)[0])
+    known = [misfit.problem.values_of(values, trial) for trial in misfit.problem.trials]
+    return [
+        force_response(trial.simulator.model, known[t], place.place.rows[:1], misfit.frequency(t))[:, :, 0]
+        for t, trial in enumerate(misfit.problem.trials)
+    ]
+
+
+def compare(found: Round, fit: Fit, detection: Detection) -> tuple[float, float] | None:
+    """Return the shares of the excess on the training runs that an effect and the best decoy close.
+
+    None where the effect is no law at the place that the place test found with one force.
+    """
+    forces = [item for item in found.passed if item.unknowns == 1 and item.place.kind != "body" and item.place.rows]
+    here = [item for item in forces if item.place.name == fit.last.place]
+    place = next((item for item in here if item.place.kind == fit.last.effect.attaches), here[0] if here else None)
+    if place is None or fit.last.effect.edit is None:
+        return None
+    motion = {run.run: (run.travel, run.rate) for run in recover(detection, place) if not run.untouched}
+    shares = decoy_shares(found.footing, place, motion, max(len(fit.last.parameters), 1))
+    before = max(found.footing.train - 1, 1e-9)
+    return 1 - max(fit.train - 1, 0.0) / before, float(shares.max())

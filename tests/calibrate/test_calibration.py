@@ -1,0 +1,209 @@
+"""Calibration of a sedan against recordings made by other means."""
+
+import numpy as np
+import pytest
+
+from tests.fit.recordings import sedan_truth, write_run
+from vehgen.calibrate.calibration import Settings, calibrate
+from vehgen.calibrate.genetic import GeneticSearch
+from vehgen.calibrate.identifiability import find_structure
+from vehgen.calibrate.intervals import Uncertainty
+from vehgen.calibrate.methods import plan
+from vehgen.calibrate.objective import PsdObjective
+from vehgen.calibrate.summary import conclude
+from vehgen.errors import InputError
+from vehgen.fit.least_squares import polish
+from vehgen.fit.prior_data import load_facts
+from vehgen.fit.problem import make_problem
+from vehgen.fit.trial import load_trials
+
+TRUTH = sedan_truth()
+
+
+@pytest.fixture(scope="module")
+def problem(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("runs")
+    return make_problem(load_trials([write_run(folder, "slow", TRUTH, 1.5), write_run(folder, "fast", TRUTH, 2.5, seed=1)]))
+
+
+def small(method="joint", **more):
+    return Settings(method=method, search=GeneticSearch(2, 30, 20), starts=2, **more)
+
+
+def truth_of(problem):
+    return np.array([TRUTH[name] for name in problem.space.names])
+
+
+def test_the_objective_is_equation_5(problem):
+    values = truth_of(problem)
+    terms = PsdObjective(problem, (0.3, 40.0)).terms(values[None])[0]
+    trial = problem.trials[0]
+    simulated = problem.respond(values[None], trial)[0][0][:, 0]
+    n, dt = len(simulated), trial.measurement.dt
+    power = [np.abs(np.fft.rfft(item)) ** 2 for item in (simulated, trial.measurement.values[:, 0])]
+    f = np.fft.rfftfreq(n, dt)
+    inside = (f >= 0.3) & (f <= 40.0)
+    assert terms[0] == pytest.approx(np.abs(power[0] - power[1])[inside].sum() / power[1][inside].sum(), rel=1e-9)
+    assert (terms < 0.02).all()
+
+
+def test_an_individual_that_cannot_be_simulated_has_an_infinite_objective(problem):
+    values = np.vstack([truth_of(problem)] * 2)
+    values[0, 0] = np.nan
+    found = PsdObjective(problem).terms(values).sum(axis=1)
+    assert np.isinf(found[0])
+    assert np.isfinite(found[1])
+
+
+def test_a_joint_fit_finds_the_truth_within_its_intervals(problem):
+    found = calibrate(problem, small())
+    outcome = conclude(found, combinations=("kf/mf",))
+    assert found.array == pytest.approx(truth_of(problem), rel=0.02)
+    covered = [item.estimate.covers(TRUTH[item.estimate.name]) for item in outcome.parameters]
+    assert np.mean(covered) >= 0.7
+    assert all(item.status == "identified" for item in outcome.parameters)
+    assert outcome.combinations[-1].value == pytest.approx(TRUTH["kf"] / TRUTH["mf"], rel=0.02)
+    assert found.steps[0].fits[0].chi2 == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize(("method", "sensors"), [("shcm", ("F",)), ("dhcm", ("F", "R"))])
+def test_the_papers_methods_find_the_truth_too(problem, method, sensors):
+    found = calibrate(problem, small(method, sensors=sensors))
+    assert found.array == pytest.approx(truth_of(problem), rel=0.05)
+    assert len(found.steps) == (2 if method == "dhcm" else 1)
+
+
+def test_dhcm_keeps_the_first_axle_from_the_first_sensor(problem):
+    first, second = plan(problem, "dhcm")
+    assert first.sensors == ("F",)
+    assert first.kept == ("mf", "IZ", "kf", "cf", "ktf")
+    assert second.searched == ("Lf", "mr", "kr", "cr", "ktr")
+
+
+@pytest.mark.parametrize(
+    ("method", "sensors", "frozen", "said"),
+    [
+        ("shmc", (), (), "did you mean 'shcm'"),
+        ("shcm", (), (), "uses one sensor"),
+        ("dhcm", ("F",), (), "uses two sensors"),
+        ("joint", ("G",), (), "no run has a sensor 'G'"),
+        ("dhcm", (), ("mH",), "'mH' is not searched"),
+    ],
+)
+def test_plans_that_cannot_work_are_refused(problem, method, sensors, frozen, said):
+    with pytest.raises(InputError, match=said):
+        plan(problem, method, sensors, frozen)
+
+
+def test_the_same_seed_gives_the_same_result_bit_for_bit(problem):
+    first, second = (calibrate(problem, small(polish=False)) for _ in range(2))
+    assert first.values == second.values
+    assert first.values != calibrate(problem, small(polish=False, seed=2)).values
+
+
+def test_a_stopped_search_is_resumed_bit_for_bit(problem, tmp_path):
+    whole = calibrate(problem, small("dhcm", polish=False))
+    path = tmp_path / "search.json"
+
+    def stop(label, done, total, best):
+        if label == "sensor R" and done == 13:
+            raise KeyboardInterrupt
+
+    part = calibrate(problem, small("dhcm", polish=False), progress=stop, checkpoint=path)
+    assert part.stopped
+    assert set(part.values) == set(whole.values)
+    again = calibrate(problem, small("dhcm", polish=False), checkpoint=path, resume=True)
+    assert again.values == whole.values
+    with pytest.raises(InputError, match="another calibration"):
+        calibrate(problem, small("dhcm", polish=False, seed=9), checkpoint=path, resume=True)
+    path.write_text("{", encoding="utf-8")
+    with pytest.raises(InputError, match="not a checkpoint"):
+        calibrate(problem, small(), checkpoint=path, resume=True)
+
+
+def test_a_wrong_clock_and_speed_are_found_along_the_way(tmp_path):
+    path = write_run(tmp_path, "late", TRUTH, 2.5)
+    rows = np.loadtxt(tmp_path / "late.csv", delimiter=",", skiprows=1)
+    rows[:, 0] += 0.13
+    np.savetxt(tmp_path / "late.csv", rows, delimiter=",", header="t,F_az,F_q,R_az,R_q", comments="")
+    path.write_text(path.read_text(encoding="utf-8").replace("speed: 2.5", "speed: 2.53"), encoding="utf-8")
+    problem = make_problem(load_trials([path]))
+    fit = polish(problem, problem.space.unit(truth_of(problem) * 1.05))
+    delay, speed = fit.misfit.split(fit.x)[1][0] * (0.2, 0.01)
+    # the hump lies 4 m ahead at the file's speed
+    assert delay + 4 / 2.53 / (1 + speed) == pytest.approx(0.13 + 4 / 2.5, abs=2e-3)
+    assert 2.53 * (1 + speed) == pytest.approx(2.5, rel=2e-3)
+    assert fit.values == pytest.approx(truth_of(problem), rel=0.05)
+
+
+def test_fisher_intervals_agree_with_a_bootstrap(problem):
+    found = calibrate(problem, Settings(search=GeneticSearch(1, 10, 0), starts=2))
+    outcome = conclude(found, replicates=60)
+    widths = [
+        ((b.high - b.low) / (hz.high - hz.low)) for b, (hz, _) in zip(outcome.bootstrap[-len(outcome.modes) :], outcome.modes, strict=True)
+    ]
+    assert 0.75 < np.median(widths) < 1.3
+
+
+def test_intervals_cover_the_truth_over_a_rough_road(tmp_path):
+    covered = []
+    for seed in range(6):
+        runs = [write_run(tmp_path, f"r{seed}{speed}", TRUTH, speed, seed=10 * seed + int(speed), rough=4e-4) for speed in (1.5, 2.5)]
+        problem = make_problem(load_trials(runs))
+        fit = polish(problem, problem.space.unit(problem.space.start))
+        known = Uncertainty(fit, find_structure(problem, fit.values))
+        covered += [item.covers(TRUTH[item.name]) for item in known.parameters()]
+    assert 0.75 <= np.mean(covered) <= 1.0
+
+
+def test_the_vehicle_file_that_comes_out_is_read_back_exactly(problem, tmp_path):
+    from vehgen.vehicle import load_vehicle
+
+    outcome = conclude(calibrate(problem, small(polish=False)))
+    path = tmp_path / "sedan2_calibrated.yaml"
+    path.write_text(outcome.vehicle_text(tmp_path, "sedan2_calibrated"), encoding="utf-8")
+    values = load_vehicle(path).values()
+    assert {name: values[name] for name in outcome.calibration.values} == outcome.calibration.values
+    assert load_vehicle(path).ranges() == problem.trials[0].run.vehicle.ranges()
+
+
+def test_facts_enter_the_fit(problem, tmp_path):
+    path = tmp_path / "facts.yaml"
+    path.write_text("parameters: {mf: {value: 95 kg, uncertainty: 1 mg}}\n".replace("1 mg", "1 g"), encoding="utf-8")
+    facts = load_facts(path, problem)
+    fit = polish(problem, problem.space.unit(problem.space.start), facts=facts)
+    assert fit.values[problem.space.names.index("mf")] == pytest.approx(95.0, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("parameters: {mq: {value: 95 kg, uncertainty: 1 g}}", "no parameter 'mq'"),
+        ("parameters: {mf: {value: 95 m, uncertainty: 1 g}}", "mf is in kg"),
+        ("parameters: {mf: {value: 95 kg, uncertainty: 0 kg}}", "above 0"),
+        ("axle_weights: {middle: {value: 9 kN, uncertainty: 1 kN}}", "no axle 'middle'"),
+        ("uncoupled: {boddy: {front: {value: 9 kN, uncertainty: 1 kN}}}", "no body 'boddy'"),
+        ("{}", "no fact"),
+    ],
+)
+def test_facts_that_do_not_fit_are_refused(problem, tmp_path, text, said):
+    path = tmp_path / "facts.yaml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=said):
+        load_facts(path, problem)
+
+
+def test_axle_weights_are_those_of_a_lever(problem, tmp_path):
+    path = tmp_path / "facts.yaml"
+    path.write_text("axle_weights: {front: {value: 1 kN, uncertainty: 1 kN}}", encoding="utf-8")
+    residual = load_facts(path, problem).residuals(problem.space.start)[0]
+    start = dict(zip(problem.space.names, problem.space.start, strict=True))
+    load = 9.81 * (1500.0 * (2.8 - start["Lf"]) / 2.8 + start["mf"])
+    assert residual == pytest.approx(load / 1000 - 1, rel=1e-9)
+
+
+def test_a_recording_that_ends_before_the_hump_is_refused(tmp_path):
+    path = write_run(tmp_path, "short", TRUTH, 2.5)
+    path.write_text(path.read_text(encoding="utf-8").replace("at: 4 m", "at: 30 m"), encoding="utf-8")
+    with pytest.raises(InputError, match=r"ends after .* before the last axle"):
+        load_trials([path])
