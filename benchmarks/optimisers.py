@@ -29,8 +29,8 @@ from vehgen.calibrate.objective import PsdObjective
 from vehgen.fit.least_squares import polish
 from vehgen.fit.problem import Problem, make_problem
 from vehgen.fit.trial import load_trials
-from vehgen.report.files import save_figure
-from vehgen.report.response_plot import COLOURS, STYLES
+from vehgen.report.figure_files import save_figure
+from vehgen.report.plots.response_plot import COLOURS, STYLES
 
 Array = np.ndarray
 BUDGETS = (9_000, 90_000)

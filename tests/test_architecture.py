@@ -3,7 +3,7 @@
 import importlib.util
 from pathlib import Path
 
-SCRIPT = Path(__file__).parents[1] / "docs" / "make_architecture.py"
+SCRIPT = Path(__file__).parents[1] / "docs" / "generate" / "architecture.py"
 
 
 def load():

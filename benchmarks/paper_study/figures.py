@@ -16,9 +16,9 @@ from benchmarks.paper_study.recordings import RIGS, Rig
 from benchmarks.paper_study.roads import LEVELS
 from benchmarks.paper_study.sensitivity import HIGHEST, KINDS, PLACES, TITLES, Sensitivities
 from vehgen.measure import SPECTRA
-from vehgen.report.comparison import MEASURED
-from vehgen.report.files import save_figure
-from vehgen.report.response_plot import COLOURS, STYLES
+from vehgen.report.figure_files import save_figure
+from vehgen.report.plots.comparison import MEASURED
+from vehgen.report.plots.response_plot import COLOURS, STYLES
 
 INK, GRID = "#1b2733", "#e3e7ea"
 MODELS = (*COLOURS, "#c2185b")

@@ -12,8 +12,8 @@ from vehgen.diagnose.localise.recovered_force import Recovered, strongest
 from vehgen.diagnose.localise.unknown_force import Place, list_places
 from vehgen.diagnose.pipeline import detect
 from vehgen.fit.trial import load_trials
-from vehgen.report.files import figure_svg
-from vehgen.report.force_plots import plot_force
+from vehgen.report.figure_files import figure_svg
+from vehgen.report.plots.force_plots import plot_force
 
 K3 = 1e8
 CASE = Case(

@@ -29,7 +29,7 @@ def test_every_bundled_vehicle_is_drawn():
 
 
 def test_force_laws_page_is_up_to_date():
-    specification = importlib.util.spec_from_file_location("make_force_laws_page", ROOT / "docs" / "make_force_laws_page.py")
+    specification = importlib.util.spec_from_file_location("make_force_laws_page", ROOT / "docs" / "generate" / "force_laws_page.py")
     module = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(module)
     assert module.PAGE.read_text(encoding="utf-8") == module.page()

@@ -119,7 +119,7 @@ def test_a_stiff_frame_is_a_rigid_one():
 
 
 def test_the_page_shows_the_library_as_it_is():
-    spec = importlib.util.spec_from_file_location("make_effects_page", DOCS / "make_effects_page.py")
+    spec = importlib.util.spec_from_file_location("make_effects_page", DOCS / "generate/effects_page.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     assert module.page() == (DOCS / "effects.md").read_text(encoding="utf-8")

@@ -10,9 +10,9 @@ from matplotlib.patches import Circle
 from tests.report.vehicles import EVERY, HOSTILE, model, random_model
 from vehgen.mechanics import derive
 from vehgen.report import draw_modes, draw_vehicle, figure_svg
-from vehgen.report.dimensions import Chain, length_text
-from vehgen.report.mode_shapes import mode_movements
-from vehgen.report.sketch import make_sketch
+from vehgen.report.drawing.dimensions import Chain, length_text
+from vehgen.report.drawing.mode_shapes import mode_movements
+from vehgen.report.drawing.sketch import make_sketch
 from vehgen.simulate import natural_modes
 from vehgen.vehicle import parse_vehicle
 

@@ -15,9 +15,9 @@ from tests.report.vehicles import EVERY, HOSTILE, model, random_model
 from vehgen.files.expressions import parse
 from vehgen.mechanics import GRAVITY
 from vehgen.report import equations_latex, equations_mathml, equations_text
-from vehgen.report.equations import balance_mathml, balance_text, coordinate_mathml, expression_mathml, law_rows, matrices
-from vehgen.report.latex import unit_latex
-from vehgen.report.notation import Name, gravity_symbol, latex_name, latex_text, number_text, split_name, tidy
+from vehgen.report.equations.latex import unit_latex
+from vehgen.report.equations.notation import Name, gravity_symbol, latex_name, latex_text, number_text, split_name, tidy
+from vehgen.report.equations.writing import balance_mathml, balance_text, coordinate_mathml, expression_mathml, law_rows, matrices
 
 ENTRY = re.compile(r"^  ([MCKPQFW])\[(\d+)(?:,(\d+))?\] = (.*)$", re.MULTILINE)
 

@@ -13,8 +13,8 @@ from vehgen.codegen import write_kernel
 from vehgen.errors import InputError
 from vehgen.mechanics import derive, static_loads
 from vehgen.report import plot_response, save_figure, write_build_folder
-from vehgen.report.files import inline_svg
-from vehgen.report.page import grouped
+from vehgen.report.figure_files import inline_svg
+from vehgen.report.pages.build_page import grouped
 from vehgen.simulate import natural_modes
 from vehgen.vehicle import load_vehicle
 

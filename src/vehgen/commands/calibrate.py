@@ -55,7 +55,7 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.fit.prior_data import load_facts
     from vehgen.fit.problem import make_problem
     from vehgen.fit.trial import load_trials
-    from vehgen.report.calibration_plots import calibration_figure_files, save_calibration_figures
+    from vehgen.report.plots.calibration_plots import calibration_figure_files, save_calibration_figures
     from vehgen.vehicle import load_vehicle
 
     _check_numbers(options)

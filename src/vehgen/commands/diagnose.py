@@ -39,7 +39,7 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.effects import extended_library
     from vehgen.errors import InputError, did_you_mean
     from vehgen.fit.trial import load_trials
-    from vehgen.report.diagnosis_page import write_diagnosis_page
+    from vehgen.report.pages.diagnosis_page import write_diagnosis_page
     from vehgen.vehicle import load_vehicle
 
     known = extended_library(options.library)

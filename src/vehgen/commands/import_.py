@@ -12,7 +12,7 @@ from vehgen.files import check_results, note_read
 
 if TYPE_CHECKING:
     from vehgen.phones.importing import Imported
-    from vehgen.report.import_plot import ImportPanel
+    from vehgen.report.plots.import_plot import ImportPanel
 
 NAME = "import"
 EXAMPLE = (
@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.phones.options import Plan, quantity, read_hump, read_profile, read_sensor
     from vehgen.phones.run_text import import_files, phone_notes, write_import
     from vehgen.report import save_figure
-    from vehgen.report.import_plot import plot_import
+    from vehgen.report.plots.import_plot import plot_import
     from vehgen.vehicle import load_vehicle
 
     by_axles = options.speed == "axles"
@@ -144,7 +144,7 @@ def run(options: argparse.Namespace) -> None:
 
 
 def _panels(imported: Imported) -> list[ImportPanel]:
-    from vehgen.report.import_plot import ImportPanel
+    from vehgen.report.plots.import_plot import ImportPanel
 
     panels = []
     column = 0

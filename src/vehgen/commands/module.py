@@ -45,7 +45,7 @@ def run(options: argparse.Namespace) -> None:
     write_text(path, cargo_text(model))
     if picture is not None:
         from vehgen.report import save_figure
-        from vehgen.report.module_picture import plot_module
+        from vehgen.report.drawing.module_picture import plot_module
 
         save_figure(plot_module(model), picture)
     if options.json:

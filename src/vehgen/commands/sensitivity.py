@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> None:
     """Compute sensitivity indices, print their ranking and draw them."""
     from vehgen.calibrate.sensitivity import sensitivity_indices
-    from vehgen.report.sensitivity_plots import save_sensitivity_figures, sensitivity_figure_files
+    from vehgen.report.plots.sensitivity_plots import save_sensitivity_figures, sensitivity_figure_files
     from vehgen.simulate import load_run
     from vehgen.vehicle import load_vehicle
 

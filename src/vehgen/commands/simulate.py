@@ -33,7 +33,7 @@ def run(options: argparse.Namespace) -> None:
     write_csv(path, response)
     if options.plot:
         from vehgen.report import save_figure
-        from vehgen.report.response_plot import plot_response
+        from vehgen.report.plots.response_plot import plot_response
 
         channels = [(item.name, item.quantity, item.unit) for item in response.channels]
         figure = plot_response(response.time, channels, response.values[0])

@@ -31,7 +31,7 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.errors import InputError, did_you_mean
     from vehgen.fit.trial import load_trials
     from vehgen.measure import SPECTRA
-    from vehgen.report.validation_plots import save_validation_figures, validation_figure_files
+    from vehgen.report.plots.validation_plots import save_validation_figures, validation_figure_files
     from vehgen.vehicle import load_vehicle
 
     if options.astm is not None and options.astm not in SPECTRA:

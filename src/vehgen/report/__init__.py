@@ -1,12 +1,12 @@
 """Show me: drawings, figures, equations for reading, and the page."""
 
-from vehgen.report.drawing import draw_vehicle
-from vehgen.report.equations import equations_mathml, equations_text
-from vehgen.report.files import figure_format, figure_svg, save_figure
-from vehgen.report.latex import equations_latex
-from vehgen.report.mode_shapes import draw_modes
-from vehgen.report.page import build_files, write_build_folder
-from vehgen.report.response_plot import plot_response
+from vehgen.report.drawing.mode_shapes import draw_modes
+from vehgen.report.drawing.vehicle import draw_vehicle
+from vehgen.report.equations.latex import equations_latex
+from vehgen.report.equations.writing import equations_mathml, equations_text
+from vehgen.report.figure_files import figure_format, figure_svg, save_figure
+from vehgen.report.pages.build_page import build_files, write_build_folder
+from vehgen.report.plots.response_plot import plot_response
 
 __all__ = [
     "build_files",

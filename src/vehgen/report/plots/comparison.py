@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from vehgen.report.canvas import INK
+from vehgen.report.drawing.canvas import INK
 
 Array = NDArray[np.float64]
 MEASURED = "#9aa7b1"

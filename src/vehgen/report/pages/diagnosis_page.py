@@ -18,10 +18,10 @@ from vehgen.diagnose.pipeline import Diagnosis
 from vehgen.diagnose.select.estimates import estimate, estimates_by_run
 from vehgen.diagnose.select.search import Round
 from vehgen.files import write_text
-from vehgen.report.comparison import plot_histories, plot_psds
-from vehgen.report.diagnosis_plots import curves, plot_places, plot_waterfall
-from vehgen.report.files import figure_svg, inline_svg
-from vehgen.report.force_plots import plot_force
+from vehgen.report.figure_files import figure_svg, inline_svg
+from vehgen.report.plots.comparison import plot_histories, plot_psds
+from vehgen.report.plots.diagnosis_plots import curves, plot_places, plot_waterfall
+from vehgen.report.plots.force_plots import plot_force
 
 MOST = 12
 """So many candidates are listed at most."""

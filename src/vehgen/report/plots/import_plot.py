@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from vehgen.report.canvas import INK
+from vehgen.report.drawing.canvas import INK
 
 Array = NDArray[np.float64]
 

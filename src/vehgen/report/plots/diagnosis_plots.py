@@ -9,8 +9,8 @@ from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.diagnose.pipeline import Diagnosis
 from vehgen.fit.trial import Trial
 from vehgen.measure import record_psd
-from vehgen.report.canvas import INK
-from vehgen.report.comparison import MEASURED, REFERENCE, SIMULATED, Curve
+from vehgen.report.drawing.canvas import INK
+from vehgen.report.plots.comparison import MEASURED, REFERENCE, SIMULATED, Curve
 
 MOST = 16
 """So many places are drawn at most."""

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.localise.free_form import Curve, FreeForm
 from vehgen.diagnose.localise.recovered_force import Recovered
-from vehgen.report.canvas import INK
-from vehgen.report.comparison import SIMULATED
+from vehgen.report.drawing.canvas import INK
+from vehgen.report.plots.comparison import SIMULATED
 
 Array = NDArray[np.float64]
 DOTS = "#8b98a3"

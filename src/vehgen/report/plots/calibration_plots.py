@@ -8,10 +8,10 @@ from matplotlib.figure import Figure
 
 from vehgen.calibrate.summary import Outcome
 from vehgen.measure import record_psd
-from vehgen.report.canvas import INK
-from vehgen.report.comparison import SIMULATED, Curve, plot_histories, plot_psds
-from vehgen.report.files import save_figure
-from vehgen.report.response_plot import COLOURS, STYLES
+from vehgen.report.drawing.canvas import INK
+from vehgen.report.figure_files import save_figure
+from vehgen.report.plots.comparison import SIMULATED, Curve, plot_histories, plot_psds
+from vehgen.report.plots.response_plot import COLOURS, STYLES
 
 WIDEST = 100.0
 """Intervals are cut off beyond this [%]."""

@@ -1,4 +1,4 @@
-"""Write models.md and its drawings from the bundled vehicles: `python docs/make_models_page.py`."""
+"""Write models.md and its drawings from the bundled vehicles: `python docs/generate/models_page.py`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from vehgen.report import draw_vehicle, figure_svg
 from vehgen.simulate import natural_modes
 from vehgen.vehicle import bundled_models, load_vehicle
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).parents[1]
 
 
 def main() -> None:
@@ -17,7 +17,7 @@ def main() -> None:
     lines = [
         "# The bundled vehicles",
         "",
-        "Made by `python docs/make_models_page.py`. `python -m vehgen build NAME` shows one in full.",
+        "Made by `python docs/generate/models_page.py`. `python -m vehgen build NAME` shows one in full.",
         "",
     ]
     for name, path in bundled_models().items():

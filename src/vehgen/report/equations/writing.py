@@ -12,7 +12,7 @@ from vehgen.mechanics.energies import Element
 from vehgen.mechanics.law_terms import LawTerm
 from vehgen.mechanics.laws import Motion
 from vehgen.mechanics.rows import Entries
-from vehgen.report.notation import Latex, MathMl, Name, Plain, coordinate_name, gravity_symbol, latex_name, symbol_names, tidy
+from vehgen.report.equations.notation import Latex, MathMl, Name, Plain, coordinate_name, gravity_symbol, latex_name, symbol_names, tidy
 
 WHOLE_MATRIX = 10
 """Matrices of more degrees of freedom are only listed entry by entry."""

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from vehgen.report.canvas import INK
+from vehgen.report.drawing.canvas import INK
 
 COLOURS = ("#0b5fa5", "#d55e00", "#1b9e77", "#7b3294", "#555555", "#b8860b")
 STYLES = ("-", (0, (5, 1.5)), (0, (6, 1.5, 1, 1.5)), (0, (1.5, 1)))

@@ -7,7 +7,8 @@ import re
 import sympy as sp
 
 from vehgen.mechanics import GRAVITY, LinearModel
-from vehgen.report.equations import (
+from vehgen.report.equations.notation import Latex, latex_text
+from vehgen.report.equations.writing import (
     LAWS_NOTE,
     WHOLE_MATRIX,
     Matrix,
@@ -22,7 +23,6 @@ from vehgen.report.equations import (
     place_text,
     vectors,
 )  # fmt: skip
-from vehgen.report.notation import Latex, latex_text
 
 _LINE = 66
 """A sum is broken into lines of about this many signs."""

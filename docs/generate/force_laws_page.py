@@ -1,4 +1,4 @@
-"""Write force-laws.md from the library of laws: `python docs/make_force_laws_page.py`."""
+"""Write force-laws.md from the library of laws: `python docs/generate/force_laws_page.py`."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from pathlib import Path
 
 from vehgen.mechanics.laws import LAWS
 
-PAGE = Path(__file__).parent / "force-laws.md"
+PAGE = Path(__file__).parents[1] / "force-laws.md"
 HEAD = """\
 # Force laws
 
-Made by `python docs/make_force_laws_page.py` from the library.
+Made by `python docs/generate/force_laws_page.py` from the library.
 
 A suspension, tyre, link or hinge may carry any number of laws in parallel with its k and c:
 

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from vehgen.mechanics import LinearModel
 from vehgen.mechanics.rows import Entries
 from vehgen.mechanics.symbols import to_sympy
-from vehgen.report.canvas import FAINT, FILLS, GHOST, INK, Canvas, text_size, wrap
-from vehgen.report.sketch import Sketch, make_sketch
+from vehgen.report.drawing.canvas import FAINT, FILLS, GHOST, INK, Canvas, text_size, wrap
+from vehgen.report.drawing.sketch import Sketch, make_sketch
 from vehgen.simulate import Mode
 
 Array = NDArray[np.float64]

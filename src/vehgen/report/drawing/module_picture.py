@@ -13,7 +13,7 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 from numpy.typing import NDArray
 
 from vehgen.cargo.module_model import ModuleModel
-from vehgen.report.canvas import ACCENT, FAINT, INK
+from vehgen.report.drawing.canvas import ACCENT, FAINT, INK
 
 Array = NDArray[np.float64]
 SCALE = 0.12

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from vehgen.mechanics import LinearModel
-from vehgen.report.canvas import ACCENT, FAINT, Canvas, Spot, text_size
-from vehgen.report.sketch import Sketch
+from vehgen.report.drawing.canvas import ACCENT, FAINT, Canvas, Spot, text_size
+from vehgen.report.drawing.sketch import Sketch
 
 _SAME = 0.005
 """Marks nearer than this are one [m]."""

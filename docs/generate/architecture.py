@@ -1,6 +1,6 @@
 """Write the part of architecture.md that shows which room imports which, from the code as it is.
 
-Run it after moving walls: `python docs/make_architecture.py`. A test fails while the page and the code differ.
+Run it after moving walls: `python docs/generate/architecture.py`. A test fails while the page and the code differ.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).parents[1]
 SOURCE = HERE.parent / "src" / "vehgen"
 PAGE = HERE / "architecture.md"
 START, END = "<!-- imports: start -->", "<!-- imports: end -->"

@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 
 from vehgen.calibrate.sensitivity import SensitivityIndices
 from vehgen.files.units import DAMPING, LENGTH, MASS, STIFFNESS
-from vehgen.report.canvas import INK
-from vehgen.report.files import save_figure
-from vehgen.report.response_plot import COLOURS, STYLES
+from vehgen.report.drawing.canvas import INK
+from vehgen.report.figure_files import save_figure
+from vehgen.report.plots.response_plot import COLOURS, STYLES
 from vehgen.vehicle import Vehicle
 
 HIGHEST = 25.0

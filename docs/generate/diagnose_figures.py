@@ -7,9 +7,9 @@ from pathlib import Path
 from vehgen.diagnose.pipeline import diagnose
 from vehgen.fit.trial import load_trials
 from vehgen.report import save_figure
-from vehgen.report.diagnosis_plots import plot_places, plot_waterfall
+from vehgen.report.plots.diagnosis_plots import plot_places, plot_waterfall
 
-HERE = Path(__file__).resolve().parent
+HERE = Path(__file__).resolve().parents[1]
 IMAGES = HERE / "images" / "diagnose"
 
 

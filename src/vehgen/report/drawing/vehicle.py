@@ -13,9 +13,9 @@ from matplotlib.patches import Circle, FancyBboxPatch, Rectangle
 from vehgen.files.expressions import Expression
 from vehgen.mechanics import LinearModel
 from vehgen.mechanics.symbols import to_sympy
-from vehgen.report.canvas import ACCENT, FAINT, FILLS, INK, Canvas, Spot, text_size, within, wrap
-from vehgen.report.dimensions import Chain, draw_chains, draw_hinge_heights
-from vehgen.report.sketch import Sketch, make_sketch
+from vehgen.report.drawing.canvas import ACCENT, FAINT, FILLS, INK, Canvas, Spot, text_size, within, wrap
+from vehgen.report.drawing.dimensions import Chain, draw_chains, draw_hinge_heights
+from vehgen.report.drawing.sketch import Sketch, make_sketch
 from vehgen.vehicle.model import Axle, Spring
 
 _TEXT = 8.5

@@ -1,4 +1,4 @@
-"""Draw silverbox.md's figure: `python docs/make_silverbox_figure.py SNLS80mV.csv`."""
+"""Draw silverbox.md's figure: `python docs/generate/silverbox_figure.py SNLS80mV.csv`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).parents[1]
 sys.path.insert(0, str(HERE / "examples" / "silverbox"))
 
 from free_run import FIRST, Array, fit, free_run, with_cubic_spring  # noqa: E402
@@ -114,5 +114,5 @@ def plot_spectra(
 
 if __name__ == "__main__":
     if len(sys.argv) != 2:
-        sys.exit("usage: python docs/make_silverbox_figure.py SNLS80mV.csv")
+        sys.exit("usage: python docs/generate/silverbox_figure.py SNLS80mV.csv")
     draw(Path(sys.argv[1]))

@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from vehgen.calibrate.validation import Validation
 from vehgen.measure import SPECTRA
 from vehgen.measure.astm import NOTE
-from vehgen.report.canvas import INK
-from vehgen.report.comparison import MEASURED, SIMULATED, UNITS, Curve, plot_histories, plot_psds
-from vehgen.report.files import save_figure
+from vehgen.report.drawing.canvas import INK
+from vehgen.report.figure_files import save_figure
+from vehgen.report.plots.comparison import MEASURED, SIMULATED, UNITS, Curve, plot_histories, plot_psds
 
 HIGHEST = 25.0
 """Frequencies shown [Hz]."""

@@ -1,6 +1,6 @@
 """Write effects.md from the library of effects, with a picture of each: a hump run without and with it.
 
-Run it after changing the library: `python docs/make_effects_page.py`. A test fails while the page and the library differ.
+Run it after changing the library: `python docs/generate/effects_page.py`. A test fails while the page and the library differ.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 from vehgen.effects import EFFECTS, Effect
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).parents[1]
 PAGE = HERE / "effects.md"
 IMAGES = HERE / "images" / "effects"
 RUN = """vehicle: tractor5.yaml
@@ -69,7 +69,7 @@ def page() -> str:
     lines = [
         "# Effects",
         "",
-        "Made by `python docs/make_effects_page.py` from the library.",
+        "Made by `python docs/generate/effects_page.py` from the library.",
         "",
         "What `python -m vehgen diagnose` can name. Ranges are what it searches, as multiples of the place's own size where it has one",
         "(static load, stiffness, typical travel). Every picture shows tractor5 over a hump of 50 mm at 2.5 m/s, without the",
@@ -137,7 +137,7 @@ def draw() -> None:
 
 def _figure(effect: Effect, t: np.ndarray, base: np.ndarray, changed: np.ndarray, channels: list[str]):  # type: ignore[no-untyped-def]
     from vehgen.measure import record_psd
-    from vehgen.report.comparison import Curve, plot_pair
+    from vehgen.report.plots.comparison import Curve, plot_pair
 
     channel = SHOWN.get(effect.name, "L1_az")
     i = channels.index(channel)

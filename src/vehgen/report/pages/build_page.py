@@ -21,12 +21,12 @@ from vehgen.files import write_text
 from vehgen.files.document import MAX_BYTES
 from vehgen.files.reading import read_bytes
 from vehgen.mechanics import GRAVITY, LinearModel, StaticLoads
-from vehgen.report import equations
-from vehgen.report.drawing import draw_vehicle
-from vehgen.report.files import figure_svg, inline_svg
-from vehgen.report.latex import equations_latex
-from vehgen.report.mode_shapes import draw_modes
-from vehgen.report.notation import tidy
+from vehgen.report.drawing.mode_shapes import draw_modes
+from vehgen.report.drawing.vehicle import draw_vehicle
+from vehgen.report.equations import writing as equations
+from vehgen.report.equations.latex import equations_latex
+from vehgen.report.equations.notation import tidy
+from vehgen.report.figure_files import figure_svg, inline_svg
 from vehgen.simulate import Mode
 
 _LONG = 14.0

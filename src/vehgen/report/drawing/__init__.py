@@ -1,0 +1,1 @@
+"""The vehicle, its mode shapes and its modules, drawn to scale."""

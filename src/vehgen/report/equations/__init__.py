@@ -1,0 +1,1 @@
+"""The equations of motion for reading: text, LaTeX and MathML."""

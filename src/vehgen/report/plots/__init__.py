@@ -1,0 +1,1 @@
+"""Figures of responses, calibrations, validations and diagnoses."""
