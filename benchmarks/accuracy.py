@@ -24,7 +24,7 @@ from benchmarks.paper_study.recordings import RIGS, hump_run
 from benchmarks.paper_study.truth import drawn
 from vehgen.calibrate.identifiability import find_structure
 from vehgen.calibrate.intervals import LEVEL, Estimate, Uncertainty
-from vehgen.fit.least_squares import polish
+from vehgen.fit.least_squares import fit_least_squares
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
 
@@ -63,7 +63,7 @@ def replicate(kind: str, seed: int) -> tuple[list[Row], float, float]:
             runs.append(hump_run(Path(name), f"run{i}", rig, truth, speed, 10_000 + 10 * seed + i, told=told))
         problem = make_problem(load_trials(runs))
     start = time.perf_counter()
-    fit = polish(problem, problem.space.unit(problem.space.start))
+    fit = fit_least_squares(problem, problem.space.unit(problem.space.start))
     known = Uncertainty(fit, find_structure(problem, fit.values))
     spent = time.perf_counter() - start
     right = np.array([truth[name] for name in problem.space.names])

@@ -26,7 +26,7 @@ from benchmarks.paper_study.recordings import RIGS, hump_run
 from benchmarks.paper_study.truth import drawn
 from vehgen.calibrate.genetic import GeneticSearch
 from vehgen.calibrate.objective import PsdObjective
-from vehgen.fit.least_squares import polish
+from vehgen.fit.least_squares import fit_least_squares
 from vehgen.fit.problem import Problem, make_problem
 from vehgen.fit.trial import load_trials
 from vehgen.report.figure_files import save_figure
@@ -137,7 +137,7 @@ def polish_alone(recorder: Recorder, seed: int, first: bool = False) -> None:
     loss = np.inf
     while recorder.count < recorder.limit:
         start = problem.space.unit(problem.space.start) if first else random.random(problem.space.size)
-        fit = polish(problem, start)
+        fit = fit_least_squares(problem, start)
         unit = fit.misfit.split(fit.x)[0]
         if recorder.count > recorder.limit:
             return

@@ -19,7 +19,7 @@ import numpy as np
 
 from benchmarks.peers import cpp_avx, dense_numba, jax_scan, pyyeti_newmark, scipy_lsim
 from benchmarks.peers.systems import hump_inputs, tractor5_population
-from vehgen.codegen import Drive, Kernel
+from vehgen.codegen import Excitation, Kernel
 from vehgen.mechanics import derive
 from vehgen.simulate.benchmark import DT, KEEP, benchmark_model, best_time
 from vehgen.vehicle import load_vehicle, parse_vehicle
@@ -36,10 +36,10 @@ def vehgen_parameters(kernel: Kernel, systems) -> np.ndarray:
     return np.column_stack(columns)
 
 
-def drive(model, n_steps: int) -> Drive:
+def drive(model, n_steps: int) -> Excitation:
     """Return the same hump for the kernels."""
     inputs = hump_inputs(n_steps, DT)
-    return Drive(DT, inputs, np.gradient(inputs, DT, axis=0), np.zeros((n_steps + 1, len(model.forces))))
+    return Excitation(DT, inputs, np.gradient(inputs, DT, axis=0), np.zeros((n_steps + 1, len(model.forces))))
 
 
 def compare(n_individuals: int = 300, rounds: int = 7) -> list[tuple[str, int, float]]:
@@ -101,7 +101,7 @@ def axle_scaling(counts: tuple[int, ...] = (2, 5, 10, 20, 40)) -> list[tuple[int
         kernel.compile()
         parameters = np.zeros((320, len(model.parameters)))
         rest = np.zeros((2001, count))
-        ride = Drive(DT, rest, rest, np.zeros((2001, 0)))
+        ride = Excitation(DT, rest, rest, np.zeros((2001, 0)))
         rows.append(
             (
                 count,

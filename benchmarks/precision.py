@@ -6,32 +6,32 @@ import time
 
 import numpy as np
 
-from vehgen.codegen import Drive, Kernel
-from vehgen.mechanics import LinearModel, Place, PointOutput, derive
+from vehgen.codegen import Excitation, Kernel
+from vehgen.mechanics import EquationsOfMotion, Place, PointOutput, derive
 from vehgen.road import ConstantSpeed, Hump, Iso8608Road, Track, wheel_inputs
-from vehgen.simulate.benchmark import KEEP, LAWS, benchmark_model, population
+from vehgen.simulate.benchmark import BENCHMARKED_LAWS, KEEP, benchmark_model, population
 from vehgen.vehicle import load_vehicle
 
 N, DT, STEPS = 320, 1e-3, 10_000
 
 
-def models() -> dict[str, LinearModel]:
+def models() -> dict[str, EquationsOfMotion]:
     """Return what is compared."""
 
-    def bundled(name: str) -> LinearModel:
+    def bundled(name: str) -> EquationsOfMotion:
         vehicle = load_vehicle(name)
         place = Place("s", next(iter(vehicle.bodies)))
         return derive(vehicle, [PointOutput(kind, place, kind) for kind in ("acceleration", "pitch_rate", "displacement")])
 
-    nonlinear = {f"tractor5, {name}": benchmark_model(name) for name in LAWS if name != "linear"}
+    nonlinear = {f"tractor5, {name}": benchmark_model(name) for name in BENCHMARKED_LAWS if name != "linear"}
     return {name: bundled(name) for name in ("tractor5", "sedan2", "road_train")} | nonlinear
 
 
-def drive(model: LinearModel, road: str) -> Drive:
+def drive(model: EquationsOfMotion, road: str) -> Excitation:
     """Return 10 s over a hump or a rough road."""
     part = Hump.from_shape("half_sine", 1.0, 0.5, 0.03) if road == "hump" else Iso8608Road("B", 1, 200.0)
     wheels = wheel_inputs(Track((part,)), ConstantSpeed(2.0 if road == "hump" else 15.0), model.wheel_offsets(), np.arange(STEPS + 1) * DT)
-    return Drive(DT, wheels.heights, wheels.rates, np.zeros((STEPS + 1, 0)))
+    return Excitation(DT, wheels.heights, wheels.rates, np.zeros((STEPS + 1, 0)))
 
 
 def main(rounds: int = 7) -> None:

@@ -11,17 +11,17 @@ from pathlib import Path
 
 import numpy as np
 
-from vehgen.codegen import Drive, Kernel, compile_all
-from vehgen.mechanics import LinearModel, derive
+from vehgen.codegen import Excitation, Kernel, compile_all
+from vehgen.mechanics import EquationsOfMotion, derive
 from vehgen.mechanics.laws import LAWS
-from vehgen.mechanics.superset import Candidate, add_laws
+from vehgen.mechanics.superset import CandidateLaw, add_laws
 from vehgen.simulate.benchmark import KEEP, OUTPUTS, best_time, hump_drive
 from vehgen.vehicle import load_vehicle
 
 COUNTS = (1, 2, 5, 10, 20, 50, 100)
 
 
-def candidates(count: int) -> list[Candidate]:
+def candidates(count: int) -> list[CandidateLaw]:
     """Return laws on the five-axle vehicle's suspensions, then tyres: every axle has its first law before any has its second."""
     axles = [f"axle{i}" for i in range(1, 6)]
     suspensions = ((axle, "suspension", law.name) for law, axle in product(LAWS.values(), axles) if "suspension" in law.attaches_to)
@@ -29,12 +29,12 @@ def candidates(count: int) -> list[Candidate]:
     return list(islice((*suspensions, *tyres), count))
 
 
-def built(chosen: list[Candidate]) -> LinearModel:
+def built(chosen: list[CandidateLaw]) -> EquationsOfMotion:
     """Return the five-axle vehicle with laws."""
     return derive(add_laws(load_vehicle("tractor5"), chosen).vehicle, OUTPUTS)
 
 
-def compiled(chosen: list[Candidate]) -> tuple[Kernel, float]:
+def compiled(chosen: list[CandidateLaw]) -> tuple[Kernel, float]:
     """Return a kernel of the vehicle with laws, and the seconds from the vehicle to compiled code, with an empty cache."""
     with tempfile.TemporaryDirectory() as folder:
         start = time.perf_counter()
@@ -49,7 +49,7 @@ def forget(kernel: Kernel) -> None:
     sys.modules.pop(f"vehgen_{kernel.name}", None)
 
 
-def step_time(kernel: Kernel, ride: Drive, n: int = 160) -> float:
+def step_time(kernel: Kernel, ride: Excitation, n: int = 160) -> float:
     """Return ns per step and individual on one thread."""
     parameters = np.repeat([list(kernel.model.values().values())], n, axis=0)
     return best_time(lambda: kernel.run(parameters, ride, KEEP, threads=1), 3) / n / ride.n_steps * 1e9

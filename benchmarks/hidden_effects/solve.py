@@ -32,5 +32,5 @@ def solve(item: HiddenCase) -> dict:
             return {**record, "verdict": "crash", "error": f"{type(error).__name__}: {error}", "seconds": time.perf_counter() - start}
     data = found.verdict.to_dict()
     data["passed"] = [item.place.label for item in found.passed]
-    data["tried"] = [[fit.label, fit.train, fit.held_out] for fit in found.fits[:5]]
+    data["tried"] = [[fit.label, fit.training, fit.validation] for fit in found.fits[:5]]
     return {**record, **data, "seconds": time.perf_counter() - start}

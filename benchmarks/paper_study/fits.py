@@ -116,6 +116,6 @@ def spectra(problem: Problem, values: dict[str, float]) -> dict[str, tuple[Array
     simulated = problem.respond(row, trial)[0][0]
     found = {}
     for i, channel in enumerate(trial.channels):
-        frequency, measured = record_psd(trial.measurement.values[:, i], trial.measurement.dt)
-        found[channel] = (frequency, measured, record_psd(simulated[:, i], trial.measurement.dt)[1])
+        frequency, measured = record_psd(trial.recording.values[:, i], trial.recording.dt)
+        found[channel] = (frequency, measured, record_psd(simulated[:, i], trial.recording.dt)[1])
     return found

@@ -49,7 +49,7 @@ def of_population(vehicle_file: str, precision: str) -> dict[str, Any]:
     phase = np.clip((time[:, None] - 0.2 * (1 + np.arange(len(simulator.model.inputs)))) / 0.25, 0, 1)
     heights = 0.015 * (1 - np.cos(2 * np.pi * phase))
     rates = 0.015 * 2 * np.pi / 0.25 * np.sin(2 * np.pi * phase)
-    excitation = getattr(vehgen, "Drive", None) or vehgen.Excitation
+    excitation = getattr(vehgen, "Excitation", None) or vehgen.Excitation
     kernel = vehgen.Kernel(simulator.model, precision=precision)
     result = kernel.run(parameters, excitation(DT, heights, rates, np.zeros((N_STEPS + 1, 0))), KEEP)
     return {"shape": list(result.responses.shape), "failures": len(result.failures), "responses": fingerprint(result.responses)}

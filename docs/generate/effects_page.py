@@ -92,8 +92,8 @@ def page() -> str:
 
 def draw() -> None:
     """Draw every effect."""
-    from vehgen.diagnose.fits.candidate import list_candidates, pose, starts
-    from vehgen.effects import Surveyor
+    from vehgen.diagnose.fits.candidate import build_problem, list_candidates, starts
+    from vehgen.effects import EffectLocator
     from vehgen.fit.harmonic import Harmonic
     from vehgen.fit.misfit import Misfit
     from vehgen.fit.noise import EVEN, Noise
@@ -110,7 +110,7 @@ def draw() -> None:
         np.savetxt(folder / "nothing.csv", np.column_stack([t, noise]), delimiter=",", header="t,L1_az,L1_q,L2_az,L2_q", comments="")
         problem = make_problem(load_trials([folder / "run.yaml"]))
     trial = problem.trials[0]
-    surveyor = Surveyor(trial.run.vehicle, dict(trial.values))
+    surveyor = EffectLocator(trial.run.vehicle, dict(trial.values))
     base = problem.respond(problem.space.start[None], trial)[0][0]
     for effect in EFFECTS.values():
         candidates = list_candidates(trial.run.vehicle, problem.trials, [effect])
@@ -118,7 +118,7 @@ def draw() -> None:
             continue
         wanted = PLACES.get(effect.name)
         candidate = next((item for item in candidates if item.place == wanted), candidates[0])
-        posed = pose(candidate, problem, surveyor, {})
+        posed = build_problem(candidate, problem, surveyor, {})
         combination = list(starts(candidate, surveyor))[-1]
         values = posed.space.start.copy()
         if candidate.parameters:

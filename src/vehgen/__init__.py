@@ -17,12 +17,12 @@ _HOMES = {
     "load_vehicle": "vehgen.vehicle",
     "parse_vehicle": "vehgen.vehicle",
     "ElementOutput": "vehgen.mechanics",
-    "LinearModel": "vehgen.mechanics",
+    "EquationsOfMotion": "vehgen.mechanics",
     "Place": "vehgen.mechanics",
     "PointOutput": "vehgen.mechanics",
     "derive": "vehgen.mechanics",
     "static_loads": "vehgen.mechanics",
-    "Drive": "vehgen.codegen",
+    "Excitation": "vehgen.codegen",
     "Kernel": "vehgen.codegen",
     "Response": "vehgen.simulate",
     "Simulator": "vehgen.simulate",
@@ -33,9 +33,9 @@ _HOMES = {
 __all__ = [*_HOMES]
 
 if TYPE_CHECKING:
-    from vehgen.codegen import Drive, Kernel
+    from vehgen.codegen import Excitation, Kernel
     from vehgen.errors import InputError, ModelWarning
-    from vehgen.mechanics import ElementOutput, LinearModel, Place, PointOutput, derive, static_loads
+    from vehgen.mechanics import ElementOutput, EquationsOfMotion, Place, PointOutput, derive, static_loads
     from vehgen.simulate import Response, Simulator, load_run, natural_modes
     from vehgen.vehicle import bundled_models, load_vehicle, parse_vehicle
 

@@ -11,7 +11,7 @@ from vehgen.calibrate.calibration import Settings, calibrate
 from vehgen.calibrate.genetic import GeneticSearch
 from vehgen.calibrate.sensitivity import sensitivity_indices
 from vehgen.calibrate.sensor_placement import advise_sensors
-from vehgen.calibrate.summary import conclude
+from vehgen.calibrate.summary import summarise
 from vehgen.calibrate.validation import validate
 from vehgen.fit.parallel import Runner, runner_at
 from vehgen.fit.problem import make_problem
@@ -95,8 +95,8 @@ def calibration(tmp_path):
 
 
 def same(calibration, runner):
-    here = conclude(calibration, replicates=3)
-    there = conclude(calibration, replicates=3, runner=runner)
+    here = summarise(calibration, replicates=3)
+    there = summarise(calibration, replicates=3, runner=runner)
     assert [(item.low, item.high) for item in here.bootstrap] == [(item.low, item.high) for item in there.bootstrap]
 
 

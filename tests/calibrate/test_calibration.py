@@ -10,10 +10,10 @@ from vehgen.calibrate.identifiability import find_structure
 from vehgen.calibrate.intervals import Uncertainty
 from vehgen.calibrate.methods import plan
 from vehgen.calibrate.objective import PsdObjective
-from vehgen.calibrate.summary import conclude
+from vehgen.calibrate.summary import summarise
 from vehgen.errors import InputError
-from vehgen.fit.least_squares import polish
-from vehgen.fit.prior_data import load_facts
+from vehgen.fit.least_squares import fit_least_squares
+from vehgen.fit.prior_data import load_prior_data
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
 
@@ -39,8 +39,8 @@ def test_the_objective_is_equation_5(problem):
     terms = PsdObjective(problem, (0.3, 40.0)).terms(values[None])[0]
     trial = problem.trials[0]
     simulated = problem.respond(values[None], trial)[0][0][:, 0]
-    n, dt = len(simulated), trial.measurement.dt
-    power = [np.abs(np.fft.rfft(item)) ** 2 for item in (simulated, trial.measurement.values[:, 0])]
+    n, dt = len(simulated), trial.recording.dt
+    power = [np.abs(np.fft.rfft(item)) ** 2 for item in (simulated, trial.recording.values[:, 0])]
     f = np.fft.rfftfreq(n, dt)
     inside = (f >= 0.3) & (f <= 40.0)
     assert terms[0] == pytest.approx(np.abs(power[0] - power[1])[inside].sum() / power[1][inside].sum(), rel=1e-9)
@@ -57,7 +57,7 @@ def test_an_individual_that_cannot_be_simulated_has_an_infinite_objective(proble
 
 def test_a_joint_fit_finds_the_truth_within_its_intervals(problem):
     found = calibrate(problem, small())
-    outcome = conclude(found, combinations=("kf/mf",))
+    outcome = summarise(found, combinations=("kf/mf",))
     assert found.array == pytest.approx(truth_of(problem), rel=0.02)
     covered = [item.estimate.covers(TRUTH[item.estimate.name]) for item in outcome.parameters]
     assert np.mean(covered) >= 0.7
@@ -128,7 +128,7 @@ def test_a_wrong_clock_and_speed_are_found_along_the_way(tmp_path):
     np.savetxt(tmp_path / "late.csv", rows, delimiter=",", header="t,F_az,F_q,R_az,R_q", comments="")
     path.write_text(path.read_text(encoding="utf-8").replace("speed: 2.5", "speed: 2.53"), encoding="utf-8")
     problem = make_problem(load_trials([path]))
-    fit = polish(problem, problem.space.unit(truth_of(problem) * 1.05))
+    fit = fit_least_squares(problem, problem.space.unit(truth_of(problem) * 1.05))
     delay, speed = fit.misfit.split(fit.x)[1][0] * (0.2, 0.01)
     # the hump lies 4 m ahead at the file's speed
     assert delay + 4 / 2.53 / (1 + speed) == pytest.approx(0.13 + 4 / 2.5, abs=2e-3)
@@ -138,7 +138,7 @@ def test_a_wrong_clock_and_speed_are_found_along_the_way(tmp_path):
 
 def test_fisher_intervals_agree_with_a_bootstrap(problem):
     found = calibrate(problem, Settings(search=GeneticSearch(1, 10, 0), starts=2))
-    outcome = conclude(found, replicates=60)
+    outcome = summarise(found, replicates=60)
     widths = [
         ((b.high - b.low) / (hz.high - hz.low)) for b, (hz, _) in zip(outcome.bootstrap[-len(outcome.modes) :], outcome.modes, strict=True)
     ]
@@ -150,7 +150,7 @@ def test_intervals_cover_the_truth_over_a_rough_road(tmp_path):
     for seed in range(6):
         runs = [write_run(tmp_path, f"r{seed}{speed}", TRUTH, speed, seed=10 * seed + int(speed), rough=4e-4) for speed in (1.5, 2.5)]
         problem = make_problem(load_trials(runs))
-        fit = polish(problem, problem.space.unit(problem.space.start))
+        fit = fit_least_squares(problem, problem.space.unit(problem.space.start))
         known = Uncertainty(fit, find_structure(problem, fit.values))
         covered += [item.covers(TRUTH[item.name]) for item in known.parameters()]
     assert 0.75 <= np.mean(covered) <= 1.0
@@ -159,7 +159,7 @@ def test_intervals_cover_the_truth_over_a_rough_road(tmp_path):
 def test_the_vehicle_file_that_comes_out_is_read_back_exactly(problem, tmp_path):
     from vehgen.vehicle import load_vehicle
 
-    outcome = conclude(calibrate(problem, small(polish=False)))
+    outcome = summarise(calibrate(problem, small(polish=False)))
     path = tmp_path / "sedan2_calibrated.yaml"
     path.write_text(outcome.vehicle_text(tmp_path, "sedan2_calibrated"), encoding="utf-8")
     values = load_vehicle(path).values()
@@ -170,8 +170,8 @@ def test_the_vehicle_file_that_comes_out_is_read_back_exactly(problem, tmp_path)
 def test_facts_enter_the_fit(problem, tmp_path):
     path = tmp_path / "facts.yaml"
     path.write_text("parameters: {mf: {value: 95 kg, uncertainty: 1 mg}}\n".replace("1 mg", "1 g"), encoding="utf-8")
-    facts = load_facts(path, problem)
-    fit = polish(problem, problem.space.unit(problem.space.start), facts=facts)
+    facts = load_prior_data(path, problem)
+    fit = fit_least_squares(problem, problem.space.unit(problem.space.start), prior_data=facts)
     assert fit.values[problem.space.names.index("mf")] == pytest.approx(95.0, abs=0.05)
 
 
@@ -190,13 +190,13 @@ def test_facts_that_do_not_fit_are_refused(problem, tmp_path, text, said):
     path = tmp_path / "facts.yaml"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(InputError, match=said):
-        load_facts(path, problem)
+        load_prior_data(path, problem)
 
 
 def test_axle_weights_are_those_of_a_lever(problem, tmp_path):
     path = tmp_path / "facts.yaml"
     path.write_text("axle_weights: {front: {value: 1 kN, uncertainty: 1 kN}}", encoding="utf-8")
-    residual = load_facts(path, problem).residuals(problem.space.start)[0]
+    residual = load_prior_data(path, problem).residuals(problem.space.start)[0]
     start = dict(zip(problem.space.names, problem.space.start, strict=True))
     load = 9.81 * (1500.0 * (2.8 - start["Lf"]) / 2.8 + start["mf"])
     assert residual == pytest.approx(load / 1000 - 1, rel=1e-9)

@@ -6,7 +6,7 @@ import pytest
 from tests.fit.recordings import sedan_truth, write_run
 from vehgen.calibrate.identifiability import find_structure
 from vehgen.calibrate.intervals import Uncertainty
-from vehgen.fit.least_squares import Polished, first_noises
+from vehgen.fit.least_squares import LeastSquaresFit, first_noises
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
@@ -46,7 +46,7 @@ def test_frequencies_of_modes_that_almost_coincide_have_intervals_too(truck, kt3
     values[truck.space.names.index("kt3")] = kt3 * 8000
     noises = first_noises(truck)
     misfit = Misfit(truck, noises, values)
-    fit = Polished(misfit, np.concatenate([truck.space.unit(values), np.zeros(2)]), 1.0, 0.0)
+    fit = LeastSquaresFit(misfit, np.concatenate([truck.space.unit(values), np.zeros(2)]), 1.0, 0.0)
     known = Uncertainty(fit, find_structure(truck, values))
     hertz = np.array([hz.value for hz, _ in known.frequencies()])
     assert np.diff(hertz).min() < 0.02
@@ -102,4 +102,4 @@ def test_a_sedan_can_be_told_in_full(tmp_path):
     problem = make_problem(load_trials([write_run(tmp_path, "hump", sedan_truth())]))
     structure = find_structure(problem, problem.space.start)
     assert structure.rank == problem.space.size == 10
-    assert structure.can_tell(np.ones(10))
+    assert structure.is_identifiable(np.ones(10))

@@ -320,14 +320,14 @@ def test_without_numbas_compiler_plain_python_gives_the_same(tmp_path: Path):
 import sys
 from pathlib import Path
 import numpy as np
-from vehgen.codegen import Drive, Kernel
+from vehgen.codegen import Excitation, Kernel
 from vehgen.mechanics import PointOutput, Place, derive
 from vehgen.vehicle import parse_vehicle
 laws = "[{dry_friction: {force: 300 N}}, {bump_stop: {k: 1 MN/m, clearance: 8 mm}}, {quadratic_damping: {c2: 5e3 N s^2/m^2}}]"
 vehicle = parse_vehicle(f"extends: quarter_car\\naxles: {{axle1: {{suspension: {{laws: {laws}}}}}}}\\n")
 model = derive(vehicle, [PointOutput("a", Place("s", "body"), "acceleration")])
 inputs = 0.02 * np.sin(np.linspace(0, np.pi, 61))[:, None] ** 2
-drive = Drive(1e-3, inputs, np.gradient(inputs, 1e-3, axis=0), np.zeros((61, 0)))
+drive = Excitation(1e-3, inputs, np.gradient(inputs, 1e-3, axis=0), np.zeros((61, 0)))
 for precision in ("double", "single"):
     kernel = Kernel(model, Path(sys.argv[1]), precision=precision)
     print(" ".join(repr(float(value)) for value in kernel.run([list(model.values().values())], drive, threads=1).responses.ravel()))

@@ -6,10 +6,10 @@ import re
 import numpy as np
 import pytest
 
-from vehgen.codegen import Drive, Kernel, write_kernel
+from vehgen.codegen import Excitation, Kernel, write_kernel
 from vehgen.errors import InputError
 from vehgen.files.names import is_name
-from vehgen.mechanics import LinearModel, Place, PointOutput, derive
+from vehgen.mechanics import EquationsOfMotion, Place, PointOutput, derive
 from vehgen.simulate import load_run
 from vehgen.vehicle import load_vehicle
 from vehgen.vehicle.writing import yaml_text
@@ -75,7 +75,7 @@ LOOP_NAMES = OWN | {"inputs", "rates", "forces", "keep", "responses", "n_steps",
 
 
 @pytest.fixture(scope="module")
-def model(tmp_path_factory: pytest.TempPathFactory) -> LinearModel:
+def model(tmp_path_factory: pytest.TempPathFactory) -> EquationsOfMotion:
     folder = tmp_path_factory.mktemp("hostile")
     (folder / "vehicle.yaml").write_text(VEHICLE, encoding="utf-8")
     (folder / "run.yaml").write_text(RUN, encoding="utf-8")
@@ -157,7 +157,7 @@ def test_names_that_no_file_can_bring_do_not_reach_the_source_either(tmp_path, m
     kernel = Kernel(model, tmp_path / "cache")
     check_source(kernel.source.text)
     nothing = np.zeros((11, 1))
-    kernel.run(np.array([list(model.values().values())]), Drive(1e-3, nothing, nothing, nothing))
+    kernel.run(np.array([list(model.values().values())]), Excitation(1e-3, nothing, nothing, nothing))
     assert not (tmp_path / "PWNED").exists()
     assert "PWNED" in kernel.source.legend
 

@@ -7,7 +7,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from vehgen.codegen import Drive, Kernel, compile_all, write_kernel
+from vehgen.codegen import Excitation, Kernel, compile_all, write_kernel
 from vehgen.errors import InputError
 from vehgen.mechanics import ElementOutput, Place, PointOutput, derive
 from vehgen.mechanics.laws import LAWS
@@ -36,7 +36,7 @@ def hump_drive(model, dt, duration=9.0):
     time = np.arange(round(duration / dt) + 1) * dt
     track = Track((Hump.from_shape("half_sine", 1.003, 0.4, 0.03),))
     wheels = wheel_inputs(track, ConstantSpeed(2.0), model.wheel_offsets(), time)
-    return Drive(dt, wheels.heights, wheels.rates, np.zeros((len(time), 0)))
+    return Excitation(dt, wheels.heights, wheels.rates, np.zeros((len(time), 0)))
 
 
 def relative(error, reference):
@@ -103,7 +103,7 @@ def test_wrong_shapes_are_refused(tractor):
     with pytest.raises(InputError, match="parameters have shape"):
         kernel.run(np.zeros((2, 3)), drive)
     with pytest.raises(InputError, match="inputs"):
-        kernel.run(np.zeros((1, len(model.parameters))), Drive(1e-3, drive.inputs[:, :2], drive.rates, drive.forces))
+        kernel.run(np.zeros((1, len(model.parameters))), Excitation(1e-3, drive.inputs[:, :2], drive.rates, drive.forces))
 
 
 def test_source_is_the_same_every_time_and_readable(tractor):
@@ -218,13 +218,13 @@ def test_a_hundred_thousand_individuals_need_the_memory_of_one_block():
     parameters[:, model.parameters.index("kS")] *= np.linspace(0.8, 1.2, n)
     parameters[70_001, 0] = np.nan
     inputs = 0.01 * np.sin(np.linspace(0, np.pi, 201))[:, None]
-    drive = Drive(1e-3, inputs, np.gradient(inputs, 1e-3, axis=0), np.zeros((201, 0)))
+    drive = Excitation(1e-3, inputs, np.gradient(inputs, 1e-3, axis=0), np.zeros((201, 0)))
 
     def peak(responses):
         return np.abs(responses).max(axis=(1, 2))
 
     tracemalloc.start()
-    peaks, failures = kernel.reduce(parameters, drive, peak, keep=2, block=block)
+    peaks, failures = kernel.reduce(parameters, drive, peak, decimation=2, block=block)
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     responses = 8 * 101

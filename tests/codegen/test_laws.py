@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.oracles.laws import Branch, integrate, integrate_plastic
-from vehgen.codegen import Drive, Kernel
+from vehgen.codegen import Excitation, Kernel
 from vehgen.mechanics import Place, PointOutput, derive, static_loads
 from vehgen.mechanics.laws import LAWS
 from vehgen.mechanics.static_loads import element_rows
@@ -111,7 +111,7 @@ def compare(name, law, duration, height=HEIGHT):
     dt = 1e-3
     time = np.arange(round(duration / dt) + 1) * dt
     samples = [drive_road(t) for t in time]
-    drive = Drive(dt, np.array([w for w, _ in samples]), np.array([dw for _, dw in samples]), np.zeros((len(time), 0)))
+    drive = Excitation(dt, np.array([w for w, _ in samples]), np.array([dw for _, dw in samples]), np.zeros((len(time), 0)))
     result = Kernel(model).run(np.array([list(model.values().values())]), drive, 10)
     rows, _ = element_rows(model, model.values())
     loads = static_loads(model)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vehgen.codegen import Drive, Kernel
+from vehgen.codegen import Excitation, Kernel
 from vehgen.errors import InputError
 from vehgen.mechanics import Place, PointOutput, derive
 from vehgen.mechanics.laws import LAWS
@@ -39,7 +39,7 @@ def hump(model, duration=2.0, height=0.03):
     inside = (s > 0) & (s < 0.5)
     w = np.where(inside, height * np.sin(np.pi * s / 0.5), 0.0)
     dw = np.where(inside, 3 * height * np.pi / 0.5 * np.cos(np.pi * s / 0.5), 0.0)
-    return Drive(1e-3, w, dw, np.zeros((len(time), 0)))
+    return Excitation(1e-3, w, dw, np.zeros((len(time), 0)))
 
 
 def run(vehicle, drive=None, outputs=OUTPUTS, initial=None, **changes):
@@ -73,7 +73,7 @@ def test_friction_holds_a_parked_vehicle_still():
     force = np.where(time > 0.5, 1500.0, 0.0)[:, None] * np.minimum((time[:, None] - 0.5) / 3, 1).clip(0)
     quiet = np.zeros((len(time), 2))
     parameters = np.array([list(model.values().values())])
-    z = Kernel(model).run(parameters, Drive(1e-3, quiet, quiet, force), 1).responses[0, :, 1]
+    z = Kernel(model).run(parameters, Excitation(1e-3, quiet, quiet, force), 1).responses[0, :, 1]
     values = model.values()
     on_tyres = 1500.0 / (values["ktf"] + values["ktr"])
     on_springs = 1500.0 / (1 / (1 / values["ktf"] + 1 / values["kf"]) + 1 / (1 / values["ktr"] + 1 / values["kr"]))
@@ -81,7 +81,7 @@ def test_friction_holds_a_parked_vehicle_still():
     assert on_springs > 5 * on_tyres
     still = sedan("{dry_friction: {force: 2 kN}}", extra="")
     model = derive(still, OUTPUTS)
-    nothing = Drive(1e-3, quiet, quiet, np.zeros((len(time), 0)))
+    nothing = Excitation(1e-3, quiet, quiet, np.zeros((len(time), 0)))
     assert not Kernel(model).run(parameters[:, : len(model.parameters)], nothing, 1).responses.any()
 
 
@@ -109,7 +109,7 @@ def test_energy_never_grows(laws):
     parameters = np.array([list(model.values().values())])
     states = []
     for steps in range(0, 1501, 25):
-        drive = Drive(1e-3, rest[: steps + 1], rest[: steps + 1], np.zeros((steps + 1, 0)))
+        drive = Excitation(1e-3, rest[: steps + 1], rest[: steps + 1], np.zeros((steps + 1, 0)))
         states.append(kernel.run(parameters, drive, max(steps, 1), initial=initial[None]).responses[0, -1])
     assert np.isfinite(states).all()
     body = np.array(states)
@@ -151,7 +151,7 @@ def test_hinge_friction_locks_the_articulation():
         model = derive(vehicle, outputs)
         time = np.arange(4001) * 1e-3
         w = np.where((time[:, None] * 2 - model.wheel_offsets() - 0.5) > 0, 0.02, 0.0)
-        drive = Drive(1e-3, w, 0 * w, np.zeros((len(time), 0)))
+        drive = Excitation(1e-3, w, 0 * w, np.zeros((len(time), 0)))
         pitch = Kernel(model).run(np.array([list(model.values().values())]), drive, 1).responses[0]
         apart.append(np.abs(pitch[:, 0] - pitch[:, 1]).max())
     assert apart[1] < 0.02 * apart[0]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vehgen.codegen import Drive, Kernel
+from vehgen.codegen import Excitation, Kernel
 from vehgen.errors import InputError
 from vehgen.mechanics import Place, PointOutput, derive
 from vehgen.mechanics.laws import LAWS
@@ -33,7 +33,7 @@ def hump(model, height=0.1):
     inside = (s > 0) & (s < 0.5)
     w = np.where(inside, height * np.sin(np.pi * s / 0.5), 0.0)
     dw = np.where(inside, 3 * height * np.pi / 0.5 * np.cos(np.pi * s / 0.5), 0.0)
-    return Drive(1e-3, w, dw, np.zeros((len(time), 0)))
+    return Excitation(1e-3, w, dw, np.zeros((len(time), 0)))
 
 
 def run(vehicle, individuals=({},), sweeps=None):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.stats
 
-from vehgen.diagnose.select.estimates import gain_interval, held_out_gain, p_value
+from vehgen.diagnose.select.estimates import gain_interval, p_value, validation_gain
 
 
 def fit(power, train=1.0, count=1000):
@@ -14,12 +14,12 @@ def fit(power, train=1.0, count=1000):
     mean = float(np.mean(power))
     misfit = SimpleNamespace(problem=SimpleNamespace(trials=[SimpleNamespace(name="taught")]))
     return SimpleNamespace(
-        held_out=mean,
-        train=train,
-        runs={"taught": train, "new": mean},
+        validation=mean,
+        training=train,
+        mean_squares={"taught": train, "new": mean},
         counts={"taught": count, "new": 2 * np.size(power)},
-        powers={"new": np.asarray(power)},
-        polished=SimpleNamespace(misfit=misfit),
+        spectra={"new": np.asarray(power)},
+        least_squares=SimpleNamespace(misfit=misfit),
     )
 
 
@@ -29,8 +29,8 @@ def noise(seed, level=1.0):
 
 def test_the_gain_is_the_share_of_the_excess_and_its_interval_holds_it():
     base, better = fit(noise(1, 5.0)), fit(noise(2, 2.0))
-    gain = held_out_gain(base, better)
-    assert gain == pytest.approx(1 - (better.held_out - 1) / (base.held_out - 1))
+    gain = validation_gain(base, better)
+    assert gain == pytest.approx(1 - (better.validation - 1) / (base.validation - 1))
     low, high = gain_interval(base, better, ["new"])
     assert low < gain < high
     assert 0.05 < high - low < 0.4
@@ -45,7 +45,7 @@ def test_a_gain_that_sits_in_few_lines_is_uncertain_but_no_more_than_everything(
 
 
 def test_runs_without_a_gap_show_no_gain():
-    assert held_out_gain(fit(noise(4)), fit(noise(5, 0.9))) is None
+    assert validation_gain(fit(noise(4)), fit(noise(5, 0.9))) is None
     assert gain_interval(fit(noise(4)), fit(noise(5, 0.9)), ["new"]) is None
 
 

@@ -8,11 +8,11 @@ from benchmarks.hidden_effects.generator import Case, Effect, Hump, Noise, RunSp
 
 from vehgen.diagnose.design import experiment
 from vehgen.diagnose.design.candidate_runs import free_places, list_runs
-from vehgen.diagnose.design.discrimination import Rival, at_most, separate
+from vehgen.diagnose.design.discrimination import FittedModel, at_most, separate
 from vehgen.diagnose.design.experiment import propose, propose_stronger
 from vehgen.diagnose.detect.detection import detect
 from vehgen.diagnose.fits.candidate import list_candidates
-from vehgen.diagnose.select.search import name
+from vehgen.diagnose.select.search import fit_candidates
 from vehgen.effects import library
 from vehgen.fit.trial import load_trials, make_trial
 from vehgen.mechanics import Place
@@ -35,7 +35,7 @@ def fit(trials):
     detection = detect(trials)
     listed = list_candidates(trials[0].run.vehicle, trials, [effects["cubic_stiffness"], effects["bump_stop"]])
     rear = [item for item in listed if item.place == "rear"]
-    return detection, name(detection, detection.base, [], rear, lambda *_: None)[0]
+    return detection, fit_candidates(detection, detection.base, [], rear, lambda *_: None)[0]
 
 
 @pytest.fixture(scope="module")
@@ -51,8 +51,8 @@ def proposal(tied):
 def lead(fits):
     """Return how much less of chi-squared the true law leaves than the wrong one, on the runs of the fit."""
     left = {item.last.effect.name: item for item in fits}
-    names = [trial.name for trial in fits[0].polished.misfit.problem.trials]
-    total = {law: sum(item.runs[run] * item.counts[run] for run in names) for law, item in left.items()}
+    names = [trial.name for trial in fits[0].least_squares.misfit.problem.trials]
+    total = {law: sum(item.mean_squares[run] * item.counts[run] for run in names) for law, item in left.items()}
     return total["bump_stop"] - total["cubic_stiffness"]
 
 
@@ -68,7 +68,7 @@ def test_laws_that_low_humps_cannot_tell_apart_want_a_higher_one(tied, proposal)
 
 def test_the_proposed_run_keeps_what_was_promised(tied, proposal, tmp_path_factory):
     _, fits = fit(record(tmp_path_factory.mktemp("more"), tmp_path_factory, (*LOW, (proposal.height, proposal.speed))))
-    assert "run3" in fits[0].runs
+    assert "run3" in fits[0].mean_squares
     assert lead(fits) - lead(tied[1]) == pytest.approx(proposal.distance, rel=0.5)
     assert lead(fits) > 25
 
@@ -76,9 +76,9 @@ def test_the_proposed_run_keeps_what_was_promised(tied, proposal, tmp_path_facto
 def test_predictions_are_those_of_the_generator(tied):
     detection, fits = tied
     true = next(item for item in fits if item.last.effect.name == "cubic_stiffness")
-    rival = Rival.of(true, detection.problem.trials[0].channels)
+    rival = FittedModel.of(true, detection.problem.trials[0].channels)
     run = list_runs(detection.problem.trials)[-3]
-    values = dict(zip(true.polished.misfit.problem.space.names, true.polished.values, strict=True))
+    values = dict(zip(true.least_squares.misfit.problem.space.names, true.least_squares.values, strict=True))
     k3 = values.pop("cubic_stiffness_rear_k3")
     at = run.scenario.track.parts[0].at
     parameters = {"mH": 1500.0, "wheelbase": 2.8, **values}
@@ -95,7 +95,7 @@ def test_predictions_are_those_of_the_generator(tied):
 def test_no_refit_can_exceed_the_quick_bound(tied):
     detection, fits = tied
     channels = detection.problem.trials[0].channels
-    one, other = (Rival.of(item, channels) for item in fits)
+    one, other = (FittedModel.of(item, channels) for item in fits)
     for run in list_runs(detection.problem.trials)[2::5]:
         assert 0 <= separate(one, other, run, channels).distance <= at_most(one, other, run, channels).distance
         assert separate(one, other, run, channels[:1]).distance <= separate(one, other, run, channels).distance + 1e-6
@@ -131,7 +131,7 @@ def test_where_no_run_is_enough_the_best_is_named_with_the_repeats_it_takes(tied
 def test_added_channels_are_simulated_beside_the_old_ones(tied):
     detection, fits = tied
     trial = detection.problem.trials[0]
-    rival = Rival.of(fits[0], trial.channels)
+    rival = FittedModel.of(fits[0], trial.channels)
     run = list_runs(detection.problem.trials)[0]
     quarter = PointOutput("quarter", Place("quarter", "body", behind="front", distance=0.7), "acceleration")
     more = rival.with_outputs([quarter])
@@ -142,7 +142,7 @@ def test_added_channels_are_simulated_beside_the_old_ones(tied):
     travel = rival.travels(run, ["rear"])[:, 0]
     vehicle = rival.trial.run.vehicle
     simulator = Simulator(vehicle, [ElementOutput("travel", "rear", "suspension_travel")])
-    values = dict(zip(fits[0].polished.misfit.problem.space.names, fits[0].polished.values, strict=True))
+    values = dict(zip(fits[0].least_squares.misfit.problem.space.names, fits[0].least_squares.values, strict=True))
     alone = simulator.run(simulator.parameters(values), run.scenario).responses[0, :, 0]
     assert travel == pytest.approx(alone, abs=1e-9)
 

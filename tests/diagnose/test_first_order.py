@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from vehgen.diagnose.detect.detection import detect
-from vehgen.diagnose.fits.candidate import list_candidates, pose
-from vehgen.diagnose.fits.first_order import Motion
-from vehgen.diagnose.fits.model_fit import NUISANCES, Footing
-from vehgen.effects import Surveyor, library
+from vehgen.diagnose.fits.candidate import build_problem, list_candidates
+from vehgen.diagnose.fits.first_order import ProbeMotion
+from vehgen.diagnose.fits.model_fit import NUISANCES, CurrentModel
+from vehgen.effects import EffectLocator, library
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.fit.trial import load_trials
 
@@ -32,16 +32,16 @@ def test_what_is_no_force_of_travel_and_rate_is_left_to_a_simulation(detection, 
 
 def _both(detection, name, share):
     """Return the problem of an effect, and how it moves the residuals at a share of its first start: to first order, simulated."""
-    base = detection.base.polished
-    footing, trial = Footing.of(detection.base), detection.problem.trials[0]
+    base = detection.base.least_squares
+    footing, trial = CurrentModel.of(detection.base), detection.problem.trials[0]
     candidates = list_candidates(trial.run.vehicle, detection.trials, [library()[name]])
-    problem = pose(candidates[0], footing.problem, Surveyor(trial.run.vehicle, dict(trial.values)), {})
+    problem = build_problem(candidates[0], footing.problem, EffectLocator(trial.run.vehicle, dict(trial.values)), {})
     values = problem.space.start.copy()
     values[: len(footing.unit)] = base.values
     values[len(footing.unit)] *= share
     unit = np.clip(problem.space.unit(values), 0.0, 1.0)
-    moved = Motion(base.misfit, base.x).moved(problem, problem.space.values(unit))
+    moved = ProbeMotion(base.misfit, base.x).moved(problem, problem.space.values(unit))
     posed = Misfit(problem, base.misfit.noises, problem.space.start, NUISANCES, base.misfit.band)
-    after = posed.white_lines(np.concatenate([unit, footing.errors]))
-    lines = zip(after, base.misfit.white_lines(base.x), strict=True)
+    after = posed.whitened_spectrum(np.concatenate([unit, footing.errors]))
+    lines = zip(after, base.misfit.whitened_spectrum(base.x), strict=True)
     return problem, moved, np.concatenate([flatten(new - old) for new, old in lines])

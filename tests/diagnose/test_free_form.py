@@ -8,7 +8,7 @@ from benchmarks.hidden_effects.generator import Case, Effect, Hump, RandomRoad, 
 
 from vehgen.diagnose.localise import unknown_force as place_test
 from vehgen.diagnose.localise.free_form import fit_free_form, recover
-from vehgen.diagnose.localise.recovered_force import Recovered, strongest
+from vehgen.diagnose.localise.recovered_force import RecoveredForce, strongest
 from vehgen.diagnose.localise.unknown_force import Place, list_places
 from vehgen.diagnose.pipeline import detect
 from vehgen.fit.trial import load_trials
@@ -34,10 +34,10 @@ def cubic(tmp_path_factory):
     folder = tmp_path_factory.mktemp("cubic")
     write_case(CASE, folder, tmp_path_factory.mktemp("truth"))
     detection = detect(load_trials(sorted(folder.glob("*.yaml"))))
-    misfit = detection.base.polished.misfit
+    misfit = detection.base.least_squares.misfit
     wanted = ("suspension rear", "tyre rear", "body body", "channel F_az", "nowhere")
     places = [place for place in list_places(misfit) if place.label in wanted]
-    return detection, place_test.test_places(misfit, detection.base.polished.x, places)
+    return detection, place_test.score_locations(misfit, detection.base.least_squares.x, places)
 
 
 def pick(results, label):
@@ -62,7 +62,7 @@ def test_the_true_spring_lies_within_the_interval_of_the_curve(spring):
 
 
 def test_a_cubic_spring_is_explained_on_untouched_runs_without_memory(spring):
-    assert [run.untouched for run in spring.runs] == [False, False, True]
+    assert [run.validation for run in spring.runs] == [False, False, True]
     assert spring.explained > 0.85
     assert spring.hysteresis < 0.1
     assert spring.travel.share > 10 * spring.rate.share
@@ -120,7 +120,7 @@ def by_hand(law, name, seed, untouched=False):
     nothing = np.zeros((len(frequency), 2), dtype=complex)
     place = Place("suspension", "front")
     window = np.ones(n)
-    run = Recovered(
+    run = RecoveredForce(
         name,
         untouched,
         place,
@@ -139,7 +139,7 @@ def by_hand(law, name, seed, untouched=False):
         np.zeros((0, 3, n)),
     )
     noise = random.standard_normal(n) * np.sqrt(0.5 / dt)
-    object.__setattr__(run, "force", run.seen(law(travel, rate) + noise))
+    object.__setattr__(run, "force", run.observable(law(travel, rate) + noise))
     return run
 
 

@@ -39,7 +39,7 @@ def friction(tmp_path_factory):
 def edited(trials, change, only=None):
     """Return trials whose values `shape (n_samples, 4)` have been changed, in all runs or in one."""
     return [
-        replace(trial, measurement=replace(trial.measurement, values=change(trial.measurement.values.copy())))
+        replace(trial, recording=replace(trial.recording, values=change(trial.recording.values.copy())))
         if only in (None, trial.name)
         else trial
         for trial in trials
@@ -99,12 +99,12 @@ def test_one_height_or_speed_only_is_noted(plain):
 
 def test_correlation_is_that_of_numpy_at_the_lag_of_a_delayed_copy(plain):
     trial = plain[0]
-    moved = np.roll(trial.measurement.values, -7, axis=0)
+    moved = np.roll(trial.recording.values, -7, axis=0)
     found = correlate(trial, moved, (0.0, 50.0))
     middle = len(found) // 2
     assert found[:, 0, 0].argmax() == middle + 7
     assert found[middle] == pytest.approx(
-        trial.measurement.values.T @ moved / np.outer(*(np.linalg.norm(item, axis=0) for item in (trial.measurement.values, moved))),
+        trial.recording.values.T @ moved / np.outer(*(np.linalg.norm(item, axis=0) for item in (trial.recording.values, moved))),
         abs=1e-9,
     )
 
@@ -116,7 +116,7 @@ def test_exchanged_phones_are_named(plain):
 
 
 def test_phones_exchanged_in_an_untouched_run_only_are_named_with_the_run(plain):
-    untouched = detect(plain).held_out[0].name
+    untouched = detect(plain).validation_runs[0].name
     (finding,) = explain_gap(detect(edited(plain, exchange, only=untouched)))
     assert (finding.kind, finding.run) == ("exchanged", untouched)
 

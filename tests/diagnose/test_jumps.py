@@ -10,7 +10,7 @@ from benchmarks.hidden_effects.generator.simulate import true_parameters
 from tests.diagnose.conftest import RUNS
 from vehgen.diagnose.detect.detection import detect
 from vehgen.diagnose.localise.unknown_force import list_places
-from vehgen.diagnose.localise.unknown_force import test_places as place_test
+from vehgen.diagnose.localise.unknown_force import score_locations as place_test
 from vehgen.diagnose.pipeline import diagnose
 from vehgen.diagnose.select.estimates import RunEstimate, disagreement
 from vehgen.effects import EFFECTS
@@ -33,15 +33,15 @@ def found(runs):
 
 def test_friction_gets_shorter_steps_where_it_jumps_and_smooth_models_none(found):
     base, friction = found.detection.base, found.chosen[-1]
-    assert not any(trial.jumps for trial in base.polished.misfit.problem.trials)
-    assert any(trial.jumps for trial in friction.polished.misfit.problem.trials)
-    steps = {trial.name: trial.scenario.dt for trial in friction.polished.misfit.problem.trials}
+    assert not any(trial.jumps for trial in base.least_squares.misfit.problem.trials)
+    assert any(trial.jumps for trial in friction.least_squares.misfit.problem.trials)
+    steps = {trial.name: trial.scenario.dt for trial in friction.least_squares.misfit.problem.trials}
     assert steps["rough"] < 1e-3 == pytest.approx(steps["fast"])
 
 
 def test_at_the_truth_shorter_steps_come_closer_to_the_recording(found):
     """The recording was made with steps of 0.05 ms by another integrator."""
-    misfit, x = found.chosen[-1].polished.misfit, found.chosen[-1].polished.x
+    misfit, x = found.chosen[-1].least_squares.misfit, found.chosen[-1].least_squares.x
     truth = true_parameters(Case("sedan2", effects=(FRICTION,), runs=RUNS, seed=3)) | {"dry_friction_front_force": 600.0}
     values = np.array([truth[name] for name in misfit.problem.space.names])
     x = np.concatenate([misfit.problem.space.unit(values), np.zeros(len(x) - len(values))])
@@ -51,28 +51,28 @@ def test_at_the_truth_shorter_steps_come_closer_to_the_recording(found):
     loose = Misfit(first, misfit.noises, values, misfit.nuisances, misfit.band)
     tight = Misfit(resolve(loose, x), misfit.noises, values, misfit.nuisances, misfit.band)
     number = [trial.name for trial in plain].index("rough")
-    before, after = (float(np.mean(np.abs(item.white_lines(x)[number]) ** 2)) for item in (loose, tight))
+    before, after = (float(np.mean(np.abs(item.whitened_spectrum(x)[number]) ** 2)) for item in (loose, tight))
     assert before > 1.5 > after
 
 
 def test_several_minima_are_tried_and_the_force_is_told_within_its_interval(found):
     fit = found.chosen[-1]
-    assert fit.equals
+    assert fit.equivalent_minima
     force = found.verdict.effects[0].parameters["force"]
     assert force.interval[0] < 600.0 < force.interval[1]
     assert force.interval[1] - force.interval[0] < 60.0
-    assert fit.train < 1.1
+    assert fit.training < 1.1
 
 
 def test_the_place_test_leaves_parameters_that_the_effect_has_not_biased(runs):
     detection = detect(load_trials(runs))
-    misfit, x = detection.base.polished.misfit, detection.base.polished.x
+    misfit, x = detection.base.least_squares.misfit, detection.base.least_squares.x
     place = next(item for item in list_places(misfit) if item.label == "suspension front")
     (result,) = place_test(misfit, x, [place])
     truth = true_parameters(Case("sedan2", effects=(FRICTION,), runs=RUNS, seed=3))
     space = misfit.problem.space
     values = dict(zip(space.names, space.values(misfit.split(result.x)[0]), strict=True))
-    biased = dict(zip(space.names, detection.base.polished.values, strict=True))
+    biased = dict(zip(space.names, detection.base.least_squares.values, strict=True))
     off = {name: abs(values[name] / truth[name] - 1) for name in ("kr", "cr", "mr", "ktr", "IZ", "Lf")}
     assert max(off.values()) < 0.05
     assert max(abs(biased[name] / truth[name] - 1) for name in off) > 0.05

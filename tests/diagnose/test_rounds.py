@@ -85,7 +85,7 @@ def test_ctrl_c_leaves_what_was_found(pair):
         if stage == "name" and done == 2:
             raise KeyboardInterrupt
 
-    found = diagnose(load_trials(pair), FEW, tell=tell)
+    found = diagnose(load_trials(pair), FEW, progress=tell)
     assert found.stopped
     assert found.verdict.verdict == "insufficient_data"
     assert "stopped by hand after 2 candidates" in found.verdict.reason

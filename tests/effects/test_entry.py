@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from vehgen.commands import main
-from vehgen.effects import EFFECTS, Surveyor, extended_library, load_effects
+from vehgen.effects import EFFECTS, EffectLocator, extended_library, load_effects
 from vehgen.effects.entry import effects_schema
 from vehgen.errors import InputError
 from vehgen.files.document import read_text
@@ -44,7 +44,7 @@ def file(tmp_path):
 @pytest.fixture(scope="module")
 def site():
     vehicle = load_vehicle("sedan2")
-    return Surveyor(vehicle, vehicle.values()).site("rear")
+    return EffectLocator(vehicle, vehicle.values()).site("rear")
 
 
 def test_the_pages_example_is_two_effects_of_a_vehicle(file, site):
@@ -102,7 +102,7 @@ def test_hinges_and_tyres_carry_entries_too(tmp_path):
 """
     (tmp_path / "a.yaml").write_text(text, encoding="utf-8")
     vehicle = load_vehicle("tractor5")
-    surveyor = Surveyor(vehicle, vehicle.values())
+    surveyor = EffectLocator(vehicle, vehicle.values())
     for effect in load_effects(tmp_path / "a.yaml").values():
         place = effect.places(vehicle, ())[0]
         changed = extend_vehicle(vehicle, effect.change(surveyor.site(place)))

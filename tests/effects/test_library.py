@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from vehgen.effects import EFFECTS, Surveyor
+from vehgen.effects import EFFECTS, EffectLocator
 from vehgen.mechanics import derive
 from vehgen.simulate import natural_modes
 from vehgen.vehicle import load_vehicle, parse_vehicle
@@ -37,7 +37,7 @@ def test_every_effect_says_what_it_is_and_begins_within_its_range(effect):
 @pytest.mark.parametrize("name", ["sedan2.yaml", "tractor5.yaml", "road_train.yaml", "truck_dolly_trailer.yaml"])
 def test_every_edit_gives_a_vehicle_that_vehgen_accepts(name):
     vehicle = load_vehicle(name)
-    surveyor = Surveyor(vehicle, vehicle.values())
+    surveyor = EffectLocator(vehicle, vehicle.values())
     for effect in EFFECTS.values():
         if effect.edit is not None:
             for place in effect.places(vehicle, ())[:2]:
@@ -56,7 +56,7 @@ def test_every_edit_fits_a_vehicle_with_the_longest_names():
     text = Path(base.files[0]).read_text(encoding="utf-8")
     vehicle = parse_vehicle(re.sub(r"\w+", lambda match: parts.get(match[0], match[0]), text))
     assert set(vehicle.bodies) == {parts[name] for name in base.bodies}
-    surveyor = Surveyor(vehicle, vehicle.values())
+    surveyor = EffectLocator(vehicle, vehicle.values())
     for effect in EFFECTS.values():
         if effect.edit is not None:
             names = [name for place in effect.places(vehicle, ()) for name in effect.symbols(place).values()]
@@ -71,7 +71,7 @@ def frequencies(vehicle):
 
 def test_a_walking_beam_leaves_the_tandem_its_heave_and_takes_its_pitch_stiffness():
     vehicle = load_vehicle("tractor5.yaml")
-    site = Surveyor(vehicle, vehicle.values()).site("axle4+axle5")
+    site = EffectLocator(vehicle, vehicle.values()).site("axle4+axle5")
     changed = derive(extend_vehicle(vehicle, EFFECTS["walking_beam"].change(site, {"share": 1.0, "split": 0.5})))
     K = changed.numeric().K
     beam = [item.name for item in changed.coordinates]
@@ -84,7 +84,7 @@ def test_a_walking_beam_leaves_the_tandem_its_heave_and_takes_its_pitch_stiffnes
 
 def test_a_light_load_leaves_the_body_modes_nearly_alone():
     vehicle = load_vehicle("sedan2.yaml")
-    site = Surveyor(vehicle, vehicle.values()).site("body")
+    site = EffectLocator(vehicle, vehicle.values()).site("body")
     values = {"mass": 15.0, "frequency": 12.0, "damping_ratio": 0.02, "x": 0.0}
     changed = extend_vehicle(vehicle, EFFECTS["cargo_module"].change(site, values))
     found = frequencies(changed)
@@ -127,7 +127,7 @@ def test_the_page_shows_the_library_as_it_is():
 
 def test_a_walking_beam_is_no_place_for_cargo_and_takes_its_axles_suspensions_away():
     vehicle = load_vehicle("tractor5.yaml")
-    site = Surveyor(vehicle, vehicle.values()).site("axle2+axle3")
+    site = EffectLocator(vehicle, vehicle.values()).site("axle2+axle3")
     changed = extend_vehicle(vehicle, EFFECTS["walking_beam"].change(site))
     assert "beam_axle2_axle3" in changed.bodies
     for name in ("cargo_module", "frame_bending", "engine_harmonic", "suspended_cab"):

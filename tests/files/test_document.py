@@ -94,7 +94,7 @@ empty:
         ((), False, None, (2, 1)),
     ],
 )
-def test_places(path: tuple[str | int, ...], key: bool, offset: int | None, place: tuple[int, int]):
+def score_locations(path: tuple[str | int, ...], key: bool, offset: int | None, place: tuple[int, int]):
     position = read_text(TEXT, "a.yaml").find(path, key=key, offset=offset)
     assert (position.line, position.column) == place
     assert str(position) == f"a.yaml:{place[0]}:{place[1]}"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from vehgen.fit.adjustments import Adjustment, Gain, SensorDelay
-from vehgen.fit.least_squares import polish
+from vehgen.fit.least_squares import fit_least_squares
 from vehgen.fit.misfit import Nuisances
 from vehgen.fit.noise import EVEN, Noise
 from vehgen.fit.problem import make_problem
@@ -43,7 +43,9 @@ def problem(tmp_path_factory):
 def fitted(problem, *shared):
     noises = {problem.trials[0].name: Noise(EVEN, SIGMA)}
     nuisances = Nuisances(delay=0.05, speed=0.005)
-    fit = polish(problem, problem.space.unit(problem.space.start), nuisances, (0.5, 40.0), noises=noises, hold=0.1, shared=shared)
+    fit = fit_least_squares(
+        problem, problem.space.unit(problem.space.start), nuisances, (0.5, 40.0), noises=noises, prior_sigma=0.1, shared=shared
+    )
     return fit.misfit.adjusted(fit.x)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vehgen.fit.harmonic import Harmonic, find_line, line_numbers
+from vehgen.fit.harmonic import Harmonic, find_line, harmonic_adjustments
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import EVEN, Noise
 from vehgen.fit.problem import make_problem
@@ -74,7 +74,7 @@ def test_a_line_is_found_where_it_is_and_taken_out(shaken):
     (frequency, drift), *_ = find_line(plain, x)
     assert frequency == pytest.approx(21.0, abs=0.05)
     assert drift == pytest.approx(0.0, abs=0.002)
-    lined = Misfit(problem, noises, problem.space.start, shared=line_numbers("body", {trials[0].name: SIGMA}))
+    lined = Misfit(problem, noises, problem.space.start, shared=harmonic_adjustments("body", {trials[0].name: SIGMA}))
     numbers = [(frequency - lined.shared[0].neutral) / lined.shared[0].scale, drift / lined.shared[1].scale]
     before = np.mean(plain.residuals(x) ** 2)
     after = np.mean(lined.residuals(np.concatenate([x[: plain.n_parameters], numbers, x[plain.n_parameters :]])) ** 2)

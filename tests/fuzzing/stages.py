@@ -16,13 +16,13 @@ from vehgen.cargo import laden_text, load_cargo
 from vehgen.cargo.frame_file import load_frame
 from vehgen.cargo.module_model import cargo_text, module_model
 from vehgen.codegen import write_kernel
-from vehgen.effects import Surveyor, extended_library, library
+from vehgen.effects import EffectLocator, extended_library, library
 from vehgen.errors import InputError
-from vehgen.fit.prior_data import load_facts
+from vehgen.fit.prior_data import load_prior_data
 from vehgen.fit.problem import Problem, make_problem
 from vehgen.fit.trial import load_trials
-from vehgen.measure import read_measurement
-from vehgen.mechanics import ElementOutput, LinearModel, derive, static_loads
+from vehgen.measure import read_recording
+from vehgen.mechanics import ElementOutput, EquationsOfMotion, derive, static_loads
 from vehgen.phones import read_export
 from vehgen.simulate import lint, load_run, make_scenario, natural_modes
 from vehgen.simulate.warnings import spectral_nulls, step_too_coarse
@@ -57,7 +57,7 @@ def check_kernel(text: str) -> None:
             raise KernelTextError("an expression is computed where the generated kernel is imported")
 
 
-def generate(model: LinearModel) -> None:
+def generate(model: EquationsOfMotion) -> None:
     """Write and check a model's kernel source."""
     check_kernel(write_kernel(model).text)
 
@@ -87,7 +87,7 @@ def run(path: str) -> None:
 def table(path: str) -> None:
     """Read a run's tables: its scenario's, and its recording."""
     run(path)
-    read_measurement(load_run(path))
+    read_recording(load_run(path))
 
 
 @cache
@@ -132,7 +132,7 @@ def frame(path: str) -> None:
 
 def facts(path: str) -> None:
     """Load a facts file about the five-axle vehicle."""
-    load_facts(path, problem())
+    load_prior_data(path, problem())
 
 
 def effects(path: str) -> None:
@@ -140,7 +140,7 @@ def effects(path: str) -> None:
     found = extended_library([path])
     model = derive(tractor())
     values = model.values()
-    surveyor = Surveyor(tractor(), values)
+    surveyor = EffectLocator(tractor(), values)
     for name in list(dict.fromkeys([*found]))[:20]:
         if name in library():
             continue

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from vehgen.errors import InputError
-from vehgen.measure import read_measurement
+from vehgen.measure import read_recording
 from vehgen.simulate import load_run
 
 RUN = """vehicle: sedan2.yaml
@@ -24,7 +24,7 @@ def write(folder, t=None, az=None, q=None, text=RUN):
 
 
 def test_channels_come_in_si_units_with_their_sign(tmp_path):
-    found = read_measurement(write(tmp_path))
+    found = read_recording(write(tmp_path))
     assert [channel.name for channel in found.channels] == ["az", "q"]
     assert found.values[:, 1] == pytest.approx(-np.cos(found.time) * np.pi / 180)
     assert found.dt == pytest.approx(0.01)
@@ -34,7 +34,7 @@ def test_a_column_is_found_by_any_heading_and_its_channel_has_a_name(tmp_path):
     heading = "=Acceleration z (m/s^2)"
     run = write(tmp_path, text=RUN.replace("acceleration: az", f"acceleration: '{heading}'"))
     (tmp_path / "data.csv").write_text((tmp_path / "data.csv").read_text().replace("t,az,q", f"t,{heading},q"))
-    found = read_measurement(run)
+    found = read_recording(run)
     assert [channel.name for channel in found.channels] == ["F_acceleration", "q"]
     assert found.values[:, 0] == pytest.approx(np.sin(found.time))
 
@@ -58,5 +58,5 @@ def test_a_column_is_found_by_any_heading_and_its_channel_has_a_name(tmp_path):
 def test_a_recording_that_cannot_be_used_says_why(tmp_path, change, said):
     run = write(tmp_path, **change)
     with pytest.raises(InputError, match=said) as caught:
-        read_measurement(run)
+        read_recording(run)
     assert "\n" not in str(caught.value)

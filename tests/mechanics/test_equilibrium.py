@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, root
 
-from vehgen.codegen import Drive, Kernel
+from vehgen.codegen import Excitation, Kernel
 from vehgen.errors import InputError, ModelWarning
 from vehgen.mechanics import ElementOutput, Place, PointOutput, derive, static_loads
 from vehgen.mechanics.equilibrium import _Balance, equilibria
@@ -97,9 +97,9 @@ def test_the_kernel_moves_about_that_equilibrium(law):
     time = np.arange(3001) * 1e-3
     phase = np.clip((time - 0.2) / 0.25, 0, 1)
     w, dw = 0.05 * np.sin(np.pi * phase) ** 2, 0.05 * np.pi / 0.25 * np.sin(2 * np.pi * phase)
-    still = kernel.run(columns(model), Drive(1e-3, 0 * w[:, None], 0 * w[:, None], np.zeros((3001, 0))), 10)
+    still = kernel.run(columns(model), Excitation(1e-3, 0 * w[:, None], 0 * w[:, None], np.zeros((3001, 0))), 10)
     assert np.abs(still.responses).max() < 1e-9
-    found = kernel.run(columns(model), Drive(1e-3, w[:, None], dw[:, None], np.zeros((3001, 0))), 10).responses[0]
+    found = kernel.run(columns(model), Excitation(1e-3, w[:, None], dw[:, None], np.zeros((3001, 0))), 10).responses[0]
     rest = brentq(lambda d: 1e6 * d + LAWS[law](d) - 10000 * G, 0, 1, xtol=1e-15)
     sunk = 11000 * G / 1e6
 
@@ -127,7 +127,7 @@ def test_who_has_no_equilibrium_fails_with_the_reason_and_harms_no_other(tmp_pat
     parameters = np.repeat(columns(model), 4, axis=0)
     parameters[1, model.parameters.index("soft")] = 4e6  # the spring's peak, k^2/(4 s), lies below the weight
     parameters[2, model.parameters.index("kS")] = np.nan
-    drive = Drive(1e-3, np.linspace(0, 0.01, 501)[:, None], np.full((501, 1), 0.02), np.zeros((501, 0)))
+    drive = Excitation(1e-3, np.linspace(0, 0.01, 501)[:, None], np.full((501, 1), 0.02), np.zeros((501, 0)))
     result = Kernel(model).run(parameters, drive)
     assert set(result.failures) == {1, 2}
     assert "no stable static equilibrium" in result.failures[1]
@@ -172,7 +172,7 @@ def test_tyres_leave_the_road_at_the_load_that_the_laws_leave_them():
     assert max(abs(loads[name] - linear[name]) / linear[name] for name in loads) > 0.02
     time = np.arange(2001) * 1e-3
     w = 0.05 * np.sin(np.pi * np.clip((time[:, None] - 0.2 - 0.2 * np.arange(5)) / 0.15, 0, 1))
-    drive = Drive(1e-3, w, np.gradient(w, 1e-3, axis=0), np.zeros((2001, 0)))
+    drive = Excitation(1e-3, w, np.gradient(w, 1e-3, axis=0), np.zeros((2001, 0)))
     dynamic = Kernel(model).run(columns(model), drive, 1).responses[0]
     least = (dynamic + list(loads.values())).min(axis=0)
     np.testing.assert_allclose(least, 0, atol=1e-6)

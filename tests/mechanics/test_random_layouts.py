@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from tests.oracles.layouts import random_layout, rigid_translation, to_yaml
 from tests.oracles.newton_euler import assemble
-from vehgen.codegen import Drive, Kernel
+from vehgen.codegen import Excitation, Kernel
 from vehgen.mechanics import Place, PointOutput, derive, static_loads
 from vehgen.simulate import newmark_response
 from vehgen.vehicle import parse_vehicle
@@ -87,9 +87,9 @@ def test_kernel_follows_the_oracle_and_keeps_the_energy_of_free_motion(seed, tmp
     rng = np.random.default_rng(seed)
     initial = np.concatenate([rng.normal(0, 0.01, n), rng.normal(0, 0.1, n)])
     rest = np.zeros((steps + 1, len(model.inputs)))
-    drive = Drive(1e-3, rest, rest, np.zeros((steps + 1, 0)))
+    drive = Excitation(1e-3, rest, rest, np.zeros((steps + 1, 0)))
     parameters = np.array([list(model.values().values())])
-    response = Kernel(model, tmp_path).run(parameters, drive, keep=1, initial=initial[None, :]).responses[0]
+    response = Kernel(model, tmp_path).run(parameters, drive, decimation=1, initial=initial[None, :]).responses[0]
     oracle = newmark_response(model, drive, 1, initial=initial)
     assert (np.abs(response - oracle) <= 1e-10 * np.abs(oracle).max(axis=0)).all()
     numeric = model.numeric()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from vehgen.commands import main
-from vehgen.measure import read_measurement
+from vehgen.measure import read_recording
 from vehgen.simulate import Simulator, load_run, make_scenario
 
 from .exports import write_zip
@@ -89,7 +89,7 @@ def test_clocks_speed_tilt_and_noise_are_found(tmp_path, capsys, name, road, arr
             assert sigma["sigma"] == pytest.approx(0.0125 if channel.endswith("az") else 0.00072, rel=0.15)
     assert "by the apps' own clocks it crossed" in "".join(found["phones"][1]["notes"])
     run = load_run(tmp_path / "run.yaml")
-    measurement = read_measurement(run)
+    measurement = read_recording(run)
     assert measurement.time[0] == 0.0
     assert measurement.dt == pytest.approx(0.01)
     assert [item.name for item in measurement.channels] == ["L1_az", "L1_q", "L2_az", "L2_q"]
@@ -104,7 +104,7 @@ def test_the_recording_is_the_true_vehicles_answer(tmp_path, capsys):
     specification.loader.exec_module(script)
     _, _, _, _, true = script.matrices()
     run = load_run(tmp_path / "run.yaml")
-    measured = read_measurement(run)
+    measured = read_recording(run)
     simulator = Simulator(run.vehicle, run.outputs())
     values = {**run.values(), **true}
     scenario = make_scenario(run, simulator.model, simulator.model.values(overrides=values))

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 
 from tests.oracles.layouts import random_layout, to_yaml
-from vehgen.mechanics import LinearModel, Place, PointOutput, derive
+from vehgen.mechanics import EquationsOfMotion, Place, PointOutput, derive
 from vehgen.vehicle import bundled_models, load_vehicle, parse_vehicle
 
 HOSTILE = r'</script><script>alert("1")</script> & $\frac$ 50 % {x}_y^2 #~'
@@ -35,7 +35,7 @@ EVERY = (*bundled_models(), "with_laws", "rig")
 
 
 @cache
-def model(name: str) -> LinearModel:
+def model(name: str) -> EquationsOfMotion:
     """Return a bundled model or one of the above, with an output and a force."""
     vehicle = (
         load_vehicle(bundled_models()[name]) if name in bundled_models() else parse_vehicle({"with_laws": WITH_LAWS, "rig": RIG}[name])
@@ -45,6 +45,6 @@ def model(name: str) -> LinearModel:
 
 
 @cache
-def random_model(seed: int) -> LinearModel:
+def random_model(seed: int) -> EquationsOfMotion:
     """Return a random vehicle of hinged bodies, axles of both kinds, links, modules, cabs, rigid loads."""
     return derive(parse_vehicle(to_yaml(random_layout(np.random.default_rng(seed)))))

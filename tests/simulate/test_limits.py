@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from vehgen.errors import InputError
-from vehgen.measure import read_measurement
+from vehgen.measure import read_recording
 from vehgen.mechanics import derive
 from vehgen.road import ConstantSpeed, Hump, Iso8608Road, SpeedHistory, Track, pass_time
 from vehgen.simulate import load_run
@@ -230,7 +230,7 @@ def test_an_unreadable_folder_of_a_recording_has_the_place_of_its_name(tmp_path,
 
     monkeypatch.setattr(os, "stat", refuse)
     with pytest.raises(InputError, match=r"run\.yaml:5:12: cannot read .*data\.csv: Permission denied"):
-        read_measurement(run)
+        read_recording(run)
 
 
 def test_numbers_beyond_measure_in_a_recording_are_refused(tmp_path):
@@ -238,7 +238,7 @@ def test_numbers_beyond_measure_in_a_recording_are_refused(tmp_path):
     (tmp_path / "data.csv").write_text("t,A_acceleration,A_pitch_rate\n" + rows)
     (tmp_path / "run.yaml").write_text(RUN + "sensors: {A: {body: body}}\nrecording: data.csv\n")
     with pytest.raises(InputError, match=r"'1e300' in column 'A_pitch_rate' is beyond .*data\.csv:42:3"):
-        read_measurement(load_run(tmp_path / "run.yaml"))
+        read_recording(load_run(tmp_path / "run.yaml"))
 
 
 @pytest.mark.parametrize("name", ["quarter_car", "tractor5", "sedan2"])

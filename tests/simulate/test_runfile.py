@@ -82,7 +82,7 @@ def test_defaults(tmp_path: Path):
     run = load(tmp_path, SHORT)
     assert run.file.duration is None
     assert run.file.step == 0.001
-    assert run.keep == 10
+    assert run.decimation == 10
     assert run.file.road == []
     assert run.folder == tmp_path
     assert run.outputs() == (PointOutput("frame_acceleration", Place("frame", "frame"), "acceleration"),)
@@ -91,7 +91,7 @@ def test_defaults(tmp_path: Path):
 
 @pytest.mark.parametrize(("step", "sample", "keep"), [("1 ms", "1 ms", 1), ("0.1 ms", "10 ms", 100), ("3 ms", "0.3 s", 100)])
 def test_how_often_a_sample_is_kept(step: str, sample: str, keep: int, tmp_path: Path):
-    assert load(tmp_path, SHORT + f"step: {step}\nsample: {sample}\n").keep == keep
+    assert load(tmp_path, SHORT + f"step: {step}\nsample: {sample}\n").decimation == keep
 
 
 def test_a_speed_history(tmp_path: Path):

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from prepare import DISPLACEMENT, FINER, HERE, RUNS, STEP, TESTS, read_silverbox, upsample, write_runs
 
-from vehgen.codegen import Drive
-from vehgen.effects import EFFECTS, Surveyor
-from vehgen.fit.least_squares import polish
+from vehgen.codegen import Excitation
+from vehgen.effects import EFFECTS, EffectLocator
+from vehgen.fit.least_squares import fit_least_squares
 from vehgen.fit.misfit import Nuisances
 from vehgen.fit.noise import EVEN, Noise
 from vehgen.fit.problem import make_problem
@@ -35,7 +35,7 @@ WHOLE_BAND = (0.5, 300.0)
 
 def with_cubic_spring(vehicle: Vehicle) -> Vehicle:
     """Return the vehicle with the library's cubic spring beside its linear one."""
-    return extend_vehicle(vehicle, EFFECTS["cubic_stiffness"].change(Surveyor(vehicle, vehicle.values()).site("spring")), "cubic")
+    return extend_vehicle(vehicle, EFFECTS["cubic_stiffness"].change(EffectLocator(vehicle, vehicle.values()).site("spring")), "cubic")
 
 
 def fit(vehicle: Vehicle, runs: list[Path]) -> dict[str, float]:
@@ -46,7 +46,7 @@ def fit(vehicle: Vehicle, runs: list[Path]) -> dict[str, float]:
         trials.append(replace(trial, run=replace(trial.run, file=trial.run.file.model_copy(update={"forces": forces}))))
     problem = make_problem(trials)
     noises = {trial.name: Noise(EVEN, np.array([3e-4 * DISPLACEMENT])) for trial in trials}
-    found = polish(problem, problem.space.unit(problem.space.start), Nuisances(0.0, 0.0, 0.0), WHOLE_BAND, noises=noises)
+    found = fit_least_squares(problem, problem.space.unit(problem.space.start), Nuisances(0.0, 0.0, 0.0), WHOLE_BAND, noises=noises)
     return problem.best_values(found.values)
 
 
@@ -77,7 +77,7 @@ def free_run(
     def simulate(initial: Array, count: int) -> Array:
         force = fine[split[0] * FINER : (split[0] + count - 1) * FINER + 1]
         still = np.zeros((len(force), len(simulator.model.inputs)))
-        drive = Drive(STEP / FINER, still, still, force[:, None])
+        drive = Excitation(STEP / FINER, still, still, force[:, None])
         return simulator.kernel.run(np.repeat(parameters, len(initial), axis=0), drive, FINER, initial).responses[:, :, 0]
 
     scale = np.array([1e-3, 1e-3 * np.sqrt(values["k1"] / values["m1"])])

@@ -20,16 +20,16 @@ from vehgen.files import write_text
 from vehgen.files.reading import read_text
 from vehgen.files.tables import MOST_BYTES
 from vehgen.fit.band import CALIBRATION_BAND_HZ
-from vehgen.fit.least_squares import Polished, polish
+from vehgen.fit.least_squares import LeastSquaresFit, fit_least_squares
 from vehgen.fit.misfit import Nuisances
 from vehgen.fit.parallel import Runner
-from vehgen.fit.prior_data import Facts
+from vehgen.fit.prior_data import PriorData
 from vehgen.fit.problem import Problem
 
 Array = NDArray[np.float64]
 SAVE_EVERY = 10
 """Generations between two checkpoints."""
-NEAR = 0.1
+NEAR_START = 0.1
 """How far further starts of the polish stray from the search's best, in the unit cube."""
 
 
@@ -58,7 +58,7 @@ class StepResult:
     step: Step
     problem: Problem
     state: SearchState
-    fits: tuple[Polished, ...]
+    fits: tuple[LeastSquaresFit, ...]
 
     @property
     def values(self) -> dict[str, float]:
@@ -86,15 +86,15 @@ class Calibration:
         return np.array([self.values[name] for name in self.problem.space.names])
 
 
-Progress = Callable[[str, int, int, float], None]
+CalibrationProgress = Callable[[str, int, int, float], None]
 """Called with what is done, how many of how many, and the best objective so far."""
 
 
 def calibrate(
     problem: Problem,
     settings: Settings,
-    facts: Facts | None = None,
-    progress: Progress | None = None,
+    prior_data: PriorData | None = None,
+    progress: CalibrationProgress | None = None,
     checkpoint: Path | None = None,
     resume: bool = False,
     runner: Runner | None = None,
@@ -123,7 +123,7 @@ def calibrate(
     InputError
         For settings or a checkpoint that do not fit.
     """
-    tell = progress or (lambda label, done, total, best: None)
+    progress = progress or (lambda label, done, total, best: None)
     steps = plan(problem, settings.method, settings.sensors, settings.frozen)
     saved = _load(checkpoint, problem, settings) if resume else []
     values = dict(zip(problem.space.names, problem.space.start.tolist(), strict=True))
@@ -136,11 +136,11 @@ def calibrate(
         state: SearchState | None = None
         try:
             for state in _search(objective, settings, number, saved[number] if number < len(saved) else None):
-                tell(step.label, state.generation, settings.search.generations, state.elite_objective)
+                progress(step.label, state.generation, settings.search.generations, state.elite_objective)
                 if checkpoint is not None and (state.generation % SAVE_EVERY == 0 or state.generation == settings.search.generations):
                     _save(checkpoint, problem, settings, [*(item.state for item in results), state])
             assert state is not None
-            fits = _polish_all(own, state, settings, facts, runner or Runner(), tell, step.label) if settings.polish else ()
+            fits = _polish_all(own, state, settings, prior_data, runner or Runner(), progress, step.label) if settings.polish else ()
         except KeyboardInterrupt:
             if state is None:
                 raise
@@ -165,11 +165,11 @@ def _search(objective: PsdObjective, settings: Settings, number: int, state: Sea
 
 
 def _polish_all(
-    problem: Problem, state: SearchState, settings: Settings, facts: Facts | None, runner: Runner, tell: Progress, label: str
-) -> tuple[Polished, ...]:
+    problem: Problem, state: SearchState, settings: Settings, facts: PriorData | None, runner: Runner, tell: CalibrationProgress, label: str
+) -> tuple[LeastSquaresFit, ...]:
     own_facts = None if facts is None else replace(facts, problem=problem)
-    job = partial(polish, problem, nuisances=settings.nuisances, band=settings.band, facts=own_facts)
-    fits: list[Polished] = []
+    job = partial(fit_least_squares, problem, nuisances=settings.nuisances, band=settings.band, prior_data=own_facts)
+    fits: list[LeastSquaresFit] = []
     points = starting_points(problem, state, settings)
     for fit in runner.map(job, points):
         fits.append(fit)
@@ -186,7 +186,7 @@ def starting_points(problem: Problem, state: SearchState, settings: Settings) ->
         if not any(np.array_equal(point, other) for other in points):
             points.append(np.asarray(point))
     while len(points) < settings.starts:
-        points.append(np.clip(state.elite + random.uniform(-NEAR, NEAR, problem.space.size), 0.0, 1.0))
+        points.append(np.clip(state.elite + random.uniform(-NEAR_START, NEAR_START, problem.space.size), 0.0, 1.0))
     return points[: settings.starts]
 
 
@@ -199,7 +199,7 @@ def fingerprint(problem: Problem, settings: Settings) -> str:
     for array in (problem.space.lower, problem.space.upper, problem.space.start):
         digest.update(array.tobytes())
     for trial in problem.trials:
-        digest.update(trial.measurement.values.tobytes())
+        digest.update(trial.recording.values.tobytes())
         digest.update(json.dumps(trial.values, sort_keys=True).encode())
         digest.update(json.dumps(trial.run.document.plain(), sort_keys=True, default=str).encode())
     return digest.hexdigest()

@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 
 from vehgen.fit.problem import Problem
 from vehgen.fit.space import SearchSpace
-from vehgen.mechanics.equations_of_motion import LinearModel
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.simulate.frequency import response_derivatives
 
 Array = NDArray[np.float64]
 FREQUENCIES = np.geomspace(0.4, 40.0, 40)
 """Where responses are compared [Hz]; the null space does not depend on the choice."""
-ZERO = 1e-9
+NULL_SHARE = 1e-9
 """Singular values below this share of the largest are zero: exact derivatives leave about 1e-14."""
 IN_NULL_SPACE = 1e-5
 """A quantity whose gradient has a larger share than this in the null space cannot be told."""
@@ -39,7 +39,7 @@ class Structure:
 
     space: SearchSpace
     null: Array
-    pivots: tuple[int, ...]
+    fixed_parameters: tuple[int, ...]
     singular_values: Array
 
     @property
@@ -52,7 +52,7 @@ class Structure:
         """An orthonormal basis of what can be told, `shape (n_parameters, rank)`."""
         return np.asarray(scipy.linalg.null_space(self.null)) if len(self.null) else np.eye(self.space.size)
 
-    def can_tell(self, gradient: Array) -> bool:
+    def is_identifiable(self, gradient: Array) -> bool:
         """Return whether a quantity can be told whose derivatives by the unit cube's coordinates are `gradient shape (n_parameters,)`."""
         norm = float(np.linalg.norm(gradient))
         if norm == 0 or not len(self.null):
@@ -63,7 +63,7 @@ class Structure:
     def directions(self, values: Array) -> list[dict[str, float]]:
         """Return each null direction as changes [SI] of the parameters it moves, for a change of its pivot by 1 % of the pivot's range."""
         found = []
-        for row, pivot in zip(self.null, self.pivots, strict=True):
+        for row, pivot in zip(self.null, self.fixed_parameters, strict=True):
             change = row * self.space.slopes(values)
             change *= 0.01 * (self.space.upper[pivot] - self.space.lower[pivot]) / change[pivot]
             moved = np.abs(row) > 1e-6 * np.abs(row).max()
@@ -101,13 +101,13 @@ def null_space(derivatives: Array) -> tuple[Array, Array]:
     scale = np.where(norms > 0, norms, 1.0)
     _, found, rows = np.linalg.svd(derivatives / scale)
     singular = np.asarray(found, dtype=np.float64)
-    count = int((singular < ZERO * singular[0]).sum())
+    count = int((singular < NULL_SHARE * singular[0]).sum())
     null = rows[len(rows) - count :] / scale
     return np.asarray(null / np.linalg.norm(null, axis=1, keepdims=True)), singular
 
 
 def _scaled_derivatives(
-    problem: Problem, model: LinearModel, values: Mapping[str, float], fixed: tuple[str, ...], searched: Array
+    problem: Problem, model: EquationsOfMotion, values: Mapping[str, float], fixed: tuple[str, ...], searched: Array
 ) -> Array:
     names = problem.space.names
     flat = stacked_derivatives(model, values, names) * problem.space.slopes(searched)
@@ -115,7 +115,7 @@ def _scaled_derivatives(
     return flat
 
 
-def stacked_derivatives(model: LinearModel, values: Mapping[str, float], names: tuple[str, ...]) -> Array:
+def stacked_derivatives(model: EquationsOfMotion, values: Mapping[str, float], names: tuple[str, ...]) -> Array:
     """Return the derivatives of all channels' frequency responses by parameters, each channel scaled to 1, `shape (m, len(names))`."""
     derived = response_derivatives(model, values, names, FREQUENCIES)
     scale = np.linalg.norm(derived, axis=(0, 1), keepdims=True)

@@ -17,14 +17,14 @@ from numpy.typing import NDArray
 from vehgen.calibrate.identifiability import Structure
 from vehgen.errors import InputError
 from vehgen.files.expressions import ExpressionError, parse
-from vehgen.fit.least_squares import Polished, polish
-from vehgen.fit.prior_data import Facts
+from vehgen.fit.least_squares import LeastSquaresFit, fit_least_squares
+from vehgen.fit.prior_data import PriorData
 from vehgen.simulate import Mode, natural_modes
 
 Array = NDArray[np.float64]
 LEVEL = 0.90
 """Confidence level of all intervals."""
-_DIFFERENCE = 1e-5
+_GRADIENT_STEP = 1e-5
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Uncertainty:
         What else was known, as residuals.
     """
 
-    def __init__(self, fit: Polished, structure: Structure, facts: Facts | None = None) -> None:
+    def __init__(self, fit: LeastSquaresFit, structure: Structure, facts: PriorData | None = None) -> None:
         self.fit = fit
         self.structure = structure
         self.values = fit.values
@@ -71,7 +71,7 @@ class Uncertainty:
         if facts is not None:
             known = facts.jacobian(self.values) * space.slopes(self.values)
             self.information = self.information + known.T @ known
-        self.basis = _told(structure, facts, self.values)
+        self.basis = _reported(structure, facts, self.values)
         reduced = self.basis.T @ self.information @ self.basis
         self.covariance = self.basis @ np.linalg.pinv(reduced, hermitian=True) @ self.basis.T
 
@@ -79,15 +79,17 @@ class Uncertainty:
         """Return a quantity's derivatives by the unit cube's coordinates, `shape (n_parameters,)`."""
         space = self.fit.misfit.problem.space
         unit = self.fit.misfit.split(self.fit.x)[0]
-        steps = np.eye(space.size) * _DIFFERENCE
-        return np.array([(quantity(space.values(unit + step)) - quantity(space.values(unit - step))) / (2 * _DIFFERENCE) for step in steps])
+        steps = np.eye(space.size) * _GRADIENT_STEP
+        return np.array(
+            [(quantity(space.values(unit + step)) - quantity(space.values(unit - step))) / (2 * _GRADIENT_STEP) for step in steps]
+        )
 
     def estimate(self, name: str, quantity: Quantity) -> Estimate:
         """Return a quantity with its interval."""
         value, gradient = quantity(self.values), self.gradient(quantity)
-        return self._interval(name, value, gradient) if self.can_tell(gradient) else Estimate(name, value)
+        return self._interval(name, value, gradient) if self.is_identifiable(gradient) else Estimate(name, value)
 
-    def can_tell(self, gradient: Array) -> bool:
+    def is_identifiable(self, gradient: Array) -> bool:
         """Return whether the data tell a quantity with these derivatives."""
         rest = gradient - self.basis @ (self.basis.T @ gradient)
         return bool(np.linalg.norm(rest) <= 1e-4 * max(float(np.linalg.norm(gradient)), 1e-300))
@@ -96,9 +98,9 @@ class Uncertainty:
         """Return every searched parameter."""
         return [self.estimate(name, _component(i)) for i, name in enumerate(self.structure.space.names)]
 
-    def given_pivots(self) -> list[Estimate]:
+    def given_fixed_parameters(self) -> list[Estimate]:
         """Return every parameter as if the structure's pivots were known exactly: the gauge closed by decree."""
-        kept = [i for i in range(self.structure.space.size) if i not in self.structure.pivots]
+        kept = [i for i in range(self.structure.space.size) if i not in self.structure.fixed_parameters]
         covariance = np.zeros_like(self.information)
         covariance[np.ix_(kept, kept)] = np.linalg.pinv(self.information[np.ix_(kept, kept)], hermitian=True)
         slopes = self.structure.space.slopes(self.values)
@@ -147,7 +149,7 @@ class Uncertainty:
         groups: dict[tuple[float, ...], list[int]] = {}
         for i in range(self.structure.space.size):
             key = tuple(float(f"{item:.5g}") for item in relative[:, i])
-            if np.isfinite(relative[:, i]).all() and any(key) and i not in self.structure.pivots:
+            if np.isfinite(relative[:, i]).all() and any(key) and i not in self.structure.fixed_parameters:
                 groups.setdefault(key, []).append(i)
         names = self.structure.space.names
         return [self.combination(f"{names[i]}/{names[group[0]]}") for group in groups.values() for i in group[1:]]
@@ -157,16 +159,16 @@ class Uncertainty:
         space = self.fit.misfit.problem.space
         unit = self.fit.misfit.split(self.fit.x)[0]
         middle = self.mode_table(self.values)
-        steps = np.eye(space.size) * _DIFFERENCE
+        steps = np.eye(space.size) * _GRADIENT_STEP
         derived = np.array(
-            [(self.mode_table(space.values(unit + s)) - self.mode_table(space.values(unit - s))) / (2 * _DIFFERENCE) for s in steps]
+            [(self.mode_table(space.values(unit + s)) - self.mode_table(space.values(unit - s))) / (2 * _GRADIENT_STEP) for s in steps]
         )
         labels = [mode.name for mode in self._modes(self.values)]
         pairs = []
         for j, label in enumerate(labels):
             both = [
                 self._interval(label, float(middle[k, j]), derived[:, k, j])
-                if self.can_tell(derived[:, k, j])
+                if self.is_identifiable(derived[:, k, j])
                 else Estimate(label, float(middle[k, j]))
                 for k in (0, 1)
             ]
@@ -197,7 +199,7 @@ def _component(i: int) -> Quantity:
     return lambda values: float(values[i])
 
 
-def _told(structure: Structure, facts: Facts | None, values: Array) -> Array:
+def _reported(structure: Structure, facts: PriorData | None, values: Array) -> Array:
     """Return an orthonormal basis of what structure and facts together can tell."""
     if facts is None or not len(structure.null):
         return structure.row_space
@@ -206,20 +208,20 @@ def _told(structure: Structure, facts: Facts | None, values: Array) -> Array:
     _, singular, rows = np.linalg.svd(known @ free)
     rank = int((singular > 1e-8 * max(float(np.abs(known).max(initial=0.0)), 1e-300)).sum())
     null = (free @ rows[rank:].T).T
-    return Structure(structure.space, null, structure.pivots, structure.singular_values).row_space
+    return Structure(structure.space, null, structure.fixed_parameters, structure.singular_values).row_space
 
 
-def refit(fit: Polished, seed: int, facts: Facts | None = None) -> Array:
+def refit(fit: LeastSquaresFit, seed: int, facts: PriorData | None = None) -> Array:
     """Return the parameters [SI] fitted to one set of measurements drawn from a fit: one replicate of a parametric bootstrap."""
     random = np.random.Generator(np.random.PCG64(seed))
     misfit = fit.misfit
     drawn = misfit.draw(fit.x, random)
     trials = [
-        replace(trial, measurement=replace(trial.measurement, values=values))
+        replace(trial, recording=replace(trial.recording, values=values))
         for trial, values in zip(misfit.problem.trials, drawn, strict=True)
     ]
     unit, _ = misfit.split(fit.x)
-    again = polish(
+    again = fit_least_squares(
         misfit.problem.with_trials(trials),
         unit,
         misfit.nuisances,
@@ -228,6 +230,6 @@ def refit(fit: Polished, seed: int, facts: Facts | None = None) -> Array:
         start=misfit.split(fit.x)[1].ravel(),
         shared=misfit.shared,
         numbers=tuple(misfit.adjusted(fit.x)),
-        facts=facts,
+        prior_data=facts,
     )
     return again.values

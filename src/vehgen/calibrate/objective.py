@@ -35,7 +35,7 @@ class PsdObjective:
         self.band = band
         self._measured: list[tuple[NDArray[np.bool_], Array]] = []
         for trial in problem.trials:
-            frequency, density = record_psd(trial.measurement.values, trial.measurement.dt, axis=0)
+            frequency, density = record_psd(trial.recording.values, trial.recording.dt, axis=0)
             inside = (frequency >= band[0]) & (frequency <= band[1])
             if inside.sum() < 4:
                 raise InputError(f"{trial.name}: fewer than 4 spectral lines lie within {band[0]:g}-{band[1]:g} Hz")
@@ -51,7 +51,7 @@ class PsdObjective:
         for trial, (inside, density) in zip(self.problem.trials, self._measured, strict=True):
             responses, failed = self.problem.respond(values, trial)
             responses[failed] = 0.0
-            simulated = record_psd(responses, trial.measurement.dt, axis=1)[1][:, inside, :]
+            simulated = record_psd(responses, trial.recording.dt, axis=1)[1][:, inside, :]
             parts.append(np.abs(simulated - density).sum(axis=1) / density.sum(axis=0))
             parts[-1][failed] = np.inf
         return np.concatenate(parts, axis=1)

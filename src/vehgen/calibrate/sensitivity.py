@@ -55,8 +55,8 @@ def sensitivity_indices(run: Run, names: Sequence[str] | None = None) -> Sensiti
     values = model.values(overrides=run.values())
     scenario = make_scenario(run, model, values)
     drive = scenario.drive(model.wheel_offsets(values))
-    response, derived = direct_sensitivities(model, drive, chosen, scenario.keep, values)
-    dt = scenario.dt * scenario.keep
+    response, derived = direct_sensitivities(model, drive, chosen, scenario.decimation, values)
+    dt = scenario.dt * scenario.decimation
     frequency, density = record_psd(derived, dt, axis=1)
     rms = np.sqrt(np.mean(response**2, axis=0))
     change = np.sqrt(np.mean(derived**2, axis=1)) * 0.01 * np.abs([[values[name]] for name in chosen])

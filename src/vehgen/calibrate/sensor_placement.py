@@ -27,16 +27,16 @@ SIGMA = {"acceleration": 0.01, "pitch_rate": 5e-4}
 """A phone's noise floor [m/s^2, rad/s]."""
 SHARE = 0.01
 """Noise as a share of a channel's RMS, added to the floor."""
-PRIOR = 1.0
+PRIOR_SIGMA = 1.0
 """Standard deviation of ln(parameter) known beforehand: a factor of e either way. It closes the gauges alike for all places."""
 SPACING = 0.5
 """Distance between candidate places [m]."""
-CLOSE = 0.02
+CLOSE_SHARE = 0.02
 """A place nearer than this [m] to its anchor is at it."""
 
 
 @dataclass(frozen=True)
-class Candidate:
+class SensorCandidate:
     """A place on a body: `distance` [m] behind an axle, hinge or body named `anchor`, `x` [m] ahead of the body's COG."""
 
     body: str
@@ -47,7 +47,7 @@ class Candidate:
     @property
     def words(self) -> str:
         """The place in words."""
-        if abs(self.distance) < CLOSE:
+        if abs(self.distance) < CLOSE_SHARE:
             return f"on {self.body}, at {self.anchor}"
         return f"on {self.body}, {abs(self.distance):.2f} m {'behind' if self.distance > 0 else 'ahead of'} {self.anchor}"
 
@@ -60,7 +60,7 @@ class Layout:
     any sensor could tell, the smaller the better.
     """
 
-    places: tuple[Candidate, ...]
+    places: tuple[SensorCandidate, ...]
     error: Array
     score: float
 
@@ -71,7 +71,7 @@ class SensorAdvice:
 
     names: tuple[str, ...]
     best: tuple[Layout, ...]
-    candidates: tuple[Candidate, ...]
+    candidates: tuple[SensorCandidate, ...]
     single: Array
 
 
@@ -97,7 +97,7 @@ def advise_sensors(run: Run, count: int = 3, names: Sequence[str] | None = None)
     values = model.values(overrides=run.values())
     scenario = make_scenario(run, model, values)
     drive = scenario.drive(model.wheel_offsets(values))
-    response, derived = direct_sensitivities(model, drive, chosen, scenario.keep, values)
+    response, derived = direct_sensitivities(model, drive, chosen, scenario.decimation, values)
     response, derived = response @ mixing, derived @ mixing * np.abs([values[name] for name in chosen])[:, None, None]
     floor = np.tile(list(SIGMA.values()), len(places))
     white = derived / np.hypot(floor, SHARE * np.sqrt(np.mean(response**2, axis=0)))
@@ -117,14 +117,14 @@ def advise_sensors(run: Run, count: int = 3, names: Sequence[str] | None = None)
     return SensorAdvice(chosen, tuple(best), places, single)
 
 
-def _layout(places: tuple[Candidate, ...], information: Array, basis: Array, chosen: tuple[int, ...]) -> Layout:
+def _layout(places: tuple[SensorCandidate, ...], information: Array, basis: Array, chosen: tuple[int, ...]) -> Layout:
     total = information[list(chosen)].sum(axis=0)
-    covariance = np.linalg.inv(total + np.eye(len(total)) / PRIOR**2)
+    covariance = np.linalg.inv(total + np.eye(len(total)) / PRIOR_SIGMA**2)
     score = float(np.trace(basis.T @ covariance @ basis) / basis.shape[1])
     return Layout(tuple(places[i] for i in chosen), np.sqrt(np.diag(covariance)), score)
 
 
-def _channels(places: tuple[Candidate, ...]) -> tuple[list[PointOutput], Array]:
+def _channels(places: tuple[SensorCandidate, ...]) -> tuple[list[PointOutput], Array]:
     """Return channels at the anchors, and what mixes them into acceleration and pitch rate of every place.
 
     A point d behind another of the same rigid body rises by d times the (nose-down) pitch more.
@@ -149,12 +149,12 @@ def _channels(places: tuple[Candidate, ...]) -> tuple[list[PointOutput], Array]:
     return outputs, mixing
 
 
-def candidates(run: Run) -> tuple[Candidate, ...]:
+def candidates(run: Run) -> tuple[SensorCandidate, ...]:
     """Return places every SPACING along each body that pitches, between its outermost axles and hinges; its COG otherwise."""
     model = derive(run.vehicle)
     values = model.values(overrides=run.values())
     vehicle = run.vehicle
-    found: list[Candidate] = []
+    found: list[SensorCandidate] = []
     for body in vehicle.bodies:
         marks: dict[str, float] = {}
         entries = {}
@@ -165,10 +165,10 @@ def candidates(run: Run) -> tuple[Candidate, ...]:
         for (_, i), x in model.evaluate(entries, values).items():
             marks[anchors[i]] = x
         if len(marks) < 2 or "pitch" not in vehicle.bodies[body].motions:
-            found.append(Candidate(body, body, 0.0, 0.0))
+            found.append(SensorCandidate(body, body, 0.0, 0.0))
             continue
         front, rear = max(marks.values()), min(marks.values())
         for x in np.linspace(front, rear, max(2, round((front - rear) / SPACING) + 1)):
             anchor = min(marks, key=lambda name: (abs(marks[name] - x), name))
-            found.append(Candidate(body, anchor, float(marks[anchor] - x), float(x)))
+            found.append(SensorCandidate(body, anchor, float(marks[anchor] - x), float(x)))
     return tuple(found)

@@ -20,19 +20,19 @@ from vehgen.calibrate.objective import PsdObjective
 from vehgen.files.reading import read_bytes
 from vehgen.files.tables import MOST_BYTES
 from vehgen.fit.parallel import Runner
-from vehgen.fit.prior_data import Facts
+from vehgen.fit.prior_data import PriorData
 from vehgen.mechanics import static_loads
 from vehgen.mechanics.outputs import ElementOutput
 from vehgen.simulate import Simulator
 from vehgen.vehicle.writing import quantity, variant_text
 
 Array = NDArray[np.float64]
-WEAK = 0.5
+WEAK_WIDTH = 0.5
 """An interval that is wider than this share of the search range says little: the parameter counts as weak."""
 
 
 @dataclass(frozen=True)
-class ParameterOutcome:
+class ParameterSummary:
     """One parameter: its estimate, and what stands behind it.
 
     `status` is `identified`, `weak` (its interval spans most of its range), `gauge` (no data of this kind can tell it: see the null
@@ -48,18 +48,18 @@ class ParameterOutcome:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class CalibrationSummary:
     """Everything a calibration tells, ready for JSON, tables and figures."""
 
     calibration: Calibration
-    parameters: tuple[ParameterOutcome, ...]
+    parameters: tuple[ParameterSummary, ...]
     structure: Structure
     null_directions: tuple[dict[str, float], ...]
     combinations: tuple[Estimate, ...]
     modes: tuple[tuple[Estimate, Estimate], ...]
     bootstrap: tuple[Estimate, ...]
     objective: dict[str, float]
-    lift_off: dict[str, float]
+    least_tyre_loads: dict[str, float]
     spread: dict[str, tuple[float, float]]
     provenance: dict[str, Any]
 
@@ -67,7 +67,7 @@ class Outcome:
         """Return plain data for JSON (SI units)."""
         calibration = self.calibration
         last = calibration.steps[-1]
-        pivots = [self.structure.space.names[i] for i in self.structure.pivots]
+        pivots = [self.structure.space.names[i] for i in self.structure.fixed_parameters]
         return {
             "vehicle": calibration.problem.trials[0].run.vehicle.name,
             "method": calibration.settings.method,
@@ -107,7 +107,7 @@ class Outcome:
             "spread": {name: list(pair) for name, pair in self.spread.items()},
             "nuisances": _nuisances(last),
             "noise": _noise(last),
-            "tyre_load_minimum": self.lift_off,
+            "tyre_load_minimum": self.least_tyre_loads,
             "history": [list(step.state.history) for step in calibration.steps],
             "provenance": self.provenance,
         }
@@ -130,13 +130,13 @@ class Outcome:
         return variant_text(vehicle, folder, name, title, calibration.values, comments, notes)
 
 
-def conclude(
+def summarise(
     calibration: Calibration,
-    facts: Facts | None = None,
+    prior_data: PriorData | None = None,
     combinations: Sequence[str] = (),
     replicates: int = 0,
     runner: Runner | None = None,
-) -> Outcome:
+) -> CalibrationSummary:
     """Work out what a calibration tells.
 
     Parameters
@@ -154,12 +154,12 @@ def conclude(
     """
     problem = calibration.problem
     structure = find_structure(problem, calibration.array)
-    outcomes: list[ParameterOutcome] = []
+    outcomes: list[ParameterSummary] = []
     ratios: list[Estimate] = []
     modes: tuple[tuple[Estimate, Estimate], ...] = ()
     boot: list[Estimate] = []
     for result in calibration.steps:
-        own = None if facts is None else Facts(result.problem, facts.facts)
+        own = None if prior_data is None else PriorData(result.problem, prior_data.facts)
         uncertainty = None
         if result.fits:
             uncertainty = Uncertainty(result.fits[0], find_structure(result.problem, result.fits[0].values), own)
@@ -171,7 +171,7 @@ def conclude(
                 boot = _bootstrap(result, uncertainty, own, ratios, replicates, calibration.settings.seed, runner or Runner())
     order = {name: i for i, name in enumerate(problem.space.names)}
     outcomes.sort(key=lambda item: order[item.estimate.name])
-    return Outcome(
+    return CalibrationSummary(
         calibration=calibration,
         parameters=tuple(outcomes),
         structure=structure,
@@ -180,18 +180,18 @@ def conclude(
         modes=modes,
         bootstrap=tuple(boot),
         objective=_objective(calibration),
-        lift_off=least_tyre_loads(calibration),
+        least_tyre_loads=least_tyre_loads(calibration),
         spread=_spread(calibration.steps[-1]),
         provenance=provenance(calibration),
     )
 
 
-def _parameters(result: StepResult, uncertainty: Uncertainty | None, structure: Structure) -> list[ParameterOutcome]:
+def _parameters(result: StepResult, uncertainty: Uncertainty | None, structure: Structure) -> list[ParameterSummary]:
     vehicle = result.problem.trials[0].run.vehicle
     space = result.problem.space
     bounds = result.fits[0].on_bound if result.fits else ()
     estimates = uncertainty.parameters() if uncertainty else [Estimate(name, value) for name, value in result.values.items()]
-    given = uncertainty.given_pivots() if uncertainty else [None] * space.size
+    given = uncertainty.given_fixed_parameters() if uncertainty else [None] * space.size
     found = []
     for i, (estimate, closed) in enumerate(zip(estimates, given, strict=True)):
         if estimate.name not in result.step.kept:
@@ -204,17 +204,17 @@ def _parameters(result: StepResult, uncertainty: Uncertainty | None, structure: 
             low, high = (
                 float(space.unit(np.where(np.arange(space.size) == i, end, space.start))[i]) for end in (estimate.low, estimate.high)
             )
-            status = "weak" if high - low > WEAK else "identified"
+            status = "weak" if high - low > WEAK_WIDTH else "identified"
         unit = quantity(vehicle, estimate.name, 1.0).partition(" ")[2]
         limits = (float(space.lower[i]), float(space.upper[i]))
-        found.append(ParameterOutcome(estimate, unit, limits, status, result.step.label, closed))
+        found.append(ParameterSummary(estimate, unit, limits, status, result.step.label, closed))
     return found
 
 
 def _bootstrap(
     result: StepResult,
     uncertainty: Uncertainty,
-    facts: Facts | None,
+    facts: PriorData | None,
     ratios: Sequence[Estimate],
     replicates: int,
     seed: int,

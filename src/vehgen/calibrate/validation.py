@@ -17,7 +17,7 @@ Bands = tuple[tuple[float, float], ...]
 SEGMENT = 4.0
 """Length of Welch's segments [s], for runs over rough roads."""
 LOUD = 2.0
-TOP = (0.82, 0.94)
+NOISE_BAND_SHARES = (0.82, 0.94)
 """The top of the band, as shares of the highest frequency."""
 LONGEST_RECORD = 3.0
 """A run without a hump that is longer than this many segments is averaged by Welch's method."""
@@ -86,9 +86,9 @@ def validate(trials: Sequence[Trial], bands: Bands | None = None) -> Validation:
         if result.failures:
             raise InputError(f"{trial.name}: {result.failures[0]}")
         rough = not any(entry.hump is not None for entry in trial.run.file.road)
-        dt = trial.measurement.dt
-        for i, channel in enumerate(trial.measurement.channels):
-            measured, simulated = trial.measurement.values[:, i], result.responses[0, :, i]
+        dt = trial.recording.dt
+        for i, channel in enumerate(trial.recording.channels):
+            measured, simulated = trial.recording.values[:, i], result.responses[0, :, i]
             densities = []
             for values in (measured, simulated):
                 averaged = rough and len(values) * dt > LONGEST_RECORD * SEGMENT
@@ -107,7 +107,7 @@ def validate(trials: Sequence[Trial], bands: Bands | None = None) -> Validation:
                     simulated_rms=rms[1],
                     errors=relative_errors(rms[1], rms[0]),
                     audible=rms[0] > LOUD * _noise_rms(frequency, densities[0], bands),
-                    time=trial.measurement.time,
+                    time=trial.recording.time,
                     measured=measured,
                     simulated=simulated,
                 )
@@ -117,6 +117,6 @@ def validate(trials: Sequence[Trial], bands: Bands | None = None) -> Validation:
 
 def _noise_rms(frequency: Array, density: Array, bands: Bands) -> Array:
     """Return the RMS that white noise of the level at the top of the band would have in bands, `shape (n_bands,)`."""
-    inside = (frequency >= TOP[0] * frequency[-1]) & (frequency <= TOP[1] * frequency[-1])
+    inside = (frequency >= NOISE_BAND_SHARES[0] * frequency[-1]) & (frequency <= NOISE_BAND_SHARES[1] * frequency[-1])
     level = float(np.median(density[inside]) / np.log(2))
     return np.sqrt(level * np.array([high - low for low, high in bands]))

@@ -24,10 +24,10 @@ from vehgen.errors import InputError
 from vehgen.files.document import Located, read_document
 from vehgen.files.names import FreeText, Identifier
 from vehgen.vehicle.loading import validate
-from vehgen.vehicle.model import Noun
+from vehgen.vehicle.model import FileModel
 
 
-class RigidCargo(Noun):
+class RigidCargo(FileModel):
     """A uniform box that moves as one with its carrier (Wu & Li 2023, Fig. 7, doi:10.3390/s23249691)."""
 
     mass: Mass
@@ -43,14 +43,14 @@ class RigidCargo(Noun):
         return self.length / 2, self.height / 2
 
 
-class Cog(Noun):
+class Cog(FileModel):
     """Where a module's COG lies [m]."""
 
     behind_front: Distance
     above_floor: Distance
 
 
-class ModuleCargo(Noun):
+class ModuleCargo(FileModel):
     """A mass on a vertical spring and damper (Wu & Li 2023, Fig. 8, doi:10.3390/s23249691)."""
 
     mass: Mass
@@ -89,7 +89,7 @@ class ModuleCargo(Noun):
         return 2 * self.damping_ratio * math.sqrt(self.k0 * self.mass)
 
 
-class CargoFile(Noun):
+class CargoFile(FileModel):
     """A cargo as its file declares it, quantities in SI units."""
 
     name: Identifier | None = Field(None, description="of the body it becomes (default: cargo, or module)")

@@ -9,7 +9,7 @@ import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
 
-from vehgen.mechanics import LinearModel, derive, static_loads
+from vehgen.mechanics import EquationsOfMotion, derive, static_loads
 from vehgen.simulate import Mode, natural_modes
 from vehgen.vehicle import Vehicle
 
@@ -92,7 +92,7 @@ def _carrier(vehicle: Vehicle, on: str, free: Mapping[str, float]) -> Carrier:
 
 
 def _match(
-    before: LinearModel, after: LinearModel, light: list[Mode], heavy: list[Mode], values: Mapping[str, float]
+    before: EquationsOfMotion, after: EquationsOfMotion, light: list[Mode], heavy: list[Mode], values: Mapping[str, float]
 ) -> list[tuple[str, float | None, float]]:
     """Give each laden mode the unladen one of the most similar shape in the coordinates they share (assignment problem)."""
     names = [item.name for item in after.coordinates]

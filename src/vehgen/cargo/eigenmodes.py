@@ -20,7 +20,7 @@ ZERO_HZ = 1e-3
 """Below it a mode is a mechanism."""
 BAND_HZ = 25.0
 """Modes are sought up to here at least: what vehicles excite."""
-ENOUGH = 0.25
+ENOUGH_MASS_SHARE = 0.25
 """And until one of them moves this share of the mass."""
 FIRST_COUNT, MOST = 16, 256
 
@@ -118,7 +118,7 @@ def eigenmodes(matrices: ElementMatrices, held: NDArray[np.int64], count: int | 
         frequency = np.sqrt(np.maximum(squares, 0.0)) / (2 * math.pi)
         genuine = np.where(hourglass <= SPURIOUS, effective, 0.0)
         complete = bool(total - effective.sum() <= genuine.max())
-        enough = frequency[-1] > BAND_HZ and genuine.max() > ENOUGH * total
+        enough = frequency[-1] > BAND_HZ and genuine.max() > ENOUGH_MASS_SHARE * total
         if count is not None or complete or enough or wanted >= min(MOST, len(free) - 1):
             by_node = shapes.T.reshape(wanted, -1, 6)
             return Eigenmodes(frequency, by_node, effective, hourglass, complete)

@@ -56,7 +56,7 @@ def _package() -> Any:
     return pyfe3d
 
 
-class _Entries:
+class _EntryList:
     """Rows, columns and values that elements write one after another."""
 
     def __init__(self, fe: Any, n_elements: int, size: int) -> None:
@@ -78,7 +78,7 @@ def _shells(fe: Any, mesh: Mesh, x: Array) -> tuple[Sparse, Sparse, Sparse]:
     ]
     data, probe = fe.Quad4RData(), fe.Quad4RProbe()
     count = len(mesh.quads)
-    stiffness, mass = _Entries(fe, count, data.KC0_SPARSE_SIZE), _Entries(fe, count, data.M_SPARSE_SIZE)
+    stiffness, mass = _EntryList(fe, count, data.KC0_SPARSE_SIZE), _EntryList(fe, count, data.M_SPARSE_SIZE)
     bare = np.zeros_like(stiffness.values)
     for number, (nodes, kind) in enumerate(zip(mesh.quads.tolist(), mesh.quad_kinds.tolist(), strict=True)):
         quad = fe.Quad4R(probe)
@@ -99,7 +99,7 @@ def _beams(fe: Any, mesh: Mesh, x: Array) -> tuple[Sparse, Sparse]:
     properties = [_beam_property(kind) for kind in mesh.kinds]
     data, probe = fe.BeamCData(), fe.BeamCProbe()
     count = len(mesh.beams)
-    stiffness, mass = _Entries(fe, count, data.KC0_SPARSE_SIZE), _Entries(fe, count, data.M_SPARSE_SIZE)
+    stiffness, mass = _EntryList(fe, count, data.KC0_SPARSE_SIZE), _EntryList(fe, count, data.M_SPARSE_SIZE)
     for number, (nodes, kind, up) in enumerate(zip(mesh.beams.tolist(), mesh.beam_kinds.tolist(), mesh.beam_up.tolist(), strict=True)):
         beam = fe.BeamC(probe)
         beam.n1, beam.n2 = nodes

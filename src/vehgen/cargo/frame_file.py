@@ -17,12 +17,12 @@ from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.document import Located, read_document
 from vehgen.files.names import FreeText, Identifier, Name
 from vehgen.vehicle.loading import validate
-from vehgen.vehicle.model import Noun
+from vehgen.vehicle.model import FileModel
 
 MIN_SIDE, MAX_SIDE = 0.1, 100.0
 
 
-class BoxSize(Noun):
+class BoxSize(FileModel):
     """Length, width and height between the middle surfaces of opposite panels [m]."""
 
     length: PositiveLength = Field(ge=MIN_SIDE, le=MAX_SIDE)
@@ -30,7 +30,7 @@ class BoxSize(Noun):
     height: PositiveLength = Field(ge=MIN_SIDE, le=MAX_SIDE)
 
 
-class Material(Noun):
+class Material(FileModel):
     """An isotropic material; E may be 0 for what only weighs or keeps distance."""
 
     E: Modulus
@@ -38,7 +38,7 @@ class Material(Noun):
     density: Density
 
 
-class Member(Noun):
+class Member(FileModel):
     """Beams of one kind: their material and section, the section's height being vertical (along the length for posts and studs)."""
 
     material: str
@@ -51,7 +51,7 @@ class SpacedMember(Member):
     spacing: PositiveLength = Field(ge=0.05)
 
 
-class Frame(Noun):
+class Frame(FileModel):
     """The members: rails round the floor and the roof, four posts; joists across the width, studs in the walls."""
 
     bottom_rails: Member | None = None
@@ -68,21 +68,21 @@ class Frame(Noun):
                 yield name, member
 
 
-class LayerEntry(Noun):
+class LayerEntry(FileModel):
     """A layer of a panel."""
 
     material: str
     thickness: PositiveLength = Field(le=1.0)
 
 
-class Panel(Noun):
+class Panel(FileModel):
     """A panel of layers, from the inside out."""
 
     layers: tuple[LayerEntry, ...] = Field(min_length=1)
     bonded: bool = Field(True, description="false: the layers slide on each other")
 
 
-class Panels(Noun):
+class Panels(FileModel):
     """The panels; `walls` stands for those of the four walls that are not named."""
 
     floor: Panel | None = None
@@ -103,20 +103,20 @@ class Panels(Noun):
                 yield face, "walls", self.walls
 
 
-class DampingPoint(Noun):
+class DampingPoint(FileModel):
     """A damping ratio at a frequency."""
 
     frequency: Frequency
     ratio: DampingRatio
 
 
-class MeshEntry(Noun):
+class MeshEntry(FileModel):
     """How finely the box is divided."""
 
     size: PositiveLength = Field(ge=0.01)
 
 
-class FrameFile(Noun):
+class FrameFile(FileModel):
     """A building module as its file declares it, quantities in SI units."""
 
     name: Identifier | None = None

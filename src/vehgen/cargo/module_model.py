@@ -111,7 +111,7 @@ def module_model(frame: FrameModule, mesh_size: float | None = None, mass: str |
         effective,
         on_spring,
         body.mass - on_spring,
-        tuple(_doubts(modes, body)),
+        tuple(_warnings(modes, body)),
     )
 
 
@@ -166,7 +166,7 @@ def _check_size(frame: FrameModule, size: float) -> None:
         )
 
 
-def _doubts(modes: Eigenmodes, body: RigidBody) -> list[str]:
+def _warnings(modes: Eigenmodes, body: RigidBody) -> list[str]:
     found = []
     principal = modes.principal
     share = modes.effective_mass[principal] / body.mass

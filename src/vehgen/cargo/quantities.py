@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field
 from vehgen.files.quantities import read_quantity
 from vehgen.files.units import DAMPING, FORCE, FREQUENCY, INERTIA, LENGTH, MASS, NONE, STIFFNESS, Dimension
 
-LARGEST = 1e18
+LARGEST_QUANTITY = 1e18
 """What no quantity of a cargo reaches in SI units; vehicle files refuse 1e20."""
 AREA = LENGTH * LENGTH
 SECOND_MOMENT = AREA * AREA
@@ -21,9 +21,9 @@ def _read(dimension: Dimension) -> BeforeValidator:
     return BeforeValidator(lambda value: read_quantity(value, dimension))
 
 
-_POSITIVE = Field(gt=0, lt=LARGEST, allow_inf_nan=False)
-_NOT_NEGATIVE = Field(ge=0, lt=LARGEST, allow_inf_nan=False)
-_ANY = Field(gt=-LARGEST, lt=LARGEST, allow_inf_nan=False)
+_POSITIVE = Field(gt=0, lt=LARGEST_QUANTITY, allow_inf_nan=False)
+_NOT_NEGATIVE = Field(ge=0, lt=LARGEST_QUANTITY, allow_inf_nan=False)
+_ANY = Field(gt=-LARGEST_QUANTITY, lt=LARGEST_QUANTITY, allow_inf_nan=False)
 
 Distance = Annotated[float, _ANY, _read(LENGTH)]
 PositiveLength = Annotated[float, _POSITIVE, _read(LENGTH)]

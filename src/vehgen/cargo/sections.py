@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from vehgen.cargo.quantities import Area, PositiveLength, SecondMoment
-from vehgen.vehicle.model import Noun
+from vehgen.vehicle.model import FileModel
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Section:
     torsion: float
 
 
-class Bar(Noun):
+class Bar(FileModel):
     """A full rectangle."""
 
     height: PositiveLength
@@ -36,7 +36,7 @@ class Bar(Noun):
         return Section(h * b, b * h**3 / 12, h * b**3 / 12, torsion)
 
 
-class Walled(Noun):
+class Walled(FileModel):
     """What the thin-walled sections share."""
 
     height: PositiveLength
@@ -77,7 +77,7 @@ class Channel(Walled):
         return Section(area, strong, weak, (2 * b + web) * t**3 / 3)
 
 
-class Plain(Noun):
+class Plain(FileModel):
     """Numbers from a table of sections."""
 
     area: Area
@@ -90,7 +90,7 @@ class Plain(Noun):
         return Section(self.area, self.strong, self.weak, self.torsion)
 
 
-class SectionEntry(Noun):
+class SectionEntry(FileModel):
     """One of bar, tube, channel, plain."""
 
     bar: Bar | None = None

@@ -1,8 +1,8 @@
-"""How does it run? From a LinearModel to a compiled kernel that advances whole populations."""
+"""How does it run? From a EquationsOfMotion to a compiled kernel that advances whole populations."""
 
 from vehgen.codegen.cache import cache_folder, write_text
-from vehgen.codegen.kernel import Drive, Kernel, KernelResult
+from vehgen.codegen.kernel import Excitation, Kernel, KernelResult
 from vehgen.codegen.kernel_source import KernelSource, write_kernel
 from vehgen.codegen.parallel import compile_all
 
-__all__ = ["Drive", "Kernel", "KernelResult", "KernelSource", "cache_folder", "compile_all", "write_kernel", "write_text"]
+__all__ = ["Excitation", "Kernel", "KernelResult", "KernelSource", "cache_folder", "compile_all", "write_kernel", "write_text"]

@@ -20,14 +20,14 @@ import sympy as sp
 from vehgen.codegen.factorisation import Factor, Matrix, factorise
 from vehgen.codegen.program import SAMPLE, SETUP, STEP, Node, Program
 from vehgen.mechanics.energies import Element
-from vehgen.mechanics.equations_of_motion import LinearModel
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.law_terms import RATE, REST, STATIC, TRAVEL
 from vehgen.mechanics.law_terms import STEP as TIME_STEP
 from vehgen.mechanics.laws import LawStep
 
 
 @dataclass
-class _Joint:
+class NonlinearElement:
     """A nonlinear element in the program: its rows, compliance, laws and states."""
 
     number: int
@@ -73,7 +73,7 @@ class Condensation:
 
     def __init__(
         self,
-        model: LinearModel,
+        model: EquationsOfMotion,
         program: Program,
         symbols: Mapping[sp.Symbol, Node],
         memo: dict[sp.Expr, Node],
@@ -85,8 +85,8 @@ class Condensation:
         self.model, self.program, self.symbols, self.memo, self.h = model, program, dict(symbols), memo, h
         self.half_h = program.multiply(program.number(0.5), h)
         self.factor = factor
-        self.joints: list[_Joint] = []
-        self.rests: dict[int, Node] = {}
+        self.joints: list[NonlinearElement] = []
+        self.static_travels: dict[int, Node] = {}
         static = None if model.is_preloaded else self._static_displacement(stiffness)
         for place, element in enumerate(model.elements):
             if element.laws:
@@ -104,7 +104,7 @@ class Condensation:
         self.inverse = [program.divide(program.number(1.0), self.compliance[i][i]) for i in range(len(self.joints))]
         self.normalised = [[program.multiply(self.inverse[i], item) for item in row] for i, row in enumerate(self.compliance)]
 
-    def _joint(self, number: int, index: int, element: Element, static: list[Node] | None) -> _Joint:
+    def _joint(self, number: int, index: int, element: Element, static: list[Node] | None) -> NonlinearElement:
         program = self.program
         row = {i: program.convert(value, self.symbols, self.memo) for i, value in element.row.items()}
         input_row = {i: program.convert(value, self.symbols, self.memo) for i, value in element.input_row.items()}
@@ -116,14 +116,14 @@ class Condensation:
             steps.append(term.step(element.k, element.c, own))
         force = rest = None
         if self.model.is_preloaded and any(term.origin == "unloaded" or term.asks_static for term in element.laws):
-            self.rests[index] = rest = program.leaf(f"rest{number}", SETUP)
+            self.static_travels[index] = rest = program.leaf(f"rest{number}", SETUP)
             carried = element.k * REST + sp.Add(*(term.preload() for term in element.laws))
             force = program.label(program.convert(carried, {**self.symbols, REST: rest}), f"static{number}")
         elif static is not None:
             force = program.label(
                 program.multiply(program.convert(element.k, self.symbols, self.memo), self._times(row, static)), f"static{number}"
             )
-        return _Joint(
+        return NonlinearElement(
             number,
             element,
             row,
@@ -146,14 +146,14 @@ class Condensation:
         weight = [program.convert(self.model.weight_entries.get(i, sp.S.Zero), self.symbols, self.memo) for i in range(self.model.n_dof)]
         return factor.solve(program, weight)
 
-    def _column(self, joint: _Joint) -> list[Node]:
+    def _column(self, joint: NonlinearElement) -> list[Node]:
         right = [joint.row.get(i, self.program.number(0.0)) for i in range(self.model.n_dof)]
         return self.factor.solve(self.program, right)
 
     def _times(self, row: Mapping[int, Node], vector: list[Node]) -> Node:
         return self.program.dot([(value, vector[i]) for i, value in sorted(row.items())])
 
-    def _read(self, joint: _Joint, expression: sp.Expr, d: Node, v: Node, phase: int) -> Node:
+    def _read(self, joint: NonlinearElement, expression: sp.Expr, d: Node, v: Node, phase: int) -> Node:
         """Convert an expression of a law at a travel and rate."""
         program = self.program
         symbols = {**self.symbols, TRAVEL: d, RATE: v, TIME_STEP: self.h}
@@ -216,7 +216,7 @@ class Condensation:
         states.append((program.leaf("residual", STEP), self._residual(before, forces)))
         return NonlinearStep(middle, states)
 
-    def _smooth(self, joint: _Joint, rate: Node, start: Node, ground: Node) -> tuple[Node, Node]:
+    def _smooth(self, joint: NonlinearElement, rate: Node, start: Node, ground: Node) -> tuple[Node, Node]:
         """Return the smooth force of an element's laws at a rate, and the slope of the step's line through it."""
         zero = self.program.number(0.0)
         if not joint.smooth:
@@ -230,20 +230,20 @@ class Condensation:
                 slope += sp.diff(step.force, TRAVEL) * TIME_STEP / 2 + sp.diff(step.force, RATE)
         return self._read(joint, smooth, d, moved, STEP), self._read(joint, slope, d, moved, STEP)
 
-    def _relaxation(self, joint: _Joint, slope: Node) -> Node:
+    def _relaxation(self, joint: NonlinearElement, slope: Node) -> Node:
         """Return G s/(1 + G s), the share of the last force that a step along a line of slope s keeps."""
         program = self.program
         stiff = program.multiply(self.compliance[joint.number][joint.number], slope)
         return program.divide(stiff, program.add(program.number(1.0), stiff))
 
-    def _friction(self, joint: _Joint, before: list[Node], pull: Node, smooth: Node, slope: Node, slip: Node) -> Node:
+    def _friction(self, joint: NonlinearElement, before: list[Node], pull: Node, smooth: Node, slope: Node, slip: Node) -> Node:
         """Return the friction that would stop the slip at the end of the step, clipped to its bound."""
         program, i = self.program, joint.number
         others = [program.negate(program.multiply(self.normalised[i][j], force)) for j, force in enumerate(before) if j != i]
         needed = program.total([pull, *others, program.negate(smooth), program.multiply(slope, slip)])
         return self._clip(joint, needed)
 
-    def _clip(self, joint: _Joint, force: Node) -> Node:
+    def _clip(self, joint: NonlinearElement, force: Node) -> Node:
         """Clip a friction force to its bound."""
         program, zero = self.program, self.program.number(0.0)
         bound = self._read(joint, sp.Add(*(step.friction for step in joint.steps)), zero, zero, STEP)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from vehgen.codegen.cache import cache_folder, import_kernel, is_compiled, kernel_name
 from vehgen.codegen.kernel_source import KernelSource, Precision, write_kernel
 from vehgen.errors import InputError, did_you_mean
-from vehgen.mechanics.equations_of_motion import GRAVITY, LinearModel
+from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
 
 Array = NDArray[np.float64]
@@ -26,7 +26,7 @@ UNCONVERGED = 0.01
 
 
 @dataclass(frozen=True)
-class Drive:
+class Excitation:
     """What moves a vehicle, at the ends of every step of `dt` [s].
 
     `inputs`, `rates` `shape (n_steps + 1, n_inputs)`: displacement inputs [m] and their rates [m/s]; `forces` `shape (n_steps + 1,
@@ -99,7 +99,9 @@ class Kernel:
 
     """
 
-    def __init__(self, model: LinearModel, folder: Path | None = None, sweeps: int | None = None, precision: Precision = "double") -> None:
+    def __init__(
+        self, model: EquationsOfMotion, folder: Path | None = None, sweeps: int | None = None, precision: Precision = "double"
+    ) -> None:
         if precision not in get_args(Precision):
             raise InputError(f"unknown precision {precision!r}; {did_you_mean(precision, get_args(Precision))}")
         self.model = model
@@ -137,9 +139,9 @@ class Kernel:
     def reduce(
         self,
         parameters: Array,
-        drive: Drive,
+        drive: Excitation,
         reduction: Callable[[Array], Array],
-        keep: int = 10,
+        decimation: int = 10,
         block: int = 1024,
         threads: int | None = None,
     ) -> tuple[Array, dict[int, str]]:
@@ -161,13 +163,13 @@ class Kernel:
         parts: list[Array] = []
         failures: dict[int, str] = {}
         for first in range(0, len(parameters), block):
-            result = self.run(parameters[first : first + block], drive, keep, threads=threads)
+            result = self.run(parameters[first : first + block], drive, decimation, threads=threads)
             failures.update({first + i: reason for i, reason in result.failures.items()})
             parts.append(np.asarray(reduction(result.responses)))
         return np.concatenate(parts), failures
 
     def run(
-        self, parameters: Array, drive: Drive, keep: int = 10, initial: Array | None = None, threads: int | None = None
+        self, parameters: Array, drive: Excitation, decimation: int = 10, initial: Array | None = None, threads: int | None = None
     ) -> KernelResult:
         """Simulate a population.
 
@@ -192,13 +194,13 @@ class Kernel:
         fails.
         """
         parameters = np.ascontiguousarray(np.atleast_2d(parameters), dtype=np.float64)
-        self._check(parameters, drive, keep)
+        self._check(parameters, drive, decimation)
         columns, unheld = parameters, {}
-        if self.source.rests:
+        if self.source.static_travels:
             rest = equilibria(self.model, parameters)
-            columns, unheld = np.hstack([parameters, rest.travels[:, self.source.rests]]), rest.failures
+            columns, unheld = np.hstack([parameters, rest.travels[:, self.source.static_travels]]), rest.failures
         n_individuals, lanes = parameters.shape[0], self.source.lanes
-        n_samples, n_channels = drive.n_steps // keep + 1, len(self.model.channels)
+        n_samples, n_channels = drive.n_steps // decimation + 1, len(self.model.channels)
         responses = np.empty((n_individuals, n_samples, n_channels))
         residuals = np.zeros(n_individuals)
         module = self._module
@@ -216,7 +218,7 @@ class Kernel:
                 state[: 2 * n_dof * lanes] = np.ascontiguousarray(initial[rows].T).ravel()
             direct = last - first == lanes and number is np.float64
             target = responses[first:last] if direct else np.empty((lanes, n_samples, n_channels), dtype=number)
-            module.advance(work, *arrays, drive.dt, keep, target)
+            module.advance(work, *arrays, drive.dt, decimation, target)
             if not direct:
                 responses[first:last] = target[: last - first]
             if self.source.nonlinear:
@@ -246,7 +248,7 @@ class Kernel:
         numbers = self.model.evaluate({(0, i): term.inertia for i, term in enumerate(self.model.energies.weights)}, self.model.values())
         return GRAVITY * sum(numbers.values())
 
-    def _check(self, parameters: Array, drive: Drive, keep: int) -> None:
+    def _check(self, parameters: Array, drive: Excitation, decimation: int) -> None:
         expected = len(self.model.parameters)
         if parameters.ndim != 2 or parameters.shape[1] != expected:
             raise InputError(
@@ -257,5 +259,5 @@ class Kernel:
             found = getattr(drive, key).shape
             if found != (drive.n_steps + 1, width):
                 raise InputError(f"the drive's {key} have shape {found}; ({drive.n_steps + 1}, {width}) was expected")
-        if not (drive.dt > 0 and keep >= 1):
-            raise InputError(f"the step must be positive and keep at least 1, found dt = {drive.dt} and keep = {keep}")
+        if not (drive.dt > 0 and decimation >= 1):
+            raise InputError(f"the step must be positive and keep at least 1, found dt = {drive.dt} and keep = {decimation}")

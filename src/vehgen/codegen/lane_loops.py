@@ -10,11 +10,11 @@ import re
 
 MAX_OPERATIONS = 2500
 """Arithmetic operations in one loop."""
-_NAME = re.compile(r"[A-Za-z_]\w*")
+_IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
 _OPERATOR = re.compile(r" [-+<>] |[*/]|-(?=\w)")
 
 
-def cut(assignments: list[str], stores: list[str], lanes: int) -> tuple[list[list[str]], int]:
+def split_loop(assignments: list[str], stores: list[str], lanes: int) -> tuple[list[list[str]], int]:
     """Cut a loop's body into the bodies of several loops.
 
     Parameters
@@ -46,7 +46,7 @@ def cut(assignments: list[str], stores: list[str], lanes: int) -> tuple[list[lis
     needed: list[list[str]] = []
     for place, body in enumerate(bodies):
         text = body if place < len(bodies) - 1 else stores
-        used = {name for line in text for name in _NAME.findall(line.partition(" = ")[2])}
+        used = {name for line in text for name in _IDENTIFIER.findall(line.partition(" = ")[2])}
         needed.append(sorted(name for name in used if defined.get(name, place) < place))
     slots = {name: slot for slot, name in enumerate(sorted({name for names in needed for name in names}))}
     result = []

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from vehgen.codegen.labels import dependent_label, drive_labels, parameter_label
-from vehgen.mechanics.equations_of_motion import LinearModel
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 
 
-def kernel_legend(model: LinearModel) -> str:
+def kernel_legend(model: EquationsOfMotion) -> str:
     """Return which number in a kernel's source is which coordinate, parameter, input, force and channel of a model, with units.
 
     It quotes names and meanings of the vehicle file, and so must never become part of a source.

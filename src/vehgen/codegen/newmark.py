@@ -17,8 +17,8 @@ from vehgen.codegen.condensation import Condensation
 from vehgen.codegen.factorisation import Matrix, factorise
 from vehgen.codegen.labels import dependent_label, drive_labels, parameter_label
 from vehgen.codegen.program import SAMPLE, SETUP, STEP, Node, Program
-from vehgen.mechanics.equations_of_motion import LinearModel
-from vehgen.mechanics.rows import Entries, Row
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion
+from vehgen.mechanics.rows import Row, SparseMatrix
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class StepProgram:
 
     program: Program
     parameters: dict[str, Node]
-    rests: dict[int, Node]
+    static_travels: dict[int, Node]
     time_step: Node
     drives: list[Node]
     sample_drives: list[Node]
@@ -39,7 +39,7 @@ class StepProgram:
     channels: list[Node]
 
 
-def write_step(model: LinearModel, sweeps: int | None = None) -> StepProgram:
+def write_step(model: EquationsOfMotion, sweeps: int | None = None) -> StepProgram:
     """Write one Newmark step of a model as a program; `sweeps` as in :class:`vehgen.codegen.condensation.Condensation`.
 
     The drives are, in order: the displacement inputs w, their rates w', the applied forces f; in a step they stand for the mean over
@@ -56,7 +56,7 @@ def write_step(model: LinearModel, sweeps: int | None = None) -> StepProgram:
         node = program.convert(expression, symbols, memo)
         symbols[symbol] = program.label(node, dependent_label(i))
 
-    def matrix(entries: Entries, name: str) -> Matrix:
+    def matrix(entries: SparseMatrix, name: str) -> Matrix:
         converted = {place: program.convert(value, symbols, memo) for place, value in entries.items()}
         return {(i, j): program.label(node, f"{name}{i}_{j}") for (i, j), node in converted.items() if program.value(node) != 0.0}
 
@@ -104,10 +104,10 @@ def write_step(model: LinearModel, sweeps: int | None = None) -> StepProgram:
     sample_drives = [program.leaf(name, SAMPLE) for name in names]
     channels = _channels(model, program, symbols, memo, (M, C, K, loads), (su, sv, sample_drives), laws)
     states = [*zip(u, next_u, strict=True), *zip(v, next_v, strict=True), *further]
-    return StepProgram(program, parameters, laws.rests if laws else {}, h, drives, sample_drives, states, channels)
+    return StepProgram(program, parameters, laws.static_travels if laws else {}, h, drives, sample_drives, states, channels)
 
 
-def _load_matrix(model: LinearModel, P: Matrix, Q: Matrix, F: Matrix) -> Matrix:
+def _load_matrix(model: EquationsOfMotion, P: Matrix, Q: Matrix, F: Matrix) -> Matrix:
     """Join the columns of displacement inputs, their rates and forces."""
     width = len(model.inputs)
     joined = dict(P)
@@ -117,7 +117,7 @@ def _load_matrix(model: LinearModel, P: Matrix, Q: Matrix, F: Matrix) -> Matrix:
 
 
 def _channels(
-    model: LinearModel,
+    model: EquationsOfMotion,
     program: Program,
     symbols: dict[sp.Symbol, Node],
     memo: dict[sp.Expr, Node],

@@ -10,11 +10,11 @@ from vehgen.codegen.program import SAMPLE, SETUP, STEP, Node, Program
 from vehgen.errors import InputError
 
 _BINARY = {"+": 1, "-": 1, "*": 2, "/": 2, "**": 3}
-_FUNCTIONS = {"min": "lower", "max": "upper"}
+_PRINTED_FUNCTIONS = {"min": "lower", "max": "upper"}
 _MAX_INLINE = 90
 
 
-class Printer:
+class PythonPrinter:
     """Prints what given results need of a program, phase by phase.
 
     Parameters
@@ -156,7 +156,7 @@ class Printer:
             return f"-{texts[0]}" if arguments[0][1] >= 2 else f"-({texts[0]})", 1
         if operation == "sqrt":
             return f"math.sqrt({texts[0]})", 9
-        return f"{_FUNCTIONS.get(operation, operation)}({', '.join(texts)})", 9
+        return f"{_PRINTED_FUNCTIONS.get(operation, operation)}({', '.join(texts)})", 9
 
 
 def literal(value: float) -> str:

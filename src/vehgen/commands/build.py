@@ -12,7 +12,7 @@ from vehgen.commands.terminal import add_vehicle, console, load, print_json, pri
 from vehgen.files import check_results
 
 if TYPE_CHECKING:
-    from vehgen.mechanics import LinearModel, StaticLoads
+    from vehgen.mechanics import EquationsOfMotion, StaticLoads
     from vehgen.simulate import Mode
 
 EXAMPLE = "python -m vehgen build tractor5.yaml --out build/tractor5"
@@ -62,7 +62,7 @@ def run(options: argparse.Namespace) -> None:
     console().print(f"built in {seconds:.1f} s; open {folder / 'index.html'}", highlight=False, markup=False)
 
 
-def _show(model: LinearModel, values: dict[str, float], modes: list[Mode], loads: StaticLoads) -> None:
+def _show(model: EquationsOfMotion, values: dict[str, float], modes: list[Mode], loads: StaticLoads) -> None:
     vehicle = model.vehicle
     title = vehicle.title or vehicle.name
     counts = (
@@ -104,7 +104,7 @@ def _show(model: LinearModel, values: dict[str, float], modes: list[Mode], loads
 
 
 def _summary(
-    model: LinearModel,
+    model: EquationsOfMotion,
     values: dict[str, float],
     modes: list[Mode],
     loads: StaticLoads,

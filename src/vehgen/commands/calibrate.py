@@ -13,7 +13,7 @@ from vehgen.files import check_results, write_text
 
 if TYPE_CHECKING:
     from vehgen.calibrate.calibration import Settings
-    from vehgen.calibrate.summary import Outcome
+    from vehgen.calibrate.summary import CalibrationSummary
 
 EXAMPLE = "python -m vehgen calibrate tractor5.yaml hump_2ms.yaml hump_3ms.yaml --method joint --out calibrated"
 
@@ -48,11 +48,11 @@ def run(options: argparse.Namespace) -> None:
     import json
 
     from vehgen.calibrate.calibration import calibrate
-    from vehgen.calibrate.summary import conclude
+    from vehgen.calibrate.summary import summarise
     from vehgen.commands.progress import Bars
     from vehgen.files.names import joined_name
     from vehgen.fit.parallel import runner_at
-    from vehgen.fit.prior_data import load_facts
+    from vehgen.fit.prior_data import load_prior_data
     from vehgen.fit.problem import make_problem
     from vehgen.fit.trial import load_trials
     from vehgen.report.plots.calibration_plots import calibration_figure_files, save_calibration_figures
@@ -61,7 +61,7 @@ def run(options: argparse.Namespace) -> None:
     _check_numbers(options)
     vehicle = load_vehicle(options.vehicle)
     problem = make_problem(load_trials(options.runs, vehicle))
-    facts = load_facts(options.facts, problem) if options.facts else None
+    facts = load_prior_data(options.facts, problem) if options.facts else None
     folder = folder_named(options.out, f"{Path(options.vehicle).stem}_calibrated")
     name = joined_name(vehicle.name, "calibrated")
     files, checkpoint = [folder / f"{name}.yaml", folder / "calibration.json"], folder / "search.json"
@@ -76,7 +76,7 @@ def run(options: argparse.Namespace) -> None:
             found = calibrate(problem, settings, facts, tell, checkpoint, options.resume, runner)
             if found.stopped:
                 progress.say("stopped: the best so far is kept; --resume goes on")
-        outcome = conclude(found, facts, options.combination, 0 if found.stopped else options.bootstrap, runner)
+        outcome = summarise(found, facts, options.combination, 0 if found.stopped else options.bootstrap, runner)
     data = outcome.to_dict()
     write_text(files[0], outcome.vehicle_text(folder, name))
     write_text(files[1], json.dumps(data, indent=1))
@@ -136,7 +136,7 @@ def _band(text: str) -> tuple[float, float]:
     return low, high
 
 
-def _show(outcome: Outcome, files: list[Path]) -> None:
+def _show(outcome: CalibrationSummary, files: list[Path]) -> None:
     calibration = outcome.calibration
     rows = []
     for item in outcome.parameters:
@@ -161,11 +161,11 @@ def _show(outcome: Outcome, files: list[Path]) -> None:
         [(name, f"{value:.4f}") for name, value in outcome.objective.items()],
         right=(1,),
     )
-    warn(_doubts(outcome))
+    warn(_warnings(outcome))
     tell_written(files)
 
 
-def _doubts(outcome: Outcome) -> list[str]:
+def _warnings(outcome: CalibrationSummary) -> list[str]:
     found = []
     rank, searched = outcome.structure.rank, outcome.structure.space.size
     if rank < searched:
@@ -179,7 +179,7 @@ def _doubts(outcome: Outcome) -> list[str]:
         found.append(f"set by the search range, not by the data: {', '.join(bound)}")
     found += [
         f"the tyre of {name} would have left the road (its load falls to {share:.2f} of the static load): the linear tyre does not hold"
-        for name, share in outcome.lift_off.items()
+        for name, share in outcome.least_tyre_loads.items()
         if share < 0
     ]
     fits = outcome.calibration.steps[-1].fits

@@ -11,15 +11,15 @@ from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.design.experiment import VISIBLE, propose, propose_stronger
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
-from vehgen.diagnose.fits.model_fit import Fit, judge
+from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit
 from vehgen.diagnose.inputs.checks import check_inputs, explain_gap
 from vehgen.diagnose.localise.free_form import fit_free_form, recover, strongest
 from vehgen.diagnose.localise.localisation import suffices
 from vehgen.diagnose.result import Diagnosis
-from vehgen.diagnose.select.criteria import adds, chance, excess, needs_both, passes, seeds, tied, unfinished
-from vehgen.diagnose.select.estimates import estimate, gain_interval, held_out_gain, unstable
-from vehgen.diagnose.select.placebo_laws import COUNT, compare
-from vehgen.diagnose.select.search import Progress, Round, look
+from vehgen.diagnose.select.criteria import adds, excess, needs_both, p_value_of, passes, seeds, tied, unfinished
+from vehgen.diagnose.select.estimates import estimate, gain_interval, unstable, validation_gain
+from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
+from vehgen.diagnose.select.search import DiagnosisProgress, SearchRound, search_round
 from vehgen.diagnose.verdict import Gap, NamedEffect, Verdict, VerdictName, sentence
 from vehgen.effects import Effect
 from vehgen.errors import InputError
@@ -33,19 +33,21 @@ CLOCKS = (
 )
 
 
-class Case:
+class Decision:
     """One diagnosis on its way: what was detected, the library, and the rounds so far."""
 
-    def __init__(self, detection: Detection, effects: Sequence[Effect], everything: bool, tell: Progress, workers: int) -> None:
+    def __init__(
+        self, detection: Detection, effects: Sequence[Effect], everything: bool, progress: DiagnosisProgress, workers: int
+    ) -> None:
         self.detection = detection
         self.base = detection.base
         self.everything = everything
-        self.tell = tell
+        self.progress = progress
         self.workers = workers
         self.effects = effects
-        self.untouched = [trial.name for trial in detection.held_out]
-        self.rounds: list[Round] = []
-        self.chain: list[Fit] = []
+        self.validation_runs = [trial.name for trial in detection.validation_runs]
+        self.rounds: list[SearchRound] = []
+        self.chain: list[ModelFit] = []
         self.notes: list[str] = []
         self.interrupted = False
         self.tried = len(self._candidates(self.base))
@@ -65,9 +67,9 @@ class Case:
         self.notes += [item.message for item in shown if not item.fatal]
         if fatal:
             return self._end("insufficient_data", "; ".join(fatal), "record these channels anew, or leave them out of the run files")
-        if max(detection.chi, float(np.sqrt(self.base.train))) <= limit.NOISE_FLOOR:
+        if max(detection.chi, float(np.sqrt(self.base.training))) <= limit.NOISE_FLOOR:
             return self._end("no_missing_effect", f"the recalibrated model is at the noise floor: chi {detection.chi:.3f}")
-        if not detection.held_out:
+        if not detection.validation_runs:
             count = len(detection.trials)
             return self._end(
                 "insufficient_data",
@@ -76,7 +78,7 @@ class Case:
             )
         if not self._candidates(self.base):
             raise InputError("no effect of the library can live on this vehicle")
-        first = self._look(self.base)
+        first = self._search_round(self.base)
         if first.stopped:
             return self._stopped()
         if not first.fits:
@@ -97,19 +99,19 @@ class Case:
                 return self._end("insufficient_data", wrong[0].message, "; ".join(item.message for item in wrong[1:]) or None)
         return self._name(self.chain) if self.chain else self._unknown(first)
 
-    def _too_weak(self, first: Round, best: Fit, good: bool) -> Diagnosis | None:
+    def _too_weak(self, first: SearchRound, best: ModelFit, good: bool) -> Diagnosis | None:
         """Return the verdict where the best effect is not told from chance, from random laws, or by the untouched runs."""
-        chi, p = self.detection.chi, chance(first, best, self.tried)
+        chi, p = self.detection.chi, p_value_of(first, best, self.tried)
         if p > limit.SIGNIFICANT and (good or chi <= VISIBLE):
             return self._propose(f"chi is {chi:.3f}, but no effect is told from chance (p {p:.2g})", best)
         if chi <= limit.WEAK and not good:
             return self._propose(f"chi is {chi:.3f}: a small gap, of which no effect closes enough to be named", best)
         if not good:
             return None
-        interval = gain_interval(self.base, best, self.untouched)
+        interval = gain_interval(self.base, best, self.validation_runs)
         if interval is None or interval[0] <= 0:
             return self._propose(f"{best.label} suits the runs for fitting, but the untouched runs do not show it", best)
-        rivals = compare(first, best, self.detection)
+        rivals = compare_with_placebo_laws(first, best, self.detection)
         if rivals is not None and rivals[1] >= rivals[0] - limit.DECOY:
             told = f"{best.label} closes {100 * rivals[0]:.0f} % of the excess, a random law at the same place {100 * rivals[1]:.0f} %"
             return self._propose(told, best)
@@ -117,37 +119,37 @@ class Case:
             self.notes.append(f"the best of {COUNT} random laws at the same place closes {100 * rivals[1]:.0f} % of the excess")
         return None
 
-    def _propose(self, reason: str, best: Fit) -> Diagnosis:
-        self.tell("propose", 0, 1, "")
+    def _propose(self, reason: str, best: ModelFit) -> Diagnosis:
+        self.progress("propose", 0, 1, "")
         louder = propose_stronger(self.detection, best)
         return self._end("too_weak", reason, louder.text if louder and louder.separates else "no run within reach would show it clearly")
 
-    def _candidates(self, footing: Fit) -> list[Candidate]:
+    def _candidates(self, current: ModelFit) -> list[Candidate]:
         """Return what may live on the vehicle of a fit: a walking beam leaves its axles no suspension."""
-        vehicle = footing.polished.misfit.problem.trials[0].run.vehicle
+        vehicle = current.least_squares.misfit.problem.trials[0].run.vehicle
         return list_candidates(vehicle, self.detection.trials, self.effects, self.detection.floor.noises)
 
-    def _look(self, footing: Fit) -> Round:
-        found = look(self.detection, footing, self._candidates(footing), self.everything, self.tell, self.workers)
+    def _search_round(self, current: ModelFit) -> SearchRound:
+        found = search_round(self.detection, current, self._candidates(current), self.everything, self.progress, self.workers)
         self.rounds.append(found)
         return found
 
     def _further(self) -> None:
         """Look again on what the last fit leaves, until nothing is left or nothing passes."""
         while len(self.chain) < MOST_EFFECTS and unfinished(self.chain[-1], self.base):
-            found = self._look(self.chain[-1])
+            found = self._search_round(self.chain[-1])
             if found.stopped:
                 raise KeyboardInterrupt
-            if not found.fits or not adds(found, found.fits[0]) or chance(found, found.fits[0], self.tried) > limit.SIGNIFICANT:
+            if not found.fits or not adds(found, found.fits[0]) or p_value_of(found, found.fits[0], self.tried) > limit.SIGNIFICANT:
                 return
             self.chain.append(found.fits[0])
 
-    def _pair(self, first: Round) -> None:
+    def _pair(self, first: SearchRound) -> None:
         """Look for a pair of effects that passes; where one force leaves noise, only a tyre and its suspension can be two."""
         tried = seeds(first)[:1] if suffices(first.passed, self.base) else seeds(first)
         for seed in tried:
-            known = judge(seed.effects, seed.polished, self.detection.held_out, self.detection.floor.noises)
-            found = self._look(known)
+            known = evaluate_fit(seed.effects, seed.least_squares, self.detection.validation_runs, self.detection.floor.noises)
+            found = self._search_round(known)
             if found.stopped:
                 raise KeyboardInterrupt
             if found.fits and self._both(first, found, found.fits[0]):
@@ -155,20 +157,20 @@ class Case:
                 self._further()
                 return
 
-    def _both(self, first: Round, found: Round, pair: Fit) -> bool:
-        interval = gain_interval(self.base, pair, self.untouched)
+    def _both(self, first: SearchRound, found: SearchRound, pair: ModelFit) -> bool:
+        interval = gain_interval(self.base, pair, self.validation_runs)
         return (
             passes(pair, self.base)
             and adds(found, pair)
             and needs_both(pair, first.fits)
-            and chance(found, pair, self.tried) <= limit.SIGNIFICANT
+            and p_value_of(found, pair, self.tried) <= limit.SIGNIFICANT
             and interval is not None
             and interval[0] > 0
         )
 
-    def _gap(self, fit: Fit | None = None) -> Gap:
+    def _gap(self, fit: ModelFit | None = None) -> Gap:
         last = fit or self.base
-        return Gap(self.base.chi, last.chi, 1.0, _runs(self.base, last, self.detection.held_out))
+        return Gap(self.base.chi, last.chi, 1.0, _runs(self.base, last, self.detection.validation_runs))
 
     def _places(self) -> tuple[tuple[str, float], ...]:
         return tuple((item.place.label, item.chi) for item in self.rounds[0].passed[:5])
@@ -182,18 +184,18 @@ class Case:
         self.interrupted = True
         fits = self.rounds[0].fits if self.rounds else ()
         done = f"{len(fits)} candidates" if fits else "no candidate"
-        best = f"; the best so far is {fits[0].label}, chi {np.sqrt(fits[0].train):.2f}" if fits else ""
+        best = f"; the best so far is {fits[0].label}, chi {np.sqrt(fits[0].training):.2f}" if fits else ""
         return self._end("insufficient_data", f"stopped by hand after {done}{best}", "let the diagnosis run to its end")
 
-    def _unknown(self, first: Round) -> Diagnosis:
+    def _unknown(self, first: SearchRound) -> Diagnosis:
         where = sentence([item.place.label for item in first.passed[:3]]) if first.passed else "no single place"
         if first.fits:
             best = first.fits[0]
-            reason = f"the best of {len(first.fits)} candidates, {best.label}, leaves chi {np.sqrt(best.train):.2f}"
+            reason = f"the best of {len(first.fits)} candidates, {best.label}, leaves chi {np.sqrt(best.training):.2f}"
         else:
             reason = "none of the effects tried can live where the model errs"
-        if self.base.polished.on_bound:
-            edge = ", ".join(self.base.polished.on_bound)
+        if self.base.least_squares.on_bound:
+            edge = ", ".join(self.base.least_squares.on_bound)
             self.notes.append(
                 f"the refit, within 35 % of the file's values, ends at its edge for {edge}: if they are uncertain, calibrate first"
             )
@@ -205,10 +207,10 @@ class Case:
         verdict = replace(ended.verdict, free_form=law.to_dict(), notes=(*ended.verdict.notes, law.describe()))
         return replace(ended, verdict=verdict, law=law)
 
-    def _name(self, chain: list[Fit]) -> Diagnosis:
+    def _name(self, chain: list[ModelFit]) -> Diagnosis:
         return self._name_one(chain[0]) if len(chain) == 1 else self._name_several(chain)
 
-    def _name_one(self, fit: Fit) -> Diagnosis:
+    def _name_one(self, fit: ModelFit) -> Diagnosis:
         step = self._round_of(fit)
         ties = tied(step, fit)
         effects = [self._effect(step, fit, 0, [item.last.label for item in ties])]
@@ -218,7 +220,7 @@ class Case:
             reason = f"{sentence([fit.label, *(item.label for item in ties)])} explain the runs equally well"
         return self._named([fit], ties, effects, reason)
 
-    def _name_several(self, chain: list[Fit]) -> Diagnosis:
+    def _name_several(self, chain: list[ModelFit]) -> Diagnosis:
         last, steps = chain[-1], [self._round_of(fit) for fit in chain]
         alternatives = [tied(step, fit) for step, fit in zip(steps, chain, strict=True)]
         effects = [
@@ -231,7 +233,7 @@ class Case:
             reason += f", and so {'does' if len(ties) == 1 else 'do'} {sentence([item.last.label for item in ties])}"
         return self._named(chain, ties, effects, reason)
 
-    def _named(self, chain: list[Fit], ties: list[Fit], effects: list[NamedEffect], reason: str) -> Diagnosis:
+    def _named(self, chain: list[ModelFit], ties: list[ModelFit], effects: list[NamedEffect], reason: str) -> Diagnosis:
         verdict = Verdict(
             "ambiguous" if ties else "named",
             reason,
@@ -243,24 +245,24 @@ class Case:
         )
         return Diagnosis(self.detection.trials, self.detection, tuple(self.rounds), tuple(chain), verdict, self.interrupted)
 
-    def _round_of(self, fit: Fit) -> Round:
+    def _round_of(self, fit: ModelFit) -> SearchRound:
         return next(item for item in self.rounds if any(own.key == fit.key for own in item.fits))
 
-    def _share(self, fit: Fit) -> str:
-        closed = held_out_gain(self.base, fit)
+    def _share(self, fit: ModelFit) -> str:
+        closed = validation_gain(self.base, fit)
         return f"{100 * closed:.1f} % of the excess on untouched runs" if closed is not None else "the gap on the runs for fitting"
 
-    def _apart(self, chain: list[Fit], ties: list[Fit]) -> str | None:
+    def _apart(self, chain: list[ModelFit], ties: list[ModelFit]) -> str | None:
         """Return which run would tell tied models apart, by what each predicts."""
         if self.interrupted:
             return None
         if all(fit.last.effect.adjusts == "sensor_delay" for fit in (chain[-1], *ties)):
             return CLOCKS
-        self.tell("propose", 0, 1, "")
+        self.progress("propose", 0, 1, "")
         found = propose(self.detection, (chain[-1], *ties))
         return found.text if found else None
 
-    def _effect(self, step: Round, fit: Fit, number: int, others: list[str]) -> NamedEffect:
+    def _effect(self, step: SearchRound, fit: ModelFit, number: int, others: list[str]) -> NamedEffect:
         """Return the effect `number` of a fit, judged by what it closed in its own round."""
         own = next((item for item in step.fits if item.key == fit.key[: number + 1]), fit)
         candidate = fit.effects[number]
@@ -268,32 +270,32 @@ class Case:
             candidate.effect.name,
             candidate.place,
             estimate(fit, candidate),
-            chance(step, own, self.tried),
-            held_out_gain(step.footing, own),
-            gain_interval(step.footing, own, self.untouched),
+            p_value_of(step, own, self.tried),
+            validation_gain(step.current, own),
+            gain_interval(step.current, own, self.validation_runs),
             tuple(others),
         )
 
-    def _notes(self, fit: Fit) -> tuple[str, ...]:
+    def _notes(self, fit: ModelFit) -> tuple[str, ...]:
         told = list(self.notes)
         for candidate in fit.effects:
             told += [f"{candidate.label}: {text}" for text in unstable(fit, candidate)]
-        if fit.polished.on_bound:
-            told.append(f"on the bound of its range: {', '.join(fit.polished.on_bound)}")
-        left = excess(fit.train)
+        if fit.least_squares.on_bound:
+            told.append(f"on the bound of its range: {', '.join(fit.least_squares.on_bound)}")
+        left = excess(fit.training)
         if left > limit.AGAIN**2 - 1:
             told.append(f"chi {np.sqrt(1 + left):.2f} is left unexplained")
         return tuple(told)
 
 
-def _runs(base: Fit, fit: Fit, held_out: Sequence[Trial]) -> tuple[dict[str, object], ...]:
-    later = {trial.name for trial in held_out}
+def _runs(base: ModelFit, fit: ModelFit, validation_runs: Sequence[Trial]) -> tuple[dict[str, object], ...]:
+    later = {trial.name for trial in validation_runs}
     return tuple(
         {
             "run": item,
             "untouched": item in later,
-            "before": float(np.sqrt(base.runs[item])),
-            "after": float(np.sqrt(fit.runs.get(item, base.runs[item]))),
+            "before": float(np.sqrt(base.mean_squares[item])),
+            "after": float(np.sqrt(fit.mean_squares.get(item, base.mean_squares[item]))),
         }
-        for item in base.runs
+        for item in base.mean_squares
     )

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 from threadpoolctl import threadpool_limits
 
-from vehgen.diagnose.decision import Case
+from vehgen.diagnose.decision import Decision
 from vehgen.diagnose.detect.detection import Detection, detect, kind_of_run, split_runs
 from vehgen.diagnose.localise.localisation import localise, shortlist
 from vehgen.diagnose.result import Diagnosis
-from vehgen.diagnose.select.search import Progress, look
+from vehgen.diagnose.select.search import DiagnosisProgress, search_round
 from vehgen.effects import Effect, library
 from vehgen.fit.trial import Trial
 
@@ -18,8 +18,8 @@ from vehgen.fit.trial import Trial
 def diagnose(
     trials: Sequence[Trial],
     effects: Sequence[Effect] | None = None,
-    everything: bool = False,
-    tell: Progress | None = None,
+    everywhere: bool = False,
+    progress: DiagnosisProgress | None = None,
     band: tuple[float, float] | None = None,
     workers: int = 1,
 ) -> Diagnosis:
@@ -50,11 +50,11 @@ def diagnose(
         For trials that do not belong together.
     """
     with threadpool_limits(1, user_api="blas"):
-        say = tell or (lambda stage, done, total, best: None)
+        say = progress or (lambda stage, done, total, best: None)
         say("detect", 0, 1, "")
         detection = detect(sorted(trials, key=kind_of_run), band)  # whatever order they came in
         say("detect", 1, 1, f"chi {detection.chi:.3f}")
-        return Case(detection, list(effects if effects is not None else library().values()), everything, say, workers).decide()
+        return Decision(detection, list(effects if effects is not None else library().values()), everywhere, say, workers).decide()
 
 
-__all__ = ["Detection", "Diagnosis", "detect", "diagnose", "localise", "look", "shortlist", "split_runs"]
+__all__ = ["Detection", "Diagnosis", "detect", "diagnose", "localise", "search_round", "shortlist", "split_runs"]

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vehgen.diagnose.detect.detection import Detection
-from vehgen.diagnose.fits.model_fit import Fit
+from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.localise.free_form import FreeForm
 from vehgen.diagnose.localise.unknown_force import PlaceResult
-from vehgen.diagnose.select.search import Round
+from vehgen.diagnose.select.search import SearchRound
 from vehgen.diagnose.verdict import Verdict
 from vehgen.fit.trial import Trial
 
@@ -23,8 +23,8 @@ class Diagnosis:
 
     trials: tuple[Trial, ...]
     detection: Detection
-    rounds: tuple[Round, ...]
-    chosen: tuple[Fit, ...]
+    rounds: tuple[SearchRound, ...]
+    chosen: tuple[ModelFit, ...]
     verdict: Verdict
     stopped: bool = False
     law: FreeForm | None = None
@@ -40,6 +40,6 @@ class Diagnosis:
         return self.rounds[0].passed if self.rounds else ()
 
     @property
-    def fits(self) -> tuple[Fit, ...]:
+    def fits(self) -> tuple[ModelFit, ...]:
         """The candidates tried on the base, best first."""
         return self.rounds[0].fits if self.rounds else ()

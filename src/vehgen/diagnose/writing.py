@@ -6,24 +6,24 @@ from glob import escape
 from pathlib import Path
 from typing import Any
 
-from vehgen.diagnose.fits.model_fit import Fit
+from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.estimates import estimate
 from vehgen.diagnose.verdict import Verdict
-from vehgen.effects import Surveyor
+from vehgen.effects import EffectLocator
 from vehgen.files.names import MAX_TEXT, joined_name
 from vehgen.fit.problem import Problem
 from vehgen.vehicle.loading import extend_vehicle
 from vehgen.vehicle.writing import base_reference, quantity, yaml_document
 
 
-def effect_file(fit: Fit, base: Problem, verdict: Verdict, folder: Path, name: str) -> str:
+def effect_file(fit: ModelFit, base: Problem, verdict: Verdict, folder: Path, name: str) -> str:
     """Return the text of a vehicle file that extends the base vehicle with its refitted parameters and the effects of a fit.
 
     The evidence stands in comments. An effect of runs or sensors changes no vehicle: its numbers are told in a comment.
     """
     trial = base.trials[0]
     vehicle = extended = trial.run.vehicle
-    values = fit.polished.misfit.problem.best_values(fit.polished.values)
+    values = fit.least_squares.misfit.problem.best_values(fit.least_squares.values)
     data: dict[str, Any] = {
         "extends": base_reference(vehicle, folder),
         "name": name,
@@ -36,7 +36,7 @@ def effect_file(fit: Fit, base: Problem, verdict: Verdict, folder: Path, name: s
             told = ", ".join(f"{key} = {item.value:.5g} {item.unit}".strip() for key, item in estimate(fit, candidate).items())
             comments.append(f"{candidate.label} is an effect of the runs, to be corrected there: {told}")
             continue
-        site = Surveyor(extended, dict(trial.values)).site(candidate.place)
+        site = EffectLocator(extended, dict(trial.values)).site(candidate.place)
         own = {parameter.name: values[symbol] for parameter, symbol in zip(candidate.effect.parameters, candidate.parameters, strict=True)}
         change = candidate.effect.change(site, own)
         _merge(data, change)
@@ -57,7 +57,7 @@ def _merge(data: dict[str, Any], change: dict[str, Any]) -> None:
             data[key] = value
 
 
-def file_name(vehicle: str, fit: Fit) -> str:
+def file_name(vehicle: str, fit: ModelFit) -> str:
     """Return what a vehicle with the effects of a fit is called, cut to the length of a name."""
     return joined_name(vehicle, "with", "_and_".join(dict.fromkeys(item.effect.name for item in fit.effects)))
 

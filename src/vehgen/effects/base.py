@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from vehgen.effects.locator import Site
+from vehgen.effects.locator import EffectSite
 from vehgen.files.names import MAX_TEXT, joined_name
 from vehgen.vehicle import Vehicle
 
@@ -14,7 +14,7 @@ Change = dict[str, Any]
 """Plain mappings, lists, texts and numbers in the form of a vehicle file."""
 
 
-def one(site: Site) -> float:
+def one(site: EffectSite) -> float:
     """Return 1: a parameter that does not scale with its place."""
     return 1.0
 
@@ -29,14 +29,14 @@ class EffectParameter:
     low: float
     high: float
     starts: tuple[float, ...]
-    scale: Callable[[Site], float] = one
+    scale: Callable[[EffectSite], float] = one
 
-    def bounds(self, site: Site) -> tuple[float, float]:
+    def bounds(self, site: EffectSite) -> tuple[float, float]:
         """Return what is searched at a place [unit]."""
         size = self.scale(site)
         return self.low * size, self.high * size
 
-    def first(self, site: Site) -> tuple[float, ...]:
+    def first(self, site: EffectSite) -> tuple[float, ...]:
         """Return where searches begin at a place [unit]."""
         size = self.scale(site)
         return tuple(start * size for start in self.starts)
@@ -73,7 +73,7 @@ class Effect:
     attaches: str
     parameters: tuple[EffectParameter, ...]
     places: Callable[[Vehicle, tuple[str, ...]], tuple[str, ...]]
-    edit: Callable[[Site, Mapping[str, str]], Change] | None = None
+    edit: Callable[[EffectSite, Mapping[str, str]], Change] | None = None
     adjusts: str = ""
 
     def symbols(self, place: str) -> dict[str, str]:
@@ -81,7 +81,7 @@ class Effect:
         safe = "".join(letter if letter.isalnum() else "_" for letter in place)
         return {parameter.name: joined_name(self.name, safe, parameter.name) for parameter in self.parameters}
 
-    def change(self, site: Site, values: Mapping[str, float] | None = None) -> Change:
+    def change(self, site: EffectSite, values: Mapping[str, float] | None = None) -> Change:
         """Return the change of a vehicle's file with its parameters declared, at `values` or at their first start."""
         assert self.edit is not None
         symbols = self.symbols(site.place)

@@ -11,7 +11,7 @@ from pydantic import Field
 
 from vehgen.effects.base import Change, Effect, EffectParameter
 from vehgen.effects.library.law_effect import Given, law_edit
-from vehgen.effects.locator import Site
+from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import axles, hinges, suspensions
 from vehgen.effects.registry import library
 from vehgen.errors import InputError, did_you_mean, shown
@@ -22,11 +22,11 @@ from vehgen.files.units import DAMPING, FORCE, INERTIA, LENGTH, MASS, MOMENT, NO
 from vehgen.mechanics.laws import LAWS
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.loading import validate
-from vehgen.vehicle.model import Noun
+from vehgen.vehicle.model import FileModel
 
-Kind = Literal["suspension", "tyre", "hinge"]
+LawPlace = Literal["suspension", "tyre", "hinge"]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
-PLACES: dict[Kind, Callable[[Vehicle, tuple[str, ...]], tuple[str, ...]]] = {"suspension": suspensions, "tyre": axles, "hinge": hinges}
+PLACES: dict[LawPlace, Callable[[Vehicle, tuple[str, ...]], tuple[str, ...]]] = {"suspension": suspensions, "tyre": axles, "hinge": hinges}
 SIZES: dict[str, Dimension] = {
     "load": FORCE,
     "k": STIFFNESS,
@@ -40,7 +40,7 @@ SIZES: dict[str, Dimension] = {
 """What `times` may use: the sizes of a :class:`~vehgen.effects.locator.Site`."""
 
 
-class ParameterEntry(Noun):
+class ParameterEntry(FileModel):
     """A parameter of an effect: searched from `low` to `high`, begun at each of `starts`."""
 
     meaning: FreeText
@@ -53,20 +53,20 @@ class ParameterEntry(Noun):
     )
 
 
-class EffectEntry(Noun):
+class EffectEntry(FileModel):
     """An effect that could be missing at a suspension, tyre or hinge."""
 
     title: FreeText
     meaning: FreeText = Field(description="what it is")
     signature: FreeText = Field("", description="what it looks like in recordings")
     source: FreeText = Field("", description="where it comes from")
-    attaches: Kind
+    attaches: LawPlace
     law: dict[Name, dict[Name, Expression]] | None = Field(None, description="{law of the library: {its parameter: value or expression}}")
     force: Expression | None = Field(None, description="instead of `law`: an expression of travel d, rate v and the effect's parameters")
     parameters: dict[Identifier, ParameterEntry]
 
 
-class EffectsFile(Noun):
+class EffectsFile(FileModel):
     """A file of effects, by name."""
 
     effects: dict[Identifier, EffectEntry]
@@ -230,7 +230,7 @@ class _Reader:
             raise self.wrong(f"{path[-1]} must be in {dimension}, found {found} in {shown(expression.text)}", *path)
 
 
-def _size(times: Expression, site: Site) -> float:
+def _size(times: Expression, site: EffectSite) -> float:
     """Return the size of a place that `times` asks for [SI]."""
     try:
         return times.evaluate({name: float(getattr(site, name)) for name in SIZES})
@@ -238,11 +238,11 @@ def _size(times: Expression, site: Site) -> float:
         raise InputError(f"at {site.place}: {error}") from error
 
 
-def _own_law(force: str, site: Site, symbols: Given) -> Change:
+def _own_law(force: str, site: EffectSite, symbols: Given) -> Change:
     return {"force": force, "parameters": dict(symbols)}
 
 
-def _library_law(given: dict[str, Expression], site: Site, symbols: Given) -> Change:
+def _library_law(given: dict[str, Expression], site: EffectSite, symbols: Given) -> Change:
     return {key: value.text if key == "from" else _renamed(value, symbols) for key, value in given.items()}
 
 

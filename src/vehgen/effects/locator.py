@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from vehgen.files.expressions import Expression
-from vehgen.mechanics import LinearModel, derive, static_loads
+from vehgen.mechanics import EquationsOfMotion, derive, static_loads
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.model import Spring
 
 
 @dataclass(frozen=True)
-class Site:
+class EffectSite:
     """A place of a vehicle with its sizes.
 
     `load` [N] is the static load of the axle (of the hinge, the link, the body's weight); `k` [N/m], `c` [N s/m] its suspension's
@@ -60,7 +60,7 @@ def _plain(item: object) -> object:
     return item.text if isinstance(item, Expression) else item
 
 
-class Surveyor:
+class EffectLocator:
     """Looks up sites of one vehicle.
 
     Parameters
@@ -73,7 +73,7 @@ class Surveyor:
 
     def __init__(self, vehicle: Vehicle, values: Mapping[str, float]) -> None:
         self.vehicle = vehicle
-        self._model: LinearModel = derive(vehicle)
+        self._model: EquationsOfMotion = derive(vehicle)
         known = {name: values.get(name, 0.0) for name in self._model.parameters}
         self._known = vehicle.all_values({name: known[name] for name in vehicle.free_parameters})
         self._loads = static_loads(self._model, known)
@@ -84,7 +84,7 @@ class Surveyor:
             zip(self._model.layout.bodies, (self._model.evaluate(entries, known)[0, i] for i in range(len(entries))), strict=True)
         )
 
-    def site(self, place: str) -> Site:
+    def site(self, place: str) -> EffectSite:
         """Return the site of an axle, link, hinge, body or group of axles joined by `+`."""
         vehicle, known = self.vehicle, self._known
         names = place.split("+")
@@ -118,4 +118,4 @@ class Surveyor:
         length = max(marks) - min(marks) if len(marks) > 1 else 1.0
         if names[0] in vehicle.bodies:
             load = mass * 9.81
-        return Site(vehicle, place, load, k, c, kt, mass, inertia, length)
+        return EffectSite(vehicle, place, load, k, c, kt, mass, inertia, length)

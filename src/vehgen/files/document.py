@@ -17,7 +17,7 @@ from vehgen.files.names import unprintable
 
 MAX_BYTES = 1_000_000
 MAX_VALUES = 20_000
-MAX_DEPTH = 20
+MAX_NESTING = 20
 MAX_DIGITS = 400
 """A longer whole number stays text: Python refuses to write it again, and no float holds it."""
 _PLAIN_KEYS = {"str", "int", "float", "bool", "null", "timestamp", "merge", "value"}
@@ -122,8 +122,8 @@ class _Converter:
         self.count += 1
         if self.count > MAX_VALUES:
             raise InputError(f"more than {MAX_VALUES} values (do aliases multiply?)", position)
-        if depth > MAX_DEPTH:
-            raise InputError(f"nested more than {MAX_DEPTH} deep", position)
+        if depth > MAX_NESTING:
+            raise InputError(f"nested more than {MAX_NESTING} deep", position)
         kind = str(node.tag).rpartition(":")[2]
         if isinstance(node, MappingNode) and kind == "map":
             return Located(self._mapping(node, depth), position)

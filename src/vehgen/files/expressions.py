@@ -23,9 +23,9 @@ from vehgen.errors import InputError, did_you_mean, shortened, shown
 from vehgen.files.units import NONE, Dimension, nearest_unit, read_unit
 
 MAX_LENGTH = 1000
-MAX_DEPTH = 100
-_NUMBER = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
-_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+MAX_EXPRESSION_DEPTH = 100
+_NUMBER_TOKEN = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+_SYMBOL = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 _SIGNS = "+-*/^(),"
 _OPERATORS: dict[type[ast.operator], str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
 FUNCTIONS = ("sqrt", "abs", "sign", "min", "max")
@@ -64,11 +64,11 @@ class Operation:
     """`+ - * / **`, `neg`, or a function's name, applied to its arguments."""
 
     operator: str
-    arguments: tuple[Node, ...]
+    arguments: tuple[SyntaxNode, ...]
     offset: int = 0
 
 
-Node = Number | Name | Operation
+SyntaxNode = Number | Name | Operation
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class Expression:
     """A parsed expression; equal texts are equal expressions."""
 
     text: str
-    root: Node
+    root: SyntaxNode
 
     @property
     def names(self) -> frozenset[str]:
@@ -107,7 +107,7 @@ class Expression:
     ) -> T:
         """Rebuild the expression bottom-up in another algebra (floats, sympy)."""
 
-        def visit(node: Node) -> T:
+        def visit(node: SyntaxNode) -> T:
             if isinstance(node, Number):
                 return number(node)
             if isinstance(node, Name):
@@ -177,8 +177,8 @@ def _replace_quantities(text: str) -> tuple[str, list[tuple[float, Dimension]], 
     quantities: list[tuple[float, Dimension]] = []
     position = 0
     while position < len(text):
-        name = _NAME.match(text, position)
-        number = _NUMBER.match(text, position)
+        name = _SYMBOL.match(text, position)
+        number = _NUMBER_TOKEN.match(text, position)
         if name:
             if name.group().startswith("_"):
                 raise ExpressionError(f"a name may not start with an underscore: {shown(name.group())}", position)
@@ -197,8 +197,8 @@ def _replace_quantities(text: str) -> tuple[str, list[tuple[float, Dimension]], 
                 raise ExpressionError(error.message, blank) from error
             if unit is not None:
                 value, dimension, end = value * unit[0], unit[1], unit[2]
-            elif _NAME.match(text, blank):
-                word = _NAME.match(text, blank)
+            elif _SYMBOL.match(text, blank):
+                word = _SYMBOL.match(text, blank)
                 assert word is not None
                 raise ExpressionError(
                     f"{shown(word.group())} after {shortened(number.group())} is not a unit; {nearest_unit(word.group())} "
@@ -220,12 +220,12 @@ def _replace_quantities(text: str) -> tuple[str, list[tuple[float, Dimension]], 
     return source.strip(), quantities, (offsets[lead:] or [0]) + [len(text)]
 
 
-def _convert(node: ast.expr, quantities: list[tuple[float, Dimension]], offsets: list[int], depth: int = 0) -> Node:
+def _convert(node: ast.expr, quantities: list[tuple[float, Dimension]], offsets: list[int], depth: int = 0) -> SyntaxNode:
     offset = offsets[min(node.col_offset, len(offsets) - 1)]
-    if depth > MAX_DEPTH:
-        raise ExpressionError(f"an expression is nested more than {MAX_DEPTH} deep", offset)
+    if depth > MAX_EXPRESSION_DEPTH:
+        raise ExpressionError(f"an expression is nested more than {MAX_EXPRESSION_DEPTH} deep", offset)
 
-    def inside(child: ast.expr) -> Node:
+    def inside(child: ast.expr) -> SyntaxNode:
         return _convert(child, quantities, offsets, depth + 1)
 
     match node:
@@ -254,13 +254,13 @@ def _convert(node: ast.expr, quantities: list[tuple[float, Dimension]], offsets:
     raise ExpressionError(_ALLOWED, offset)
 
 
-def _check_exponent(node: Node, offset: int) -> None:
+def _check_exponent(node: SyntaxNode, offset: int) -> None:
     value = _constant(node)
     if value is None or not abs(value) <= 10:
         raise ExpressionError("an exponent must be a plain number between -10 and 10", offset)
 
 
-def _constant(node: Node) -> float | None:
+def _constant(node: SyntaxNode) -> float | None:
     if isinstance(node, Number) and node.dimension == NONE:
         return node.value
     if isinstance(node, Operation) and node.operator == "neg":
@@ -272,7 +272,7 @@ def _constant(node: Node) -> float | None:
     return None
 
 
-def _symbols(node: Node) -> Iterator[Name]:
+def _symbols(node: SyntaxNode) -> Iterator[Name]:
     if isinstance(node, Name):
         yield node
     elif isinstance(node, Operation):
@@ -311,7 +311,7 @@ def apply_float(operator: str, arguments: list[float]) -> float:
             return max(arguments)
 
 
-def _dimension(node: Node, dimensions: Mapping[str, Dimension]) -> Dimension:
+def _dimension(node: SyntaxNode, dimensions: Mapping[str, Dimension]) -> Dimension:
     if isinstance(node, Number):
         return node.dimension
     if isinstance(node, Name):

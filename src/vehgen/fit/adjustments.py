@@ -82,8 +82,8 @@ class SensorDelay(Adjustment):
 
     def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
         """Return the readings with the sensor's channels `numbers[0]` [s] later, by the phase of their Fourier transform."""
-        late = np.array([channel.sensor == self.place for channel in trial.measurement.channels])
-        n, dt = response.shape[-2], trial.measurement.dt
+        late = np.array([channel.sensor == self.place for channel in trial.recording.channels])
+        n, dt = response.shape[-2], trial.recording.dt
         pad = np.zeros((*response.shape[:-2], n, response.shape[-1]))
         frequency = np.fft.rfftfreq(2 * n, dt)
         turned = np.fft.rfft(np.concatenate([response, pad], axis=-2), axis=-2) * np.exp(-2j * np.pi * frequency * numbers[0])[:, None]
@@ -100,10 +100,10 @@ class Tilt(Adjustment):
 
     def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
         """Return the readings with the sensor tilted by `numbers[0]` [rad]."""
-        columns = {channel.quantity: i for i, channel in enumerate(trial.measurement.channels) if channel.sensor == self.place}
+        columns = {channel.quantity: i for i, channel in enumerate(trial.recording.channels) if channel.sensor == self.place}
         if "acceleration" not in columns or "pitch_rate" not in columns:
             return response
-        pitch = scipy.integrate.cumulative_trapezoid(response[..., columns["pitch_rate"]], dx=trial.measurement.dt, axis=-1, initial=0.0)
+        pitch = scipy.integrate.cumulative_trapezoid(response[..., columns["pitch_rate"]], dx=trial.recording.dt, axis=-1, initial=0.0)
         changed = response.copy()
         column = columns["acceleration"]
         changed[..., column] = response[..., column] * np.cos(numbers[0]) - GRAVITY * np.sin(numbers[0]) * pitch

@@ -27,7 +27,7 @@ def compared_band(trials: Sequence[Trial]) -> tuple[float, float]:
         if other != band:
             raise InputError(f"{first} is to be compared from {_words(band)}, {name} from {_words(other)}: give all runs one `band`")
     for trial in trials:
-        nyquist = 0.5 / trial.measurement.dt
+        nyquist = 0.5 / trial.recording.dt
         if trial.run.file.band is not None and band[1] > nyquist:
             place = trial.run.document.find(("band",))
             raise InputError(f"`band` ends at {band[1]:g} Hz, but {trial.name} was sampled for {nyquist:.4g} Hz at most", place)

@@ -25,7 +25,7 @@ LOWEST, HIGHEST = 5.0, 40.0
 """Frequencies at which lines are looked for [Hz]."""
 DRIFTS = np.linspace(-0.03, 0.03, 61)
 """Drifts at which lines are looked for."""
-SMOOTH = 0.5
+SMOOTH_CYCLES = 0.5
 """Width over which the residual's power is averaged in the search for a line [Hz]."""
 
 
@@ -43,7 +43,7 @@ class Harmonic(Adjustment):
         if trial.name not in self.sigma:
             return response
         columns = self.columns(trial, float(numbers[0]), float(numbers[1]), trial.values)
-        left = (trial.measurement.values - response) / self.sigma[trial.name]
+        left = (trial.recording.values - response) / self.sigma[trial.name]
         coefficients = self._solve(trial, columns, left)
         return np.asarray(response + np.einsum("knc,...k->...nc", columns, coefficients))
 
@@ -53,12 +53,12 @@ class Harmonic(Adjustment):
         `values` are the vehicle's parameters [SI]: a heavier body needs a larger force.
         """
         columns = self.columns(trial, float(numbers[0]), float(numbers[1]), values)
-        coefficients = self._solve(trial, columns, (trial.measurement.values - response) / self.sigma[trial.name])
+        coefficients = self._solve(trial, columns, (trial.recording.values - response) / self.sigma[trial.name])
         return float(np.hypot(coefficients[0], coefficients[1]))
 
     def columns(self, trial: Trial, frequency: float, drift: float, values: Mapping[str, float]) -> Array:
         """Return what the sensors read of unit forces, `shape (2 n_forces, n_samples, n_channels)`: heave in two phases, then pitch."""
-        time = trial.measurement.time
+        time = trial.recording.time
         duration = max(float(time[-1]), 1e-9)
         ends = np.array([frequency, frequency * (1.0 + drift)])
         answers = force_response(trial.simulator.model, values, _rows(trial, self.place), ends)
@@ -93,17 +93,17 @@ def find_line(misfit: Misfit, x: Array, most: int = 2) -> list[tuple[float, floa
     """
     grid = np.arange(LOWEST, HIGHEST, 0.05)
     power = np.zeros_like(grid)
-    lines = misfit.white_lines(x)
+    lines = misfit.whitened_spectrum(x)
     for t, line in enumerate(lines):
         frequency = misfit.frequency(t)
         own = (np.abs(line) ** 2).sum(axis=1)
-        width = max(1, round(SMOOTH / (frequency[1] - frequency[0])))
+        width = max(1, round(SMOOTH_CYCLES / (frequency[1] - frequency[0])))
         power += np.interp(grid, frequency, np.convolve(own, np.ones(width) / width, mode="same"))
     found = []
     for _ in range(most):
         top = int(np.argmax(power))
         found.append(_refine(misfit, x, float(grid[top])))
-        power[np.abs(grid - grid[top]) < 2 * SMOOTH] = 0.0
+        power[np.abs(grid - grid[top]) < 2 * SMOOTH_CYCLES] = 0.0
     return found
 
 
@@ -111,8 +111,8 @@ def _refine(misfit: Misfit, x: Array, about: float) -> tuple[float, float]:
     frequencies = np.arange(about - 1.2, about + 1.2, 0.02)
     energy = np.zeros((len(DRIFTS), len(frequencies)))
     for trial, simulated in zip(misfit.problem.trials, misfit.simulate(x), strict=True):
-        time = trial.measurement.time
-        left = (trial.measurement.values - simulated) / misfit.noises[trial.name].sigma
+        time = trial.recording.time
+        left = (trial.recording.values - simulated) / misfit.noises[trial.name].sigma
         duration = max(float(time[-1]), 1e-9)
         turning = np.exp(-2j * np.pi * np.outer(frequencies, time))
         for i, rate in enumerate(DRIFTS):
@@ -122,10 +122,10 @@ def _refine(misfit: Misfit, x: Array, about: float) -> tuple[float, float]:
     return float(frequencies[frequency]), float(DRIFTS[drift])
 
 
-def line_numbers(body: str, noises: Mapping[str, Array]) -> Sequence[Adjustment]:
+def harmonic_adjustments(body: str, noises: Mapping[str, Array]) -> Sequence[Adjustment]:
     """Return the two adjustments of a line at a body: its frequency, weighed by the channels' `noises`, and its drift."""
     line = Harmonic(body, 0.05, 25.0, LOWEST, HIGHEST + 5.0, dict(noises))
     return line, Adjustment(f"{body} drift", 0.002, 0.0, -0.05, 0.05)
 
 
-__all__ = ["Harmonic", "find_line", "line_numbers"]
+__all__ = ["Harmonic", "find_line", "harmonic_adjustments"]

@@ -14,16 +14,16 @@ from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.misfit import Misfit, Noises, Nuisances
 from vehgen.fit.noise import EVEN, Noise, estimate_noise, transform
-from vehgen.fit.prior_data import Facts
+from vehgen.fit.prior_data import PriorData
 from vehgen.fit.problem import Problem
 
 Array = NDArray[np.float64]
 AT_BOUND = 1e-3
 """Nearer than this to 0 or 1 in the unit cube, a parameter counts as on its bound."""
-HOLD = 2.0
+WEAK_PRIOR_SIGMA = 2.0
 """Spring that holds parameters to the file's values where no data do: its standard deviation is twice the search range."""
-ROUNDS = 3
-ROUGH, FINE = 1e-4, 1e-8
+NOISE_ROUNDS = 3
+COARSE_TOLERANCE, FINE_TOLERANCE = 1e-4, 1e-8
 """Relative change of the sum of squares at which a fit ends: before the noise is known, and at the end."""
 FIRST_NOISE = 0.03
 """White noise assumed before any is estimated, as a share of each channel's RMS."""
@@ -34,7 +34,7 @@ LATEST = 1.0
 
 
 @dataclass(frozen=True)
-class Polished:
+class LeastSquaresFit:
     """A fit: `x` the unknowns of `misfit` (parameters in the unit cube, nuisances).
 
     `chi2` is the mean square of its whitened residuals; `loss` is -2 ln of the likelihood, less a constant, by which fits are compared.
@@ -57,23 +57,23 @@ class Polished:
         return tuple(name for name, u in zip(self.misfit.problem.space.names, unit, strict=True) if min(u, 1 - u) < AT_BOUND)
 
 
-def polish(
+def fit_least_squares(
     problem: Problem,
     unit: Array,
     nuisances: Nuisances | None = None,
     band: tuple[float, float] = CALIBRATION_BAND_HZ,
-    rounds: int = ROUNDS,
+    rounds: int = NOISE_ROUNDS,
     noises: Noises | None = None,
     start: Array | None = None,
-    facts: Facts | None = None,
+    prior_data: PriorData | None = None,
     max_steps: int = 60,
     shared: Sequence[Adjustment] = (),
     numbers: Sequence[float] = (),
-    tolerance: float = FINE,
-    hold: float = HOLD,
-    free: int = 0,
-    renew: int = 1,
-) -> Polished:
+    tolerance: float = FINE_TOLERANCE,
+    prior_sigma: float = WEAK_PRIOR_SIGMA,
+    n_effect_parameters: int = 0,
+    jacobian_refresh: int = 1,
+) -> LeastSquaresFit:
     """Fit parameters and nuisances by least squares, from a point of the unit cube.
 
     Parameters
@@ -105,28 +105,30 @@ def polish(
         Relative change of the sum of squares at which the last fit ends.
     """
     known = noises is not None
-    springs = np.concatenate([np.full(problem.space.size - free, hold), np.full(free, HOLD)])
+    priors = np.concatenate(
+        [np.full(problem.space.size - n_effect_parameters, prior_sigma), np.full(n_effect_parameters, WEAK_PRIOR_SIGMA)]
+    )
     noises = noises or first_noises(problem)
     values = problem.space.values(unit)
-    misfit = Misfit(problem, noises, values, nuisances, band, shared, renew)
+    misfit = Misfit(problem, noises, values, nuisances, band, shared, jacobian_refresh)
     begun = [(value - item.neutral) / item.scale for item, value in zip(shared, numbers, strict=True)] if numbers else [0.0] * len(shared)
     x = np.concatenate([np.clip(unit, 0.0, 1.0), begun, first_delays(misfit, unit, begun) if start is None else start])
-    result = _fit(misfit, x, facts, max_steps, tolerance if known else ROUGH, springs)
+    result = _fit(misfit, x, prior_data, max_steps, tolerance if known else COARSE_TOLERANCE, priors)
     for left in reversed(range(0 if known else rounds - 1)):
         noises = estimate_noises(misfit, result)
-        misfit = Misfit(problem, noises, problem.space.values(misfit.split(result)[0]), nuisances, band, shared, renew)
-        result = _fit(misfit, result, facts, max_steps, ROUGH if left else tolerance, springs)
-    misfit.renew = 1  # who asks from now on wants derivatives at x itself
+        misfit = Misfit(problem, noises, problem.space.values(misfit.split(result)[0]), nuisances, band, shared, jacobian_refresh)
+        result = _fit(misfit, result, prior_data, max_steps, COARSE_TOLERANCE if left else tolerance, priors)
+    misfit.jacobian_refresh = 1  # who asks from now on wants derivatives at x itself
     residuals = misfit.residuals(result)
     prior = float((misfit.split(result)[1] ** 2).sum())
-    lines = zip(misfit.problem.trials, misfit.lines(result), strict=True)
+    lines = zip(misfit.problem.trials, misfit.residual_spectrum(result), strict=True)
     loss = prior + sum(misfit.noises[trial.name].loss(own, answer) for trial, (own, answer) in lines)
-    if facts is not None:
-        loss += float((facts.residuals(misfit.problem.space.values(misfit.split(result)[0])) ** 2).sum())
-    return Polished(misfit, result, float(np.mean(residuals**2)), loss)
+    if prior_data is not None:
+        loss += float((prior_data.residuals(misfit.problem.space.values(misfit.split(result)[0])) ** 2).sum())
+    return LeastSquaresFit(misfit, result, float(np.mean(residuals**2)), loss)
 
 
-def _fit(misfit: Misfit, x: Array, facts: Facts | None, max_steps: int, tolerance: float, springs: Array) -> Array:
+def _fit(misfit: Misfit, x: Array, prior_data: PriorData | None, max_steps: int, tolerance: float, priors: Array) -> Array:
     n, rest = misfit.n_parameters, misfit.n_unknowns - misfit.n_parameters
     low = np.concatenate([np.zeros(n), np.full(rest, -np.inf)])
     high = np.concatenate([np.ones(n), np.full(rest, np.inf)])
@@ -135,18 +137,18 @@ def _fit(misfit: Misfit, x: Array, facts: Facts | None, max_steps: int, toleranc
     inside = np.clip(x, low + 1e-6, high - 1e-6)
     space = misfit.problem.space
     middle = space.unit(space.start)
-    hold = np.hstack([np.diag(1 / springs), np.zeros((n, rest))])
+    inverse_priors = np.hstack([np.diag(1 / priors), np.zeros((n, rest))])
 
     def residuals(x: Array) -> Array:
-        own = np.concatenate([misfit.residuals(x), (x[:n] - middle) / springs])
-        return own if facts is None else np.concatenate([own, facts.residuals(space.values(x[:n]))])
+        own = np.concatenate([misfit.residuals(x), (x[:n] - middle) / priors])
+        return own if prior_data is None else np.concatenate([own, prior_data.residuals(space.values(x[:n]))])
 
     def jacobian(x: Array) -> Array:
-        own = np.vstack([misfit.jacobian(x), hold])
-        if facts is None:
+        own = np.vstack([misfit.jacobian(x), inverse_priors])
+        if prior_data is None:
             return own
         values = space.values(x[:n])
-        return np.vstack([own, np.hstack([facts.jacobian(values) * space.slopes(values), np.zeros((len(facts.facts), rest))])])
+        return np.vstack([own, np.hstack([prior_data.jacobian(values) * space.slopes(values), np.zeros((len(prior_data.facts), rest))])])
 
     with threadpool_limits(1, user_api="blas"):  # tall and thin matrices: more threads only wait for one another
         found = scipy.optimize.least_squares(
@@ -159,7 +161,7 @@ def first_noises(problem: Problem) -> Noises:
     """Return noise to begin with, by trial: white, a share of each channel's RMS."""
     found: Noises = {}
     for trial in problem.trials:
-        rms = np.sqrt(np.mean(trial.measurement.values**2, axis=0))
+        rms = np.sqrt(np.mean(trial.recording.values**2, axis=0))
         found[trial.name] = Noise(EVEN, FIRST_NOISE * rms)
     return found
 
@@ -167,7 +169,7 @@ def first_noises(problem: Problem) -> Noises:
 def estimate_noises(misfit: Misfit, x: Array) -> Noises:
     """Return the noise that the residuals show: one for all trials with the same channels."""
     found: Noises = {}
-    lines = dict(zip((trial.name for trial in misfit.problem.trials), misfit.lines(x), strict=True))
+    lines = dict(zip((trial.name for trial in misfit.problem.trials), misfit.residual_spectrum(x), strict=True))
     for channels in dict.fromkeys(trial.channels for trial in misfit.problem.trials):
         names = [trial.name for trial in misfit.problem.trials if trial.channels == channels]
         old = misfit.noises[names[0]]
@@ -187,7 +189,7 @@ def first_delays(misfit: Misfit, unit: Array, begun: Sequence[float] = ()) -> Ar
         x = np.concatenate([unit, begun or np.zeros(len(misfit.shared)), found.ravel()])
         for t, (trial, simulated) in enumerate(zip(misfit.problem.trials, misfit.simulate(x), strict=True)):
             found[t, names.index("delay")] = (
-                best_delay(trial.measurement.values, simulated, trial.measurement.dt, misfit.band) / misfit.nuisances.delay
+                best_delay(trial.recording.values, simulated, trial.recording.dt, misfit.band) / misfit.nuisances.delay
             )
     return found.ravel()
 

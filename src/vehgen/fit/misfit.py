@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Noises = dict[str, Noise]
 """Noise by name of the trial."""
-STEP = 1e-6
+UNIT_DIFFERENCE = 1e-6
 """Step of the differences to each side, in the unit cube and in units of a nuisance's uncertainty: so short that jumps of a response
 seldom cross a sample."""
 
@@ -94,21 +94,21 @@ class Misfit:
         nuisances: Nuisances | None = None,
         band: tuple[float, float] = CALIBRATION_BAND_HZ,
         shared: Sequence[Adjustment] = (),
-        renew: int = 1,
+        jacobian_refresh: int = 1,
     ) -> None:
         self.problem = problem
         self.noises = noises
         self.nuisances = nuisances or Nuisances()
         self.band = band
         self.shared = tuple(shared)
-        self.renew = renew
+        self.jacobian_refresh = jacobian_refresh
         self._calls = 0
         self._kept: list[Array] = []
         self._weights = [self._weight(trial, problem.best_values(reference)) for trial in problem.trials]
 
     def _weight(self, trial: Trial, reference: Mapping[str, float]) -> _Weight:
-        dt = trial.measurement.dt
-        frequency = np.asarray(np.fft.rfftfreq(len(trial.measurement.time), dt), dtype=np.float64)
+        dt = trial.recording.dt
+        frequency = np.asarray(np.fft.rfftfreq(len(trial.recording.time), dt), dtype=np.float64)
         inside = (frequency >= self.band[0]) & (frequency <= self.band[1])
         own = {name: value for name, value in reference.items() if name not in trial.fixed}
         answer = road_answer(trial, frequency[inside], trial.values | own)
@@ -150,24 +150,24 @@ class Misfit:
         values, numbers = self.problem.space.values(unit)[None], self.adjusted(x)
         return [self.respond(trial, values, numbers, error)[0] for trial, error in zip(self.problem.trials, errors, strict=True)]
 
-    def lines(self, x: Array) -> list[tuple[Complex, RoadAnswer]]:
+    def residual_spectrum(self, x: Array) -> list[tuple[Complex, RoadAnswer]]:
         """Return each trial's residual, measured minus simulated, as spectral lines, with the road's way into them."""
         found = []
         for trial, weight, simulated in zip(self.problem.trials, self._weights, self.simulate(x), strict=True):
-            found.append((transform(trial.measurement.values - simulated, trial.measurement.dt, weight.inside), weight.answer))
+            found.append((transform(trial.recording.values - simulated, trial.recording.dt, weight.inside), weight.answer))
         return found
 
-    def white_lines(self, x: Array) -> list[Complex]:
+    def whitened_spectrum(self, x: Array) -> list[Complex]:
         """Return each trial's whitened residual lines, `shape (n_lines, n_channels)`, E|line|^2 = 1 where model and noise are right."""
-        return [_apply(weight.whitener, lines) for weight, (lines, _) in zip(self._weights, self.lines(x), strict=True)]
+        return [_apply(weight.whitener, lines) for weight, (lines, _) in zip(self._weights, self.residual_spectrum(x), strict=True)]
 
     def whiten(self, number: int, lines: Complex) -> Complex:
         """Return lines `shape (..., n_lines, n_channels)` of trial `number` whitened."""
         return _apply(self._weights[number].whitener, lines)
 
-    def white_signal(self, number: int, signal: Array) -> Complex:
+    def whitened_signal(self, number: int, signal: Array) -> Complex:
         """Return the whitened lines of a signal `shape (n_samples, n_channels)` in trial `number`."""
-        return self.whiten(number, transform(signal, self.problem.trials[number].measurement.dt, self._weights[number].inside))
+        return self.whiten(number, transform(signal, self.problem.trials[number].recording.dt, self._weights[number].inside))
 
     def frequency(self, number: int) -> Array:
         """Return the frequencies of trial `number`'s lines [Hz]."""
@@ -175,62 +175,64 @@ class Misfit:
 
     def residuals(self, x: Array) -> Array:
         """Return the whitened residuals, the nuisances' priors last: each of unit variance where model and noise are right."""
-        return np.concatenate([*(flatten(lines) for lines in self.white_lines(x)), x[self.n_parameters + len(self.shared) :]])
+        return np.concatenate([*(flatten(lines) for lines in self.whitened_spectrum(x)), x[self.n_parameters + len(self.shared) :]])
 
     @contextmanager
-    def quickly(self, renew: int) -> Iterator[None]:
+    def quickly(self, jacobian_refresh: int) -> Iterator[None]:
         """Within this context derivatives are one-sided, those by nuisances computed anew every `renew` calls only."""
-        before, self.renew, self._calls = self.renew, renew, 0
+        before, self.jacobian_refresh, self._calls = self.jacobian_refresh, jacobian_refresh, 0
         try:
             yield
         finally:
-            self.renew, self._calls = before, 0
+            self.jacobian_refresh, self._calls = before, 0
 
-    def white_derivatives(self, x: Array) -> list[Complex]:
-        """Return the derivatives of :meth:`white_lines` by differences, each `shape (n_unknowns, n_lines, n_channels)`."""
+    def whitened_derivatives(self, x: Array) -> list[Complex]:
+        """Return the derivatives of :meth:`whitened_spectrum` by differences, each `shape (n_unknowns, n_lines, n_channels)`."""
         unit, errors = self.split(x)
         numbers = self.adjusted(x)
         n, s, k = self.n_parameters, len(self.shared), len(self.nuisances.names)
-        quick = self.renew > 1
-        values = self.problem.space.values(unit + np.vstack([np.eye(n), np.zeros((1, n)) if quick else -np.eye(n)]) * STEP)
+        quick = self.jacobian_refresh > 1
+        values = self.problem.space.values(unit + np.vstack([np.eye(n), np.zeros((1, n)) if quick else -np.eye(n)]) * UNIT_DIFFERENCE)
         middle = self.problem.space.values(unit)[None]
         found = []
-        fresh = self._calls % self.renew == 0
+        fresh = self._calls % self.jacobian_refresh == 0
         self._calls += 1
         if fresh:
             self._kept = []
         for t, (trial, weight, error) in enumerate(zip(self.problem.trials, self._weights, errors, strict=True)):
-            derived = np.zeros((self.n_unknowns, len(trial.measurement.time), len(trial.channels)))
+            derived = np.zeros((self.n_unknowns, len(trial.recording.time), len(trial.channels)))
             responses = self.respond(trial, values, numbers, error) if len(values) else np.zeros((0, *derived.shape[1:]))
             centre = responses[n] if quick else None
             if n:
-                derived[:n] = (responses[:n] - responses[n]) / STEP if quick else (responses[:n] - responses[n:]) / (2 * STEP)
+                derived[:n] = (
+                    (responses[:n] - responses[n]) / UNIT_DIFFERENCE if quick else (responses[:n] - responses[n:]) / (2 * UNIT_DIFFERENCE)
+                )
             for j, item in enumerate(self.shared):
-                step = STEP * item.scale * np.eye(s)[j]
+                step = UNIT_DIFFERENCE * item.scale * np.eye(s)[j]
                 derived[n + j] = self._slope(trial, middle, (numbers, step), (error, np.zeros(k)), centre)
             if fresh:
-                steps = STEP * np.eye(k)
+                steps = UNIT_DIFFERENCE * np.eye(k)
                 self._kept.append(np.zeros((k, *derived.shape[1:])))
                 for j, step in enumerate(steps):
                     self._kept[t][j] = self._slope(trial, middle, (numbers, np.zeros(s)), (error, step), centre)
             derived[n + s + t * k : n + s + (t + 1) * k] = self._kept[t]
-            found.append(-_apply(weight.whitener, transform(derived, trial.measurement.dt, weight.inside)))
+            found.append(-_apply(weight.whitener, transform(derived, trial.recording.dt, weight.inside)))
         return found
 
     def _slope(self, trial: Trial, values: Array, numbers: tuple[Array, Array], error: tuple[Array, Array], centre: Array | None) -> Array:
         """Return the change of a trial's response per STEP, when numbers and errors (value, step) are moved by their steps."""
         ahead = self.respond(trial, values, numbers[0] + numbers[1], error[0] + error[1])[0]
         if centre is not None:
-            return np.asarray((ahead - centre) / STEP)
+            return np.asarray((ahead - centre) / UNIT_DIFFERENCE)
         behind = self.respond(trial, values, numbers[0] - numbers[1], error[0] - error[1])[0]
-        return np.asarray((ahead - behind) / (2 * STEP))
+        return np.asarray((ahead - behind) / (2 * UNIT_DIFFERENCE))
 
     def jacobian(self, x: Array) -> Array:
         """Return the derivatives of :meth:`residuals`, `shape (n_residuals, n_unknowns)`."""
         start = self.n_parameters + len(self.shared)
         prior = np.zeros((self.n_unknowns - start, self.n_unknowns))
         prior[:, start:] = np.eye(self.n_unknowns - start)
-        return np.vstack([*(flatten(lines, first=1).T for lines in self.white_derivatives(x)), prior])
+        return np.vstack([*(flatten(lines, first=1).T for lines in self.whitened_derivatives(x)), prior])
 
     def draw(self, x: Array, random: np.random.Generator) -> list[Array]:
         """Return measurements as they might have come out: the response plus noise, one array a trial (for a bootstrap)."""

@@ -30,17 +30,17 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-REFERENCE = 0.1
+REFERENCE_CYCLES_PER_M = 0.1
 """n0 of ISO 8608 [cycles/m]."""
-KNOTS = 0.1 * 2.0 ** np.arange(9)
+KNOT_FREQUENCIES_HZ = 0.1 * 2.0 ** np.arange(9)
 """Wavenumbers between which the road's level is interpolated [cycles/m]."""
 RAMP = 0.75
 """Length of the taper's ramps [s]."""
 SMALLEST_LEVEL, LARGEST_LEVEL = 1e-10, 1e-2
 """A road smoother than this Gd(n0) [m^3] counts as even (class A begins at 16e-6); none is rougher."""
-ROUGHEST = 3.0
+ROUGHEST_LEVEL = 3.0
 """Change of ln(level) from one knot to the next that counts as one standard deviation."""
-EVEN = np.full(len(KNOTS), SMALLEST_LEVEL)
+EVEN = np.full(len(KNOT_FREQUENCIES_HZ), SMALLEST_LEVEL)
 """Levels of an even road."""
 COLOUR_AT = 44.0
 """Frequency at which coloured noise has the density of white noise of its sigma [Hz]: the top of the band, where it is measured."""
@@ -135,8 +135,8 @@ class Noise:
 
 def _interpolation(wavenumber: Array) -> Array:
     """Return the weights of ln(levels) at wavenumbers, `shape (n, len(KNOTS))`."""
-    hats = np.eye(len(KNOTS))
-    return np.column_stack([np.interp(np.log(wavenumber), np.log(KNOTS), hat) for hat in hats])
+    hats = np.eye(len(KNOT_FREQUENCIES_HZ))
+    return np.column_stack([np.interp(np.log(wavenumber), np.log(KNOT_FREQUENCIES_HZ), hat) for hat in hats])
 
 
 def _adjoint(matrices: Complex) -> Complex:
@@ -163,14 +163,14 @@ def road_answer(trial: Trial, frequency: Array, values: dict[str, float]) -> Roa
     model = trial.simulator.model
     displaced, pushed = frequency_response(model.numeric(values), frequency)
     response = displaced[:, :, : len(trial.run.vehicle.axles)]
-    speed, dt = trial.scenario.top_speed, trial.measurement.dt
+    speed, dt = trial.scenario.top_speed, trial.recording.dt
     late = model.wheel_offsets(values) / speed
-    window = taper(len(trial.measurement.time), dt)
+    window = taper(len(trial.recording.time), dt)
     correlation = np.correlate(window, window, "full")[len(window) - 1 :] / (window**2).sum()
     shared = np.interp(np.abs(late[:, None] - late[None, :]), np.arange(len(window)) * dt, correlation)
     root = np.linalg.cholesky(shared + 1e-9 * np.eye(len(late)))
     delayed = np.exp(-2j * np.pi * frequency[:, None] * late)
-    gain = (response * delayed[:, None, :] * (REFERENCE * np.sqrt(speed) / frequency)[:, None, None]) @ root
+    gain = (response * delayed[:, None, :] * (REFERENCE_CYCLES_PER_M * np.sqrt(speed) / frequency)[:, None, None]) @ root
     errors = np.array([entry.noise or 0.0 for entry in trial.run.file.forces.values()])
     forced = np.asarray(pushed * errors * np.sqrt(2 * dt)) if errors.any() else None
     return RoadAnswer(frequency, frequency / speed, np.asarray(gain), dt, forced)
@@ -188,16 +188,16 @@ def estimate_noise(residuals: Sequence[tuple[Complex, RoadAnswer]], start: Noise
     """
     power = np.mean([np.mean(np.abs(lines) ** 2, axis=0) / (2 * answer.dt) for lines, answer in residuals], axis=0)
     floor = 1e-4 * np.sqrt(power)
-    knots = len(KNOTS)
+    knots = len(KNOT_FREQUENCIES_HZ)
 
     def read(x: Array) -> Noise:
         return Noise(np.exp(x[:knots]), np.exp(x[knots:]), start.slope)
 
     def loss(x: Array) -> tuple[float, Array]:
         noise, bends = read(x), np.diff(x[:knots])
-        total = float((bends**2).sum()) / ROUGHEST**2  # holds levels that no line tells to their neighbours
+        total = float((bends**2).sum()) / ROUGHEST_LEVEL**2  # holds levels that no line tells to their neighbours
         slopes = np.zeros_like(x)
-        slopes[:knots] = 2 / ROUGHEST**2 * (np.append(0.0, bends) - np.append(bends, 0.0))
+        slopes[:knots] = 2 / ROUGHEST_LEVEL**2 * (np.append(0.0, bends) - np.append(bends, 0.0))
         for lines, answer in residuals:
             own, by_level, by_sigma = noise.loss_and_slopes(lines, answer)
             total += own

@@ -26,30 +26,30 @@ from vehgen.files.expressions import Expression, ExpressionError
 from vehgen.files.names import Name
 from vehgen.files.quantities import Force
 from vehgen.fit.problem import Problem
-from vehgen.mechanics import LinearModel, derive, static_loads
+from vehgen.mechanics import EquationsOfMotion, derive, static_loads
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.loading import validate
-from vehgen.vehicle.model import GROUND, Noun
+from vehgen.vehicle.model import GROUND, FileModel
 
 Array = NDArray[np.float64]
-_DIFFERENCE = 1e-6
+_JACOBIAN_STEP = 1e-6
 
 
-class Weight(Noun):
+class Weight(FileModel):
     """What an axle presses on the road, and how well that is known."""
 
     value: Force
     uncertainty: Annotated[Force, Field(gt=0)]
 
 
-class Known(Noun):
+class Known(FileModel):
     """A parameter's value from elsewhere, and how well it is known."""
 
     value: Expression
     uncertainty: Expression
 
 
-class FactsFile(Noun):
+class FactsFile(FileModel):
     """A facts file as it is written."""
 
     parameters: dict[Name, Known] = Field(default_factory=dict)
@@ -68,7 +68,7 @@ class Fact:
 
 
 @dataclass(frozen=True)
-class Facts:
+class PriorData:
     """Facts about the vehicle of a problem, as residuals."""
 
     problem: Problem
@@ -82,7 +82,7 @@ class Facts:
     def jacobian(self, values: Array) -> Array:
         """Return the residuals' derivatives per SI unit, `shape (n_facts, n_parameters)`."""
         space = self.problem.space
-        steps = _DIFFERENCE * (space.upper - space.lower)
+        steps = _JACOBIAN_STEP * (space.upper - space.lower)
         columns = [
             (self.residuals(values + step * row) - self.residuals(values - step * row)) / (2 * step)
             for step, row in zip(steps, np.eye(space.size), strict=True)
@@ -90,7 +90,7 @@ class Facts:
         return np.column_stack(columns)
 
 
-def load_facts(path: str | Path, problem: Problem) -> Facts:
+def load_prior_data(path: str | Path, problem: Problem) -> PriorData:
     """Read a facts file about a problem's vehicle.
 
     Raises
@@ -139,7 +139,7 @@ def load_facts(path: str | Path, problem: Problem) -> Facts:
             facts.append(Fact(f"load of {axle}{suffix}", _axle_load(model, axle), weight.value, weight.uncertainty))
     if not facts:
         raise InputError("no fact was found: parameters, axle_weights or uncoupled were expected", document.position)
-    return Facts(problem, tuple(facts))
+    return PriorData(problem, tuple(facts))
 
 
 def uncouple(vehicle: Vehicle, body: str) -> Vehicle:
@@ -165,5 +165,5 @@ def _parameter(vehicle: Vehicle, name: str) -> Callable[[Mapping[str, float]], f
     return lambda values: vehicle.all_values({key: values[key] for key in vehicle.free_parameters})[name]
 
 
-def _axle_load(model: LinearModel, axle: str) -> Callable[[Mapping[str, float]], float]:
+def _axle_load(model: EquationsOfMotion, axle: str) -> Callable[[Mapping[str, float]], float]:
     return lambda values: static_loads(model, {name: values[name] for name in model.parameters}).axles[axle]

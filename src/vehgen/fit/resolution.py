@@ -17,11 +17,11 @@ from vehgen.fit.problem import Problem
 from vehgen.fit.trial import Trial, samples_kept
 
 Array = NDArray[np.float64]
-ENOUGH = 0.1
+RESOLVED_SHARE = 0.1
 """A step is short enough when half of it moves the whitened lines by this mean square or less (noise alone: 1)."""
 HALVINGS = 3
 """A run's step is halved so often at most, in all."""
-SMOOTH = 1 / 6
+SMOOTH_RATIO = 1 / 6
 """Where half the step leaves more than this share of the error, the response jumps."""
 
 
@@ -31,14 +31,14 @@ def resolve(misfit: Misfit, x: Array) -> Problem:
     values, numbers = misfit.problem.space.values(unit)[None], misfit.adjusted(x)
     found = []
     for number, (trial, error) in enumerate(zip(misfit.problem.trials, errors, strict=True)):
-        most = samples_kept(trial.run, trial.measurement.dt) * 2**HALVINGS
+        most = samples_kept(trial.run, trial.recording.dt) * 2**HALVINGS
         coarse, before, jumps = misfit.respond(trial, values, numbers, error)[0], 0.0, trial.jumps
-        while trial.scenario.keep < most:
+        while trial.scenario.decimation < most:
             finer = _halved(trial)
             fine = misfit.respond(finer, values, numbers, error)[0]
-            moved = float(np.mean(np.abs(misfit.white_signal(number, fine - coarse)) ** 2))
-            jumps = jumps or moved > SMOOTH * before > 0.0
-            if not moved > ENOUGH:
+            moved = float(np.mean(np.abs(misfit.whitened_signal(number, fine - coarse)) ** 2))
+            jumps = jumps or moved > SMOOTH_RATIO * before > 0.0
+            if not moved > RESOLVED_SHARE:
                 break
             trial, coarse, before = finer, fine, moved
         found.append(replace(trial, jumps=jumps))
@@ -47,4 +47,4 @@ def resolve(misfit: Misfit, x: Array) -> Problem:
 
 def _halved(trial: Trial) -> Trial:
     scenario = trial.scenario
-    return replace(trial, scenario=replace(scenario, dt=scenario.dt / 2, keep=2 * scenario.keep))
+    return replace(trial, scenario=replace(scenario, dt=scenario.dt / 2, decimation=2 * scenario.decimation))

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError, did_you_mean
-from vehgen.measure import Measurement, read_measurement
+from vehgen.measure import Recording, read_recording
 from vehgen.simulate import Run, Scenario, Simulator, load_run, make_scenario
 from vehgen.vehicle import Vehicle
 
 Array = NDArray[np.float64]
-STEP = 1e-3
+LONGEST_STEP_S = 1e-3
 """Longest internal step [s]: through 10 ms steps a stiffness comes out 17 % wrong at 15 Hz (Newmark's period error)."""
 
 
@@ -30,7 +30,7 @@ class Trial:
 
     name: str
     run: Run
-    measurement: Measurement
+    recording: Recording
     simulator: Simulator
     scenario: Scenario
     values: dict[str, float]
@@ -40,7 +40,7 @@ class Trial:
     @property
     def channels(self) -> tuple[str, ...]:
         """Names of the measured channels."""
-        return tuple(channel.name for channel in self.measurement.channels)
+        return tuple(channel.name for channel in self.recording.channels)
 
     def of_sensors(self, sensors: Sequence[str], simulators: dict[object, Simulator]) -> Trial:
         """Return the trial with some of its sensors only.
@@ -53,8 +53,8 @@ class Trial:
         for sensor in sensors:
             if sensor not in self.run.file.sensors:
                 raise InputError(f"{self.name} has no sensor {sensor!r}; {did_you_mean(sensor, self.run.file.sensors)}")
-        measurement = self.measurement.of_sensors(tuple(sensors))
-        return replace(self, measurement=measurement, simulator=_simulator(self.run, measurement, simulators))
+        measurement = self.recording.of_sensors(tuple(sensors))
+        return replace(self, recording=measurement, simulator=_simulator(self.run, measurement, simulators))
 
 
 def load_trials(paths: Sequence[str | Path], vehicle: Vehicle | None = None) -> list[Trial]:
@@ -88,7 +88,7 @@ def make_trial(run: Run, name: str, simulators: dict[object, Simulator] | None =
     simulators
         Simulators that trials with the same vehicle and channels share; filled as needed.
     """
-    measurement = read_measurement(run)
+    measurement = read_recording(run)
     dt = measurement.dt
     keep = samples_kept(run, dt)
     step = dt / keep
@@ -96,17 +96,19 @@ def make_trial(run: Run, name: str, simulators: dict[object, Simulator] | None =
     simulator = _simulator(run, measurement, {} if simulators is None else simulators)
     values = simulator.model.values(overrides=run.values())
     timed = replace(run, file=run.file.model_copy(update={"duration": float(measurement.time[-1])}))
-    scenario = replace(make_scenario(timed, simulator.model, values), duration=length, dt=step, keep=keep, start=float(measurement.time[0]))
+    scenario = replace(
+        make_scenario(timed, simulator.model, values), duration=length, dt=step, decimation=keep, start=float(measurement.time[0])
+    )
     _check_length(run, scenario, simulator, values, name)
     return Trial(name, run, measurement, simulator, scenario, values, tuple(run.file.parameters))
 
 
 def samples_kept(run: Run, dt: float) -> int:
     """Return every how many steps a recording sampled at `dt` [s] is kept, where nothing asks for shorter steps."""
-    return max(1, round(dt / min(run.file.step, STEP)))
+    return max(1, round(dt / min(run.file.step, LONGEST_STEP_S)))
 
 
-def _simulator(run: Run, measurement: Measurement, simulators: dict[object, Simulator]) -> Simulator:
+def _simulator(run: Run, measurement: Recording, simulators: dict[object, Simulator]) -> Simulator:
     outputs = tuple(channel.output for channel in measurement.channels)
     key = (run.vehicle.files, run.vehicle.name, repr(outputs), repr(run.forces()))
     if key not in simulators:

@@ -19,12 +19,12 @@ from vehgen.simulate.runfile import ChannelEntry, SensorEntry
 Array = NDArray[np.float64]
 LOWEST_RATE = 50.0
 """Below this sampling rate [Hz] a recording cannot show the axles' hop."""
-CLIPPED = 5
+CLIPPED_SAMPLES = 5
 """So many equal samples in a row at a channel's extreme count as clipping."""
 
 
 @dataclass(frozen=True)
-class MeasuredChannel:
+class RecordedChannel:
     """One recorded channel: its name, the sensor it belongs to and what it measures.
 
     `noise` is the standard deviation of its white noise [SI] where the run file knows it.
@@ -38,25 +38,25 @@ class MeasuredChannel:
 
 
 @dataclass(frozen=True)
-class Measurement:
+class Recording:
     """What a run's sensors recorded: `time shape (n_samples,)` [s] from `time[0]` by `dt`, `values shape (n_samples, n_channels)` [SI]."""
 
     time: Array
     values: Array
-    channels: tuple[MeasuredChannel, ...]
+    channels: tuple[RecordedChannel, ...]
 
     @property
     def dt(self) -> float:
         """Spacing of the samples [s]."""
         return float((self.time[-1] - self.time[0]) / (len(self.time) - 1))
 
-    def of_sensors(self, names: tuple[str, ...]) -> Measurement:
+    def of_sensors(self, names: tuple[str, ...]) -> Recording:
         """Return the channels of some sensors only."""
         kept = [i for i, channel in enumerate(self.channels) if channel.sensor in names]
         return replace(self, values=self.values[:, kept], channels=tuple(self.channels[i] for i in kept))
 
 
-def read_measurement(run: Run) -> Measurement:
+def read_recording(run: Run) -> Recording:
     """Read the recording that a run file names.
 
     Raises
@@ -87,12 +87,12 @@ def read_measurement(run: Run) -> Measurement:
     _check_clock(time, path.name)
     for i, channel in enumerate(channels):
         _check_samples(time, values[:, i], channel, path.name)
-    return Measurement(time, values, tuple(channels))
+    return Recording(time, values, tuple(channels))
 
 
-def _channel(sensor_name: str, sensor: SensorEntry, quantity: str) -> MeasuredChannel:
+def _channel(sensor_name: str, sensor: SensorEntry, quantity: str) -> RecordedChannel:
     name = sensor.channel(sensor_name, quantity)
-    return MeasuredChannel(name, sensor_name, quantity, PointOutput(name, sensor.place(sensor_name), quantity))
+    return RecordedChannel(name, sensor_name, quantity, PointOutput(name, sensor.place(sensor_name), quantity))
 
 
 def _noise(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> float | None:
@@ -146,7 +146,7 @@ def _check_clock(time: Array, name: str) -> None:
         )
 
 
-def _check_samples(time: Array, values: Array, channel: MeasuredChannel, name: str) -> None:
+def _check_samples(time: Array, values: Array, channel: RecordedChannel, name: str) -> None:
     if np.ptp(values) == 0:
         raise InputError(f"{name}: {channel.name} is constant; the sensor recorded nothing")
     for extreme in (values.max(), values.min()):
@@ -155,7 +155,7 @@ def _check_samples(time: Array, values: Array, channel: MeasuredChannel, name: s
         at = np.flatnonzero(values == extreme)
         runs = np.split(at, np.flatnonzero(np.diff(at) != 1) + 1)
         longest = max(runs, key=len)
-        if len(longest) >= CLIPPED:
+        if len(longest) >= CLIPPED_SAMPLES:
             raise InputError(
                 f"{name}: {channel.name} is clipped at {extreme:.4g} from t = {time[longest[0]]:.4g} s: use a sensor with a larger range, "
                 "a lower speed or a lower hump"

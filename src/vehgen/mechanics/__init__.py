@@ -1,7 +1,7 @@
-"""Why does it move? Kinematics, energies and Lagrange's equations; from a Vehicle to its LinearModel."""
+"""Why does it move? Kinematics, energies and Lagrange's equations; from a Vehicle to its EquationsOfMotion."""
 
 from vehgen.mechanics.derivation import derive
-from vehgen.mechanics.equations_of_motion import GRAVITY, Channel, LinearModel, NumericModel
+from vehgen.mechanics.equations_of_motion import GRAVITY, Channel, EquationsOfMotion, NumericModel
 from vehgen.mechanics.kinematics import Coordinate
 from vehgen.mechanics.outputs import ElementOutput, Output, Place, PointOutput
 from vehgen.mechanics.static_loads import StaticLoads, static_loads
@@ -11,7 +11,7 @@ __all__ = [
     "Channel",
     "Coordinate",
     "ElementOutput",
-    "LinearModel",
+    "EquationsOfMotion",
     "NumericModel",
     "Output",
     "Place",

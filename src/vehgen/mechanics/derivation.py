@@ -1,4 +1,4 @@
-"""Lagrange's equations for any vehicle: energies in, LinearModel out.
+"""Lagrange's equations for any vehicle: energies in, EquationsOfMotion out.
 
 With T = sum 1/2 m (a.q')^2, V = sum 1/2 k (b.q + d.w)^2 + sum m g (a.q) and D = sum 1/2 c (b.q' + d.w')^2, Lagrange's equations
 d/dt dT/dq' + dD/dq' + dV/dq = F f are linear; each term of an energy contributes the outer product of its row. The fore-aft
@@ -14,16 +14,16 @@ from collections.abc import Iterable
 import sympy as sp
 
 from vehgen.mechanics.energies import Energies, Inertia, write_energies
-from vehgen.mechanics.equations_of_motion import GRAVITY, LinearModel
+from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.kinematics import derive_kinematics
 from vehgen.mechanics.layout import lay_out
 from vehgen.mechanics.outputs import Output, Place, PointOutput, element_channel, point_channel
-from vehgen.mechanics.rows import Entries, Row, add_outer, combine
+from vehgen.mechanics.rows import Row, SparseMatrix, add_outer, combine
 from vehgen.mechanics.symbols import number, parameter, to_sympy
 from vehgen.vehicle.model import Vehicle
 
 
-def derive(vehicle: Vehicle, outputs: Iterable[Output] = (), forces: Iterable[Place] = ()) -> LinearModel:
+def derive(vehicle: Vehicle, outputs: Iterable[Output] = (), forces: Iterable[Place] = ()) -> EquationsOfMotion:
     """Derive the equations of motion of a vehicle.
 
     Parameters
@@ -45,16 +45,16 @@ def derive(vehicle: Vehicle, outputs: Iterable[Output] = (), forces: Iterable[Pl
     layout = lay_out(vehicle)
     motion = derive_kinematics(vehicle)
     energies, inputs = write_energies(vehicle, motion)
-    damping: Entries = {}
-    stiffness: Entries = {}
-    input_entries: Entries = {}
-    input_rate_entries: Entries = {}
+    damping: SparseMatrix = {}
+    stiffness: SparseMatrix = {}
+    input_entries: SparseMatrix = {}
+    input_rate_entries: SparseMatrix = {}
     for element in energies.elements:
         add_outer(stiffness, element.k, element.row, element.row)
         add_outer(damping, element.c, element.row, element.row)
         add_outer(input_entries, -element.k, element.row, element.input_row)
         add_outer(input_rate_entries, -element.c, element.row, element.input_row)
-    force_entries: Entries = {}
+    force_entries: SparseMatrix = {}
     for column, place in enumerate(forces):
         for index, coefficient in motion.rise(place.body, place.locate(vehicle, layout)).items():
             force_entries[index, column] = coefficient
@@ -64,7 +64,7 @@ def derive(vehicle: Vehicle, outputs: Iterable[Output] = (), forces: Iterable[Pl
         point_channel(output, vehicle, layout, motion) if isinstance(output, PointOutput) else element_channel(output, energies.elements)
         for output in outputs
     )
-    return LinearModel(
+    return EquationsOfMotion(
         vehicle=vehicle,
         layout=layout,
         motion=motion,
@@ -85,9 +85,9 @@ def derive(vehicle: Vehicle, outputs: Iterable[Output] = (), forces: Iterable[Pl
     )
 
 
-def mass_matrix(energies: Energies) -> Entries:
+def mass_matrix(energies: Energies) -> SparseMatrix:
     """Return the mass matrix: independent inertias, and the fore-aft inertia that is left when its coordinate is eliminated."""
-    entries: Entries = {}
+    entries: SparseMatrix = {}
     for term in energies.inertias:
         add_outer(entries, term.inertia, term.row, term.row)
     for group in energies.fore_aft.values():
@@ -95,7 +95,7 @@ def mass_matrix(energies: Energies) -> Entries:
     return entries
 
 
-def _add_fore_aft(entries: Entries, group: tuple[Inertia, ...]) -> None:
+def _add_fore_aft(entries: SparseMatrix, group: tuple[Inertia, ...]) -> None:
     if not any(term.row for term in group):
         return
     momentum: Row = combine(*((term.inertia, term.row) for term in group))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from vehgen.mechanics.energies import Element, Energies
 from vehgen.mechanics.kinematics import Coordinate, Kinematics
 from vehgen.mechanics.layout import Layout
-from vehgen.mechanics.rows import Entries, Row, to_matrix
+from vehgen.mechanics.rows import Row, SparseMatrix, to_matrix
 from vehgen.vehicle.model import Vehicle
 
 GRAVITY = 9.81
@@ -55,7 +55,7 @@ class NumericModel:
 
 
 @dataclass(frozen=True)
-class LinearModel:
+class EquationsOfMotion:
     """A vehicle's equations of motion; made by :func:`vehgen.mechanics.derive`.
 
     `parameters` are the columns of a population: the vehicle's free parameters, then one `NAME.shift` [m] per sensor or force that has
@@ -72,12 +72,12 @@ class LinearModel:
     inputs: tuple[str, ...]
     forces: tuple[str, ...]
     channels: tuple[Channel, ...]
-    mass_entries: Entries
-    damping_entries: Entries
-    stiffness_entries: Entries
-    input_entries: Entries
-    input_rate_entries: Entries
-    force_entries: Entries
+    mass_entries: SparseMatrix
+    damping_entries: SparseMatrix
+    stiffness_entries: SparseMatrix
+    input_entries: SparseMatrix
+    input_rate_entries: SparseMatrix
+    force_entries: SparseMatrix
     weight_entries: Row
 
     @property
@@ -138,7 +138,7 @@ class LinearModel:
         shared = sum(sp.count_ops(expression) for _, expression in replacements) + sum(sp.count_ops(item) for item in reduced)
         return {"written_out": int(sum(sp.count_ops(item) for item in entries)), "after_cse": int(shared)}
 
-    def _groups(self) -> dict[str, Entries]:
+    def _groups(self) -> dict[str, SparseMatrix]:
         return {
             "M": self.mass_entries,
             "C": self.damping_entries,
@@ -204,7 +204,7 @@ class LinearModel:
         """The symbol of every parameter by its name."""
         return tuple((name, sp.Symbol(name, real=True)) for name in self.parameters)
 
-    def evaluate(self, entries: Entries, values: Mapping[str, float]) -> dict[tuple[int, int], float]:
+    def evaluate(self, entries: SparseMatrix, values: Mapping[str, float]) -> dict[tuple[int, int], float]:
         """Evaluate sympy expressions of the vehicle's parameters at the values of `parameters` [SI]."""
         known: dict[sp.Symbol, float] = {symbol: float(values[name]) for name, symbol in self._symbols}
         for symbol, expression in self.definitions:
@@ -213,7 +213,7 @@ class LinearModel:
 
     def wheel_offsets(self, values: Mapping[str, float] | None = None) -> NDArray[np.float64]:
         """Return how far each axle runs behind the first to arrive, `shape (n_axles,)` [m]."""
-        entries: Entries = {(0, i): x for i, x in enumerate(self.layout.axles.values())}
+        entries: SparseMatrix = {(0, i): x for i, x in enumerate(self.layout.axles.values())}
         found = self.evaluate(entries, values or self.values())
         x = np.array([found[0, i] for i in range(len(entries))])
         return x.max(initial=-np.inf) - x if x.size else x

@@ -17,10 +17,10 @@ import scipy.optimize
 import sympy as sp
 from numpy.typing import NDArray
 
-from vehgen.mechanics.equations_of_motion import LinearModel
-from vehgen.mechanics.evaluation import Columns
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion
+from vehgen.mechanics.evaluation import PopulationValues
 from vehgen.mechanics.law_terms import REST
-from vehgen.mechanics.rows import Entries
+from vehgen.mechanics.rows import SparseMatrix
 
 Array = NDArray[np.float64]
 MAX_NEWTON = 60
@@ -46,7 +46,7 @@ class Equilibria:
     failures: dict[int, str]
 
 
-def equilibria(model: LinearModel, parameters: Array) -> Equilibria:
+def equilibria(model: EquationsOfMotion, parameters: Array) -> Equilibria:
     """Solve the static equilibrium of every individual of `parameters shape (n_individuals, n_parameters)` [SI].
 
     An individual whose parameters are not finite has rows of NaN and no entry in `failures`.
@@ -76,11 +76,11 @@ def equilibria(model: LinearModel, parameters: Array) -> Equilibria:
 class _Balance:
     """The equilibrium equations of some individuals."""
 
-    def __init__(self, model: LinearModel, parameters: Array) -> None:
-        self.columns = columns = Columns(model, parameters)
+    def __init__(self, model: EquationsOfMotion, parameters: Array) -> None:
+        self.columns = columns = PopulationValues(model, parameters)
         n, n_dof = columns.n, model.n_dof
 
-        def matrix(entries: Entries, rows: int, width: int) -> Array:
+        def matrix(entries: SparseMatrix, rows: int, width: int) -> Array:
             found = np.zeros((n, rows, width))
             for (i, j), value in entries.items():
                 found[:, i, j] = columns.value(value)

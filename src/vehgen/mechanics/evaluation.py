@@ -10,10 +10,10 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from vehgen.mechanics.equations_of_motion import LinearModel
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 
 Array = NDArray[np.float64]
-_FUNCTIONS: dict[str, Callable[..., Any]] = {
+_NUMPY_FUNCTIONS: dict[str, Callable[..., Any]] = {
     "Abs": np.abs,
     "sign": np.sign,
     "Max": lambda *items: reduce(np.maximum, items),
@@ -22,7 +22,7 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
 }
 
 
-class Columns:
+class PopulationValues:
     """A population's parameters `shape (n_individuals, n_parameters)` [SI], and what follows from them.
 
     Parameters
@@ -34,7 +34,7 @@ class Columns:
 
     """
 
-    def __init__(self, model: LinearModel, parameters: Array) -> None:
+    def __init__(self, model: EquationsOfMotion, parameters: Array) -> None:
         self.n = len(parameters)
         self._known: dict[sp.Expr, Any] = {sp.Symbol(name, real=True): parameters[:, i] for i, name in enumerate(model.parameters)}
         for symbol, expression in model.definitions:
@@ -60,4 +60,4 @@ def _value(expression: sp.Expr, known: Mapping[sp.Expr, Any]) -> Any:
         exponent = arguments[1]
         whole = isinstance(exponent, float) and exponent == int(exponent)
         return np.asarray(arguments[0], dtype=np.float64) ** (int(exponent) if whole else exponent)
-    return _FUNCTIONS[type(expression).__name__](*arguments)
+    return _NUMPY_FUNCTIONS[type(expression).__name__](*arguments)

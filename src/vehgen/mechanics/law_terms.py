@@ -11,11 +11,11 @@ import sympy as sp
 from vehgen.errors import InputError, did_you_mean, shortened, shown
 from vehgen.files.expressions import Expression, ExpressionError
 from vehgen.files.units import FORCE, LENGTH, MOMENT, NONE, TIME, Dimension
-from vehgen.mechanics.laws import LAWS, Kind, Law, LawStep, Motion, custom_law
+from vehgen.mechanics.laws import LAWS, Kind, Law, LawState, LawStep, custom_law
 from vehgen.mechanics.symbols import number, to_sympy
 from vehgen.vehicle.model import LawEntry, Spring, Vehicle
 
-Origin = Literal["static", "unloaded"]
+TravelOrigin = Literal["static", "unloaded"]
 """Where a law's travel counts from: static equilibrium, or the position in which the spring carries nothing."""
 TRAVEL, RATE, STEP, STATIC, REST = (sp.Symbol(name, real=True) for name in ("_d", "_v", "_h", "_static", "_rest"))
 """Travel from equilibrium and its rate, the time step, the element's static force, its travel from unloaded to static equilibrium."""
@@ -27,7 +27,7 @@ class LawTerm:
 
     law: Law
     parameters: Mapping[str, sp.Expr]
-    origin: Origin = "static"
+    origin: TravelOrigin = "static"
 
     def step(self, k: sp.Expr = sp.S.Zero, c: sp.Expr = sp.S.Zero, states: Mapping[str, sp.Symbol] | None = None) -> LawStep:
         """Return the law over a step as expressions of TRAVEL, RATE, STEP, STATIC, REST and its states.
@@ -44,15 +44,15 @@ class LawTerm:
         """
         states = states if states is not None else {name: sp.Symbol(f"_{name}", real=True) for name in self.law.states}
         if self.origin == "static":
-            return self.law.write(Motion(TRAVEL, RATE, STEP, k, c, STATIC, states), self.parameters)
-        written = self.law.write(Motion(REST + TRAVEL, RATE, STEP, k, c, STATIC, states), self.parameters)
+            return self.law.write(LawState(TRAVEL, RATE, STEP, k, c, STATIC, states), self.parameters)
+        written = self.law.write(LawState(REST + TRAVEL, RATE, STEP, k, c, STATIC, states), self.parameters)
         return replace(written, force=written.force - self.preload(), now=written.now - self.preload())
 
     def preload(self) -> sp.Expr:
         """Return what the law carries in static equilibrium, an expression of REST [N]: nothing if it counts from there."""
         if self.origin == "static":
             return sp.S.Zero
-        return self.law.write(Motion(REST, sp.S.Zero, STEP, sp.S.Zero, sp.S.Zero, STATIC), self.parameters).now
+        return self.law.write(LawState(REST, sp.S.Zero, STEP, sp.S.Zero, sp.S.Zero, STATIC), self.parameters).now
 
     @property
     def asks_static(self) -> bool:
@@ -121,7 +121,9 @@ def _with_origin(vehicle: Vehicle, path: tuple[str | int, ...], given: LawEntry,
     entry = given.get("from")
     if entry is None:
         return term
-    origin: Origin | None = next((item for item in get_args(Origin) if isinstance(entry, Expression) and entry.text.strip() == item), None)
+    origin: TravelOrigin | None = next(
+        (item for item in get_args(TravelOrigin) if isinstance(entry, Expression) and entry.text.strip() == item), None
+    )
     if origin is None:
         found = entry.text if isinstance(entry, Expression) else "a mapping"
         raise InputError(f"`from` is static or unloaded, found {shortened(found)}", vehicle.position(*path, "from"))

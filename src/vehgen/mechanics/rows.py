@@ -8,7 +8,7 @@ import sympy as sp
 
 Row = dict[int, sp.Expr]
 """Coordinate index -> coefficient; what is absent is zero."""
-Entries = dict[tuple[int, int], sp.Expr]
+SparseMatrix = dict[tuple[int, int], sp.Expr]
 """(row, column) -> entry of a sparse matrix; what is absent is zero."""
 
 
@@ -26,7 +26,7 @@ def combine(*parts: tuple[sp.Expr, Row]) -> Row:
     return {index: coefficient for index, coefficient in result.items() if coefficient != 0}
 
 
-def add_outer(entries: Entries, factor: sp.Expr, left: Row, right: Row) -> None:
+def add_outer(entries: SparseMatrix, factor: sp.Expr, left: Row, right: Row) -> None:
     """Add factor * left^T right to the entries of a matrix."""
     if factor == 0:
         return
@@ -35,7 +35,7 @@ def add_outer(entries: Entries, factor: sp.Expr, left: Row, right: Row) -> None:
             entries[i, j] = entries.get((i, j), sp.S.Zero) + factor * a * b
 
 
-def to_matrix(entries: Entries, rows: int, columns: int) -> sp.ImmutableSparseMatrix:
+def to_matrix(entries: SparseMatrix, rows: int, columns: int) -> sp.ImmutableSparseMatrix:
     """Return the entries as a sympy matrix."""
     return sp.ImmutableSparseMatrix(rows, columns, {key: value for key, value in entries.items() if value != 0})
 

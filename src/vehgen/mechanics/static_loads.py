@@ -10,7 +10,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
-from vehgen.mechanics.equations_of_motion import GRAVITY, LinearModel
+from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
 from vehgen.vehicle.model import GROUND
 
@@ -29,7 +29,7 @@ class StaticLoads:
     displacement: NDArray[np.float64]
 
 
-def static_loads(model: LinearModel, values: Mapping[str, float] | None = None) -> StaticLoads:
+def static_loads(model: EquationsOfMotion, values: Mapping[str, float] | None = None) -> StaticLoads:
     """Solve K q = weight at the given parameter values (default: the file's), with the laws that count from the unloaded position.
 
     Raises
@@ -57,7 +57,7 @@ def static_loads(model: LinearModel, values: Mapping[str, float] | None = None) 
     return StaticLoads(axles, hinges, elements, displacement)
 
 
-def element_rows(model: LinearModel, values: Mapping[str, float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def element_rows(model: EquationsOfMotion, values: Mapping[str, float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the travel rows `shape (n_elements, n_dof)` and stiffnesses `shape (n_elements,)` of all springs."""
     entries = {(i, j): value for i, element in enumerate(model.elements) for j, value in element.row.items()}
     stiffness = {(i, 0): element.k for i, element in enumerate(model.elements)}
@@ -68,7 +68,7 @@ def element_rows(model: LinearModel, values: Mapping[str, float]) -> tuple[NDArr
     return rows, np.array([found[i, 0] for i in range(len(model.elements))])
 
 
-def _solve(model: LinearModel, K: NDArray[np.float64], weight: NDArray[np.float64]) -> NDArray[np.float64]:
+def _solve(model: EquationsOfMotion, K: NDArray[np.float64], weight: NDArray[np.float64]) -> NDArray[np.float64]:
     scale = np.sqrt(np.maximum(np.diag(K), np.finfo(float).tiny))
     scaled = K / np.outer(scale, scale)
     eigenvalues, vectors = scipy.linalg.eigh(scaled)
@@ -81,7 +81,7 @@ def _solve(model: LinearModel, K: NDArray[np.float64], weight: NDArray[np.float6
     return np.asarray(scipy.linalg.solve(scaled, weight / scale, assume_a="pos") / scale, dtype=np.float64)
 
 
-def _hinge_force(model: LinearModel, name: str, elements: Mapping[tuple[str, str], float], values: Mapping[str, float]) -> float:
+def _hinge_force(model: EquationsOfMotion, name: str, elements: Mapping[tuple[str, str], float], values: Mapping[str, float]) -> float:
     """Balance the bodies on the far side of a hinge: weight = suspensions, tyres and links on them + hinge force."""
     vehicle = model.vehicle
     _first, second = vehicle.hinges[name].points

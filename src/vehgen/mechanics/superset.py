@@ -16,7 +16,7 @@ from vehgen.files.units import NONE
 from vehgen.mechanics.laws import LAWS, Kind, Law, LawParameter
 from vehgen.vehicle.model import Parameter, Spring, Vehicle
 
-Candidate = tuple[str, Kind, str]
+CandidateLaw = tuple[str, Kind, str]
 """Where and which: the axle's, link's or hinge's name, `suspension`, `tyre`, `link` or `hinge`, the law's name in LAWS."""
 
 
@@ -29,14 +29,14 @@ class Superset:
     """
 
     vehicle: Vehicle
-    names: Mapping[Candidate, Mapping[str, str]]
+    names: Mapping[CandidateLaw, Mapping[str, str]]
 
-    def strength(self, candidate: Candidate) -> str:
+    def strength(self, candidate: CandidateLaw) -> str:
         """Return the vehicle's parameter that switches a candidate on."""
         return self.names[candidate][LAWS[candidate[2]].strength]
 
 
-def add_laws(vehicle: Vehicle, candidates: Iterable[Candidate]) -> Superset:
+def add_laws(vehicle: Vehicle, candidates: Iterable[CandidateLaw]) -> Superset:
     """Return the vehicle with every candidate law added, switched off.
 
     Parameters
@@ -52,7 +52,7 @@ def add_laws(vehicle: Vehicle, candidates: Iterable[Candidate]) -> Superset:
         For a place or law that does not exist, a law that does not belong there, or a candidate given twice.
 
     """
-    names: dict[Candidate, dict[str, str]] = {}
+    names: dict[CandidateLaw, dict[str, str]] = {}
     parameters = dict(vehicle.parameters)
     groups: dict[str, dict[str, Any]] = {"axles": dict(vehicle.axles), "links": dict(vehicle.links), "hinges": dict(vehicle.hinges)}
     for candidate in candidates:

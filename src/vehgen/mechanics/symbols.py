@@ -8,7 +8,7 @@ import sympy as sp
 
 from vehgen.files.expressions import Expression
 
-_FUNCTIONS = {"sqrt": sp.sqrt, "abs": sp.Abs, "sign": sp.sign, "min": sp.Min, "max": sp.Max}
+_SYMPY_FUNCTIONS = {"sqrt": sp.sqrt, "abs": sp.Abs, "sign": sp.sign, "min": sp.Min, "max": sp.Max}
 
 
 @cache
@@ -43,4 +43,4 @@ def _apply(operator: str, arguments: list[sp.Expr]) -> sp.Expr:
         case "**":
             return first ** sp.nsimplify(arguments[1])
         case _:
-            return _FUNCTIONS[operator](*arguments)
+            return _SYMPY_FUNCTIONS[operator](*arguments)

@@ -19,13 +19,13 @@ from vehgen.simulate import Scenario, Simulator
 
 Array = NDArray[np.float64]
 Answer = Callable[[float], Array]
-COARSE = np.arange(0.88, 1.1201, 0.01)
+COARSE_SCALES = np.arange(0.88, 1.1201, 0.01)
 """Speeds tried, over the one that was told or measured ..."""
-FINE = np.arange(-0.01, 0.01001, 0.001)
+FINE_SCALE_STEPS = np.arange(-0.01, 0.01001, 0.001)
 """... and then around the best of them."""
 TRUSTED = 0.6
 """Least correlation of a match that is believed."""
-HIGHEST = 20.0
+HIGHEST_FREQUENCY_HZ = 20.0
 """Above this frequency [Hz] the vehicle's answer is not compared."""
 
 
@@ -65,7 +65,7 @@ def match(
     -------
     One match a phone, all at the speed that suits them best together.
     """
-    low_pass = scipy.signal.butter(4, HIGHEST, fs=1 / step, output="sos")
+    low_pass = scipy.signal.butter(4, HIGHEST_FREQUENCY_HZ, fs=1 / step, output="sos")
     smooth = [scipy.signal.sosfiltfilt(low_pass, values - values.mean(axis=0), axis=0) for _, values in recordings]
 
     def scan(scales: Array) -> Array:
@@ -77,8 +77,8 @@ def match(
                 table[i, j] = _lay(smooth[j], expected[:, columns[j]], time, step, near[j])
         return table
 
-    rough = float(COARSE[np.argmax(scan(COARSE)[:, :, 1].mean(axis=1))])
-    scales = rough + FINE
+    rough = float(COARSE_SCALES[np.argmax(scan(COARSE_SCALES)[:, :, 1].mean(axis=1))])
+    scales = rough + FINE_SCALE_STEPS
     table = scan(scales)
     together = table[:, :, 1].mean(axis=1)
     best = int(np.argmax(together))

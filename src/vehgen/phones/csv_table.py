@@ -21,14 +21,14 @@ from vehgen.files.csv_rows import csv_rows
 from vehgen.files.reading import split_lines
 from vehgen.files.units import ACCELERATION, FREQUENCY, TIME, Dimension, parse_unit
 from vehgen.files.units import SPEED as SPEED_DIMENSION
-from vehgen.phones.export import PITCH_RATE, SPEED, VERTICAL, PhoneExport, Stream
+from vehgen.phones.export import PITCH_RATE_STREAM, SPEED_STREAM, VERTICAL_ACCELERATION_STREAM, PhoneExport, Stream
 
 Array = NDArray[np.float64]
 MAX_COLUMNS = 200
 LARGEST = 1e20
 """Beyond it a number was not measured; times in ns since 1970 are the largest that are."""
 _DECIMAL_COMMA = re.compile(r'^"?[+-]?\d*,\d+(?:[eE][+-]?\d+)?"?$')
-_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+_NUMBER_CELL = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _MISSING = {"", "nan", "null", "na", "n/a", "-"}
 
 
@@ -61,7 +61,7 @@ class Table:
             text = row[index].strip() if index < len(row) else ""
             if self.decimal_comma:
                 text = text.replace(",", ".")
-            number = float(text) if _NUMBER.fullmatch(text) else np.nan
+            number = float(text) if _NUMBER_CELL.fullmatch(text) else np.nan
             if np.isfinite(number) and abs(number) > LARGEST:
                 raise InputError(
                     f"{shown(text)} in column {shown(self.header[index])} is beyond {LARGEST:g}, which nothing measures",
@@ -193,9 +193,9 @@ def read_plain(table: Table, columns: ColumnMap | None) -> PhoneExport:
         )
     time = _column(table, columns.time) * unit_factor(columns.time_unit, TIME, "--columns time_unit")
     wanted = (
-        (VERTICAL, columns.acceleration, columns.acceleration_unit, ACCELERATION, "m/s^2"),
-        (PITCH_RATE, columns.pitch_rate, columns.pitch_rate_unit, FREQUENCY, "rad/s"),
-        (SPEED, columns.speed, columns.speed_unit, SPEED_DIMENSION, "m/s"),
+        (VERTICAL_ACCELERATION_STREAM, columns.acceleration, columns.acceleration_unit, ACCELERATION, "m/s^2"),
+        (PITCH_RATE_STREAM, columns.pitch_rate, columns.pitch_rate_unit, FREQUENCY, "rad/s"),
+        (SPEED_STREAM, columns.speed, columns.speed_unit, SPEED_DIMENSION, "m/s"),
     )
     streams = {}
     for name, column, unit, dimension, si in wanted:

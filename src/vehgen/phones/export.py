@@ -11,19 +11,19 @@ from vehgen.errors import InputError
 
 Array = NDArray[np.float64]
 
-ACCELERATION = "acceleration"
+ACCELERATION_STREAM = "acceleration"
 """Stream: x, y, z of the phone with gravity [m/s^2]."""
-LINEAR_ACCELERATION = "linear_acceleration"
+LINEAR_ACCELERATION_STREAM = "linear_acceleration"
 """Stream: x, y, z of the phone without gravity [m/s^2]."""
-GRAVITY = "gravity"
+GRAVITY_STREAM = "gravity"
 """Stream: x, y, z of gravity alone, as the phone's fusion of sensors sees it [m/s^2]."""
-ROTATION = "rotation"
+ROTATION_STREAM = "rotation"
 """Stream: x, y, z of the phone's rate of rotation [rad/s]."""
-SPEED = "speed"
+SPEED_STREAM = "speed"
 """Stream: speed over ground [m/s]."""
-VERTICAL = "vertical_acceleration"
+VERTICAL_ACCELERATION_STREAM = "vertical_acceleration"
 """Stream: acceleration upwards [m/s^2], already in the vehicle's axes."""
-PITCH_RATE = "pitch_rate"
+PITCH_RATE_STREAM = "pitch_rate"
 """Stream: pitch rate, nose-down positive [rad/s], already in the vehicle's axes."""
 
 STANDARD_GRAVITY = 9.80665
@@ -112,9 +112,9 @@ def acceleration_kind(values: Array) -> str:
     with np.errstate(over="ignore", invalid="ignore"):
         mean = float(np.linalg.norm(np.median(finite, axis=0)))
     if abs(mean - STANDARD_GRAVITY) < 2.0:
-        return ACCELERATION
+        return ACCELERATION_STREAM
     if mean < 2.0:
-        return LINEAR_ACCELERATION
+        return LINEAR_ACCELERATION_STREAM
     raise InputError(
         f"the acceleration has a mean of {mean:.3g} m/s^2; a phone on a vehicle shows about 9.8 with gravity, about 0 without: "
         "is its unit m/s^2?"

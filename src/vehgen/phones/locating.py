@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
-from vehgen.phones.clocks import COARSE, TRUSTED, Match, epoch_disagreement, match, predictor
+from vehgen.phones.clocks import COARSE_SCALES, TRUSTED, Match, epoch_disagreement, match, predictor
 from vehgen.phones.gps import CrossingSpeed, crossing_speed
 from vehgen.phones.hump_event import HumpEvent, expected_onset, find_hump
 from vehgen.phones.options import Plan
@@ -63,7 +63,7 @@ def locate(
     step = 1 / plan.rate
     lead = 1.0 * speed if plan.road.hump else 0.0
     track = Track((plan.road.at(lead),), plan.footprint)
-    length = (lead + distance) / (speed * COARSE[0]) + 1.5
+    length = (lead + distance) / (speed * COARSE_SCALES[0]) + 1.5
     if length > LONGEST_PASS:
         raise InputError(
             f"the pass would take {length:.4g} s at {speed:.3g} m/s over {distance:.4g} m; at most {LONGEST_PASS:g} s were expected"

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from vehgen.errors import InputError
 from vehgen.files.reading import open_regular, read_bytes, short_path
 from vehgen.phones.archive import MAX_FILE, MAX_TOTAL
-from vehgen.phones.export import ROTATION, SPEED, EpochMap, PhoneExport, Stream, acceleration_kind
+from vehgen.phones.export import ROTATION_STREAM, SPEED_STREAM, EpochMap, PhoneExport, Stream, acceleration_kind
 
 _MARKS = (b"MATLAB 5.0 MAT-file", b"MATLAB 7.3 MAT-file", b"\x89HDF")
 _HEADER, _COMPRESSED = 128, 15
@@ -86,10 +86,10 @@ def read_matlab(path: Path) -> PhoneExport:
     streams = {acceleration_kind(values): Stream(clocks["Acceleration"] - zero, values, ("x", "y", "z"), "m/s^2")}
     if "AngularVelocity" in tables:
         rates = _columns(tables["AngularVelocity"], ("X", "Y", "Z"), f"{path}: AngularVelocity")
-        streams[ROTATION] = Stream(clocks["AngularVelocity"] - zero, rates, ("x", "y", "z"), "rad/s")
+        streams[ROTATION_STREAM] = Stream(clocks["AngularVelocity"] - zero, rates, ("x", "y", "z"), "rad/s")
     if "Position" in tables:
         speed = _columns(tables["Position"], ("speed",), f"{path}: Position")
-        streams[SPEED] = Stream(clocks["Position"] - zero, speed, ("speed",), "m/s")
+        streams[SPEED_STREAM] = Stream(clocks["Position"] - zero, speed, ("speed",), "m/s")
     epoch = EpochMap(np.array([0.0]), np.array([zero])) if zero > 1e9 else None
     note = "MATLAB Mobile stamps without a time zone: clocks of phones in different zones differ by hours"
     return PhoneExport("MATLAB Mobile", streams, epoch, (note,) if epoch else ())

@@ -12,9 +12,9 @@ from vehgen.measure.spectra import welch_psd
 from vehgen.phones.export import Stream
 
 Array = NDArray[np.float64]
-BAND = 3.0
+NOISE_BAND_WIDTH_HZ = 3.0
 """Width of the band at the top of the spectrum, where a vehicle does nothing [Hz]."""
-TOP = 50.0
+NOISE_BAND_TOP_HZ = 50.0
 """Top of that band [Hz], where the sensor is fast enough."""
 FLAT = 3
 """So many equal samples in a row at the extreme count as clipped ..."""
@@ -44,11 +44,11 @@ def noise_floor(values: Array, step: float, sensor_rate: float) -> NoiseFloor:
         Rate at which the sensor sampled [Hz]; above half of it there is nothing.
     """
     level = scipy.signal.detrend(values)
-    top = min(TOP, 0.5 / step, 0.5 * sensor_rate)
+    top = min(NOISE_BAND_TOP_HZ, 0.5 / step, 0.5 * sensor_rate)
     frequency, density = welch_psd(values, step, segment=1.0)
-    inside = (frequency >= top - BAND - 1e-9) & (frequency <= top + 1e-9)
+    inside = (frequency >= top - NOISE_BAND_WIDTH_HZ - 1e-9) & (frequency <= top + 1e-9)
     band_sigma = float(np.sqrt(density[inside].mean() * 0.5 / step))
-    return NoiseFloor(float(level.std()), band_sigma, (top - BAND, top))
+    return NoiseFloor(float(level.std()), band_sigma, (top - NOISE_BAND_WIDTH_HZ, top))
 
 
 def clipped(stream: Stream) -> list[tuple[str, float, float]]:

@@ -8,7 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
-from vehgen.phones.export import ACCELERATION, GRAVITY, LINEAR_ACCELERATION, PITCH_RATE, ROTATION, SPEED, VERTICAL, PhoneExport, Stream
+from vehgen.phones.export import (
+    ACCELERATION_STREAM,
+    GRAVITY_STREAM,
+    LINEAR_ACCELERATION_STREAM,
+    PITCH_RATE_STREAM,
+    ROTATION_STREAM,
+    SPEED_STREAM,
+    VERTICAL_ACCELERATION_STREAM,
+    PhoneExport,
+    Stream,
+)
 from vehgen.phones.options import PhoneSensor
 from vehgen.phones.orientation import Orientation, find_orientation
 from vehgen.phones.resampling import check_rate, clean, gaps, resample, sampling_rate
@@ -154,14 +164,16 @@ def make_phone(export: PhoneExport, sensor: PhoneSensor, name: str, top: float) 
             raise InputError(f"{name}: nothing of the {key.replace('_', ' ')} is between from= and to=")
         return part
 
-    key = next((key for key in (VERTICAL, ACCELERATION, LINEAR_ACCELERATION) if key in export.streams), None)
+    key = next(
+        (key for key in (VERTICAL_ACCELERATION_STREAM, ACCELERATION_STREAM, LINEAR_ACCELERATION_STREAM) if key in export.streams), None
+    )
     if key is None:
         raise InputError(f"{name} holds no acceleration")
     acceleration = cleaned(key)
     assert acceleration is not None
-    rotation = cleaned(PITCH_RATE if key == VERTICAL else ROTATION)
-    gravity = acceleration if key == ACCELERATION else cleaned(GRAVITY) if key == LINEAR_ACCELERATION else None
-    if key == LINEAR_ACCELERATION and gravity is not None:
+    rotation = cleaned(PITCH_RATE_STREAM if key == VERTICAL_ACCELERATION_STREAM else ROTATION_STREAM)
+    gravity = acceleration if key == ACCELERATION_STREAM else cleaned(GRAVITY_STREAM) if key == LINEAR_ACCELERATION_STREAM else None
+    if key == LINEAR_ACCELERATION_STREAM and gravity is not None:
         notes.append("gravity taken from the phone's own fusion of sensors")
     check_rate(acceleration.time, top, f"{name}: acceleration")
     if rotation is None:
@@ -179,7 +191,7 @@ def make_phone(export: PhoneExport, sensor: PhoneSensor, name: str, top: float) 
 
 def speed_stream(export: PhoneExport) -> Stream | None:
     """Return the GPS speed, None where there is none."""
-    return export.streams.get(SPEED)
+    return export.streams.get(SPEED_STREAM)
 
 
 def _centred(stream: Stream, start: float, end: float) -> Stream:

@@ -12,9 +12,18 @@ import numpy as np
 
 from vehgen.errors import InputError
 from vehgen.phones.csv_table import Table
-from vehgen.phones.export import ACCELERATION, LINEAR_ACCELERATION, ROTATION, SPEED, EpochMap, PhoneExport, Stream, acceleration_kind
+from vehgen.phones.export import (
+    ACCELERATION_STREAM,
+    LINEAR_ACCELERATION_STREAM,
+    ROTATION_STREAM,
+    SPEED_STREAM,
+    EpochMap,
+    PhoneExport,
+    Stream,
+    acceleration_kind,
+)
 
-_HEAD = re.compile(r"(?P<words>.*?)\s*\((?P<unit>[^()]*)\)\s*\Z")
+_COLUMN_HEAD = re.compile(r"(?P<words>.*?)\s*\((?P<unit>[^()]*)\)\s*\Z")
 _AXIS = re.compile(r"(?:.*\s)?([xyz])\Z", re.IGNORECASE)
 _UNITS = {"m/s^2": "m/s^2", "m/s²": "m/s^2", "rad/s": "rad/s", "m/s": "m/s", "s": "s", "°": "deg"}
 _EVENTS = ("event", "experiment time", "system time")
@@ -24,9 +33,9 @@ def is_phyphox(table: Table) -> bool:
     """Say whether a header is one that phyphox writes: all columns with units, the first a time."""
     return _is_clock(table) or (
         len(table.header) > 1
-        and (first := _HEAD.match(table.header[0])) is not None
+        and (first := _COLUMN_HEAD.match(table.header[0])) is not None
         and first["unit"] == "s"
-        and all(_HEAD.match(item) for item in table.header)
+        and all(_COLUMN_HEAD.match(item) for item in table.header)
     )
 
 
@@ -50,7 +59,7 @@ def read_phyphox(tables: list[Table]) -> PhoneExport:
                     notes.append(f"{table.name}: a second {name.replace('_', ' ')} was passed over")
                 else:
                     streams[name] = stream
-    if not {ACCELERATION, LINEAR_ACCELERATION} & set(streams):
+    if not {ACCELERATION_STREAM, LINEAR_ACCELERATION_STREAM} & set(streams):
         raise InputError(f"{tables[0].name}: this phyphox export holds no acceleration; record with the experiment 'Acceleration (with g)'")
     return PhoneExport("phyphox", streams, epoch, tuple(notes), acceleration_sign=1)
 
@@ -71,7 +80,7 @@ def _read_clock(table: Table, notes: list[str]) -> EpochMap | None:
 
 
 def _read_sensors(table: Table) -> list[tuple[str, Stream]]:
-    heads = [_HEAD.match(item) for item in table.header]
+    heads = [_COLUMN_HEAD.match(item) for item in table.header]
     units = [_UNITS.get(head["unit"], "") if head else "" for head in heads]
     found = []
     for unit in ("m/s^2", "rad/s"):
@@ -83,11 +92,11 @@ def _read_sensors(table: Table) -> list[tuple[str, Stream]]:
         if len(axes) == 3:
             values = np.column_stack([table.column(axes[axis]) for axis in "xyz"])
             try:
-                name = acceleration_kind(values) if unit == "m/s^2" else ROTATION
+                name = acceleration_kind(values) if unit == "m/s^2" else ROTATION_STREAM
             except InputError as error:
                 raise InputError(f"{table.name}: {error.message}") from error
             found.append((name, Stream(table.column(0), values, ("x", "y", "z"), unit)))
     if "m/s" in units and units.count("deg") >= 2:
         values = table.column(units.index("m/s"))[:, None]
-        found.append((SPEED, Stream(table.column(0), values, ("speed",), "m/s")))
+        found.append((SPEED_STREAM, Stream(table.column(0), values, ("speed",), "m/s")))
     return found

@@ -20,9 +20,9 @@ from vehgen.errors import InputError
 from vehgen.phones.export import Stream
 
 Array = NDArray[np.float64]
-MARGIN = 40
+MARGIN_SAMPLES = 40
 """Samples beyond a block of values, on either side, that it is predicted from."""
-BLOCK = 40
+BLOCK_SAMPLES = 40
 """Values predicted together."""
 INNER = 0.4
 """Share of the sampling rate below which the prior has its power."""
@@ -152,15 +152,15 @@ def _predict(time: Array, values: Array, at: Array, rate: float) -> Array:
     """Return the best linear estimate at ascending times `at`, block by block, each from its own samples and MARGIN on either side."""
     found = np.empty((len(at), values.shape[1]))
     level = values.mean(axis=0)
-    for begin in range(0, len(at), BLOCK):
-        wanted = at[begin : begin + BLOCK]
-        first = max(int(np.searchsorted(time, wanted[0])) - MARGIN, 0)
-        last = min(int(np.searchsorted(time, wanted[-1])) + MARGIN, len(time))
+    for begin in range(0, len(at), BLOCK_SAMPLES):
+        wanted = at[begin : begin + BLOCK_SAMPLES]
+        first = max(int(np.searchsorted(time, wanted[0])) - MARGIN_SAMPLES, 0)
+        last = min(int(np.searchsorted(time, wanted[-1])) + MARGIN_SAMPLES, len(time))
         near = (time[first:last] - wanted[0]) * rate
         matrix = _covariance(near[:, None] - near[None, :])
         matrix[np.arange(len(near)), np.arange(len(near))] *= 1 + NUGGET
         weights = scipy.linalg.solve(matrix, values[first:last] - level, assume_a="pos")
-        found[begin : begin + BLOCK] = level + _covariance((wanted[:, None] - wanted[0]) * rate - near[None, :]) @ weights
+        found[begin : begin + BLOCK_SAMPLES] = level + _covariance((wanted[:, None] - wanted[0]) * rate - near[None, :]) @ weights
     return found
 
 

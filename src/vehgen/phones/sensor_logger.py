@@ -13,13 +13,22 @@ import numpy as np
 
 from vehgen.errors import InputError
 from vehgen.phones.csv_table import Table
-from vehgen.phones.export import ACCELERATION, GRAVITY, LINEAR_ACCELERATION, ROTATION, SPEED, EpochMap, PhoneExport, Stream
+from vehgen.phones.export import (
+    ACCELERATION_STREAM,
+    GRAVITY_STREAM,
+    LINEAR_ACCELERATION_STREAM,
+    ROTATION_STREAM,
+    SPEED_STREAM,
+    EpochMap,
+    PhoneExport,
+    Stream,
+)
 
 _SENSORS = {
-    "accelerometer": (LINEAR_ACCELERATION, "m/s^2"),
-    "totalacceleration": (ACCELERATION, "m/s^2"),
-    "gravity": (GRAVITY, "m/s^2"),
-    "gyroscope": (ROTATION, "rad/s"),
+    "accelerometer": (LINEAR_ACCELERATION_STREAM, "m/s^2"),
+    "totalacceleration": (ACCELERATION_STREAM, "m/s^2"),
+    "gravity": (GRAVITY_STREAM, "m/s^2"),
+    "gyroscope": (ROTATION_STREAM, "rad/s"),
 }
 _FIRST_EPOCH, _LAST_EPOCH = 1e9, 5e9
 
@@ -53,8 +62,8 @@ def read_sensor_logger(tables: list[Table]) -> PhoneExport:
             streams[name] = Stream(elapsed, values, ("x", "y", "z"), unit)
             epoch = epoch or _epoch(table, elapsed)
         elif "speed" in table.header:
-            streams[SPEED] = Stream(elapsed, table.column(table.find("speed"))[:, None], ("speed",), "m/s")
-    if not {ACCELERATION, LINEAR_ACCELERATION} & set(streams):
+            streams[SPEED_STREAM] = Stream(elapsed, table.column(table.find("speed"))[:, None], ("speed",), "m/s")
+    if not {ACCELERATION_STREAM, LINEAR_ACCELERATION_STREAM} & set(streams):
         raise InputError(
             f"{tables[0].name}: this Sensor Logger export holds neither TotalAcceleration.csv nor Accelerometer.csv (the names say which "
             "sensor a file is of)"

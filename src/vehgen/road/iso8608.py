@@ -11,9 +11,9 @@ from vehgen.errors import InputError, did_you_mean
 
 Array = NDArray[np.float64]
 
-REFERENCE = 0.1
+REFERENCE_CYCLES_PER_M = 0.1
 """Reference spatial frequency n0, cycles/m."""
-BAND = (0.011, 2.83)
+SPATIAL_BAND_CYCLES_PER_M = (0.011, 2.83)
 """Spatial frequencies that the standard covers, cycles/m."""
 CLASSES: dict[str, tuple[float, float, float]] = {
     name: (factor * 8e-6, factor * 16e-6, factor * 32e-6) for name, factor in zip("ABCDEFGH", (4.0**i for i in range(8)), strict=True)
@@ -44,10 +44,10 @@ class Iso8608Road:
         if not self.length > 0:
             raise InputError(f"a road needs a positive length, found {self.length} m")
         check_length(self.length)
-        n_points = int(np.ceil(max(self.length, 1.0 / BAND[0]) / self.spacing)) + 1
+        n_points = int(np.ceil(max(self.length, 1.0 / SPATIAL_BAND_CYCLES_PER_M[0]) / self.spacing)) + 1
         period = n_points * self.spacing
         n = np.arange(n_points // 2 + 1) / period
-        inside = (n >= BAND[0]) & (n <= BAND[1])
+        inside = (n >= SPATIAL_BAND_CYCLES_PER_M[0]) & (n <= SPATIAL_BAND_CYCLES_PER_M[1])
         amplitude = np.zeros_like(n)
         amplitude[inside] = np.sqrt(2.0 * displacement_psd(self.roughness, n[inside]) / period)
         phase = np.random.default_rng(self.seed).uniform(0.0, 2.0 * np.pi, len(n))
@@ -77,4 +77,4 @@ def check_length(length: float) -> None:
 
 def displacement_psd(roughness: str, n: Array) -> Array:
     """Return the one-sided displacement PSD of a class's mean [m^3] at spatial frequencies n [cycles/m] (ISO 8608, exponent 2)."""
-    return np.asarray(CLASSES[roughness][1] * (np.asarray(n) / REFERENCE) ** -2.0)
+    return np.asarray(CLASSES[roughness][1] * (np.asarray(n) / REFERENCE_CYCLES_PER_M) ** -2.0)

@@ -14,8 +14,8 @@ import numpy as np
 import scipy.signal
 from numpy.typing import NDArray
 
-from vehgen.codegen import Drive, Kernel
-from vehgen.mechanics import LinearModel, NumericModel, Place, PointOutput, derive
+from vehgen.codegen import Excitation, Kernel
+from vehgen.mechanics import EquationsOfMotion, NumericModel, Place, PointOutput, derive
 from vehgen.road import ConstantSpeed, Hump, Track, wheel_inputs
 from vehgen.vehicle import load_vehicle, parse_vehicle
 
@@ -25,30 +25,30 @@ OUTPUTS = (
     PointOutput("L1", Place("L1", "tractor", behind="axle1", distance=-0.29), "acceleration"),
     PointOutput("L2", Place("L2", "semitrailer", behind="fifth_wheel", distance=9.32), "acceleration"),
 )
-LAWS = {
+BENCHMARKED_LAWS = {
     "linear": None,
     "dry friction on all suspensions": ("suspension", "{dry_friction: {force: 5 kN}}"),
     "unilateral tyres": ("tyre", "{tyre_liftoff: {}}"),
 }
 
 
-def benchmark_model(name: str) -> LinearModel:
+def benchmark_model(name: str) -> EquationsOfMotion:
     """Return the five-axle vehicle with one of LAWS on every axle."""
-    law = LAWS[name]
+    law = BENCHMARKED_LAWS[name]
     if law is None:
         return derive(load_vehicle("tractor5"), OUTPUTS)
     axles = "".join(f"  axle{i}: {{{law[0]}: {{laws: [{law[1]}]}}}}\n" for i in range(1, 6))
     return derive(parse_vehicle(f"extends: tractor5\naxles:\n{axles}"), OUTPUTS)
 
 
-def hump_drive(model: LinearModel, seconds: float) -> Drive:
+def hump_drive(model: EquationsOfMotion, seconds: float) -> Excitation:
     """Return the inputs of a half-sine hump of 0.5 m x 0.03 m at 2 m/s."""
     steps = np.arange(round(seconds / (DT * KEEP)) * KEEP + 1, dtype=np.float64) * DT
     wheels = wheel_inputs(Track((Hump.from_shape("half_sine", 1.0, 0.5, 0.03),)), ConstantSpeed(2.0), model.wheel_offsets(), steps)
-    return Drive(DT, wheels.heights, wheels.rates, np.zeros((len(steps), 0)))
+    return Excitation(DT, wheels.heights, wheels.rates, np.zeros((len(steps), 0)))
 
 
-def population(model: LinearModel, n_individuals: int, seed: int = 0) -> Array:
+def population(model: EquationsOfMotion, n_individuals: int, seed: int = 0) -> Array:
     """Return individuals whose searched parameters vary by +-10 %, `shape (n_individuals, n_parameters)`."""
     values = model.values()
     searched = np.array([name in model.vehicle.ranges() for name in model.parameters])
@@ -76,7 +76,7 @@ def measure(n_individuals: int = 300, seconds: float = 10.0) -> dict[str, Any]:
     """
     peak = vector_peak()
     cases: list[dict[str, Any]] = []
-    for name in LAWS:
+    for name in BENCHMARKED_LAWS:
         model = benchmark_model(name)
         kernel = Kernel(model)
         kernel.compile()
@@ -102,14 +102,14 @@ def measure(n_individuals: int = 300, seconds: float = 10.0) -> dict[str, Any]:
     return {"cases": cases, "ratios": ratios, "vector_peak_gflops": peak}
 
 
-def _peers() -> dict[str, Callable[[NumericModel, Drive], float]]:
-    found: dict[str, Callable[[NumericModel, Drive], float]] = {"dense numba loop": _time_dense, "scipy.signal.lsim": _time_lsim}
+def _peers() -> dict[str, Callable[[NumericModel, Excitation], float]]:
+    found: dict[str, Callable[[NumericModel, Excitation], float]] = {"dense numba loop": _time_dense, "scipy.signal.lsim": _time_lsim}
     if importlib.util.find_spec("pyyeti"):
         found["pyyeti SolveNewmark"] = _time_pyyeti
     return found
 
 
-def _time_dense(model: NumericModel, drive: Drive) -> float:
+def _time_dense(model: NumericModel, drive: Excitation) -> float:
     compiled: Any = numba.njit(_dense_newmark)
     compiled(model.M, model.C, model.K, model.P, drive.inputs[:2], drive.dt)
     return best_time(lambda: compiled(model.M, model.C, model.K, model.P, drive.inputs, drive.dt))
@@ -143,7 +143,7 @@ def _dense_newmark(M: Array, C: Array, K: Array, P: Array, inputs: Array, dt: fl
     return peak
 
 
-def _time_lsim(model: NumericModel, drive: Drive) -> float:
+def _time_lsim(model: NumericModel, drive: Excitation) -> float:
     n = len(model.M)
     inverse = np.linalg.inv(model.M)
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ model.K, -inverse @ model.C]])
@@ -152,7 +152,7 @@ def _time_lsim(model: NumericModel, drive: Drive) -> float:
     return best_time(lambda: scipy.signal.lsim(system, drive.inputs, drive.time), 2)
 
 
-def _time_pyyeti(model: NumericModel, drive: Drive) -> float:
+def _time_pyyeti(model: NumericModel, drive: Excitation) -> float:
     from pyyeti import ode
 
     return best_time(lambda: ode.SolveNewmark(model.M, model.C, model.K, drive.dt).tsolve(model.P @ drive.inputs.T), 2)

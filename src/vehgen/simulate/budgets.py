@@ -52,9 +52,11 @@ def check_run(run: Run, duration: float, way: float, n_wheels: int) -> None:
     file = run.file
     steps = duration / file.step
     said = ("duration",) if file.duration is not None else ("speed",)
-    if steps < run.keep:
-        raise InputError(f"a run of {duration:g} s keeps no sample: they are {run.keep * file.step:g} s apart", run.document.find(said))
-    numbers = steps * (2 * n_wheels + len(file.forces) + 1) + steps / run.keep * (len(run.outputs()) + len(run.vehicle.axles))
+    if steps < run.decimation:
+        raise InputError(
+            f"a run of {duration:g} s keeps no sample: they are {run.decimation * file.step:g} s apart", run.document.find(said)
+        )
+    numbers = steps * (2 * n_wheels + len(file.forces) + 1) + steps / run.decimation * (len(run.outputs()) + len(run.vehicle.axles))
     reason = None
     if steps > MAX_STEPS:
         reason = f"a run has at most {MAX_STEPS} steps; {duration:g} s in steps of {file.step:g} s are more"

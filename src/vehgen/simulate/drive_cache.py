@@ -6,24 +6,24 @@ from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from threading import Lock
 
-from vehgen.codegen import Drive
+from vehgen.codegen import Excitation
 
 MOST_BYTES = 100_000_000
 """Drives are forgotten, the oldest first, beyond this size [bytes]."""
 
 
-class DriveCache:
+class ExcitationCache:
     """Remembers drives up to MOST_BYTES.
 
     A key may hold ids of objects: `alive` is kept as long as the key, so that no other object takes their places.
     """
 
     def __init__(self) -> None:
-        self._known: OrderedDict[Hashable, tuple[Drive, object]] = OrderedDict()
+        self._known: OrderedDict[Hashable, tuple[Excitation, object]] = OrderedDict()
         self._bytes = 0
         self._lock = Lock()
 
-    def find(self, key: Hashable, alive: object, make: Callable[[], Drive]) -> Drive:
+    def find(self, key: Hashable, alive: object, make: Callable[[], Excitation]) -> Excitation:
         """Return the drive of a key, made if it is not known."""
         with self._lock:
             if key in self._known:
@@ -39,5 +39,5 @@ class DriveCache:
         return drive
 
 
-def _size(drive: Drive) -> int:
+def _size(drive: Excitation) -> int:
     return int(drive.inputs.nbytes + drive.rates.nbytes + drive.forces.nbytes)

@@ -14,16 +14,16 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from vehgen.codegen.kernel import Drive
-from vehgen.mechanics.equations_of_motion import LinearModel, NumericModel
+from vehgen.codegen.kernel import Excitation
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion, NumericModel
 
 Array = NDArray[np.float64]
 
 
 def exact_response(
-    model: LinearModel,
-    drive: Drive,
-    keep: int = 1,
+    model: EquationsOfMotion,
+    drive: Excitation,
+    decimation: int = 1,
     values: Mapping[str, float] | None = None,
     initial: Array | None = None,
 ) -> Array:
@@ -56,13 +56,13 @@ def exact_response(
     q, v = x[:, :n], x[:, n:]
     forces = drive.inputs @ numeric.P.T + rates @ numeric.Q.T + drive.forces @ numeric.F.T
     a = (forces - v @ numeric.C.T - q @ numeric.K.T) @ inverse.T
-    return channel_values(numeric, a, v, q, drive.inputs, rates)[::keep]
+    return channel_values(numeric, a, v, q, drive.inputs, rates)[::decimation]
 
 
 def newmark_response(
-    model: LinearModel,
-    drive: Drive,
-    keep: int = 1,
+    model: EquationsOfMotion,
+    drive: Excitation,
+    decimation: int = 1,
     values: Mapping[str, float] | None = None,
     initial: Array | None = None,
 ) -> Array:
@@ -70,7 +70,7 @@ def newmark_response(
     numeric = model.numeric(values)
     forces = drive.inputs @ numeric.P.T + drive.rates @ numeric.Q.T + drive.forces @ numeric.F.T
     q, v, a = newmark_states(numeric, forces, drive.dt, initial)
-    return channel_values(numeric, a, v, q, drive.inputs, drive.rates)[::keep]
+    return channel_values(numeric, a, v, q, drive.inputs, drive.rates)[::decimation]
 
 
 def newmark_states(numeric: NumericModel, forces: Array, dt: float, initial: Array | None = None) -> tuple[Array, Array, Array]:

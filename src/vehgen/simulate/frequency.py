@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.mechanics.equations_of_motion import LinearModel, NumericModel
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion, NumericModel
 from vehgen.mechanics.rows import Row
 from vehgen.simulate.sensitivity import matrix_derivatives
 
@@ -39,7 +39,7 @@ def frequency_response(numeric: NumericModel, frequency: Array) -> tuple[Complex
     return found[:, :, :width] + direct, found[:, :, width:]
 
 
-def force_response(model: LinearModel, values: Mapping[str, float], rows: Sequence[Row], frequency: Array) -> Complex:
+def force_response(model: EquationsOfMotion, values: Mapping[str, float], rows: Sequence[Row], frequency: Array) -> Complex:
     """Return the channels per unit of generalised forces along rows of the coordinates, `shape (n, n_channels, len(rows))`."""
     omega = 2 * np.pi * frequency
     numeric = model.numeric(values)
@@ -71,7 +71,7 @@ def _loads(numeric: NumericModel, omega: Array) -> tuple[Complex, Complex]:
     )
 
 
-def response_derivatives(model: LinearModel, values: Mapping[str, float], names: tuple[str, ...], frequency: Array) -> Complex:
+def response_derivatives(model: EquationsOfMotion, values: Mapping[str, float], names: tuple[str, ...], frequency: Array) -> Complex:
     """Return the derivatives of the road part of :func:`frequency_response` by parameters, exact.
 
     With D X = E and H = R X + W, a parameter moves H by dR X + R D^-1 (dE - dD X) + dW.

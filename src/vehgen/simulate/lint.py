@@ -9,7 +9,7 @@ import numpy as np
 
 from vehgen.errors import InputError
 from vehgen.mechanics.energies import pitch_inertia
-from vehgen.mechanics.equations_of_motion import LinearModel
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.static_loads import static_loads
 from vehgen.mechanics.symbols import to_sympy
 from vehgen.simulate.modes import natural_modes
@@ -22,13 +22,13 @@ AXLE_GAP = 0.6
 """Two axles closer than this [m] would share a wheel's space."""
 
 
-def lint(model: LinearModel, values: Mapping[str, float] | None = None) -> list[str]:
+def lint(model: EquationsOfMotion, values: Mapping[str, float] | None = None) -> list[str]:
     """Return one sentence for each thing that deserves a second look, at these parameter values."""
     values = values or model.values()
     return [*_loads(model, values), *_gyration(model, values), *_gaps(model, values), *_modes(model, values)]
 
 
-def _loads(model: LinearModel, values: Mapping[str, float]) -> Iterator[str]:
+def _loads(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[str]:
     try:
         loads = static_loads(model, values)
     except InputError as error:
@@ -39,7 +39,7 @@ def _loads(model: LinearModel, values: Mapping[str, float]) -> Iterator[str]:
             yield f"negative load on {name}: {force:,.0f} N; its tyre would have to pull the vehicle down"
 
 
-def _gyration(model: LinearModel, values: Mapping[str, float]) -> Iterator[str]:
+def _gyration(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[str]:
     vehicle = model.vehicle
     for name, body in vehicle.bodies.items():
         places = [to_sympy(axle.x) for axle in vehicle.axles.values() if axle.body == name]
@@ -63,7 +63,7 @@ def _gyration(model: LinearModel, values: Mapping[str, float]) -> Iterator[str]:
             )
 
 
-def _gaps(model: LinearModel, values: Mapping[str, float]) -> Iterator[str]:
+def _gaps(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[str]:
     offsets = model.wheel_offsets(values)
     names = list(model.vehicle.axles)
     order = np.argsort(offsets)
@@ -73,7 +73,7 @@ def _gaps(model: LinearModel, values: Mapping[str, float]) -> Iterator[str]:
             yield f"overlapping axles: {names[first]} and {names[second]} are {gap:.2f} m apart"
 
 
-def _modes(model: LinearModel, values: Mapping[str, float]) -> Iterator[str]:
+def _modes(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[str]:
     vehicle = model.vehicle
     unsprung = {axle.body for axle in vehicle.axles.values() if axle.suspension is None and len(vehicle.axles) > 1}
     body = np.array([item.motion != "hop" and item.owner not in unsprung for item in model.coordinates])

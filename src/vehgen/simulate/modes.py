@@ -11,7 +11,7 @@ import scipy.optimize
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
-from vehgen.mechanics.equations_of_motion import LinearModel, NumericModel
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion, NumericModel
 
 Array = NDArray[np.float64]
 _SHARED = 0.6
@@ -34,7 +34,7 @@ class Mode:
     energy: Array
 
 
-def natural_modes(model: LinearModel, values: Mapping[str, float] | None = None) -> list[Mode]:
+def natural_modes(model: EquationsOfMotion, values: Mapping[str, float] | None = None) -> list[Mode]:
     """Return all modes, by ascending undamped frequency.
 
     An overdamped pair of real eigenvalues -a, -b has the frequency sqrt(a b)/2 pi and the damping ratio (a + b)/(2 sqrt(a b)) > 1.
@@ -112,7 +112,7 @@ def _ratio(total: complex, radius: float) -> float:
     return ratio if abs(ratio) > 1e-12 else 0.0
 
 
-def _names(model: LinearModel, shares: list[Array]) -> list[str]:
+def _names(model: EquationsOfMotion, shares: list[Array]) -> list[str]:
     """Name modes by their largest energy; where a name would repeat, its second share (or a number) tells them apart."""
     plain = [f"{item.owner} {item.motion}" for item in model.coordinates]
     names = []

@@ -39,10 +39,10 @@ from vehgen.files.units import LENGTH
 from vehgen.mechanics.outputs import AXLE_QUANTITIES, LINK_QUANTITIES, POINT_QUANTITIES, ElementOutput, Output, Place, PointOutput
 from vehgen.vehicle.checks import check_values
 from vehgen.vehicle.loading import load_vehicle, validate
-from vehgen.vehicle.model import Noun, Vehicle
+from vehgen.vehicle.model import FileModel, Vehicle
 
 DEFAULT_STEP = 1e-3
-DEFAULT_KEEP = 10
+DEFAULT_DECIMATION = 10
 DEFAULT_SPEED = 1.0
 """What stands for the speed [m/s] of a rig without wheels; nothing depends on it."""
 MAX_STEPS = 10_000_000
@@ -50,7 +50,7 @@ TIME_COLUMN = "t"
 """The heading of the time in recordings and responses."""
 
 
-class HumpEntry(Noun):
+class HumpEntry(FileModel):
     """A hump on the road."""
 
     shape: Literal["half_sine", "versine", "trapezoid", "rectangle", "points"]
@@ -72,14 +72,14 @@ class HumpEntry(Noun):
         return self
 
 
-class IsoEntry(Noun):
+class IsoEntry(FileModel):
     """A random road of an ISO 8608 class."""
 
     class_: Literal["A", "B", "C", "D", "E", "F", "G", "H"] = Field(alias="class")
     seed: int = Field(0, ge=0, le=LARGEST_SEED)
 
 
-class ProfileEntry(Noun):
+class ProfileEntry(FileModel):
     """A measured profile: a CSV file with columns of distance and height [m]."""
 
     file: FileName
@@ -87,7 +87,7 @@ class ProfileEntry(Noun):
     height: Column = "height"
 
 
-class RoadEntry(Noun):
+class RoadEntry(FileModel):
     """One of hump, iso8608, profile."""
 
     hump: HumpEntry | None = None
@@ -101,7 +101,7 @@ class RoadEntry(Noun):
         return self
 
 
-class SpeedFile(Noun):
+class SpeedFile(FileModel):
     """A speed history: a CSV file with columns of time [s] and speed [m/s]."""
 
     file: FileName
@@ -109,7 +109,7 @@ class SpeedFile(Noun):
     speed: Column = "speed"
 
 
-class ForceHarmonic(Noun):
+class ForceHarmonic(FileModel):
     """amplitude * sin(2 pi frequency t + phase)."""
 
     amplitude: Force
@@ -117,7 +117,7 @@ class ForceHarmonic(Noun):
     phase: Angle = 0.0
 
 
-class DisplacementHarmonic(Noun):
+class DisplacementHarmonic(FileModel):
     """amplitude * sin(2 pi frequency t + phase)."""
 
     amplitude: Displacement
@@ -125,7 +125,7 @@ class DisplacementHarmonic(Noun):
     phase: Angle = 0.0
 
 
-class PlaceEntry(Noun):
+class PlaceEntry(FileModel):
     """A place on a body: `x` from its COG, or `distance` behind an axle, hinge or body."""
 
     body: str
@@ -163,7 +163,7 @@ class ForceEntry(PlaceEntry):
         return self
 
 
-class DisplacementEntry(Noun):
+class DisplacementEntry(FileModel):
     """How the ground end of a link moves: harmonic, or measured in a CSV file (columns in s and m)."""
 
     harmonic: DisplacementHarmonic | None = None
@@ -178,7 +178,7 @@ class DisplacementEntry(Noun):
         return self
 
 
-class ChannelEntry(Noun):
+class ChannelEntry(FileModel):
     """A recorded column: its unit where it is not SI, its sign where its axis is reversed, the standard deviation of its white noise."""
 
     column: Column
@@ -207,7 +207,7 @@ class SensorEntry(PlaceEntry):
         return column if is_name(column) else f"{name}_{quantity}"
 
 
-class OutputEntry(Noun):
+class OutputEntry(FileModel):
     """A travel or force of an axle's suspension or tyre, or of a link."""
 
     quantity: str
@@ -221,7 +221,7 @@ class OutputEntry(Noun):
         return self
 
 
-class RunFile(Noun):
+class RunFile(FileModel):
     """A run as its file declares it, quantities in SI units."""
 
     vehicle: FileName
@@ -252,9 +252,9 @@ class Run:
     document: Located
 
     @property
-    def keep(self) -> int:
+    def decimation(self) -> int:
         """Every how many steps a sample is kept."""
-        return DEFAULT_KEEP if self.file.sample is None else round(self.file.sample / self.file.step)
+        return DEFAULT_DECIMATION if self.file.sample is None else round(self.file.sample / self.file.step)
 
     def values(self) -> dict[str, float]:
         """Return the vehicle's free parameters in this run [SI]: file, then set, then the run's own."""
@@ -396,7 +396,7 @@ def _check(run: Run) -> None:
             f"a run has at most {MAX_STEPS} steps; {file.duration:g} s in steps of {file.step:g} s are more",
             document.find(("duration",)),
         )
-    if file.sample is not None and (run.keep < 1 or abs(run.keep * file.step - file.sample) > 1e-9 * file.sample):
+    if file.sample is not None and (run.decimation < 1 or abs(run.decimation * file.step - file.sample) > 1e-9 * file.sample):
         raise InputError(
             f"`sample` must be a whole number of steps of {file.step:g} s, found {file.sample:g} s",
             document.find(("sample",)),

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.codegen import Drive
+from vehgen.codegen import Excitation
 from vehgen.errors import InputError
 from vehgen.files.limits import HUMP_HEIGHT, HUMP_LENGTH, SPEED_LIMIT
 from vehgen.files.tables import read_columns
-from vehgen.mechanics.equations_of_motion import LinearModel
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.road import (
     AdjustedSpeed,
     ConstantSpeed,
@@ -29,7 +29,7 @@ from vehgen.road import (
     wheel_inputs,
 )
 from vehgen.simulate.budgets import check_run, placed
-from vehgen.simulate.drive_cache import DriveCache
+from vehgen.simulate.drive_cache import ExcitationCache
 from vehgen.simulate.runfile import DisplacementHarmonic, ForceHarmonic, HumpEntry, Run
 
 Array = NDArray[np.float64]
@@ -39,7 +39,7 @@ AFTER_LAST_HUMP = 3.0
 
 NULLS_TO = 30.0
 """Above it [Hz] no axle hops."""
-_DRIVES = DriveCache()
+_DRIVES = ExcitationCache()
 
 
 @dataclass(frozen=True)
@@ -71,14 +71,14 @@ class Scenario:
     speed: SpeedLaw
     duration: float
     dt: float
-    keep: int
+    decimation: int
     ground: tuple[Signal | None, ...] = ()
     forces: tuple[Signal, ...] = ()
     start: float = 0.0
     time: Array = field(init=False)
 
     def __post_init__(self) -> None:
-        steps = round(self.duration / (self.dt * self.keep)) * self.keep
+        steps = round(self.duration / (self.dt * self.decimation)) * self.decimation
         object.__setattr__(self, "time", self.start + np.arange(steps + 1) * self.dt)
 
     @property
@@ -102,7 +102,7 @@ class Scenario:
         law = self.speed if (delay, speed) == (0.0, 1.0) else AdjustedSpeed(self.speed, delay, speed)
         return replace(self, speed=law, track=replace(self.track, scale=self.track.scale * height))
 
-    def drive(self, offsets: Array) -> Drive:
+    def drive(self, offsets: Array) -> Excitation:
         """Return the inputs of a vehicle whose axles run `offsets shape (n_axles,)` [m] behind the first to arrive.
 
         Neither they nor the arrays of the scenario are to be written to: the last drives are remembered.
@@ -116,7 +116,7 @@ class Scenario:
         key = (*road, self.start, self.dt, len(self.time), id(self.ground), id(self.forces))
         return _DRIVES.find(key, (self.track, self.speed, self.ground, self.forces), lambda: self._drive(offsets))
 
-    def _drive(self, offsets: Array) -> Drive:
+    def _drive(self, offsets: Array) -> Excitation:
         wheels = wheel_inputs(self.track, self.speed, offsets, self.time)
         half = self.dt / 2
         ground, ground_rates = [], []
@@ -128,10 +128,10 @@ class Scenario:
         forces = np.column_stack([signal.at(self.time) for signal in self.forces]) if self.forces else np.zeros((len(self.time), 0))
         inputs = np.column_stack([wheels.heights, *ground])
         rates = np.column_stack([wheels.rates, *ground_rates])
-        return Drive(self.dt, inputs, rates, forces)
+        return Excitation(self.dt, inputs, rates, forces)
 
 
-def make_scenario(run: Run, model: LinearModel, values: dict[str, float]) -> Scenario:
+def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) -> Scenario:
     """Build the scenario of a run file.
 
     Raises
@@ -158,7 +158,7 @@ def make_scenario(run: Run, model: LinearModel, values: dict[str, float]) -> Sce
         Signal(harmonic=entry.harmonic) if entry.harmonic else _measured(run, entry.file or "", entry.time, entry.force, ("forces", name))
         for name, entry in file.forces.items()
     )
-    return Scenario(track, speed, duration, file.step, run.keep, ground, forces)
+    return Scenario(track, speed, duration, file.step, run.decimation, ground, forces)
 
 
 def _speed(run: Run) -> SpeedLaw:

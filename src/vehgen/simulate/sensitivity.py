@@ -13,17 +13,17 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from vehgen.codegen import Drive
+from vehgen.codegen import Excitation
 from vehgen.errors import InputError, did_you_mean
-from vehgen.mechanics.equations_of_motion import LinearModel
-from vehgen.mechanics.rows import Entries
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion
+from vehgen.mechanics.rows import SparseMatrix
 from vehgen.simulate.exact import channel_values, newmark_states
 
 Array = NDArray[np.float64]
 
 
 def direct_sensitivities(
-    model: LinearModel, drive: Drive, names: Sequence[str], keep: int = 10, values: Mapping[str, float] | None = None
+    model: EquationsOfMotion, drive: Excitation, names: Sequence[str], decimation: int = 10, values: Mapping[str, float] | None = None
 ) -> tuple[Array, Array]:
     """Return a response and its derivatives by parameters, exact for the Newmark solution.
 
@@ -53,7 +53,7 @@ def direct_sensitivities(
     numeric = model.numeric(values)
     forces = drive.inputs @ numeric.P.T + drive.rates @ numeric.Q.T + drive.forces @ numeric.F.T
     q, v, a = newmark_states(numeric, forces, drive.dt)
-    response = channel_values(numeric, a, v, q, drive.inputs, drive.rates)[::keep]
+    response = channel_values(numeric, a, v, q, drive.inputs, drive.rates)[::decimation]
     loads = np.zeros((*q.shape, len(names)))
     derived = [matrix_derivatives(model, name, values) for name in names]
     for i, d in enumerate(derived):
@@ -66,11 +66,11 @@ def direct_sensitivities(
         own = sa[:, :, i] @ rows["acceleration"].T + sv[:, :, i] @ rows["velocity"].T + sq[:, :, i] @ rows["displacement"].T
         moved = a @ d["acceleration"].T + v @ d["velocity"].T + q @ d["displacement"].T
         moved += drive.inputs @ d["input"].T + drive.rates @ d["input_rate"].T
-        sensitivities[i] = (own + moved)[::keep]
+        sensitivities[i] = (own + moved)[::decimation]
     return response, sensitivities
 
 
-def matrix_derivatives(model: LinearModel, name: str, values: Mapping[str, float]) -> dict[str, Array]:
+def matrix_derivatives(model: EquationsOfMotion, name: str, values: Mapping[str, float]) -> dict[str, Array]:
     """Return the derivatives of all matrices and output rows by a parameter, through the parameters that follow it.
 
     The keys are those of :class:`vehgen.mechanics.equations_of_motion.NumericModel` (`M`, `C`, `K`, `P`, `Q`, `F`) and of its `outputs`.
@@ -79,7 +79,7 @@ def matrix_derivatives(model: LinearModel, name: str, values: Mapping[str, float
     for symbol, expression in model.definitions:
         chain[symbol] = _total(expression, chain)
     n, width = model.n_dof, len(model.inputs)
-    groups: dict[str, tuple[Entries, tuple[int, int]]] = {
+    groups: dict[str, tuple[SparseMatrix, tuple[int, int]]] = {
         "M": (model.mass_entries, (n, n)),
         "C": (model.damping_entries, (n, n)),
         "K": (model.stiffness_entries, (n, n)),

@@ -14,10 +14,10 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from vehgen.codegen import Drive, Kernel, KernelResult
+from vehgen.codegen import Excitation, Kernel, KernelResult
 from vehgen.errors import InputError, ModelWarning, did_you_mean
 from vehgen.files import write_text
-from vehgen.mechanics import Channel, ElementOutput, LinearModel, Output, Place, derive, static_loads
+from vehgen.mechanics import Channel, ElementOutput, EquationsOfMotion, Output, Place, derive, static_loads
 from vehgen.simulate.budgets import check_population
 from vehgen.simulate.runfile import Run
 from vehgen.simulate.scenario import Scenario, make_scenario
@@ -60,7 +60,7 @@ class Simulator:
     """
 
     def __init__(self, vehicle: Vehicle, outputs: Iterable[Output], forces: Iterable[Place] = ()) -> None:
-        self.model: LinearModel = derive(vehicle, outputs, forces)
+        self.model: EquationsOfMotion = derive(vehicle, outputs, forces)
         self.kernel = Kernel(self.model)
         self._known_offsets: dict[tuple[float, ...], Array] = {}
 
@@ -93,7 +93,7 @@ class Simulator:
         -------
         Responses and failures; a failed individual raises a ModelWarning and leaves the others unharmed.
         """
-        check_population(len(parameters), len(scenario.time) / scenario.keep, len(self.model.channels))
+        check_population(len(parameters), len(scenario.time) / scenario.decimation, len(self.model.channels))
         offsets = np.round(self.wheel_offsets(parameters), 12)
         distinct, group = np.unique(offsets, axis=0, return_inverse=True)
         group = group.ravel()
@@ -102,8 +102,8 @@ class Simulator:
         residuals = np.zeros(len(parameters))
         for index, layout in enumerate(distinct):
             members = np.flatnonzero(group == index)
-            drive: Drive = scenario.drive(layout)
-            result = self.kernel.run(parameters[members], drive, scenario.keep, threads=threads)
+            drive: Excitation = scenario.drive(layout)
+            result = self.kernel.run(parameters[members], drive, scenario.decimation, threads=threads)
             failures.update({int(members[i]): reason for i, reason in result.failures.items()})
             residuals[members] = result.residuals
             part = result.responses
@@ -222,7 +222,7 @@ def simulate(run: Run) -> Response:
         *spectral_nulls(simulator.model, values, scenario),
         *step_too_coarse(simulator.model, values, scenario),
     ]
-    time = np.arange(responses.shape[1], dtype=np.float64) * scenario.dt * scenario.keep
+    time = np.arange(responses.shape[1], dtype=np.float64) * scenario.dt * scenario.decimation
     return Response(time, responses[:, :, :n], simulator.model.channels[:n], tuple(messages))
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.mechanics.equations_of_motion import LinearModel
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.static_loads import static_loads
 from vehgen.simulate.modes import natural_modes
 from vehgen.simulate.scenario import Scenario
@@ -18,7 +18,7 @@ NULL_WIDTH = 0.05
 """A spectral null this near (relative) to a hop frequency leaves the mode unexcited."""
 
 
-def lift_off(model: LinearModel, values: Mapping[str, float], tyre_forces: NDArray[np.float64]) -> Iterator[str]:
+def lift_off(model: EquationsOfMotion, values: Mapping[str, float], tyre_forces: NDArray[np.float64]) -> Iterator[str]:
     """Warn where a tyre's dynamic force `shape (n_samples, n_axles)` [N] unloads it wholly: the linear tyre would pull on the road."""
     if not model.vehicle.axles:
         return
@@ -28,7 +28,7 @@ def lift_off(model: LinearModel, values: Mapping[str, float], tyre_forces: NDArr
             yield f"the tyre of {name} would leave the road: its dynamic force falls to {force.min() / load:.2f} of its static load"
 
 
-def spectral_nulls(model: LinearModel, values: Mapping[str, float], scenario: Scenario) -> Iterator[str]:
+def spectral_nulls(model: EquationsOfMotion, values: Mapping[str, float], scenario: Scenario) -> Iterator[str]:
     """Warn where a null of a hump's spectrum meets a hop mode: the run says next to nothing about that axle."""
     hop = np.array([item.motion == "hop" for item in model.coordinates])
     for mode in natural_modes(model, values):
@@ -42,7 +42,7 @@ def spectral_nulls(model: LinearModel, values: Mapping[str, float], scenario: Sc
                 )
 
 
-def step_too_coarse(model: LinearModel, values: Mapping[str, float], scenario: Scenario) -> Iterator[str]:
+def step_too_coarse(model: EquationsOfMotion, values: Mapping[str, float], scenario: Scenario) -> Iterator[str]:
     """Warn where the step stretches the period of a mode, or steps over a hump."""
     fastest = natural_modes(model, values)[-1]
     half = np.pi * fastest.undamped_hz * scenario.dt
@@ -57,5 +57,5 @@ def step_too_coarse(model: LinearModel, values: Mapping[str, float], scenario: S
         steps = length / (scenario.top_speed * scenario.dt)
         if steps < 20:
             yield f"the step of {scenario.dt * 1e3:g} ms crosses a hump of {length:g} m in {steps:.0f} steps; take at least 20"
-    if not 0.5 / (scenario.dt * scenario.keep) > fastest.undamped_hz:
-        yield f"samples every {scenario.dt * scenario.keep * 1e3:g} ms cannot show {fastest.name} at {fastest.undamped_hz:.1f} Hz"
+    if not 0.5 / (scenario.dt * scenario.decimation) > fastest.undamped_hz:
+        yield f"samples every {scenario.dt * scenario.decimation * 1e3:g} ms cannot show {fastest.name} at {fastest.undamped_hz:.1f} Hz"

@@ -16,19 +16,19 @@ from vehgen.files.names import FreeText, Name
 from vehgen.files.units import DAMPING, FREQUENCY, INERTIA, LENGTH, MASS, MOMENT, NONE, PITCH_DAMPING, STIFFNESS, Dimension
 
 GROUND = "ground"
-Motion = Literal["heave", "pitch"]
+BodyMotion = Literal["heave", "pitch"]
 ZERO = parse("0")
 LawEntry = dict[Name, Expression | dict[Name, Expression]]
 """Parameters of a force law; of an own `law`, its `force` and its `parameters`."""
 
 
-class Noun(BaseModel):
+class FileModel(BaseModel):
     """What the nouns share: unknown keys are refused, values do not change."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class Parameter(Noun):
+class Parameter(FileModel):
     """A symbol: a value in SI units with what calibration may search, or an expression of other parameters."""
 
     value: Expression | None = Field(None, description="a number with its unit")
@@ -45,7 +45,7 @@ class Parameter(Noun):
         return self
 
 
-class CarriedBy(Noun):
+class CarriedBy(FileModel):
     """Where a body rides on another, seen from the carrier's COG [m]."""
 
     body: str
@@ -53,14 +53,14 @@ class CarriedBy(Noun):
     z: Expression = ZERO
 
 
-class Size(Noun):
+class Size(FileModel):
     """Length and height of a box centred on the COG [m]."""
 
     length: Expression
     height: Expression
 
 
-class Bending(Noun):
+class Bending(FileModel):
     """The first bending mode of a long body, as of a uniform free beam about its COG.
 
     Its shape is the parabola (3 s^2 - 1)/2 with s = 1 at both ends: free of heave and pitch, with the modal mass of a fifth of the body's.
@@ -71,12 +71,12 @@ class Bending(Noun):
     damping_ratio: Expression = ZERO
 
 
-class Body(Noun):
+class Body(FileModel):
     """A rigid body with the motions it has of its own, and its bending where it is long and limber."""
 
     mass: Expression
     pitch_inertia: Expression | None = None
-    motions: tuple[Motion, ...] = ("heave", "pitch")
+    motions: tuple[BodyMotion, ...] = ("heave", "pitch")
     carried_by: CarriedBy | None = None
     size: Size | None = None
     bending: Bending | None = None
@@ -84,14 +84,14 @@ class Body(Noun):
     title: FreeText = ""
 
 
-class Point(Noun):
+class Point(FileModel):
     """A point of a body, from its COG: x ahead, z above [m]."""
 
     x: Expression = ZERO
     z: Expression = ZERO
 
 
-class Spring(Noun):
+class Spring(FileModel):
     """A linear spring and damper in parallel, and the force laws beside them."""
 
     k: Expression = ZERO
@@ -136,7 +136,7 @@ class Link(Joint):
     """A vertical spring and damper between points of two bodies, or of a body and the ground."""
 
 
-class Axle(Noun):
+class Axle(FileModel):
     """A wheel on the road: with `mass` and `suspension` it hops by itself, without both it sits on its body."""
 
     body: str
@@ -158,7 +158,7 @@ class Axle(Noun):
         return self
 
 
-class Vehicle(Noun):
+class Vehicle(FileModel):
     """A road vehicle as its file declares it.
 
     Made by :func:`vehgen.vehicle.load_vehicle`, which has checked names, units, connections and values.

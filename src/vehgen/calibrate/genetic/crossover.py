@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-REACH = 0.25
+OVERSHOOT = 0.25
 """How far a child may lie outside the box its parents span, in units of that box."""
 
 
@@ -25,6 +25,6 @@ def recombine(parents: Array, rate: float, random: np.random.Generator) -> Array
     crossed = random.random((len(first), 1)) < rate
     children = np.empty_like(parents)
     for offset, (a, b) in enumerate(((first, second), (second, first))):
-        t = random.uniform(-REACH, 1.0 + REACH, a.shape)
+        t = random.uniform(-OVERSHOOT, 1.0 + OVERSHOOT, a.shape)
         children[offset::2] = np.where(crossed, a + t * (b - a), a)
     return np.clip(children, 0.0, 1.0)

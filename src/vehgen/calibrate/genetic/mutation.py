@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-REACH = 0.5
+LARGEST_MUTATION = 0.5
 """Largest step in units of the gene's range."""
 PRECISION = 16
 """Steps reach down to REACH * 2^-PRECISION."""
@@ -19,5 +19,5 @@ def mutate(genes: Array, rate: float, random: np.random.Generator) -> Array:
     mutation: H. Muehlenbein and D. Schlierkamp-Voosen, 1993, doi:10.1162/evco.1993.1.1.25).
     """
     moved = random.random(genes.shape) < rate
-    step = REACH * 2.0 ** (-PRECISION * random.random(genes.shape)) * random.choice([-1.0, 1.0], genes.shape)
+    step = LARGEST_MUTATION * 2.0 ** (-PRECISION * random.random(genes.shape)) * random.choice([-1.0, 1.0], genes.shape)
     return np.clip(np.where(moved, genes + step, genes), 0.0, 1.0)

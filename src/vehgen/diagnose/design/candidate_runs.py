@@ -26,12 +26,12 @@ USUAL = (0.05, 2.0)
 """Height [m] and speed [m/s] from which to begin where no run has a hump."""
 LEAD, AFTER = 1.5, 3.0
 """Seconds recorded before the hump and after it."""
-NEAR = 0.15
+NEAREST_HEIGHT_RATIO = 0.15
 """A sensor within this share of the body's length of an end is at that end."""
 
 
 @dataclass(frozen=True)
-class FurtherRun:
+class CandidateRun:
     """A hump of a height and length [m] at a speed [m/s], and its scenario; `same` where the runs had a hump of that shape already."""
 
     height: float
@@ -46,7 +46,7 @@ class FurtherRun:
         return f"{self.height:.3g} m at {self.speed:.3g} m/s"
 
 
-def list_runs(trials: Sequence[Trial]) -> list[FurtherRun]:
+def list_runs(trials: Sequence[Trial]) -> list[CandidateRun]:
     """Return the runs to choose among, gentlest first: by height, then by speed.
 
     Parameters
@@ -63,7 +63,7 @@ def list_runs(trials: Sequence[Trial]) -> list[FurtherRun]:
     heights = sorted({min(max(round(200 * factor * top) / 200, LOWEST), max(HIGHEST, top)) for factor in HEIGHTS})
     wanted = {max(0.6 * slow, min(SLOWEST, slow)), slow, fast, *(min(factor * fast, max(FASTEST, fast)) for factor in (1.5, 2.0))}
     return [
-        FurtherRun(height, hump.length, speed, _scenario(trials[0], hump, height / top, speed), bool(known))
+        CandidateRun(height, hump.length, speed, _scenario(trials[0], hump, height / top, speed), bool(known))
         for height in heights
         for speed in sorted({round(10 * item) / 10 for item in wanted})
     ]
@@ -85,7 +85,7 @@ def _scenario(trial: Trial, hump: Hump, scale: float, speed: float) -> Scenario:
 def free_places(trial: Trial) -> list[PointOutput]:
     """Return sensors that could be added: of acceleration at each end of a body that has none there, of pitch rate on one without."""
     vehicle, model = trial.run.vehicle, trial.simulator.model
-    layout, channels = model.layout, trial.measurement.channels
+    layout, channels = model.layout, trial.recording.channels
     entries = {(0, i): layout.place(vehicle, name) for i, name in enumerate((*vehicle.axles, *vehicle.hinges))}
     places = {
         (1, i): item.output.place.locate(vehicle, layout) + layout.bodies[item.output.place.body][0] for i, item in enumerate(channels)
@@ -99,7 +99,7 @@ def free_places(trial: Trial) -> list[PointOutput]:
         if not x:
             continue
         ends = dict.fromkeys((max(x, key=lambda name: x[name]), min(x, key=lambda name: x[name])))
-        reach = NEAR * max(max(x.values()) - min(x.values()), 1.0)
+        reach = NEAREST_HEIGHT_RATIO * max(max(x.values()) - min(x.values()), 1.0)
         taken = [numbers[1, i] for i, item in enumerate(channels) if item.output.place.body == body and item.quantity == "acceleration"]
         free = [end for end in ends if all(abs(x[end] - place) > reach for place in taken)]
         found += [PointOutput(f"{body}_{end}_acceleration", Place(f"{body}_{end}", body, behind=end), "acceleration") for end in free]

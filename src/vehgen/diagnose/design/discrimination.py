@@ -18,14 +18,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.design.candidate_runs import FurtherRun
-from vehgen.diagnose.fits.model_fit import HOLD, NUISANCES, Fit
+from vehgen.diagnose.design.candidate_runs import CandidateRun
+from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, NUISANCES, ModelFit
 from vehgen.fit.least_squares import best_delay
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.fit.noise import Noise, transform
 from vehgen.fit.problem import Problem
 from vehgen.fit.trial import Trial
-from vehgen.measure import MeasuredChannel
+from vehgen.measure import RecordedChannel
 from vehgen.mechanics import Output
 from vehgen.mechanics.outputs import ElementOutput, PointOutput
 from vehgen.simulate import Simulator
@@ -35,7 +35,7 @@ Complex = NDArray[np.complex128]
 SPREAD = 0.29
 """Standard deviation of an effect's own parameter in the unit cube before any run: that of an even distribution."""
 REFITS = 4
-SETTLED = 0.9
+SETTLED_GAIN = 0.9
 """A step of a refit that leaves more than this share of the distance is the last one."""
 ABSENT = 1e6
 """A channel with so many times its noise counts as not there."""
@@ -55,53 +55,53 @@ class Separation:
 
 
 @dataclass
-class Rival:
+class FittedModel:
     """A fitted model with the channels of `trial`; `noise` is theirs."""
 
-    fit: Fit
+    fit: ModelFit
     trial: Trial
     noise: Noise
     _answers: dict[str, Array] = field(default_factory=dict)
     _locals: dict[tuple[str, tuple[str, ...]], tuple[Misfit, Array]] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, fit: Fit, channels: tuple[str, ...]) -> Rival:
+    def of(cls, fit: ModelFit, channels: tuple[str, ...]) -> FittedModel:
         """Return the rival that records `channels` as the fit's own runs did, with the most noise found in any of them."""
-        misfit = fit.polished.misfit
+        misfit = fit.least_squares.misfit
         group = [trial for trial in misfit.problem.trials if trial.channels == channels]
         noises = [misfit.noises[trial.name] for trial in group]
         return cls(fit, group[0], replace(noises[0], sigma=np.max([item.sigma for item in noises], axis=0)))
 
-    def with_outputs(self, outputs: Sequence[PointOutput]) -> Rival:
+    def with_outputs(self, outputs: Sequence[PointOutput]) -> FittedModel:
         """Return the rival with more channels, as noisy as its own of the same quantity; compiles a simulator."""
         known: dict[str, list[float]] = {}
-        for channel, own in zip(self.trial.measurement.channels, self.noise.sigma, strict=True):
+        for channel, own in zip(self.trial.recording.channels, self.noise.sigma, strict=True):
             known.setdefault(channel.quantity, []).append(float(own))
         sigma = np.array([np.mean(known.get(item.quantity, [PHONE[item.quantity]])) for item in outputs])
-        measurement = self.trial.measurement
-        added = tuple(MeasuredChannel(item.name, item.place.name, item.quantity, item) for item in outputs)
+        measurement = self.trial.recording
+        added = tuple(RecordedChannel(item.name, item.place.name, item.quantity, item) for item in outputs)
         channels = (*measurement.channels, *added)
         simulator = self.simulator(tuple(channel.output for channel in channels))
         values = simulator.model.values(overrides=self.trial.run.values())
         blank = np.zeros((len(measurement.time), len(channels)))
-        trial = replace(self.trial, simulator=simulator, values=values, measurement=replace(measurement, values=blank, channels=channels))
-        return Rival(self.fit, trial, replace(self.noise, sigma=np.concatenate([self.noise.sigma, sigma])))
+        trial = replace(self.trial, simulator=simulator, values=values, recording=replace(measurement, values=blank, channels=channels))
+        return FittedModel(self.fit, trial, replace(self.noise, sigma=np.concatenate([self.noise.sigma, sigma])))
 
     def simulator(self, outputs: Sequence[Output]) -> Simulator:
         """Compile the model with other outputs."""
         return Simulator(self.trial.run.vehicle, outputs, self.trial.run.forces())
 
-    def misfit(self, run: FurtherRun, noise: Noise | None = None) -> Misfit:
+    def misfit(self, run: CandidateRun, noise: Noise | None = None) -> Misfit:
         """Return the misfit of this model over a run that recorded nothing."""
-        fitted = self.fit.polished.misfit
-        time = run.scenario.time[:: run.scenario.keep]
-        measurement = replace(self.trial.measurement, time=time, values=np.zeros((len(time), len(self.trial.channels))))
-        trial = replace(self.trial, name=run.name, scenario=run.scenario, measurement=measurement)
+        fitted = self.fit.least_squares.misfit
+        time = run.scenario.time[:: run.scenario.decimation]
+        measurement = replace(self.trial.recording, time=time, values=np.zeros((len(time), len(self.trial.channels))))
+        trial = replace(self.trial, name=run.name, scenario=run.scenario, recording=measurement)
         problem = Problem((trial,), fitted.problem.space)
         noises = {run.name: noise or self.noise}
-        return Misfit(problem, noises, self.fit.polished.values, NUISANCES, fitted.band, fitted.shared)
+        return Misfit(problem, noises, self.fit.least_squares.values, NUISANCES, fitted.band, fitted.shared)
 
-    def local(self, run: FurtherRun, channels: tuple[str, ...]) -> tuple[Misfit, Array]:
+    def local(self, run: CandidateRun, channels: tuple[str, ...]) -> tuple[Misfit, Array]:
         """Return the misfit over a run with some channels only, and its derivatives at the fit."""
         key = run.name, channels
         if key not in self._locals:
@@ -113,57 +113,57 @@ class Rival:
     @cached_property
     def x(self) -> Array:
         """The fitted parameters and adjustments, then the new run's errors, none."""
-        misfit = self.fit.polished.misfit
+        misfit = self.fit.least_squares.misfit
         own = misfit.n_parameters + len(misfit.shared)
-        return np.concatenate([self.fit.polished.x[:own], np.zeros(len(NUISANCES.names))])
+        return np.concatenate([self.fit.least_squares.x[:own], np.zeros(len(NUISANCES.names))])
 
     @cached_property
     def information(self) -> Array:
         """What the runs so far and the springs of the fit say of parameters and adjustments, `shape (n, n)`."""
-        misfit = self.fit.polished.misfit
+        misfit = self.fit.least_squares.misfit
         n = misfit.n_parameters
         own = sum(len(item.parameters) for item in self.fit.effects)
-        jacobian = misfit.jacobian(self.fit.polished.x)
+        jacobian = misfit.jacobian(self.fit.least_squares.x)
         whole = jacobian.T @ jacobian
-        whole[:n, :n] += np.diag(np.concatenate([np.full(n - own, HOLD), np.full(own, SPREAD)]) ** -2.0)
+        whole[:n, :n] += np.diag(np.concatenate([np.full(n - own, BASE_PRIOR_SIGMA), np.full(own, SPREAD)]) ** -2.0)
         k = n + len(misfit.shared)
         return np.asarray(whole[:k, :k] - whole[:k, k:] @ np.linalg.solve(whole[k:, k:], whole[k:, :k]))
 
-    def predict(self, run: FurtherRun) -> Array:
+    def predict(self, run: CandidateRun) -> Array:
         """Return what its channels would read, `shape (n_samples, n_channels)`."""
         if run.name not in self._answers:
             self._answers[run.name] = self.misfit(run).simulate(self.x)[0]
         return self._answers[run.name]
 
-    def travels(self, run: FurtherRun, axles: Sequence[str]) -> Array:
+    def travels(self, run: CandidateRun, axles: Sequence[str]) -> Array:
         """Return the travel of the suspensions of axles, `shape (n_samples, len(axles))` [m]; compiles a simulator."""
         simulator = self.simulator([ElementOutput(f"travel of {name}", name, "suspension_travel") for name in axles])
         trial = replace(self.trial, simulator=simulator, values=simulator.model.values(overrides=self.trial.run.values()))
-        misfit, scenario = self.fit.polished.misfit, run.scenario
-        for item, value in zip(misfit.shared, misfit.adjusted(self.fit.polished.x), strict=True):
+        misfit, scenario = self.fit.least_squares.misfit, run.scenario
+        for item, value in zip(misfit.shared, misfit.adjusted(self.fit.least_squares.x), strict=True):
             scenario = item.scenario(scenario, float(value))
-        return np.asarray(misfit.problem.respond(self.fit.polished.values[None], trial, scenario)[0][0])
+        return np.asarray(misfit.problem.respond(self.fit.least_squares.values[None], trial, scenario)[0][0])
 
 
-def at_most(truth: Rival, fitted: Rival, run: FurtherRun, channels: tuple[str, ...]) -> Separation:
+def at_most(truth: FittedModel, fitted: FittedModel, run: CandidateRun, channels: tuple[str, ...]) -> Separation:
     """Return a distance that no refit and no roughness of the road can exceed, quickly; 0 where a prediction is not finite."""
-    lines, dt = _difference(truth, fitted, run), fitted.trial.measurement.dt
+    lines, dt = _difference(truth, fitted, run), fitted.trial.recording.dt
     kept = np.isin(fitted.trial.channels, channels)
     distance = float(((np.abs(lines) ** 2).sum(axis=0) / (dt * fitted.noise.sigma**2))[kept].sum())
     return Separation(distance if np.isfinite(distance) else 0.0, 2 * len(lines) * len(channels), fitted.x)
 
 
-def separate(truth: Rival, fitted: Rival, run: FurtherRun, channels: tuple[str, ...]) -> Separation:
+def separate(truth: FittedModel, fitted: FittedModel, run: CandidateRun, channels: tuple[str, ...]) -> Separation:
     """Return how far `fitted` stays from the prediction of `truth` after its refit to all runs: REFITS Gauss-Newton steps at most.
 
     They begin at the fit, and at the fit with the new run's clock where the two predictions correlate best.
     """
     misfit, jacobian = fitted.local(run, channels)
-    wanted = misfit.white_signal(0, truth.predict(run))
+    wanted = misfit.whitened_signal(0, truth.predict(run))
     count, k = 2 * wanted.size * len(channels) // wanted.shape[1], len(fitted.information)
 
     def left(x: Array) -> tuple[float, Array]:
-        residuals = np.concatenate([flatten(wanted + misfit.white_lines(x)[0]), x[k:]])
+        residuals = np.concatenate([flatten(wanted + misfit.whitened_spectrum(x)[0]), x[k:]])
         away = x[:k] - fitted.x[:k]
         return float(residuals @ residuals + away @ fitted.information @ away), residuals
 
@@ -181,7 +181,7 @@ def separate(truth: Rival, fitted: Rival, run: FurtherRun, channels: tuple[str, 
         nearer, residuals_there = left(new)
         if not nearer < distance:
             break
-        settled = nearer > SETTLED * distance
+        settled = nearer > SETTLED_GAIN * distance
         x, distance, residuals = new, nearer, residuals_there
         if settled or distance < 1.0 or turn == REFITS - 1:
             break
@@ -189,12 +189,12 @@ def separate(truth: Rival, fitted: Rival, run: FurtherRun, channels: tuple[str, 
     return Separation(distance if np.isfinite(distance) else 0.0, count, x)
 
 
-def _later(truth: Rival, fitted: Rival, run: FurtherRun) -> float:
+def _later(truth: FittedModel, fitted: FittedModel, run: CandidateRun) -> float:
     """Return by how much later [s] the prediction of `fitted` must come to correlate best with that of `truth`."""
-    return best_delay(truth.predict(run), fitted.predict(run), fitted.trial.measurement.dt, fitted.fit.polished.misfit.band)
+    return best_delay(truth.predict(run), fitted.predict(run), fitted.trial.recording.dt, fitted.fit.least_squares.misfit.band)
 
 
-def peak(truth: Rival, fitted: Rival, run: FurtherRun, channels: Sequence[str], x: Array) -> tuple[str, float]:
+def peak(truth: FittedModel, fitted: FittedModel, run: CandidateRun, channels: Sequence[str], x: Array) -> tuple[str, float]:
     """Return the channel in which the predictions differ most, `fitted` at x, and by how many standard deviations of its noise."""
     left = np.abs(truth.predict(run) - fitted.misfit(run).simulate(x)[0]).max(axis=0) / fitted.noise.sigma
     left = np.where(np.isin(fitted.trial.channels, channels), np.nan_to_num(left), -1.0)
@@ -202,9 +202,9 @@ def peak(truth: Rival, fitted: Rival, run: FurtherRun, channels: Sequence[str], 
     return fitted.trial.channels[best], float(left[best])
 
 
-def _difference(truth: Rival, fitted: Rival, run: FurtherRun) -> Complex:
+def _difference(truth: FittedModel, fitted: FittedModel, run: CandidateRun) -> Complex:
     """Return the spectral lines of the difference of two predictions within the band, `shape (n_lines, n_channels)`."""
-    difference, dt = truth.predict(run) - fitted.predict(run), fitted.trial.measurement.dt
+    difference, dt = truth.predict(run) - fitted.predict(run), fitted.trial.recording.dt
     frequency = np.fft.rfftfreq(len(difference), dt)
-    low, high = fitted.fit.polished.misfit.band
+    low, high = fitted.fit.least_squares.misfit.band
     return transform(difference, dt, (frequency >= low) & (frequency <= high))

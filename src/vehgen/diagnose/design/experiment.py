@@ -15,21 +15,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.design.candidate_runs import FurtherRun, free_places, list_runs
-from vehgen.diagnose.design.discrimination import Rival, Separation, at_most, peak, separate
+from vehgen.diagnose.design.candidate_runs import CandidateRun, free_places, list_runs
+from vehgen.diagnose.design.discrimination import FittedModel, Separation, at_most, peak, separate
 from vehgen.diagnose.design.proposal import Proposal, drive, sensor_text
-from vehgen.diagnose.fits.model_fit import Fit
-from vehgen.diagnose.select.search import Progress
+from vehgen.diagnose.fits.model_fit import ModelFit
+from vehgen.diagnose.select.search import DiagnosisProgress
 from vehgen.diagnose.verdict import sentence
 from vehgen.fit.trial import Trial
-from vehgen.measure import MeasuredChannel
+from vehgen.measure import RecordedChannel
 
 if TYPE_CHECKING:
     from vehgen.diagnose.detect.detection import Detection
 
-ROUGHEST = 20.0
+ROUGHEST_ROAD_SHARE = 20.0
 """Acceleration [m/s^2] beyond which nobody drives, unless the runs have half of it behind them."""
-ENOUGH = 25.0
+ENOUGH_CHI2 = 25.0
 """Expected difference of chi-squared at which two models are told apart: five standard deviations."""
 NOTHING = 1.0
 """Below this distance two models are the same."""
@@ -48,14 +48,14 @@ Array = NDArray[np.float64]
 class _Found:
     """The best answer so far: a run, the pair that it separates least, how far, with which channels, and the sensor added."""
 
-    run: FurtherRun
-    pair: tuple[Rival, Rival]
+    run: CandidateRun
+    pair: tuple[FittedModel, FittedModel]
     separation: Separation
     channels: tuple[str, ...]
     added: str | None = None
 
 
-def propose(detection: Detection, fits: Sequence[Fit], tell: Progress | None = None) -> Proposal | None:
+def propose(detection: Detection, fits: Sequence[ModelFit], progress: DiagnosisProgress | None = None) -> Proposal | None:
     """Return the gentlest run that tells tied models apart: with the runs' sensors, else with one more, else the best there is.
 
     Parameters
@@ -78,22 +78,22 @@ def propose(detection: Detection, fits: Sequence[Fit], tell: Progress | None = N
     pairs = list(permutations(fits, 2))
     found: _Found | None = None
     for adding in (False, True):
-        if found is None or found.separation.distance < ENOUGH:
-            found = _search(detection, pairs, lambda item: item.distance >= ENOUGH, found, tell, adding)
+        if found is None or found.separation.distance < ENOUGH_CHI2:
+            found = _search(detection, pairs, lambda item: item.distance >= ENOUGH_CHI2, found, progress, adding)
     if found is None or found.separation.distance < NOTHING:
         return _same(detection, fits, names)
     channel, times = _peak(found)
     told = f"{drive(found.run, found.added)}: the predictions of {sentence(names, 'and')} "
     told += f"then differ by {times:.2g} times the noise at {channel}"
     told += f", by {math.sqrt(found.separation.distance):.2g} standard deviations in all"
-    separates = found.separation.distance >= ENOUGH
+    separates = found.separation.distance >= ENOUGH_CHI2
     if not separates:
-        repeats = math.ceil(ENOUGH / found.separation.distance)  # distances of equal runs add up
+        repeats = math.ceil(ENOUGH_CHI2 / found.separation.distance)  # distances of equal runs add up
         told += f"; it takes {repeats} such runs to be sure" if repeats <= REPEATS else ", too little to be sure"
     return _proposal(names, found, channel, times, separates, told)
 
 
-def propose_stronger(detection: Detection, fit: Fit, tell: Progress | None = None) -> Proposal | None:
+def propose_stronger(detection: Detection, fit: ModelFit, progress: DiagnosisProgress | None = None) -> Proposal | None:
     """Return the gentlest run in which an effect too weak to be named would stand out: the refitted base's chi above VISIBLE.
 
     Returns
@@ -102,7 +102,7 @@ def propose_stronger(detection: Detection, fit: Fit, tell: Progress | None = Non
     """
     if not detection.trials[0].run.vehicle.axles:
         return None
-    found = _search(detection, [(fit, detection.base)], lambda item: 1 + item.distance / item.count >= VISIBLE**2, None, tell)
+    found = _search(detection, [(fit, detection.base)], lambda item: 1 + item.distance / item.count >= VISIBLE**2, None, progress)
     if found is None or found.separation.distance < NOTHING:
         return None
     channel, times = _peak(found)
@@ -113,17 +113,17 @@ def propose_stronger(detection: Detection, fit: Fit, tell: Progress | None = Non
 
 def _search(
     detection: Detection,
-    pairs: Sequence[tuple[Fit, Fit]],
+    pairs: Sequence[tuple[ModelFit, ModelFit]],
     enough: Callable[[Separation], bool],
     best: _Found | None,
-    tell: Progress | None,
+    progress: DiagnosisProgress | None,
     adding: bool = False,
 ) -> _Found | None:
     """Return the first run that is enough, gentlest first, with the runs' own sensors or one more; else what is best."""
     fits = list({id(fit): fit for pair in pairs for fit in pair}.values())
-    trials = (*detection.problem.trials, *detection.held_out)
+    trials = (*detection.problem.trials, *detection.validation_runs)
     for channels in dict.fromkeys(trial.channels for trial in detection.problem.trials):
-        rivals = {id(fit): Rival.of(fit, channels) for fit in fits}
+        rivals = {id(fit): FittedModel.of(fit, channels) for fit in fits}
         options: list[tuple[str | None, tuple[str, ...]]] = [(None, channels)]
         first = rivals[id(fits[0])]
         if adding:
@@ -134,8 +134,8 @@ def _search(
         runs = list_runs((first.trial, *trials)) if options else []
         failed = []
         for done, run in enumerate(runs):
-            if tell is not None:
-                tell("next run", done, len(runs), run.name)
+            if progress is not None:
+                progress("next run", done, len(runs), run.name)
             if _feasible(run, trials, list(rivals.values())):
                 for added, own in options:
                     found = _weakest(run, joined, own, added, lambda item: not enough(item))
@@ -146,7 +146,7 @@ def _search(
     return best
 
 
-def _best(best: _Found | None, failed: Sequence[_Found], pairs: Sequence[tuple[Rival, Rival]]) -> _Found | None:
+def _best(best: _Found | None, failed: Sequence[_Found], pairs: Sequence[tuple[FittedModel, FittedModel]]) -> _Found | None:
     """Return what is best of runs that are not enough, looking closely only where a run could be better than the best so far."""
     for item in sorted(failed, key=lambda item: -item.separation.distance):
         reached = best.separation.distance if best is not None else 0.0
@@ -162,8 +162,8 @@ def _within(reached: float, item: Separation) -> bool:
 
 
 def _weakest(
-    run: FurtherRun,
-    pairs: Sequence[tuple[Rival, Rival]],
+    run: CandidateRun,
+    pairs: Sequence[tuple[FittedModel, FittedModel]],
     channels: tuple[str, ...],
     added: str | None,
     stop: Callable[[Separation], bool],
@@ -181,24 +181,24 @@ def _weakest(
     return min(found, key=lambda item: item.separation.distance)
 
 
-def _feasible(run: FurtherRun, trials: Sequence[Trial], rivals: Sequence[Rival]) -> bool:
+def _feasible(run: CandidateRun, trials: Sequence[Trial], rivals: Sequence[FittedModel]) -> bool:
     """Return whether no model predicts an acceleration that nobody would drive through."""
-    limit = max([ROUGHEST, *(2 * _acceleration(trial.measurement.values, trial.measurement.channels) for trial in trials)])
-    return all(_acceleration(rival.predict(run), rival.trial.measurement.channels) <= limit for rival in rivals)
+    limit = max([ROUGHEST_ROAD_SHARE, *(2 * _acceleration(trial.recording.values, trial.recording.channels) for trial in trials)])
+    return all(_acceleration(rival.predict(run), rival.trial.recording.channels) <= limit for rival in rivals)
 
 
-def _acceleration(values: Array, channels: Sequence[MeasuredChannel]) -> float:
+def _acceleration(values: Array, channels: Sequence[RecordedChannel]) -> float:
     columns = [i for i, channel in enumerate(channels) if channel.quantity == "acceleration"]
     return float(np.abs(values[:, columns]).max(initial=0.0))
 
 
-def _same(detection: Detection, fits: Sequence[Fit], names: tuple[str, ...]) -> Proposal:
+def _same(detection: Detection, fits: Sequence[ModelFit], names: tuple[str, ...]) -> Proposal:
     """Say that no sensor on a body tells models apart, and whether one of a suspension's travel does."""
     channels = detection.problem.trials[0].channels
-    rivals = [Rival.of(fit, channels) for fit in fits]
+    rivals = [FittedModel.of(fit, channels) for fit in fits]
     axles = [name for name, axle in detection.problem.trials[0].run.vehicle.axles.items() if axle.suspension is not None]
     axles = [name for name in axles if all(rival.trial.run.vehicle.axles[name].suspension is not None for rival in rivals)]
-    trials = (*detection.problem.trials, *detection.held_out)
+    trials = (*detection.problem.trials, *detection.validation_runs)
     runs = [run for run in list_runs((rivals[0].trial, *trials)) if _feasible(run, trials, rivals)]
     told = f"{sentence(names, 'and')} predict the same in every hump run looked at, on the bodies"
     if axles and runs:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from vehgen.diagnose.design.candidate_runs import FurtherRun
+from vehgen.diagnose.design.candidate_runs import CandidateRun
 from vehgen.mechanics.outputs import PointOutput
 
 
@@ -47,7 +47,7 @@ class Proposal:
         return {**asdict(self), "models": list(self.models)}
 
 
-def drive(run: FurtherRun, added: str | None = None) -> str:
+def drive(run: CandidateRun, added: str | None = None) -> str:
     """Return what to do, in words."""
     which = "the same hump" if run.same else f"a hump {run.length:.3g} m long"
     first = f"add {added} and " if added else ""

@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.detect.noise_floor import NoiseFloor, find_noise_floor
-from vehgen.diagnose.fits.model_fit import Fit, fit_base, mean_square_as_filed, narrow
+from vehgen.diagnose.fits.model_fit import ModelFit, fit_base, mean_square_as_filed, narrow
 from vehgen.errors import InputError
 from vehgen.fit.band import DIAGNOSIS_BAND_HZ, compared_band
 from vehgen.fit.problem import Problem, make_problem
 from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
-EDGES = (0.0, 3.0, 8.0, 15.0, np.inf)
+BAND_EDGES_HZ = (0.0, 3.0, 8.0, 15.0, np.inf)
 """Bands of the table of gaps [Hz]: rigid-body motion, between, wheel hop, above."""
 
 
@@ -30,11 +30,11 @@ class Detection:
     """
 
     problem: Problem
-    held_out: tuple[Trial, ...]
+    validation_runs: tuple[Trial, ...]
     floor: NoiseFloor
-    base: Fit
+    base: ModelFit
     as_filed: float
-    as_filed_untouched: float
+    as_filed_validation: float
     band: tuple[float, float] = DIAGNOSIS_BAND_HZ
 
     @property
@@ -45,7 +45,7 @@ class Detection:
     @property
     def trials(self) -> tuple[Trial, ...]:
         """All runs, those for fitting first."""
-        return (*self.problem.trials, *self.held_out)
+        return (*self.problem.trials, *self.validation_runs)
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ def split_runs(trials: Sequence[Trial]) -> tuple[list[Trial], list[Trial]]:
 
 def kind_of_run(trial: Trial) -> tuple[float, ...]:
     """Return what a run is like, whatever it is called: its humps' height, its speed, what was measured."""
-    return (hump_height(trial), trial.scenario.top_speed, float(np.sort(trial.measurement.values**2, axis=None).sum()))
+    return (hump_height(trial), trial.scenario.top_speed, float(np.sort(trial.recording.values**2, axis=None).sum()))
 
 
 def hump_height(trial: Trial) -> float:
@@ -88,18 +88,18 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
     return Detection(problem, tuple(held_out), floor, base, filed[0], filed[1], band)
 
 
-def band_gaps(detection: Detection, fit: Fit | None = None) -> list[BandGap]:
+def band_gaps(detection: Detection, fit: ModelFit | None = None) -> list[BandGap]:
     """Return chi by run, channel and band, of the base or of another fit."""
     fit = fit or detection.base
     found = []
     for trial in detection.trials:
-        power = fit.powers.get(trial.name)
+        power = fit.spectra.get(trial.name)
         if power is None:
             continue
-        n, dt = len(trial.measurement.time), trial.measurement.dt
+        n, dt = len(trial.recording.time), trial.recording.dt
         frequency = np.fft.rfftfreq(n, dt)
         frequency = frequency[(frequency >= detection.band[0]) & (frequency <= detection.band[1])]
-        for low, high in pairwise(EDGES):
+        for low, high in pairwise(BAND_EDGES_HZ):
             inside = (frequency >= low) & (frequency < high)
             if inside.any():
                 bounds = (max(low, detection.band[0]), min(high, detection.band[1]))
@@ -112,7 +112,7 @@ def _refuse_copies(trials: Sequence[Trial]) -> None:
     """Raise InputError where two runs hold the same recording: a copy is no check."""
     known: dict[bytes, str] = {}
     for trial in trials:
-        content = trial.measurement.values.tobytes()
+        content = trial.recording.values.tobytes()
         if content in known:
             raise InputError(
                 f"{known[content]} and {trial.name} hold the same recording; a copy can neither teach nor check: leave one out"
@@ -140,8 +140,8 @@ def run_gaps(detection: Detection) -> list[RunGap]:
     found = []
     for trial in detection.trials:
         sigma = detection.floor.noises[trial.name].sigma
-        loudness = float(np.sqrt(np.mean((trial.measurement.values / sigma) ** 2)))
-        square = detection.base.runs[trial.name]
+        loudness = float(np.sqrt(np.mean((trial.recording.values / sigma) ** 2)))
+        square = detection.base.mean_squares[trial.name]
         share = float(np.sqrt(max(square - 1.0, 0.0))) / loudness
         found.append(RunGap(trial.name, hump_height(trial), trial.scenario.top_speed, float(np.sqrt(square)), share))
     return found

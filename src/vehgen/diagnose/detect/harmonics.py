@@ -15,11 +15,11 @@ from vehgen.diagnose.detect.detection import Detection
 from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
-HIGHEST = 5
+HIGHEST_HARMONIC = 5
 """Multiples of the driving frequency that are looked at."""
 PERIODS = 5
 """A run must show so many periods after its first SETTLED share."""
-SETTLED = 0.4
+SETTLED_SHARE = 0.4
 
 
 @dataclass(frozen=True)
@@ -53,14 +53,14 @@ def distortions(detection: Detection) -> list[Distortion]:
     found = []
     for trial in detection.trials:
         frequency = driving_frequency(trial)
-        time = trial.measurement.time
-        late = time >= SETTLED * time[-1]
+        time = trial.recording.time
+        late = time >= SETTLED_SHARE * time[-1]
         if frequency is None or (time[-1] - time[late][0]) * frequency < PERIODS:
             continue
-        highest = min(HIGHEST, int(0.45 / (trial.measurement.dt * frequency)))
+        highest = min(HIGHEST_HARMONIC, int(0.45 / (trial.recording.dt * frequency)))
         turns = 2 * np.pi * frequency * np.outer(time[late], np.arange(1, highest + 1))
         columns = np.hstack([np.ones((len(turns), 1)), np.cos(turns), np.sin(turns)])
-        factors = np.linalg.lstsq(columns, trial.measurement.values[late], rcond=None)[0]
+        factors = np.linalg.lstsq(columns, trial.recording.values[late], rcond=None)[0]
         amplitudes = np.hypot(factors[1 : highest + 1], factors[highest + 1 :])
         sigma = detection.floor.noises[trial.name].sigma
         for i, channel in enumerate(trial.channels):

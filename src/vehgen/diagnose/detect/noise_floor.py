@@ -25,9 +25,9 @@ from vehgen.road import Hump
 Array = NDArray[np.float64]
 SHORTEST = 0.8
 """A lead-in shorter than this [s] tells nothing."""
-MARGIN = 0.1
+LEAD_IN_MARGIN_S = 0.1
 """How long before the hump the lead-in ends [s]."""
-TOP = (1.025, 1.175)
+TOP_BAND_RATIO = (1.025, 1.175)
 """The top of the band lies just above what is compared: so many times its highest frequency (41 to 47 Hz above 40 Hz)."""
 DIFFERENT = 1.3
 SLOPES = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5)
@@ -36,7 +36,7 @@ COLOURED = 12.0
 """Gain in -2 ln of the likelihood of the lead-ins beyond which noise counts as coloured."""
 LEAST = 0.5
 """A lead-in that tells of less than this share of what its own top of the band shows has let the road's roughness take the noise."""
-LARGEST = 4.0
+LARGEST_RATIO = 4.0
 """The top of the band of a loud run may hold its motion too: it counts at most this much more than the lead-in's variance."""
 
 
@@ -65,7 +65,7 @@ def find_noise_floor(trials: Sequence[Trial], band: tuple[float, float] = CALIBR
         quiet = [part for trial in group if (part := lead_in(trial)) is not None]
         rough = np.sqrt(np.mean([top_of_band(part, band) ** 2 for part in (quiet or group)], axis=0))
         shared = _coloured(quiet, rough, band) if quiet else Noise(EVEN, rough)
-        colour = (sum(TOP) / 2 * band[1] / COLOUR_AT) ** (shared.slope / 2)
+        colour = (sum(TOP_BAND_RATIO) / 2 * band[1] / COLOUR_AT) ** (shared.slope / 2)
         variance, weight = np.zeros((len(group), len(channels))), np.zeros((len(group), len(channels)))
         for i, trial in enumerate(group):
             high = colour * top_of_band(trial, band)
@@ -78,19 +78,19 @@ def find_noise_floor(trials: Sequence[Trial], band: tuple[float, float] = CALIBR
             for j, channel in enumerate(channels):
                 name = f"{trial.name}: {channel}"
                 top[name] = float(high[j])
-                duration = trial.measurement.dt * len(trial.measurement.time)
-                variance[i, j], weight[i, j] = high[j] ** 2, (TOP[1] - TOP[0]) * band[1] * duration / 2
+                duration = trial.recording.dt * len(trial.recording.time)
+                variance[i, j], weight[i, j] = high[j] ** 2, (TOP_BAND_RATIO[1] - TOP_BAND_RATIO[0]) * band[1] * duration / 2
                 if low is not None and part is not None:
                     lead[name] = float(low[j])
                     if low[j] > DIFFERENT * high[j]:
                         corrected.append(name)
                     else:
-                        lines = (band[1] - band[0]) * part.measurement.dt * len(part.measurement.time)
+                        lines = (band[1] - band[0]) * part.recording.dt * len(part.recording.time)
                         both = weight[i, j] + lines
-                        variance[i, j] = (min(variance[i, j], LARGEST * low[j] ** 2) * weight[i, j] + low[j] ** 2 * lines) / both
+                        variance[i, j] = (min(variance[i, j], LARGEST_RATIO * low[j] ** 2) * weight[i, j] + low[j] ** 2 * lines) / both
                         weight[i, j] = both
-        power = np.array([np.mean(trial.measurement.values**2, axis=0) for trial in group])
-        stated = np.array([[channel.noise or np.nan for channel in trial.measurement.channels] for trial in group])
+        power = np.array([np.mean(trial.recording.values**2, axis=0) for trial in group])
+        stated = np.array([[channel.noise or np.nan for channel in trial.recording.channels] for trial in group])
         sigma = np.where(np.isnan(stated), np.sqrt(_smooth(variance, weight, power)), stated)
         for i, trial in enumerate(group):
             noises[trial.name] = Noise(shared.levels, sigma[i], shared.slope if np.isnan(stated).any() else 0.0)
@@ -129,9 +129,9 @@ def _from_lead_in(
     """Return the noise of lead-ins for a slope, and -2 ln of its likelihood."""
     residuals = []
     for part in quiet:
-        frequency = np.asarray(np.fft.rfftfreq(len(part.measurement.time), part.measurement.dt), dtype=np.float64)
+        frequency = np.asarray(np.fft.rfftfreq(len(part.recording.time), part.recording.dt), dtype=np.float64)
         inside = (frequency >= max(band[0], 1.0)) & (frequency <= band[1])
-        lines = transform(part.measurement.values - part.measurement.values.mean(axis=0), part.measurement.dt, inside)
+        lines = transform(part.recording.values - part.recording.values.mean(axis=0), part.recording.dt, inside)
         residuals.append((lines, road_answer(part, frequency[inside], part.values)))
     noise = estimate_noise(residuals, Noise(np.full(len(EVEN), 100 * SMALLEST_LEVEL) if levels is None else levels, sigma, slope))
     return noise, sum(noise.loss(lines, answer) for lines, answer in residuals)
@@ -143,19 +143,19 @@ def lead_in(trial: Trial) -> Trial | None:
     if not humps or len(humps) < len(trial.scenario.track.parts):
         return None
     first = min(hump.at for hump in humps) - trial.scenario.track.footprint
-    time = trial.measurement.time
-    quiet = trial.scenario.speed.distance(time + MARGIN) < first
+    time = trial.recording.time
+    quiet = trial.scenario.speed.distance(time + LEAD_IN_MARGIN_S) < first
     count = int(quiet.sum())
-    if count * trial.measurement.dt < SHORTEST or np.any(np.ptp(trial.measurement.values[:count], axis=0) == 0.0):
+    if count * trial.recording.dt < SHORTEST or np.any(np.ptp(trial.recording.values[:count], axis=0) == 0.0):
         return None
-    measurement = replace(trial.measurement, time=time[:count], values=trial.measurement.values[:count])
-    return replace(trial, measurement=measurement)
+    measurement = replace(trial.recording, time=time[:count], values=trial.recording.values[:count])
+    return replace(trial, recording=measurement)
 
 
 def top_of_band(trial: Trial, band: tuple[float, float] = CALIBRATION_BAND_HZ) -> Array:
     """Return the standard deviation of white noise that the top of a band [Hz] shows, `shape (n_channels,)`."""
-    frequency, density = record_psd(trial.measurement.values, trial.measurement.dt, axis=0)
-    top = min(TOP[1] * band[1], frequency[-1])  # a slow recording shows less
-    inside = (frequency >= top * TOP[0] / TOP[1]) & (frequency <= top)
+    frequency, density = record_psd(trial.recording.values, trial.recording.dt, axis=0)
+    top = min(TOP_BAND_RATIO[1] * band[1], frequency[-1])  # a slow recording shows less
+    inside = (frequency >= top * TOP_BAND_RATIO[0] / TOP_BAND_RATIO[1]) & (frequency <= top)
     # the median of an exponential variable is ln 2 of its mean; it forgives a line within the band
-    return np.asarray(np.sqrt(np.median(density[inside], axis=0) / np.log(2) / (2 * trial.measurement.dt)))
+    return np.asarray(np.sqrt(np.median(density[inside], axis=0) / np.log(2) / (2 * trial.recording.dt)))

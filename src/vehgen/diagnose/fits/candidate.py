@@ -9,14 +9,14 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.effects import Effect, Surveyor
+from vehgen.effects import Effect, EffectLocator
 from vehgen.fit.adjustments import Adjustment, Footprint, Gain, SensorDelay, SpeedScale, Tilt
-from vehgen.fit.harmonic import line_numbers
+from vehgen.fit.harmonic import harmonic_adjustments
 from vehgen.fit.misfit import Noises
 from vehgen.fit.problem import Problem
 from vehgen.fit.space import SearchSpace
 from vehgen.fit.trial import Trial
-from vehgen.measure import MeasuredChannel
+from vehgen.measure import RecordedChannel
 from vehgen.simulate import Simulator
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.loading import extend_vehicle
@@ -53,7 +53,7 @@ class Candidate:
 def list_candidates(vehicle: Vehicle, trials: Sequence[Trial], effects: Sequence[Effect], noises: Noises | None = None) -> list[Candidate]:
     """Return every effect at every place at which it can live; the noise of the runs weighs channels where an effect needs it."""
     sigma = {name: noise.sigma for name, noise in (noises or {}).items()}
-    sensors = tuple(dict.fromkeys(channel.sensor for trial in trials for channel in trial.measurement.channels))
+    sensors = tuple(dict.fromkeys(channel.sensor for trial in trials for channel in trial.recording.channels))
     channels = tuple(dict.fromkeys(name for trial in trials for name in trial.channels))
     found = []
     for effect in effects:
@@ -69,18 +69,18 @@ def list_candidates(vehicle: Vehicle, trials: Sequence[Trial], effects: Sequence
                 bounds = [(item.low, item.high) for item in effect.parameters] or [(-np.inf, np.inf)]
                 shared = (kind(place, scale, neutral, *bounds[0]),)
             elif effect.adjusts == "harmonic":
-                shared = tuple(line_numbers(place, sigma))
+                shared = tuple(harmonic_adjustments(place, sigma))
             else:
                 continue
             found.append(Candidate(effect, place, names, shared))
     return found
 
 
-def _of_sensor(trials: Sequence[Trial], sensor: str) -> list[MeasuredChannel]:
-    return [channel for trial in trials for channel in trial.measurement.channels if channel.sensor == sensor]
+def _of_sensor(trials: Sequence[Trial], sensor: str) -> list[RecordedChannel]:
+    return [channel for trial in trials for channel in trial.recording.channels if channel.sensor == sensor]
 
 
-def pose(candidate: Candidate, base: Problem, surveyor: Surveyor, simulators: dict[object, Simulator]) -> Problem:
+def build_problem(candidate: Candidate, base: Problem, surveyor: EffectLocator, simulators: dict[object, Simulator]) -> Problem:
     """Return the base problem with the candidate's effect added to the vehicle and its parameters to the search.
 
     Parameters
@@ -114,7 +114,7 @@ def pose(candidate: Candidate, base: Problem, surveyor: Surveyor, simulators: di
     return Problem(tuple(trials), space)
 
 
-def starts(candidate: Candidate, surveyor: Surveyor) -> Iterator[tuple[float, ...]]:
+def starts(candidate: Candidate, surveyor: EffectLocator) -> Iterator[tuple[float, ...]]:
     """Yield where the effect's own parameters may begin."""
     if candidate.effect.edit is None:
         options = [parameter.starts for parameter in candidate.effect.parameters]
@@ -127,7 +127,7 @@ def starts(candidate: Candidate, surveyor: Surveyor) -> Iterator[tuple[float, ..
 def retarget(trial: Trial, vehicle: Vehicle, simulators: dict[object, Simulator]) -> Trial:
     """Return a trial with another vehicle that has at least its parameters."""
     run = replace(trial.run, vehicle=vehicle)
-    outputs = tuple(channel.output for channel in trial.measurement.channels)
+    outputs = tuple(channel.output for channel in trial.recording.channels)
     key = (id(vehicle), repr(outputs), repr(run.forces()))
     if key not in simulators:
         simulators[key] = Simulator(vehicle, outputs, run.forces())

@@ -17,7 +17,7 @@ from vehgen.codegen import Kernel
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.fit.noise import transform
 from vehgen.fit.problem import Problem
-from vehgen.mechanics import LinearModel, static_loads
+from vehgen.mechanics import EquationsOfMotion, static_loads
 from vehgen.mechanics.energies import Element
 from vehgen.mechanics.equations_of_motion import Channel
 from vehgen.mechanics.law_terms import RATE, REST, STATIC, TRAVEL
@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
-class Motion:
+class ProbeMotion:
     """How every spring and damper moves under a fit, and what the sensors show of a force there.
 
     Parameters
@@ -40,7 +40,7 @@ class Motion:
         self.misfit = misfit
         unit, errors = misfit.split(x)
         values, numbers = misfit.problem.space.values(unit), misfit.adjusted(x)
-        kernels: dict[int, tuple[LinearModel, Kernel]] = {}
+        kernels: dict[int, tuple[EquationsOfMotion, Kernel]] = {}
         self.values = [misfit.problem.values_of(values, trial) for trial in misfit.problem.trials]
         self.motions: list[Array] = []
         self._responses: dict[tuple[int, int], Complex] = {}
@@ -54,7 +54,7 @@ class Motion:
             for item, value in zip(misfit.shared, numbers, strict=True):
                 scenario = item.scenario(scenario, float(value))
             population = np.array([[known[name] for name in probe.parameters]])
-            run = kernel.run(population, scenario.drive(probe.wheel_offsets(known)), scenario.keep)
+            run = kernel.run(population, scenario.drive(probe.wheel_offsets(known)), scenario.decimation)
             self.motions.append(np.asarray(run.responses[0].T.reshape(len(model.elements), 2, -1)))
 
     def moved(self, problem: Problem, values: Array) -> Array | None:
@@ -78,13 +78,13 @@ class Motion:
             if forces is None:
                 return None
             lines: Complex = np.zeros((len(self.misfit.frequency(t)), len(trial.channels)), dtype=np.complex128)
-            inside = np.isin(np.fft.rfftfreq(len(trial.measurement.time), trial.measurement.dt), self.misfit.frequency(t))
+            inside = np.isin(np.fft.rfftfreq(len(trial.recording.time), trial.recording.dt), self.misfit.frequency(t))
             for number, force in forces.items():
-                lines += transform(force[:, None], trial.measurement.dt, inside) * self._response(t, number)
+                lines += transform(force[:, None], trial.recording.dt, inside) * self._response(t, number)
             parts.append(flatten(self.misfit.whiten(t, lines)))
         return np.concatenate(parts)
 
-    def _forces(self, t: int, model: LinearModel, values: Mapping[str, float]) -> dict[int, Array] | None:
+    def _forces(self, t: int, model: EquationsOfMotion, values: Mapping[str, float]) -> dict[int, Array] | None:
         """Return what a model adds at the elements of the fit's model, by number, each `shape (n_samples,)`."""
         own = self.misfit.problem.trials[t].simulator.model
         alike = len(model.elements) == len(own.elements) and model.mass_entries == own.mass_entries and not model.is_preloaded
@@ -118,7 +118,7 @@ class Motion:
         return self._responses[t, number]
 
 
-def _probe(model: LinearModel) -> LinearModel:
+def _probe(model: EquationsOfMotion) -> EquationsOfMotion:
     """Return the model with the travel and the rate of every element as its channels."""
     channels = []
     for item in model.elements:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.fits.candidate import Candidate, retarget
 from vehgen.fit.adjustments import Adjustment
-from vehgen.fit.least_squares import Polished, polish
+from vehgen.fit.least_squares import LeastSquaresFit, fit_least_squares
 from vehgen.fit.misfit import Misfit, Noises, Nuisances
 from vehgen.fit.problem import Problem
 from vehgen.fit.resolution import resolve
@@ -21,18 +21,18 @@ from vehgen.simulate import Simulator
 Array = NDArray[np.float64]
 NUISANCES = Nuisances(delay=0.05, speed=0.005, height=0.02)
 """What a run may not know of itself: its clock, 0.5 % of its speed, 2 % of its road's height."""
-BOUND = 0.3
+BASE_RANGE = 0.3
 """The base may move its parameters by this share of a logarithm about the file's values: looser, it absorbs the effect."""
-HOLD = 0.17
+BASE_PRIOR_SIGMA = 0.17
 """Standard deviation of a base parameter in the unit cube: 0.1 of a logarithm."""
-ROUGH = 1e-4
-RENEW = 5
+COARSE_TOLERANCE = 1e-4
+JACOBIAN_REFRESH = 5
 """As in Misfit: saves two thirds of the time."""
-FINE = 1e-6
+FINE_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True)
-class Fit:
+class ModelFit:
     """A fitted model: the base with `effects`; `train` and `held_out` mean squares of whitened residuals (1 is noise alone).
 
     `runs` are the mean squares run by run, training runs first; `counts` how many residuals stand behind each; `powers` the mean squares
@@ -41,14 +41,14 @@ class Fit:
     """
 
     effects: tuple[Candidate, ...]
-    polished: Polished
-    train: float
-    held_out: float
-    runs: dict[str, float]
+    least_squares: LeastSquaresFit
+    training: float
+    validation: float
+    mean_squares: dict[str, float]
     counts: dict[str, int]
-    powers: dict[str, Array]
-    checks: Polished | None = None
-    equals: tuple[Array, ...] = ()
+    spectra: dict[str, Array]
+    validation_fit: LeastSquaresFit | None = None
+    equivalent_minima: tuple[Array, ...] = ()
 
     @property
     def label(self) -> str:
@@ -66,18 +66,18 @@ class Fit:
         return self.effects[-1]
 
     @property
-    def free(self) -> int:
+    def n_effect_parameters(self) -> int:
         """How many of the searched parameters are the effects'."""
         return sum(len(item.parameters) for item in self.effects)
 
     @property
     def chi(self) -> float:
         """Its chi over all runs."""
-        return float(np.sqrt(_pooled(self.runs, self.counts)))
+        return float(np.sqrt(_pooled(self.mean_squares, self.counts)))
 
 
 @dataclass(frozen=True)
-class Footing:
+class CurrentModel:
     """What candidates are added to: the base or what has been found so far.
 
     `problem` begins at that fit's parameters, of which the last `free` are the effects'; `shared` are its adjustments, whose neutral
@@ -87,41 +87,50 @@ class Footing:
     effects: tuple[Candidate, ...]
     problem: Problem
     shared: tuple[Adjustment, ...]
-    free: int
+    n_effect_parameters: int
     unit: Array
     errors: Array
-    train: float
+    training: float
 
     @classmethod
-    def of(cls, fit: Fit) -> Footing:
+    def of(cls, fit: ModelFit) -> CurrentModel:
         """Return a fit as what further effects are added to."""
-        misfit = fit.polished.misfit
-        free = fit.free
-        unit, errors = misfit.split(fit.polished.x)
-        numbers = misfit.adjusted(fit.polished.x)
+        misfit = fit.least_squares.misfit
+        free = fit.n_effect_parameters
+        unit, errors = misfit.split(fit.least_squares.x)
+        numbers = misfit.adjusted(fit.least_squares.x)
         shared = tuple(replace(item, neutral=float(value)) for item, value in zip(misfit.shared, numbers, strict=True))
         space = misfit.problem.space
         if free:
-            start = np.concatenate([space.start[: space.size - free], fit.polished.values[space.size - free :]])
+            start = np.concatenate([space.start[: space.size - free], fit.least_squares.values[space.size - free :]])
             space = replace(space, start=start)
-        return cls(fit.effects, Problem(misfit.problem.trials, space), shared, free, unit, errors.ravel(), fit.train)
+        return cls(fit.effects, Problem(misfit.problem.trials, space), shared, free, unit, errors.ravel(), fit.training)
 
 
 def narrow(problem: Problem) -> Problem:
     """Return the problem with its space cut to BOUND about the file's values."""
     space = problem.space
-    reach = np.maximum(np.abs(space.start) * (np.exp(BOUND) - 1), 0.02 * (space.upper - space.lower))
+    reach = np.maximum(np.abs(space.start) * (np.exp(BASE_RANGE) - 1), 0.02 * (space.upper - space.lower))
     positive = space.lower > 0
-    low = np.where(positive, np.maximum(space.lower, space.start * np.exp(-BOUND)), np.maximum(space.lower, space.start - reach))
-    high = np.where(positive, np.minimum(space.upper, space.start * np.exp(BOUND)), np.minimum(space.upper, space.start + reach))
+    low = np.where(positive, np.maximum(space.lower, space.start * np.exp(-BASE_RANGE)), np.maximum(space.lower, space.start - reach))
+    high = np.where(positive, np.minimum(space.upper, space.start * np.exp(BASE_RANGE)), np.minimum(space.upper, space.start + reach))
     return Problem(problem.trials, SearchSpace(space.names, low, high, space.start))
 
 
-def fit_base(problem: Problem, held_out: Sequence[Trial], noises: Noises, band: tuple[float, float]) -> Fit:
+def fit_base(problem: Problem, validation_runs: Sequence[Trial], noises: Noises, band: tuple[float, float]) -> ModelFit:
     """Fit the base model."""
     problem = resolve(*_begin(problem, noises, band))
-    fit = polish(problem, problem.space.unit(problem.space.start), NUISANCES, band, noises=noises, hold=HOLD, tolerance=FINE, renew=RENEW)
-    return judge((), fit, held_out, noises)
+    fit = fit_least_squares(
+        problem,
+        problem.space.unit(problem.space.start),
+        NUISANCES,
+        band,
+        noises=noises,
+        prior_sigma=BASE_PRIOR_SIGMA,
+        tolerance=FINE_TOLERANCE,
+        jacobian_refresh=JACOBIAN_REFRESH,
+    )
+    return evaluate_fit((), fit, validation_runs, noises)
 
 
 def mean_square_as_filed(trials: Sequence[Trial], noises: Noises, band: tuple[float, float]) -> float:
@@ -129,47 +138,49 @@ def mean_square_as_filed(trials: Sequence[Trial], noises: Noises, band: tuple[fl
     if not trials:
         return float("nan")
     problem = resolve(*_begin(Problem(tuple(trials), _nothing()), noises, band))
-    fit = polish(problem, np.zeros(0), NUISANCES, band, noises=noises, tolerance=ROUGH, renew=RENEW)
+    fit = fit_least_squares(
+        problem, np.zeros(0), NUISANCES, band, noises=noises, tolerance=COARSE_TOLERANCE, jacobian_refresh=JACOBIAN_REFRESH
+    )
     return _pooled(*_by_run(_powers(fit)))
 
 
-def refine(problem: Problem, fit: Polished, x: Array, free: int) -> Polished:
+def refine(problem: Problem, fit: LeastSquaresFit, x: Array, n_effect_parameters: int) -> LeastSquaresFit:
     """Fit finely from the unknowns `x` of another fit, on a problem with the same unknowns; `free` as in :func:`polish`."""
     misfit = fit.misfit
     unit, errors = misfit.split(x)
-    return polish(
+    return fit_least_squares(
         problem,
         unit,
         NUISANCES,
         misfit.band,
         noises=misfit.noises,
         start=errors.ravel(),
-        hold=HOLD,
-        free=free,
+        prior_sigma=BASE_PRIOR_SIGMA,
+        n_effect_parameters=n_effect_parameters,
         shared=misfit.shared,
         numbers=tuple(misfit.adjusted(x)),
         max_steps=25,
-        tolerance=FINE,
-        renew=RENEW,
+        tolerance=FINE_TOLERANCE,
+        jacobian_refresh=JACOBIAN_REFRESH,
     )
 
 
-def judge(effects: tuple[Candidate, ...], fit: Polished, held_out: Sequence[Trial], noises: Noises) -> Fit:
+def evaluate_fit(effects: tuple[Candidate, ...], fit: LeastSquaresFit, validation_runs: Sequence[Trial], noises: Noises) -> ModelFit:
     """Simulate a fitted model on untouched runs, of which only the clock, speed and road height are fitted, and the phase of a line."""
     powers = _powers(fit)
     runs, counts = _by_run(powers)
     train = _pooled(runs, counts)
     later = float("nan")
-    again: Polished | None = None
-    if held_out:
+    again: LeastSquaresFit | None = None
+    if validation_runs:
         problem = fit.misfit.problem
         fixed = problem.best_values(fit.values)
         vehicle = problem.trials[0].run.vehicle
         shared: dict[object, Simulator] = {
-            (id(vehicle), repr(tuple(c.output for c in trial.measurement.channels)), repr(trial.run.forces())): trial.simulator
+            (id(vehicle), repr(tuple(c.output for c in trial.recording.channels)), repr(trial.run.forces())): trial.simulator
             for trial in problem.trials
         }
-        trials = [retarget(trial, vehicle, shared) for trial in held_out]
+        trials = [retarget(trial, vehicle, shared) for trial in validation_runs]
         numbers = fit.misfit.adjusted(fit.x)
         frozen = Problem(
             tuple(replace(t, values=t.values | {k: v for k, v in fixed.items() if k not in t.fixed}) for t in trials), _nothing()
@@ -178,12 +189,21 @@ def judge(effects: tuple[Candidate, ...], fit: Polished, held_out: Sequence[Tria
             replace(item, neutral=float(value), scale=0.0) for item, value in zip(fit.misfit.shared, numbers, strict=True)
         )
         frozen = resolve(*_begin(frozen, noises, fit.misfit.band, frozen_shared))
-        again = polish(frozen, np.zeros(0), NUISANCES, fit.misfit.band, noises=noises, shared=frozen_shared, tolerance=FINE, renew=RENEW)
+        again = fit_least_squares(
+            frozen,
+            np.zeros(0),
+            NUISANCES,
+            fit.misfit.band,
+            noises=noises,
+            shared=frozen_shared,
+            tolerance=FINE_TOLERANCE,
+            jacobian_refresh=JACOBIAN_REFRESH,
+        )
         checked = _powers(again)
         own, own_counts = _by_run(checked)
         later = _pooled(own, own_counts)
         runs, counts, powers = runs | own, counts | own_counts, powers | checked
-    return Fit(effects, fit, train, later, runs, counts, powers, again)
+    return ModelFit(effects, fit, train, later, runs, counts, powers, again)
 
 
 def _begin(problem: Problem, noises: Noises, band: tuple[float, float], shared: Sequence[Adjustment] = ()) -> tuple[Misfit, Array]:
@@ -197,10 +217,10 @@ def _nothing() -> SearchSpace:
     return SearchSpace((), np.zeros(0), np.zeros(0), np.zeros(0))
 
 
-def _powers(fit: Polished) -> dict[str, Array]:
+def _powers(fit: LeastSquaresFit) -> dict[str, Array]:
     """Return the squares of a fit's whitened lines by run, `shape (n_lines, n_channels)`."""
     names = [trial.name for trial in fit.misfit.problem.trials]
-    return {name: np.abs(item) ** 2 for name, item in zip(names, fit.misfit.white_lines(fit.x), strict=True)}
+    return {name: np.abs(item) ** 2 for name, item in zip(names, fit.misfit.whitened_spectrum(fit.x), strict=True)}
 
 
 def _by_run(powers: dict[str, Array]) -> tuple[dict[str, float], dict[str, int]]:

@@ -7,10 +7,19 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.fits.candidate import Candidate, pose, starts
-from vehgen.diagnose.fits.model_fit import HOLD, NUISANCES, RENEW, ROUGH, Fit, Footing, judge, refine
-from vehgen.effects import Surveyor
-from vehgen.fit.least_squares import Polished, polish
+from vehgen.diagnose.fits.candidate import Candidate, build_problem, starts
+from vehgen.diagnose.fits.model_fit import (
+    BASE_PRIOR_SIGMA,
+    COARSE_TOLERANCE,
+    JACOBIAN_REFRESH,
+    NUISANCES,
+    CurrentModel,
+    ModelFit,
+    evaluate_fit,
+    refine,
+)
+from vehgen.effects import EffectLocator
+from vehgen.fit.least_squares import LeastSquaresFit, fit_least_squares
 from vehgen.fit.misfit import Misfit, Noises
 from vehgen.fit.problem import Problem
 from vehgen.fit.resolution import resolve
@@ -18,30 +27,30 @@ from vehgen.fit.trial import Trial
 from vehgen.simulate import Simulator
 
 Array = NDArray[np.float64]
-Origin = tuple[Array, Array]
+StartingPoint = tuple[Array, Array]
 """Where base parameters, in the unit cube, and the nuisances of runs begin."""
 HOPELESS = 0.5
 """A candidate that leaves more than this share of the excess after the rough fits is not refined."""
 MOST_STARTS = 8
 """So many starts are tried, of which KEPT are followed."""
-KEPT = 2
+FOLLOWED_STARTS = 2
 FEW, MORE = 4, 8
 """Steps from every start, and from those that are followed."""
-CLOSED = 0.01
+CLOSED_SHARE = 0.01
 """Share of the excess at which no other start is needed."""
 
 
 def fit_candidate(
     candidate: Candidate,
-    footing: Footing,
-    held_out: Sequence[Trial],
+    current: CurrentModel,
+    validation_runs: Sequence[Trial],
     noises: Noises,
     band: tuple[float, float],
-    surveyor: Surveyor,
+    surveyor: EffectLocator,
     simulators: dict[object, Simulator],
-    origins: Sequence[Origin],
+    origins: Sequence[StartingPoint],
     begin: Sequence[tuple[float, ...]] | None = None,
-) -> Fit | None:
+) -> ModelFit | None:
     """Fit a candidate's effect together with what it is added to.
 
     Parameters
@@ -59,67 +68,67 @@ def fit_candidate(
     -------
     None where the simulation fails at every start.
     """
-    problem = pose(candidate, footing.problem, surveyor, simulators)
-    rough = _Rough(candidate, footing, problem, noises, band)
+    problem = build_problem(candidate, current.problem, surveyor, simulators)
+    rough = _Rough(candidate, current, problem, noises, band)
     best = rough.search(origins, begin or list(starts(candidate, surveyor)))
     if best is None:
         return None
-    effects = (*footing.effects, candidate)
-    if best.chi2 - 1 > HOPELESS * max(footing.train - 1, 0.0):
-        return judge(effects, best, (), noises)
-    return judge(effects, refine(resolve(best.misfit, best.x), best, best.x, rough.free), held_out, noises)
+    effects = (*current.effects, candidate)
+    if best.chi2 - 1 > HOPELESS * max(current.training - 1, 0.0):
+        return evaluate_fit(effects, best, (), noises)
+    return evaluate_fit(effects, refine(resolve(best.misfit, best.x), best, best.x, rough.n_effect_parameters), validation_runs, noises)
 
 
 class _Rough:
     """Rough fits of one candidate."""
 
-    def __init__(self, candidate: Candidate, footing: Footing, problem: Problem, noises: Noises, band: tuple[float, float]) -> None:
-        self.candidate, self.footing, self.problem, self.noises, self.band = candidate, footing, problem, noises, band
-        self.shared = (*footing.shared, *candidate.shared)
-        self.free = footing.free + len(candidate.parameters)
+    def __init__(self, candidate: Candidate, current: CurrentModel, problem: Problem, noises: Noises, band: tuple[float, float]) -> None:
+        self.candidate, self.current, self.problem, self.noises, self.band = candidate, current, problem, noises, band
+        self.shared = (*current.shared, *candidate.shared)
+        self.n_effect_parameters = current.n_effect_parameters + len(candidate.parameters)
 
-    def search(self, origins: Sequence[Origin], begin: Sequence[tuple[float, ...]]) -> Polished | None:
+    def search(self, origins: Sequence[StartingPoint], begin: Sequence[tuple[float, ...]]) -> LeastSquaresFit | None:
         """Return the lowest of the rough fits."""
-        fits: list[Polished] = []
+        fits: list[LeastSquaresFit] = []
         for unit, errors, numbers in self._starts(origins, begin)[:MOST_STARTS]:
             fits.append(self._fit(unit, errors, numbers, FEW))
             if self._closed(fits[-1]):
                 return fits[-1]
         fits.sort(key=lambda item: item.loss)
         followed = []
-        for fit in fits[:KEPT]:
+        for fit in fits[:FOLLOWED_STARTS]:
             unit, errors = fit.misfit.split(fit.x)
             followed.append(self._fit(unit, errors.ravel(), tuple(fit.misfit.adjusted(fit.x)), MORE))
             if self._closed(followed[-1]):
                 break
         return min(followed, key=lambda item: item.loss, default=None)
 
-    def _closed(self, fit: Polished) -> bool:
-        return fit.chi2 - 1 <= CLOSED * max(self.footing.train - 1, 0.0)
+    def _closed(self, fit: LeastSquaresFit) -> bool:
+        return fit.chi2 - 1 <= CLOSED_SHARE * max(self.current.training - 1, 0.0)
 
-    def _fit(self, unit: Array, errors: Array, numbers: tuple[float, ...], steps: int) -> Polished:
-        return polish(
+    def _fit(self, unit: Array, errors: Array, numbers: tuple[float, ...], steps: int) -> LeastSquaresFit:
+        return fit_least_squares(
             self.problem,
             unit,
             NUISANCES,
             self.band,
             noises=self.noises,
             start=errors,
-            hold=HOLD,
-            free=self.free,
+            prior_sigma=BASE_PRIOR_SIGMA,
+            n_effect_parameters=self.n_effect_parameters,
             shared=self.shared,
             numbers=numbers,
             max_steps=steps,
-            tolerance=ROUGH,
-            renew=RENEW,
+            tolerance=COARSE_TOLERANCE,
+            jacobian_refresh=JACOBIAN_REFRESH,
         )
 
-    def _starts(self, origins: Sequence[Origin], begin: Sequence[tuple[float, ...]]) -> list[tuple[Array, Array, tuple[float, ...]]]:
+    def _starts(self, origins: Sequence[StartingPoint], begin: Sequence[tuple[float, ...]]) -> list[tuple[Array, Array, tuple[float, ...]]]:
         """Return the points at which fits may begin, the lowest first: parameters, nuisances, numbers of adjustments."""
-        n, own = len(self.footing.unit), len(self.candidate.parameters)
+        n, own = len(self.current.unit), len(self.candidate.parameters)
         space = self.problem.space
         misfit = Misfit(self.problem, self.noises, space.start, NUISANCES, self.band, self.shared)
-        neutral = tuple(item.neutral for item in self.footing.shared)
+        neutral = tuple(item.neutral for item in self.current.shared)
         ranked = []
         for base, errors in origins:
             for combination in begin:

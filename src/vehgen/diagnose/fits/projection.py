@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.fits.model_fit import HOLD
+from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA
 from vehgen.fit.misfit import Misfit, flatten
 
 Array = NDArray[np.float64]
@@ -29,9 +29,9 @@ class Projection:
         """Return the projection at unknowns x: parameters held by HOLD, everything else by its own prior."""
         total = misfit.n_unknowns
         held = np.ones(total)
-        held[: misfit.n_parameters] = 1 / HOLD
-        slopes = np.vstack([*(flatten(item, first=1).T for item in misfit.white_derivatives(x)), np.diag(held)])
-        residual = np.concatenate([*(flatten(item) for item in misfit.white_lines(x)), np.zeros(total)])
+        held[: misfit.n_parameters] = 1 / BASE_PRIOR_SIGMA
+        slopes = np.vstack([*(flatten(item, first=1).T for item in misfit.whitened_derivatives(x)), np.diag(held)])
+        residual = np.concatenate([*(flatten(item) for item in misfit.whitened_spectrum(x)), np.zeros(total)])
         basis = np.linalg.qr(slopes)[0]
         return cls(basis, residual - basis @ (basis.T @ residual))
 
@@ -40,7 +40,7 @@ class Projection:
         """How many residuals there are."""
         return int(len(self.basis) - self.basis.shape[1])
 
-    def free(self, moved: Array) -> Array:
+    def remainder(self, moved: Array) -> Array:
         """Return changes of the residuals `shape (n_residuals, ...)`, without what the base can undo, with the priors' rows."""
         padded = np.concatenate([moved, np.zeros((len(self.basis) - len(moved), *moved.shape[1:]))])
         return np.asarray(padded - self.basis @ (self.basis.T @ padded))

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from vehgen.diagnose.fits.model_fit import Fit, judge, refine
+from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit, refine
 from vehgen.fit.misfit import Noises
 from vehgen.fit.trial import Trial
 
@@ -17,18 +17,18 @@ AS_GOOD = 0.02
 """Minima whose mean square is within this of the lowest cannot be told apart: the steps of the simulation leave about as much."""
 
 
-def settle(fit: Fit, held_out: Sequence[Trial], noises: Noises, seed: int = 7) -> Fit:
+def restart(fit: ModelFit, validation_runs: Sequence[Trial], noises: Noises, seed: int = 7) -> ModelFit:
     """Return the lowest of several minima about a fit, with those that do as well; a fit without jumps as it is."""
-    misfit, x = fit.polished.misfit, fit.polished.x
+    misfit, x = fit.least_squares.misfit, fit.least_squares.x
     if not any(trial.jumps for trial in misfit.problem.trials):
         return fit
     random = np.random.Generator(np.random.PCG64(seed))
-    found = [fit.polished]
+    found = [fit.least_squares]
     for shake in SHAKES:
         begin = x.copy()
         begin[: misfit.n_parameters] += shake * random.standard_normal(misfit.n_parameters)
         begin[: misfit.n_parameters] = np.clip(begin[: misfit.n_parameters], 0.01, 0.99)
-        found.append(refine(misfit.problem, fit.polished, begin, fit.free))
+        found.append(refine(misfit.problem, fit.least_squares, begin, fit.n_effect_parameters))
     best = min(found, key=lambda item: item.loss)
     equals = tuple(item.x for item in found if item.chi2 <= best.chi2 + AS_GOOD)
-    return replace(judge(fit.effects, best, held_out, noises), equals=equals)
+    return replace(evaluate_fit(fit.effects, best, validation_runs, noises), equivalent_minima=equals)

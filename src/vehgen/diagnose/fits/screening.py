@@ -13,24 +13,24 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.fits.candidate import Candidate, pose, starts
-from vehgen.diagnose.fits.first_order import Motion
-from vehgen.diagnose.fits.model_fit import NUISANCES, Fit, Footing
+from vehgen.diagnose.fits.candidate import Candidate, build_problem, starts
+from vehgen.diagnose.fits.first_order import ProbeMotion
+from vehgen.diagnose.fits.model_fit import NUISANCES, CurrentModel, ModelFit
 from vehgen.diagnose.fits.projection import Projection
-from vehgen.effects import Surveyor
+from vehgen.effects import EffectLocator
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.simulate import Simulator
 
 Array = NDArray[np.float64]
-MOST = 14
+MAX_CANDIDATES = 14
 """So many candidates that are forces are kept."""
 
 
 def screen(
     candidates: Sequence[Candidate],
-    base: Fit,
-    footing: Footing,
-    surveyor: Surveyor,
+    base: ModelFit,
+    current: CurrentModel,
+    surveyor: EffectLocator,
     simulators: dict[object, Simulator],
 ) -> list[Candidate]:
     """Return the candidates worth fitting: all of sensors, runs and engines, of the others the MOST with the largest first-order gain.
@@ -44,34 +44,34 @@ def screen(
     """
     always = [item for item in candidates if item.effect.edit is None]
     forces = [item for item in candidates if item.effect.edit is not None]
-    if len(forces) <= MOST:
+    if len(forces) <= MAX_CANDIDATES:
         return list(candidates)
-    misfit, x = base.polished.misfit, base.polished.x
-    projection, motion = Projection.of(misfit, x), Motion(misfit, x)
-    lines = np.concatenate([flatten(item) for item in misfit.white_lines(x)])
+    misfit, x = base.least_squares.misfit, base.least_squares.x
+    projection, motion = Projection.of(misfit, x), ProbeMotion(misfit, x)
+    lines = np.concatenate([flatten(item) for item in misfit.whitened_spectrum(x)])
     gains = []
     for candidate in forces:
-        problem = pose(candidate, footing.problem, surveyor, simulators)
+        problem = build_problem(candidate, current.problem, surveyor, simulators)
         exact: Misfit | None = None
         best = 0.0
         for combination in starts(candidate, surveyor):
             point = problem.space.start.copy()
-            point[len(footing.unit) :] = combination[: len(candidate.parameters)]
-            unit = np.concatenate([footing.unit, problem.space.unit(point)[len(footing.unit) :]])
+            point[len(current.unit) :] = combination[: len(candidate.parameters)]
+            unit = np.concatenate([current.unit, problem.space.unit(point)[len(current.unit) :]])
             moved = motion.moved(problem, problem.space.values(unit)) if exact is None else None
             if moved is None:
-                exact = exact or Misfit(problem, misfit.noises, problem.space.start, NUISANCES, misfit.band, footing.shared)
-                own = exact.white_lines(np.concatenate([unit, np.zeros(len(footing.shared)), footing.errors]))
+                exact = exact or Misfit(problem, misfit.noises, problem.space.start, NUISANCES, misfit.band, current.shared)
+                own = exact.whitened_spectrum(np.concatenate([unit, np.zeros(len(current.shared)), current.errors]))
                 moved = np.concatenate([flatten(item) for item in own]) - lines
             if np.all(np.isfinite(moved)):
                 best = max(best, _gain(projection, moved))
         gains.append((best, candidate))
     gains.sort(key=lambda item: -item[0])
-    kept = {id(candidate) for _, candidate in gains[:MOST]} | {id(item) for item in always}
+    kept = {id(candidate) for _, candidate in gains[:MAX_CANDIDATES]} | {id(item) for item in always}
     return [item for item in candidates if id(item) in kept]
 
 
 def _gain(base: Projection, moved: Array) -> float:
-    free = base.free(moved)
+    free = base.remainder(moved)
     along = float(base.left @ free)
     return along**2 / max(float(free @ free), 1e-12) if along < 0 else 0.0

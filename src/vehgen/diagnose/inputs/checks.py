@@ -14,20 +14,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.inputs.finding import Finding
-from vehgen.diagnose.inputs.mistakes import Suspicion, strange, suspect
+from vehgen.diagnose.inputs.mistakes import Suspicion, suspect, unrelated_recording
 from vehgen.fit.trial import Trial
 
 if TYPE_CHECKING:
     from vehgen.diagnose.detect.detection import Detection
 
 Array = NDArray[np.float64]
-CLIPPED = 4
+CLIPPED_SAMPLES_AT_EXTREME = 4
 """So many samples at an extreme, and so many times as many as at the next value, count as clipping."""
 STUCK = 0.3
 """A channel that does not change for this long [s] while the others move is stuck."""
-MOVING = 0.5
+MOVING_SHARE = 0.5
 """The others move where their RMS is at least this share of that of their whole run."""
-COARSE = 0.1
+COARSE_RESOLUTION = 0.1
 """A channel whose smallest change is more than this share of its RMS is too coarse to be called stuck."""
 SAME = 0.1
 """Amplitudes and speeds within this share of one another are one."""
@@ -51,20 +51,24 @@ def explain_gap(detection: Detection) -> tuple[Finding, ...]:
             return item.findings
         if item.left <= item.limit:
             accepted.append(item)
-    stranger = strange(detection)
+    stranger = unrelated_recording(detection)
     if not accepted and stranger.left <= stranger.limit:
         accepted.append(stranger)
     return min(accepted, key=lambda item: item.left).findings if accepted else ()
 
 
 def _clipped(trial: Trial) -> Iterator[Finding]:
-    for name, values in zip(trial.channels, trial.measurement.values.T, strict=True):
+    for name, values in zip(trial.channels, trial.recording.values.T, strict=True):
         levels, count = [], 0
         for extreme, side in ((values.max(), values), (values.min(), -values)):
             at = side == side.max()
             inner = side[~at]
             touching = bool((at[1:] & at[:-1]).any())
-            if extreme != 0 and touching and at.sum() >= CLIPPED * max(1, int((inner == inner.max(initial=-np.inf)).sum())):
+            if (
+                extreme != 0
+                and touching
+                and at.sum() >= CLIPPED_SAMPLES_AT_EXTREME * max(1, int((inner == inner.max(initial=-np.inf)).sum()))
+            ):
                 levels.append(f"{extreme:.4g}")
                 count += int(at.sum())
         if levels:
@@ -79,25 +83,25 @@ def _clipped(trial: Trial) -> Iterator[Finding]:
 
 
 def _stuck(trial: Trial) -> Iterator[Finding]:
-    values, dt = trial.measurement.values, trial.measurement.dt
+    values, dt = trial.recording.values, trial.recording.dt
     rms = np.maximum(np.sqrt(np.mean(values**2, axis=0)), 1e-300)
     power = (values / rms) ** 2
     for column, name in enumerate(trial.channels):
         jumps = np.abs(np.diff(values[:, column]))
-        if jumps[jumps > 0].min(initial=np.inf) > COARSE * rms[column]:
+        if jumps[jumps > 0].min(initial=np.inf) > COARSE_RESOLUTION * rms[column]:
             continue
         others = np.delete(power, column, axis=1)
         changes = np.flatnonzero(jumps) + 1
         edges = np.concatenate([[0], changes, [len(values)]])
         for first, last in pairwise(edges.tolist()):
-            if (last - first) * dt < STUCK or not others.shape[1] or others[first:last].mean() < MOVING**2:
+            if (last - first) * dt < STUCK or not others.shape[1] or others[first:last].mean() < MOVING_SHARE**2:
                 continue
             level, share = values[first, column], 100 * (last - first) / len(values)
             yield Finding(
                 "stuck",
                 trial.name,
                 name,
-                f"{trial.name}: {name} stays at {level:.4g} from t = {trial.measurement.time[first]:.4g} s for {(last - first) * dt:.2g} s "
+                f"{trial.name}: {name} stays at {level:.4g} from t = {trial.recording.time[first]:.4g} s for {(last - first) * dt:.2g} s "
                 f"({share:.2g} % of its samples) while the others move: leave this run or channel out, or record again",
                 True,
             )

@@ -19,7 +19,7 @@ from vehgen.fit.trial import Trial
 Array = NDArray[np.float64]
 LAG = 0.3
 """A run's clock may be off by this [s] where labels and axles are judged."""
-MARGIN = 0.15
+CORRELATION_MARGIN = 0.15
 """Another labelling must raise the mean correlation by this, and turned signs by this once more."""
 TURNED = -0.3
 """A channel is taken as turned below this correlation."""
@@ -41,9 +41,9 @@ class Labels:
 
     def undo(self, trial: Trial) -> Trial:
         """Return the trial with every channel where it belongs."""
-        values = np.empty_like(trial.measurement.values)
-        values[:, list(self.source)] = trial.measurement.values * np.array(self.signs)
-        return replace(trial, measurement=replace(trial.measurement, values=values))
+        values = np.empty_like(trial.recording.values)
+        values[:, list(self.source)] = trial.recording.values * np.array(self.signs)
+        return replace(trial, recording=replace(trial.recording, values=values))
 
 
 def correlate(trial: Trial, simulated: Array, band: tuple[float, float]) -> Array:
@@ -51,10 +51,10 @@ def correlate(trial: Trial, simulated: Array, band: tuple[float, float]) -> Arra
 
     `shape (n_lags, n_channels, n_channels)`, from -LAG, the recording early, to LAG.
     """
-    dt, n = trial.measurement.dt, len(simulated)
+    dt, n = trial.recording.dt, len(simulated)
     frequency = np.fft.rfftfreq(2 * n, dt)
     inside = ((frequency >= band[0]) & (frequency <= band[1]))[:, None]
-    measured, model = (np.fft.rfft(item, 2 * n, axis=0) * inside for item in (trial.measurement.values, simulated))
+    measured, model = (np.fft.rfft(item, 2 * n, axis=0) * inside for item in (trial.recording.values, simulated))
     cross = np.fft.irfft(measured[:, :, None] * model[:, None, :].conj(), 2 * n, axis=0)
     own, other = (np.sqrt((np.fft.irfft(item, 2 * n, axis=0) ** 2).sum(axis=0)) for item in (measured, model))
     reach = min(int(LAG / dt), n - 1)
@@ -72,7 +72,7 @@ def true_labels(trial: Trial, correlation: Array) -> Labels:
             mean = (chosen * signs).mean(axis=1)
             at = int(mean.argmax())
             item = Labels(source, tuple(int(sign) for sign in signs[at]))
-            score = mean[at] - MARGIN * ((source != tuple(range(n))) + (min(item.signs) < 0))
+            score = mean[at] - CORRELATION_MARGIN * ((source != tuple(range(n))) + (min(item.signs) < 0))
             if score > best:
                 best, pattern = float(score), item
     return pattern
@@ -80,7 +80,7 @@ def true_labels(trial: Trial, correlation: Array) -> Labels:
 
 def _sources(trial: Trial) -> Iterator[tuple[int, ...]]:
     """Yield every way in which sensors of the same quantities may have been exchanged, as channel numbers; the labelled one first."""
-    channels = trial.measurement.channels
+    channels = trial.recording.channels
     sensors = list(dict.fromkeys(channel.sensor for channel in channels))
     number = {(channel.sensor, channel.quantity): i for i, channel in enumerate(channels)}
     if len(sensors) <= MANY:
@@ -100,7 +100,7 @@ def relabelled(trials: Sequence[Trial], hypothesis: Mapping[str, Labels]) -> Ite
     named = {trial.name: trial for trial in trials}
     everywhere = len(hypothesis) == len(trials) and len(set(hypothesis.values())) == 1
     for run, pattern in list(hypothesis.items())[: 1 if everywhere else None]:
-        channels = named[run].measurement.channels
+        channels = named[run].recording.channels
         where = "in all runs" if everywhere else f"in {run}"
         given = {channel.sensor: channels[i].sensor for channel, i in zip(channels, pattern.source, strict=True)}
         moved = sorted(name for name, other in given.items() if name != other)

@@ -15,15 +15,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.codegen import Drive
+from vehgen.codegen import Excitation
 from vehgen.diagnose.detect.noise_floor import find_noise_floor
-from vehgen.diagnose.fits.model_fit import BOUND, HOLD, NUISANCES, RENEW, ROUGH
+from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, BASE_RANGE, COARSE_TOLERANCE, JACOBIAN_REFRESH, NUISANCES
 from vehgen.diagnose.inputs.finding import Finding
 from vehgen.diagnose.inputs.labels import correlate, relabelled, true_labels
 from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.fit.adjustments import Adjustment, SpeedScale
-from vehgen.fit.least_squares import HOLD as LOOSE
-from vehgen.fit.least_squares import Polished, polish
+from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA as LOOSE
+from vehgen.fit.least_squares import LeastSquaresFit, fit_least_squares
 from vehgen.fit.noise import transform
 from vehgen.fit.problem import Problem, make_problem
 from vehgen.fit.trial import Trial
@@ -39,13 +39,13 @@ MOVED = 0.25
 """The same for axles elsewhere: of honest effects a late sensor comes nearest, and leaves 0.39."""
 OTHER = 0.004
 """The same for parameters beyond BOUND, unless the noise floor is reached: of honest effects relaxation comes nearest, and leaves 0.017."""
-STRANGE = 0.6
+UNRELATED_SHARE = 0.6
 """Share of the energy that a stranger's recordings leave unexplained in every run; a wrong speed, an honest effect, leaves 0.52."""
 NOTICED = 0.02
 """Gain in correlation from which a moved axle is fitted."""
-REACH = 0.25
+AXLE_SHIFT_SHARE = 0.25
 """Axles are moved by up to this share of their distance to the axle before."""
-STEP, FINE_STEP = 0.1, 0.01
+AXLE_SHIFT_STEP_M, FINE_STEP = 0.1, 0.01
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class _Moved(Scenario):
     axles: tuple[int, ...] = ()
     shift: float = 0.0
 
-    def drive(self, offsets: Array) -> Drive:
+    def drive(self, offsets: Array) -> Excitation:
         moved = np.array(offsets)
         moved[list(self.axles)] += self.shift
         return super().drive(moved)
@@ -82,18 +82,18 @@ class AxleShift(Adjustment):
 
 def suspect(detection: Detection) -> Iterator[Suspicion]:
     """Yield every mistake that there is reason to suspect, refitted."""
-    case = _Case(detection)
+    case = _BaseRefits(detection)
     yield from _labels(case)
     yield from _axles(case)
     yield from _other_vehicle(case)
 
 
-class _Case:
+class _BaseRefits:
     """A detection's runs, all of them, and refits of the base model to them."""
 
     def __init__(self, detection: Detection) -> None:
-        self.base = detection.base.polished
-        self.trials = (*detection.problem.trials, *detection.held_out)
+        self.base = detection.base.least_squares
+        self.trials = (*detection.problem.trials, *detection.validation_runs)
         self.problem = detection.problem.with_trials(self.trials)
         self.noises = detection.floor.noises
         self.band = self.base.misfit.band
@@ -106,7 +106,7 @@ class _Case:
 
     def refit(
         self, problem: Problem, unit: Array | None = None, change: Adjustment | None = None, value: float = 0.0, lags: Array | None = None
-    ) -> tuple[Polished, float]:
+    ) -> tuple[LeastSquaresFit, float]:
         """Fit the base model and return the fit with the share of the excess that it leaves."""
         start = None
         if lags is not None:
@@ -114,21 +114,21 @@ class _Case:
             errors[:, NUISANCES.names.index("delay")] = lags / NUISANCES.delay
             start = errors.ravel()
         same = all(one is other for one, other in zip(problem.trials, self.trials, strict=True))
-        fit = polish(
+        fit = fit_least_squares(
             problem,
             problem.space.unit(problem.space.start) if unit is None else unit,
             NUISANCES,
             self.band,
             noises=self.noises if same else find_noise_floor(problem.trials, self.band).noises,
             start=start,
-            hold=HOLD if unit is None else LOOSE,
+            prior_sigma=BASE_PRIOR_SIGMA if unit is None else LOOSE,
             shared=() if change is None else (change,),
             numbers=() if change is None else (value,),
             max_steps=20,
-            tolerance=ROUGH,
-            renew=RENEW,
+            tolerance=COARSE_TOLERANCE,
+            jacobian_refresh=JACOBIAN_REFRESH,
         )
-        lines = np.concatenate([item.ravel() for item in fit.misfit.white_lines(fit.x)])
+        lines = np.concatenate([item.ravel() for item in fit.misfit.whitened_spectrum(fit.x)])
         return fit, float((np.mean(np.abs(lines) ** 2) - 1) / self.excess)
 
     def best(self, change: Adjustment, values: Sequence[float]) -> tuple[float, float, Array]:
@@ -139,13 +139,13 @@ class _Case:
             for trial in self.trials:
                 mean = np.diagonal(correlate(trial, self.predict(trial, change, value), self.band), axis1=1, axis2=2).mean(axis=1)
                 scores.append(mean.max())
-                lags.append((int(mean.argmax()) - len(mean) // 2) * trial.measurement.dt)
+                lags.append((int(mean.argmax()) - len(mean) // 2) * trial.recording.dt)
             if np.mean(scores) > found[0]:
                 found = float(np.mean(scores)), float(value), np.array(lags)
         return found
 
 
-def _labels(case: _Case) -> Iterator[Suspicion]:
+def _labels(case: _BaseRefits) -> Iterator[Suspicion]:
     found = {trial.name: true_labels(trial, correlate(trial, case.predict(trial), case.band)) for trial in case.trials}
     wrong = {name: pattern for name, pattern in found.items() if not pattern.trivial}
     if not wrong:
@@ -159,7 +159,7 @@ def _labels(case: _Case) -> Iterator[Suspicion]:
         yield Suspicion(tuple(relabelled(case.trials, hypothesis)), case.refit(case.problem.with_trials(trials))[1], RELABELLED)
 
 
-def _axles(case: _Case) -> Iterator[Suspicion]:
+def _axles(case: _BaseRefits) -> Iterator[Suspicion]:
     trial = case.trials[0]
     names = list(trial.run.vehicle.axles)
     offsets = trial.simulator.model.wheel_offsets(trial.values)
@@ -169,9 +169,9 @@ def _axles(case: _Case) -> Iterator[Suspicion]:
     for k in range(1, len(order)):
         gap = float(offsets[order[k]] - offsets[order[k - 1]])
         for group in dict.fromkeys(((order[k],), tuple(order[k:]))):
-            change = AxleShift("+".join(names[i] for i in group), STEP, axles=group)
-            reach = round(REACH * gap / STEP)
-            found.append((*case.best(change, [i * STEP for i in range(-reach, reach + 1)]), change))
+            change = AxleShift("+".join(names[i] for i in group), AXLE_SHIFT_STEP_M, axles=group)
+            reach = round(AXLE_SHIFT_SHARE * gap / AXLE_SHIFT_STEP_M)
+            found.append((*case.best(change, [i * AXLE_SHIFT_STEP_M for i in range(-reach, reach + 1)]), change))
     if not found:
         return
     score, value, lags, change = max(found, key=lambda item: item[0])
@@ -195,7 +195,7 @@ def _axles(case: _Case) -> Iterator[Suspicion]:
     yield Suspicion((Finding("axle_position", None, None, message, True),), left, MOVED)
 
 
-def _other_vehicle(case: _Case) -> Iterator[Suspicion]:
+def _other_vehicle(case: _BaseRefits) -> Iterator[Suspicion]:
     if not case.base.on_bound:
         return
     wide = make_problem(case.trials)
@@ -205,7 +205,7 @@ def _other_vehicle(case: _Case) -> Iterator[Suspicion]:
         for name, value, start in zip(wide.space.names, fit.values, wide.space.start, strict=True)
         if min(value, start) > 0
     }
-    far = sorted((name for name, ratio in ratios.items() if abs(np.log(ratio)) > BOUND), key=lambda name: -abs(np.log(ratios[name])))
+    far = sorted((name for name, ratio in ratios.items() if abs(np.log(ratio)) > BASE_RANGE), key=lambda name: -abs(np.log(ratios[name])))
     if far:
         listed = ", ".join(f"{name} {ratios[name]:.2f} times" for name in far[:4])
         message = (
@@ -216,17 +216,17 @@ def _other_vehicle(case: _Case) -> Iterator[Suspicion]:
         yield Suspicion((Finding("other_parameters", None, None, message, True),), left, limit)
 
 
-def strange(detection: Detection) -> Suspicion:
+def unrelated_recording(detection: Detection) -> Suspicion:
     """Return the suspicion that the recordings have nothing to do with the model; `left` is the most it explains of a run's energy."""
-    base, shares = detection.base.polished, []
+    base, shares = detection.base.least_squares, []
     misfit = base.misfit
-    for t, (trial, (lines, _)) in enumerate(zip(misfit.problem.trials, misfit.lines(base.x), strict=True)):
-        inside = np.isin(np.fft.rfftfreq(len(trial.measurement.time), trial.measurement.dt), misfit.frequency(t))
-        recorded = transform(trial.measurement.values, trial.measurement.dt, inside)
+    for t, (trial, (lines, _)) in enumerate(zip(misfit.problem.trials, misfit.residual_spectrum(base.x), strict=True)):
+        inside = np.isin(np.fft.rfftfreq(len(trial.recording.time), trial.recording.dt), misfit.frequency(t))
+        recorded = transform(trial.recording.values, trial.recording.dt, inside)
         shares.append(float(np.mean((np.abs(lines) ** 2).sum(axis=0) / (np.abs(recorded) ** 2).sum(axis=0))))
     low = min(shares)
     message = (
         f"the recalibrated model leaves {100 * low:.0f} % or more of every run unexplained: check that vehicle, road, speed and "
         "places of the sensors are those of these recordings"
     )
-    return Suspicion((Finding("stranger", None, None, message, True),), 1 - low, 1 - STRANGE)
+    return Suspicion((Finding("stranger", None, None, message, True),), 1 - low, 1 - UNRELATED_SHARE)

@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.localise.recovered_force import Recovered, recover, strongest
+from vehgen.diagnose.localise.recovered_force import RecoveredForce, recover, strongest
 from vehgen.diagnose.localise.smoothing import (
-    KNOTS,
+    N_KNOTS,
     FittedLaw,
     bootstrap,
     coupled_basis,
@@ -30,7 +30,7 @@ from vehgen.diagnose.localise.smoothing import (
 )
 
 Array = NDArray[np.float64]
-MOVING = 0.1
+MOVING_RMS_SHARE = 0.1
 """A place moves while its travel or rate exceeds this share of the largest."""
 POINTS = 61
 """Points of a curve."""
@@ -95,7 +95,7 @@ class FreeForm:
     beyond: float
     coupled: float
     hysteresis: float
-    runs: tuple[Recovered, ...]
+    runs: tuple[RecoveredForce, ...]
     histories: dict[str, Array]
 
     def describe(self) -> str:
@@ -136,7 +136,7 @@ class FreeForm:
         }
 
 
-def fit_free_form(recovered: Sequence[Recovered], seed: int = 11) -> FreeForm | None:
+def fit_free_form(recovered: Sequence[RecoveredForce], seed: int = 11) -> FreeForm | None:
     """Fit a free-form law to the force recovered in the training runs, and judge it on the untouched ones.
 
     Parameters
@@ -150,12 +150,12 @@ def fit_free_form(recovered: Sequence[Recovered], seed: int = 11) -> FreeForm | 
     -------
     None where nothing was recovered (a place without a force), or where the place does not move.
     """
-    training = [run for run in recovered if not run.untouched]
+    training = [run for run in recovered if not run.validation]
     reach = [np.concatenate([getattr(run, name) for run in training] or [np.zeros(1)]) for name in ("travel", "rate")]
-    moving = np.any([np.abs(x) > MOVING * np.abs(x).max() for x in reach], axis=0)
+    moving = np.any([np.abs(x) > MOVING_RMS_SHARE * np.abs(x).max() for x in reach], axis=0)
     if not moving.any():
         return None
-    knots = [place_knots(x[moving], KNOTS) for x in reach]
+    knots = [place_knots(x[moving], N_KNOTS) for x in reach]
     basis, penalties = curves_basis(*knots)
     fitted = fit_law(recovered, basis, penalties)
     line, law, together = (
@@ -185,14 +185,14 @@ def fit_free_form(recovered: Sequence[Recovered], seed: int = 11) -> FreeForm | 
 
 def _judge(fitted: FittedLaw) -> float:
     """Return the share that a law explains on the untouched runs; where there are none, on the training runs."""
-    judged = [run for run in fitted.runs if run.untouched] or fitted.runs
+    judged = [run for run in fitted.runs if run.validation] or fitted.runs
     return explained_share(judged, [fitted.force(run.travel, run.rate) for run in judged])
 
 
-def _histories(run: Recovered, fitted: FittedLaw) -> Array:
+def _histories(run: RecoveredForce, fitted: FittedLaw) -> Array:
     still = np.zeros_like(run.time)
     f, g = fitted.force(run.travel, still), fitted.force(still, run.rate)
-    return np.array([f, g, run.seen(f + g)])
+    return np.array([f, g, run.observable(f + g)])
 
 
 def _straight(travel: Array, rate: Array) -> Array:
@@ -204,7 +204,7 @@ def _curve(axis: int, reach: Array, fitted: FittedLaw, draws: Array) -> Curve:
     x = np.linspace(float(np.percentile(reach, 1)), float(np.percentile(reach, 99)), POINTS)
     columns = fitted.basis(np.zeros_like(x), x) if axis else fitted.basis(x, np.zeros_like(x))
     low, high = np.percentile(draws @ columns.T, [5, 95], axis=0)
-    own = sum(float((run.seen(_histories(run, fitted)[axis]) ** 2).sum()) for run in fitted.runs)
+    own = sum(float((run.observable(_histories(run, fitted)[axis]) ** 2).sum()) for run in fitted.runs)
     return Curve(x, columns @ fitted.coefficients, low, high, own / sum(float((run.force**2).sum()) for run in fitted.runs))
 
 
@@ -219,4 +219,4 @@ def _percent(share: float) -> str:
     return f"{100 * max(share, 0.0):.{1 if 0.985 < share < 1 else 0}f} %"
 
 
-__all__ = ["Curve", "FreeForm", "Recovered", "fit_free_form", "recover", "strongest"]
+__all__ = ["Curve", "FreeForm", "RecoveredForce", "fit_free_form", "recover", "strongest"]

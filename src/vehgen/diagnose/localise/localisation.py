@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import Candidate
-from vehgen.diagnose.fits.model_fit import Fit
-from vehgen.diagnose.localise.unknown_force import Place, PlaceResult, list_places, test_places
+from vehgen.diagnose.fits.model_fit import ModelFit
+from vehgen.diagnose.localise.unknown_force import Place, PlaceResult, list_places, score_locations
 from vehgen.effects.places import ALL_TYRES
 
 GLOBAL = ("speed_error", "tyre_footprint", "tyre_damping", "tyre_liftoff", "frame_bending", "suspended_cab", "cargo_module", "walking_beam")
@@ -17,11 +17,11 @@ ONCE = 1_000_000
 """The derivatives by nuisances serve for all places: they differ little, and take most of the time."""
 
 
-def localise(fit: Fit) -> tuple[list[PlaceResult], list[PlaceResult]]:
+def localise(fit: ModelFit) -> tuple[list[PlaceResult], list[PlaceResult]]:
     """Test every place on what a fit leaves; return all results, best first, and the smallest hypotheses that reach the floor."""
-    misfit = fit.polished.misfit
+    misfit = fit.least_squares.misfit
     with misfit.quickly(ONCE):
-        results = test_places(misfit, fit.polished.x, list_places(misfit))
+        results = score_locations(misfit, fit.least_squares.x, list_places(misfit))
     results.sort(key=lambda item: (item.chi, item.unknowns))
     nowhere = next(item for item in results if item.place.kind == "none")
     excess = max(nowhere.chi**2 - 1, 0.0)
@@ -39,13 +39,15 @@ def one_force(passed: Sequence[PlaceResult]) -> bool:
     return any(item.place.rows and item.unknowns == 1 for item in passed)
 
 
-def suffices(passed: Sequence[PlaceResult], base: Fit) -> bool:
+def suffices(passed: Sequence[PlaceResult], base: ModelFit) -> bool:
     """Return whether one unknown force at a single place leaves noise, so that a second cause is not needed."""
-    least = max(limit.PLACE_PASSES**2 - 1, limit.PLACE_CLEAR * max(base.train - 1, 0.0))
+    least = max(limit.PLACE_PASSES**2 - 1, limit.PLACE_CLEAR * max(base.training - 1, 0.0))
     return any(item.place.rows and item.unknowns == 1 and item.chi**2 - 1 <= least for item in passed)
 
 
-def shortlist(base: Fit, candidates: Sequence[Candidate], places: Sequence[PlaceResult], passed: Sequence[PlaceResult]) -> list[Candidate]:
+def shortlist(
+    base: ModelFit, candidates: Sequence[Candidate], places: Sequence[PlaceResult], passed: Sequence[PlaceResult]
+) -> list[Candidate]:
     """Return the candidates worth fitting: those that live at the places left, and those that no single force explains.
 
     A sensor's effects are tried where leaving out the sensor or one of its channels helps; effects of the whole vehicle, and those at a
@@ -56,11 +58,11 @@ def shortlist(base: Fit, candidates: Sequence[Candidate], places: Sequence[Place
     names = {owner(item.place) for item in passed if item.place.rows}
     single = suffices(passed, base)
     if not single:
-        vehicle = base.polished.misfit.problem.trials[0].run.vehicle
+        vehicle = base.least_squares.misfit.problem.trials[0].run.vehicle
         names |= {name for name, axle in vehicle.axles.items() if axle.body in names}
         names |= {name for name, hinge in vehicle.hinges.items() if not names.isdisjoint(hinge.points)}
-    excess = max(base.train - 1, 1e-9)
-    channels = {channel.name: channel.sensor for trial in base.polished.misfit.problem.trials for channel in trial.measurement.channels}
+    excess = max(base.training - 1, 1e-9)
+    channels = {channel.name: channel.sensor for trial in base.least_squares.misfit.problem.trials for channel in trial.recording.channels}
     silenced = {
         part for item in places if item.place.channels and _reaches(item, excess) for part in (item.place.name, *item.place.channels)
     }

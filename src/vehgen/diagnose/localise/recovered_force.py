@@ -15,11 +15,11 @@ from scipy.linalg import block_diag
 
 from vehgen.codegen import Kernel
 from vehgen.diagnose.detect.detection import Detection
-from vehgen.diagnose.localise.unknown_force import Place, PlaceResult, posterior, test_places
+from vehgen.diagnose.localise.unknown_force import Place, PlaceResult, posterior, score_locations
 from vehgen.fit.least_squares import first_delays
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import taper
-from vehgen.mechanics.equations_of_motion import Channel, LinearModel
+from vehgen.mechanics.equations_of_motion import Channel, EquationsOfMotion
 from vehgen.simulate.frequency import force_response
 
 Array = NDArray[np.float64]
@@ -34,7 +34,7 @@ FADED = 0.2
 
 
 @dataclass(frozen=True, eq=False)
-class Recovered:
+class RecoveredForce:
     """An unknown force in one run, and the motion of its place.
 
     Attributes
@@ -66,7 +66,7 @@ class Recovered:
     """
 
     run: str
-    untouched: bool
+    validation: bool
     place: Place
     angular: bool
     time: Array
@@ -97,7 +97,7 @@ class Recovered:
         """Standard deviation of the force from noise and base fit, `shape (n,)`."""
         return np.asarray(np.sqrt(self.noise**2 + (self.variants[:, 0] ** 2).sum(axis=0)))
 
-    def seen(self, history: Array) -> Array:
+    def observable(self, history: Array) -> Array:
         """Return what the test would recover of force histories `shape (n, ...)`: tapered, and nothing outside the lines that see it."""
         window = self.window.reshape(-1, *[1] * (history.ndim - 1))
         spectrum = np.fft.rfft(history * window, axis=0)
@@ -112,7 +112,7 @@ class Recovered:
         return np.asarray(motion[:, 0]), np.asarray(motion[:, 1])
 
 
-def recover(detection: Detection, result: PlaceResult, component: int = 0) -> tuple[Recovered, ...]:
+def recover(detection: Detection, result: PlaceResult, component: int = 0) -> tuple[RecoveredForce, ...]:
     """Return the unknown force of a hypothesis in every run, training runs first.
 
     Untouched runs keep the base parameters of the hypothesis; what a run does not know of itself is fitted there by the place test.
@@ -132,15 +132,15 @@ def recover(detection: Detection, result: PlaceResult, component: int = 0) -> tu
     """
     if component >= len(result.place.rows):
         return ()
-    misfit = detection.base.polished.misfit
+    misfit = detection.base.least_squares.misfit
     directions = np.asarray(np.linalg.cholesky(posterior(misfit, result)), dtype=np.float64)
     found = _recover(misfit, result, directions, component, False)
     n = misfit.n_parameters
     values = misfit.problem.space.values(result.x[:n])
-    for trial in detection.held_out:
+    for trial in detection.validation_runs:
         alone = misfit.problem.with_trials([trial])
         frozen = Misfit(alone.searching((), alone.best_values(values)), misfit.noises, np.zeros(0), misfit.nuisances, misfit.band)
-        for item in test_places(frozen, first_delays(frozen, np.zeros(0)), [result.place]):
+        for item in score_locations(frozen, first_delays(frozen, np.zeros(0)), [result.place]):
             own = Misfit(alone, misfit.noises, values, misfit.nuisances, misfit.band)
             moved = replace(item, x=np.concatenate([result.x[:n], item.x]))
             found += _recover(own, moved, block_diag(directions[:n], np.linalg.cholesky(posterior(frozen, item))), component, True)
@@ -158,14 +158,14 @@ class _Raw:
     element: tuple[float, float]
 
 
-def _recover(misfit: Misfit, result: PlaceResult, directions: Array, component: int, untouched: bool) -> list[Recovered]:
+def _recover(misfit: Misfit, result: PlaceResult, directions: Array, component: int, validation: bool) -> list[RecoveredForce]:
     """Return the force in a misfit's runs, with the variants in `directions shape (n_unknowns, n_directions)`."""
-    kernels: dict[int, tuple[LinearModel, Kernel]] = {}
+    kernels: dict[int, tuple[EquationsOfMotion, Kernel]] = {}
     raw = _raw(misfit, result.place, component, result.x, kernels)
     moved = [_raw(misfit, result.place, component, result.x + direction, kernels) for direction in directions.T]
     found = []
     for t, (trial, own) in enumerate(zip(misfit.problem.trials, raw, strict=True)):
-        n, dt = len(trial.measurement.time), trial.measurement.dt
+        n, dt = len(trial.recording.time), trial.recording.dt
         variance = own.variance * max(result.chi, 1.0) ** 2
         clear = own.variance < np.median(own.variance) / DEAF
         lines = np.isin(np.fft.rfftfreq(n, dt), misfit.frequency(t))
@@ -173,12 +173,12 @@ def _recover(misfit: Misfit, result: PlaceResult, directions: Array, component: 
         window = taper(n, dt)
         histories = [_history(item[t], clear, lines, window, dt) for item in (raw, *moved)]
         model = trial.simulator.model
-        central = Recovered(
+        central = RecoveredForce(
             trial.name,
-            untouched,
+            validation,
             result.place,
             result.place.kind == "hinge" or result.place.rows[component] in list(model.motion.pitch.values()),
-            trial.measurement.time,
+            trial.recording.time,
             *histories[0],
             window * float(np.sqrt(variance[clear].sum() / (n * dt))),
             window,
@@ -193,12 +193,12 @@ def _recover(misfit: Misfit, result: PlaceResult, directions: Array, component: 
     return found
 
 
-def _raw(misfit: Misfit, place: Place, component: int, x: Array, kernels: dict[int, tuple[LinearModel, Kernel]]) -> list[_Raw]:
+def _raw(misfit: Misfit, place: Place, component: int, x: Array, kernels: dict[int, tuple[EquationsOfMotion, Kernel]]) -> list[_Raw]:
     """Least squares line by line in every run: F = (H* H)^-1 H* r with whitened H."""
     unit, errors = misfit.split(x)
     known = misfit.problem.best_values(misfit.problem.space.values(unit))
     found = []
-    for t, (trial, lines) in enumerate(zip(misfit.problem.trials, misfit.white_lines(x), strict=True)):
+    for t, (trial, lines) in enumerate(zip(misfit.problem.trials, misfit.whitened_spectrum(x), strict=True)):
         model = trial.simulator.model
         values = trial.values | {name: value for name, value in known.items() if name not in trial.fixed}
         response = force_response(model, values, place.rows, misfit.frequency(t))
@@ -211,8 +211,8 @@ def _raw(misfit: Misfit, place: Place, component: int, x: Array, kernels: dict[i
         probe, kernel = kernels[id(model)]
         scenario = misfit.nuisances.adjust(trial.scenario, errors[t])
         population = np.array([[values[name] for name in probe.parameters]])
-        motion = kernel.run(population, scenario.drive(probe.wheel_offsets(values)), scenario.keep).responses[0]
-        frequency = np.asarray(np.fft.rfftfreq(len(motion), trial.measurement.dt), dtype=np.float64)
+        motion = kernel.run(population, scenario.drive(probe.wheel_offsets(values)), scenario.decimation).responses[0]
+        frequency = np.asarray(np.fft.rfftfreq(len(motion), trial.recording.dt), dtype=np.float64)
         found.append(
             _Raw(
                 -(inverse @ (adjoint @ lines[..., None]))[:, component, 0],
@@ -234,13 +234,13 @@ def _history(raw: _Raw, clear: NDArray[np.bool_], lines: NDArray[np.bool_], wind
     return np.asarray(np.fft.irfft(spectrum, n)), motion[:, 0], motion[:, 1]
 
 
-def _change(run: Recovered, history: tuple[Array, Array, Array], element: tuple[float, float]) -> Array:
+def _change(run: RecoveredForce, history: tuple[Array, Array, Array], element: tuple[float, float]) -> Array:
     force, travel, rate = history
-    own = run.seen((element[0] - run.stiffness) * travel + (element[1] - run.damping) * rate)
+    own = run.observable((element[0] - run.stiffness) * travel + (element[1] - run.damping) * rate)
     return np.array([force + own - run.force, travel - run.travel, rate - run.rate])
 
 
-def _probe(model: LinearModel, place: Place, component: int) -> LinearModel:
+def _probe(model: EquationsOfMotion, place: Place, component: int) -> EquationsOfMotion:
     """Return the model with two channels, travel and rate of a place."""
     row = place.rows[component]
     inputs = next((item.input_row for item in model.elements if (item.kind, item.name) == (place.kind, place.name)), {})
@@ -249,7 +249,7 @@ def _probe(model: LinearModel, place: Place, component: int) -> LinearModel:
     return replace(model, channels=(travel, rate))
 
 
-def _element(model: LinearModel, place: Place, values: dict[str, float]) -> tuple[float, float]:
+def _element(model: EquationsOfMotion, place: Place, values: dict[str, float]) -> tuple[float, float]:
     """Return stiffness and damping of the base model at a place."""
     for item in model.elements:
         if (item.kind, item.name) == (place.kind, place.name):

@@ -14,19 +14,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 
-from vehgen.diagnose.localise.recovered_force import Recovered
+from vehgen.diagnose.localise.recovered_force import RecoveredForce
 
 Array = NDArray[np.float64]
 Basis = Callable[[Array, Array], Array]
 """(travel, rate) `shape (n,)` -> columns `shape (n, n_columns)`, zero at rest."""
-KNOTS = 25
+N_KNOTS = 25
 """Knots of a curve."""
-CLOSE = 0.15
+CLOSE_SHARE_OF_BANDWIDTH = 0.15
 STRENGTHS = 10.0 ** np.arange(-6.0, 3.0)
 """Strengths of a penalty that are tried."""
 RIDGE = 1e-9
 """Least penalty: it ties down what no data reach."""
-BLOCK = 0.3
+BLOCK_S = 0.3
 """Length of the stretches of time [s]."""
 ROUNDS, RELAX = 8, 0.5
 """So many turns between law and motion, each so far."""
@@ -54,7 +54,7 @@ class Smooth:
 class FittedLaw:
     """A law fitted to runs, whose motion holds what the band hides of its force; `excess` is the PSD it leaves beyond noise [N^2/Hz]."""
 
-    runs: tuple[Recovered, ...]
+    runs: tuple[RecoveredForce, ...]
     basis: Basis
     coefficients: Array
     penalty: Array
@@ -68,7 +68,7 @@ class FittedLaw:
 
 def place_knots(x: Array, count: int) -> Array:
     """Return knots over all of x, evenly spaced in asinh(x/scale), scale CLOSE of the largest: closer near rest, where friction turns."""
-    scale = CLOSE * float(np.abs(x).max())
+    scale = CLOSE_SHARE_OF_BANDWIDTH * float(np.abs(x).max())
     return np.asarray(scale * np.sinh(np.linspace(np.arcsinh(x.min() / scale), np.arcsinh(x.max() / scale), count)))
 
 
@@ -105,7 +105,7 @@ def coupled_basis(travel_knots: Array, rate_knots: Array) -> tuple[Basis, list[A
 
     def basis(travel: Array, rate: Array) -> Array:
         d, v = travel / d0, rate / v0
-        products = [d**i * part for i in (1, 2, 3) for part in (v, v * np.abs(v), v / (np.abs(v) + CLOSE))]
+        products = [d**i * part for i in (1, 2, 3) for part in (v, v * np.abs(v), v / (np.abs(v) + CLOSE_SHARE_OF_BANDWIDTH))]
         return np.column_stack([curves(travel, rate), *products])
 
     return basis, [np.pad(item, (0, 9)) for item in penalties]
@@ -122,7 +122,7 @@ def _from_rest(raw: Basis) -> Basis:
     return lambda travel, rate: raw(travel, rate) - rest
 
 
-def normal_equations(run: Recovered, force: Array, columns: Array, excess: float) -> Part:
+def normal_equations(run: RecoveredForce, force: Array, columns: Array, excess: float) -> Part:
     """Return a run's normal equations.
 
     Parameters
@@ -136,9 +136,9 @@ def normal_equations(run: Recovered, force: Array, columns: Array, excess: float
     """
     weight = np.zeros(len(run.lines))
     weight[run.lines] = 1 / np.sqrt(run.variance + excess)
-    both = np.column_stack([force, run.seen(columns)])
+    both = np.column_stack([force, run.observable(columns)])
     white = np.fft.irfft(np.fft.rfft(both, axis=0) * weight[:, None], len(both), axis=0)
-    pieces = np.array_split(white, max(2, round(len(white) * run.dt / BLOCK)))
+    pieces = np.array_split(white, max(2, round(len(white) * run.dt / BLOCK_S)))
     return Part(np.array([p[:, 1:].T @ p[:, 1:] for p in pieces]), np.array([p[:, 1:].T @ p[:, 0] for p in pieces]))
 
 
@@ -164,7 +164,7 @@ def smooth(parts: Sequence[Part], penalties: Sequence[Array]) -> Smooth:
     return Smooth(np.linalg.solve(normal + best, right), best)
 
 
-def fit_law(recovered: Sequence[Recovered], basis: Basis, penalties: Sequence[Array]) -> FittedLaw:
+def fit_law(recovered: Sequence[RecoveredForce], basis: Basis, penalties: Sequence[Array]) -> FittedLaw:
     """Fit a basis to the forces recovered in the training runs.
 
     With the law at hand, what the band hides of its force can be added to the motion, and the weights are known; so in turns.
@@ -172,7 +172,7 @@ def fit_law(recovered: Sequence[Recovered], basis: Basis, penalties: Sequence[Ar
     runs = list(recovered)
     laws = [np.zeros(len(run.time)) for run in runs]
     for _ in range(ROUNDS):
-        training = [(run, law) for run, law in zip(runs, laws, strict=True) if not run.untouched]
+        training = [(run, law) for run, law in zip(runs, laws, strict=True) if not run.validation]
         excess = left_over([run for run, _ in training], [law for _, law in training])
         parts = [normal_equations(run, run.force, basis(run.travel, run.rate), excess) for run, _ in training]
         found = smooth(parts, penalties)
@@ -182,7 +182,7 @@ def fit_law(recovered: Sequence[Recovered], basis: Basis, penalties: Sequence[Ar
     return fitted
 
 
-def _relaxed(run: Recovered, first: Recovered, travel: Array, rate: Array) -> Recovered:
+def _relaxed(run: RecoveredForce, first: RecoveredForce, travel: Array, rate: Array) -> RecoveredForce:
     """Return a run a share of the way to the motion with what the band hides: a whole step may overshoot where a law is stiff."""
     return replace(
         run,
@@ -206,7 +206,7 @@ def bootstrap(law: FittedLaw, draws: int, random: np.random.Generator) -> Array:
 
 def shifts(law: FittedLaw) -> Array:
     """Return by how much the coefficients change with every variant of the base fit, `shape (n_variants, p)`."""
-    training = [run for run in law.runs if not run.untouched]
+    training = [run for run in law.runs if not run.validation]
     found = []
     for j in range(len(training[0].variants)):
         normal, right = law.penalty.copy(), np.zeros(len(law.penalty))
@@ -219,13 +219,15 @@ def shifts(law: FittedLaw) -> Array:
     return np.array(found).reshape(-1, len(law.coefficients))
 
 
-def left_over(runs: Sequence[Recovered], histories: Sequence[Array]) -> float:
+def left_over(runs: Sequence[RecoveredForce], histories: Sequence[Array]) -> float:
     """Return the mean PSD [N^2/Hz] of what laws' force histories leave of the recovered forces beyond their noise."""
-    rest = np.concatenate([_lines(run, run.force - run.seen(history)) - run.variance for run, history in zip(runs, histories, strict=True)])
+    rest = np.concatenate(
+        [_lines(run, run.force - run.observable(history)) - run.variance for run, history in zip(runs, histories, strict=True)]
+    )
     return max(float(rest.mean()), 0.0)
 
 
-def explained_share(runs: Sequence[Recovered], histories: Sequence[Array]) -> float:
+def explained_share(runs: Sequence[RecoveredForce], histories: Sequence[Array]) -> float:
     """Return the share of the recovered forces' variance beyond their noise that laws' force histories explain.
 
     Lines count the less the more of them is noise, by s/(s + noise) with s the mean PSD of the force.
@@ -236,14 +238,14 @@ def explained_share(runs: Sequence[Recovered], histories: Sequence[Array]) -> fl
         signal = max(float((force - run.variance).mean()), 1e-300)
         weight = signal / (signal + run.variance)
         total += float((weight * (force - run.variance)).sum()) * _bandwidth(run)
-        rest += float((weight * (_lines(run, run.force - run.seen(history)) - run.variance)).sum()) * _bandwidth(run)
+        rest += float((weight * (_lines(run, run.force - run.observable(history)) - run.variance)).sum()) * _bandwidth(run)
     return 1.0 - max(rest, 0.0) / total if total > 0 else 0.0
 
 
-def _bandwidth(run: Recovered) -> float:
+def _bandwidth(run: RecoveredForce) -> float:
     return 1 / (len(run.time) * run.dt)
 
 
-def _lines(run: Recovered, history: Array) -> Array:
+def _lines(run: RecoveredForce, history: Array) -> Array:
     """Return the one-sided PSD of a history as recovered at the lines that see the force [N^2/Hz]."""
     return np.asarray(np.abs(np.fft.rfft(history)[run.lines]) ** 2 * 2 * run.dt / (run.window**2).sum())

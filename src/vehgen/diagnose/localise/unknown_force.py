@@ -20,8 +20,8 @@ from vehgen.simulate.frequency import force_response
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-ROUNDS = 7
-PRIOR = 0.1
+GAUSS_NEWTON_STEPS = 7
+LOG_PRIOR_SIGMA = 0.1
 """Standard deviation of ln(parameter) about the vehicle file's values."""
 HIDDEN = 0.005
 """A direction of the unknowns is hidden by a hypothesis that leaves less than this share of what it moves, as a suspension's force hides
@@ -73,14 +73,14 @@ def list_places(misfit: Misfit) -> list[Place]:
     places += [Place("channel", name, (), (name,)) for name in names]
     sensors: dict[str, list[str]] = {}
     for trial in misfit.problem.trials:
-        for channel in trial.measurement.channels:
+        for channel in trial.recording.channels:
             if channel.name not in sensors.setdefault(channel.sensor, []):
                 sensors[channel.sensor].append(channel.name)
     places += [Place("sensor", name, (), tuple(members)) for name, members in sensors.items() if len(members) > 1]
     return places
 
 
-def test_places(misfit: Misfit, x: Array, places: Sequence[Place]) -> list[PlaceResult]:
+def score_locations(misfit: Misfit, x: Array, places: Sequence[Place]) -> list[PlaceResult]:
     """Return each hypothesis with the chi it leaves.
 
     Parameters
@@ -93,7 +93,7 @@ def test_places(misfit: Misfit, x: Array, places: Sequence[Place]) -> list[Place
         Hypotheses of :func:`list_places`.
     """
     found = []
-    lines, derivatives = misfit.white_lines(x), misfit.white_derivatives(x)
+    lines, derivatives = misfit.whitened_spectrum(x), misfit.whitened_derivatives(x)
     for place in places:
         result = _test(misfit, x, place, lines, derivatives)
         if result is not None:
@@ -104,9 +104,9 @@ def test_places(misfit: Misfit, x: Array, places: Sequence[Place]) -> list[Place
 def _test(misfit: Misfit, x: Array, place: Place, lines: list[Complex], derivatives: list[Complex]) -> PlaceResult | None:
     best, best_chi = x, np.inf
     unknowns = 0
-    for turn in range(ROUNDS):
+    for turn in range(GAUSS_NEWTON_STEPS):
         if turn:
-            lines, derivatives = misfit.white_lines(x), misfit.white_derivatives(x)
+            lines, derivatives = misfit.whitened_spectrum(x), misfit.whitened_derivatives(x)
         parts, slopes, count = [], [], 0
         for t in range(len(misfit.problem.trials)):
             basis = _basis(misfit, x, place, t)
@@ -149,7 +149,7 @@ def posterior(misfit: Misfit, result: PlaceResult) -> Array:
 
     What the hypothesis cannot see, as an element's own stiffness, is known no better than by the prior.
     """
-    derivatives = misfit.white_derivatives(result.x)
+    derivatives = misfit.whitened_derivatives(result.x)
     slopes = [flatten(_project(item, _basis(misfit, result.x, result.place, t)), first=1).T for t, item in enumerate(derivatives)]
     rows, _ = _prior(misfit, result.x)
     shown = _shown(np.vstack(slopes), np.vstack([flatten(item, first=1).T for item in derivatives]), rows)
@@ -162,7 +162,7 @@ def _prior(misfit: Misfit, x: Array) -> tuple[Array, Array]:
     n, total = misfit.n_parameters, misfit.n_unknowns
     space = misfit.problem.space
     rows, offset = np.eye(total), x.copy()
-    weight = np.abs(space.slopes(space.start)) / (PRIOR * np.maximum(np.abs(space.start), 1e-9))
+    weight = np.abs(space.slopes(space.start)) / (LOG_PRIOR_SIGMA * np.maximum(np.abs(space.start), 1e-9))
     rows[:n] *= weight[:, None]
     offset[:n] = weight * (x[:n] - space.unit(space.start))
     return rows, offset

@@ -8,9 +8,9 @@ import numpy as np
 
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import Candidate
-from vehgen.diagnose.fits.model_fit import Fit
+from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.estimates import p_value
-from vehgen.diagnose.select.search import Round, own_numbers
+from vehgen.diagnose.select.search import SearchRound, own_numbers
 from vehgen.effects.places import ALL_TYRES
 
 
@@ -19,31 +19,31 @@ def excess(mean_square: float) -> float:
     return max(mean_square - 1.0, 0.0) if np.isfinite(mean_square) else np.inf
 
 
-def passes(fit: Fit, base: Fit) -> bool:
+def passes(fit: ModelFit, base: ModelFit) -> bool:
     """Return whether a fit closes the gap of the base, on the training runs and on untouched ones, however small the gap is."""
-    return excess(fit.train) <= limit.AT_LEAST * excess(base.train) and all(
+    return excess(fit.training) <= limit.AT_LEAST * excess(base.training) and all(
         after <= limit.LAW_PASSES * max(before, 1e-9) or after <= limit.LAW_CHI**2 - 1
-        for after, before in ((excess(fit.train), excess(base.train)), (excess(fit.held_out), excess(base.held_out)))
+        for after, before in ((excess(fit.training), excess(base.training)), (excess(fit.validation), excess(base.validation)))
     )
 
 
-def chance(found: Round, fit: Fit, tried: int) -> float:
+def p_value_of(found: SearchRound, fit: ModelFit, tried: int) -> float:
     """Return the p-value of a fit's last effect, times the number of candidates that could have been tried."""
-    return min(1.0, tried * p_value(found.footing, fit, own_numbers(fit)))
+    return min(1.0, tried * p_value(found.current, fit, own_numbers(fit)))
 
 
-def tied(found: Round, best: Fit) -> list[Fit]:
+def tied(found: SearchRound, best: ModelFit) -> list[ModelFit]:
     """Return the fits of a round that do as well as the best within the slack of TIE."""
     floor = limit.NOISE_FLOOR**2 - 1
-    before = excess(found.footing.train)
+    before = excess(found.current.training)
     near = max(0.02 * before, 0.5 * floor)
     return [
         item
         for item in found.fits
         if item.key != best.key
         and not _same(item.last, best.last)
-        and item.train - best.train <= near
-        and item.train - 1 <= limit.TIE * max(best.train - 1, 0.25 * floor)
+        and item.training - best.training <= near
+        and item.training - 1 <= limit.TIE * max(best.training - 1, 0.25 * floor)
     ]
 
 
@@ -52,15 +52,15 @@ def _same(one: Candidate, other: Candidate) -> bool:
     return one.effect.name == other.effect.name and ALL_TYRES in (one.place, other.place)
 
 
-def unfinished(fit: Fit, base: Fit) -> bool:
+def unfinished(fit: ModelFit, base: ModelFit) -> bool:
     """Return whether a fit leaves enough to look for a further effect: more than noise, and more than a law's form may be wrong by."""
     return any(
         after > max(limit.AGAIN**2 - 1, limit.FORM * before)
-        for after, before in ((excess(fit.train), excess(base.train)), (excess(fit.held_out), excess(base.held_out)))
+        for after, before in ((excess(fit.training), excess(base.training)), (excess(fit.validation), excess(base.validation)))
     )
 
 
-def adds(found: Round, fit: Fit) -> bool:
+def adds(found: SearchRound, fit: ModelFit) -> bool:
     """Return whether a further effect is needed and enough.
 
     It leaves FURTHER of what was left, or noise, on untouched runs too. At the place of an effect found before it must leave noise and
@@ -69,30 +69,30 @@ def adds(found: Round, fit: Fit) -> bool:
     """
     if len(tied(found, fit)) > limit.CROWD:
         return False
-    before = (excess(found.footing.train), excess(found.footing.held_out))
-    after = (excess(fit.train), excess(fit.held_out))
+    before = (excess(found.current.training), excess(found.current.validation))
+    after = (excess(fit.training), excess(fit.validation))
     floor = limit.NOISE_FLOOR**2 - 1
     noise = all(item <= floor and item <= limit.AT_LEAST * old for item, old in zip(after, before, strict=True))
-    neighbours = [item.effect.attaches for item in found.footing.effects if item.place == fit.last.place]
+    neighbours = [item.effect.attaches for item in found.current.effects if item.place == fit.last.place]
     if neighbours:
         return noise and fit.last.effect.attaches not in neighbours
     return noise or all(item <= limit.FURTHER * max(old, 1e-9) for item, old in zip(after, before, strict=True))
 
 
-def seeds(found: Round) -> list[Fit]:
+def seeds(found: SearchRound) -> list[ModelFit]:
     """Return the fits of a round that explain part of the gap, at different places: first effects of pairs."""
-    before = excess(found.footing.train)
-    chosen: list[Fit] = []
+    before = excess(found.current.training)
+    chosen: list[ModelFit] = []
     for fit in found.fits:
-        if excess(fit.train) <= limit.PARTLY * before and all(fit.last.place != item.last.place for item in chosen):
+        if excess(fit.training) <= limit.PARTLY * before and all(fit.last.place != item.last.place for item in chosen):
             chosen.append(fit)
         if len(chosen) == limit.SEEDS:
             break
     return chosen
 
 
-def needs_both(pair: Fit, fits: Sequence[Fit]) -> bool:
+def needs_both(pair: ModelFit, fits: Sequence[ModelFit]) -> bool:
     """Return whether the second effect of a pair alone leaves TIE times the pair's excess or more."""
     alone = [item for item in fits if item.key == pair.key[-1:]]
-    least = max(excess(pair.train), limit.NOISE_FLOOR**2 - 1)
-    return all(excess(item.train) >= limit.TIE * least for item in alone)
+    least = max(excess(pair.training), limit.NOISE_FLOOR**2 - 1)
+    return all(excess(item.training) >= limit.TIE * least for item in alone)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import Candidate
-from vehgen.diagnose.fits.model_fit import Fit
+from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.verdict import NamedParameter
 from vehgen.effects import EffectParameter
 from vehgen.fit.harmonic import Harmonic
@@ -32,7 +32,7 @@ TOLD = 0.05
 """Runs tell of a parameter that moves them by more than this share of what it moves all runs."""
 SAME_WITHIN = 0.3
 """Runs that differ by less than this share of the value ask for the same number, however sure each is."""
-BLOCK = 10
+BLOCK_LINES = 10
 """Spectral lines in a block of the bootstrap."""
 
 
@@ -46,7 +46,7 @@ class RunEstimate:
     half_width: float
 
 
-def estimate(fit: Fit, candidate: Candidate | None = None) -> dict[str, NamedParameter]:
+def estimate(fit: ModelFit, candidate: Candidate | None = None) -> dict[str, NamedParameter]:
     """Return an effect's own parameters (default: of the effect added last) with 90 % intervals.
 
     Three parts add up in quadrature: noise, from the Fisher information of the fit, widened by the root of its mean square; what the runs
@@ -54,15 +54,20 @@ def estimate(fit: Fit, candidate: Candidate | None = None) -> dict[str, NamedPar
     runs, its interval their spread and that of the body's parameters.
     """
     candidate = candidate or fit.last
-    misfit, x = fit.polished.misfit, fit.polished.x
+    misfit, x = fit.least_squares.misfit, fit.least_squares.x
     covariance = np.asarray(
-        np.linalg.pinv(_normal(misfit, x, fit.free)[1], hermitian=True) * max(fit.train, 1.0) / _seen(misfit), dtype=np.float64
+        np.linalg.pinv(_normal(misfit, x, fit.n_effect_parameters)[1], hermitian=True) * max(fit.training, 1.0) / _seen(misfit),
+        dtype=np.float64,
     )
     alone = estimates_by_run(fit, candidate)
     found: dict[str, NamedParameter] = {}
     for parameter, column, value, scale in _columns(fit, candidate):
         noise = NINETY * abs(scale) * float(np.sqrt(max(covariance[column, column], 0.0)))
-        minima = NINETY * abs(scale) * float(np.std([own[column] for own in fit.equals], ddof=1)) if len(fit.equals) > 1 else 0.0
+        minima = (
+            NINETY * abs(scale) * float(np.std([own[column] for own in fit.equivalent_minima], ddof=1))
+            if len(fit.equivalent_minima) > 1
+            else 0.0
+        )
         spread = float(np.hypot(np.hypot(noise, minima), disagreement([item for item in alone if item.parameter == parameter.name])))
         interval = (value - spread, value + spread) if spread > 0 else None
         found[parameter.name] = NamedParameter(value, interval, parameter.unit)
@@ -90,7 +95,7 @@ def disagreement(alone: Sequence[RunEstimate]) -> float:
     return float(scipy.stats.t.ppf(0.95, len(sure) - 1) * np.sqrt(max(variance, 0.0) * (1 + 1 / len(sure))))
 
 
-def _normal(misfit: Misfit, x: Array, free: int) -> tuple[dict[int, Array], Array]:
+def _normal(misfit: Misfit, x: Array, n_effect_parameters: int) -> tuple[dict[int, Array], Array]:
     """Return the Jacobians of trials `shape (n_residuals, n_unknowns)` by number, and the information they and the priors add up to.
 
     The last `free` parameters are the effects'. Trials whose response jumps are left out where the others tell of all effects: what
@@ -98,14 +103,19 @@ def _normal(misfit: Misfit, x: Array, free: int) -> tuple[dict[int, Array], Arra
     """
     trials = misfit.problem.trials
     n, known = misfit.n_parameters, misfit.n_parameters + len(misfit.shared)
-    jacobians = {i: flatten(slopes, first=1).T for i, slopes in enumerate(misfit.white_derivatives(x))}
+    jacobians = {i: flatten(slopes, first=1).T for i, slopes in enumerate(misfit.whitened_derivatives(x))}
     smooth = {i: jacobian for i, jacobian in jacobians.items() if not trials[i].jumps}
-    asked = slice(n - free, known)
+    asked = slice(n - n_effect_parameters, known)
     whole, part = (_moved(items.values(), misfit.n_unknowns)[asked] for items in (jacobians, smooth))
     if smooth and np.all(part > TOLD * whole):
         jacobians = smooth
     prior = np.concatenate(
-        [np.full(n - free, BASE_PRIOR**-2), np.full(free, WEAK_PRIOR**-2), np.zeros(known - n), np.ones(misfit.n_unknowns - known)]
+        [
+            np.full(n - n_effect_parameters, BASE_PRIOR**-2),
+            np.full(n_effect_parameters, WEAK_PRIOR**-2),
+            np.zeros(known - n),
+            np.ones(misfit.n_unknowns - known),
+        ]
     )
     return jacobians, np.diag(prior) + sum(item.T @ item for item in jacobians.values())
 
@@ -117,18 +127,18 @@ def _moved(jacobians: Iterable[Array], n_unknowns: int) -> Array:
 
 def _seen(misfit: Misfit) -> float:
     """Return the share of the records that their tapers let through: neighbouring lines of tapered records are not independent."""
-    return float(np.mean([np.mean(taper(len(trial.measurement.time), trial.measurement.dt) ** 2) for trial in misfit.problem.trials]))
+    return float(np.mean([np.mean(taper(len(trial.recording.time), trial.recording.dt) ** 2) for trial in misfit.problem.trials]))
 
 
-def _columns(fit: Fit, candidate: Candidate) -> list[tuple[EffectParameter, int, float, float]]:
+def _columns(fit: ModelFit, candidate: Candidate) -> list[tuple[EffectParameter, int, float, float]]:
     """Return an effect's parameters with their column among the unknowns, their value and their unit per unit of the unknown."""
-    misfit, x = fit.polished.misfit, fit.polished.x
+    misfit, x = fit.least_squares.misfit, fit.least_squares.x
     space = misfit.problem.space
     slopes = space.slopes(space.values(misfit.split(x)[0]))
     found = []
     for parameter, symbol in zip(candidate.effect.parameters, candidate.parameters, strict=False):
         column = space.names.index(symbol)
-        found.append((parameter, column, float(fit.polished.values[column]), float(slopes[column])))
+        found.append((parameter, column, float(fit.least_squares.values[column]), float(slopes[column])))
     places = [item.place for item in misfit.shared]
     for parameter, item in zip(candidate.effect.parameters, candidate.shared, strict=False):
         i = next(i for i, own in enumerate(misfit.shared) if type(own) is type(item) and places[i] == item.place)
@@ -136,8 +146,8 @@ def _columns(fit: Fit, candidate: Candidate) -> list[tuple[EffectParameter, int,
     return found
 
 
-def _amplitude(fit: Fit, candidate: Candidate, covariance: Array) -> NamedParameter:
-    misfit, x = fit.polished.misfit, fit.polished.x
+def _amplitude(fit: ModelFit, candidate: Candidate, covariance: Array) -> NamedParameter:
+    misfit, x = fit.least_squares.misfit, fit.least_squares.x
     i = next(i for i, own in enumerate(misfit.shared) if isinstance(own, Harmonic) and own.place == candidate.place)
     line = misfit.shared[i]
     assert isinstance(line, Harmonic)
@@ -163,18 +173,18 @@ def _amplitude(fit: Fit, candidate: Candidate, covariance: Array) -> NamedParame
     return NamedParameter(value, (value - NINETY * spread, value + NINETY * spread), candidate.effect.parameters[2].unit)
 
 
-def estimates_by_run(fit: Fit, candidate: Candidate | None = None) -> list[RunEstimate]:
+def estimates_by_run(fit: ModelFit, candidate: Candidate | None = None) -> list[RunEstimate]:
     """Return what every training run alone asks of an effect's parameters: one Gauss-Newton step from the joint fit.
 
     The base parameters are held by what the other runs say of them, whatever the effect is; the effect's are free. Runs whose response
     jumps are left out, as they are in :func:`estimate`.
     """
     candidate = candidate or fit.last
-    misfit, x = fit.polished.misfit, fit.polished.x
+    misfit, x = fit.least_squares.misfit, fit.least_squares.x
     columns = _columns(fit, candidate)
     own = [column for _, column, _, _ in columns]
-    lines = misfit.white_lines(x)
-    jacobians, whole = _normal(misfit, x, fit.free)
+    lines = misfit.whitened_spectrum(x)
+    jacobians, whole = _normal(misfit, x, fit.n_effect_parameters)
     pulls = {t: jacobian.T @ flatten(lines[t]) for t, jacobian in jacobians.items()}
     blocks = misfit.n_parameters + len(misfit.shared)
     gradient = np.concatenate([np.zeros(blocks), x[blocks:]]) + sum(pulls.values())
@@ -197,12 +207,12 @@ def estimates_by_run(fit: Fit, candidate: Candidate | None = None) -> list[RunEs
         covariance = np.linalg.pinv(normal, hermitian=True)
         step = -covariance @ force
         for k, (parameter, _, value, scale) in enumerate(columns):
-            half = NINETY * abs(scale) * float(np.sqrt(max(covariance[n + k, n + k], 0.0) * max(fit.runs[trial.name], 1.0) / seen))
+            half = NINETY * abs(scale) * float(np.sqrt(max(covariance[n + k, n + k], 0.0) * max(fit.mean_squares[trial.name], 1.0) / seen))
             found.append(RunEstimate(trial.name, parameter.name, value + scale * float(step[n + k]), half))
     return found
 
 
-def unstable(fit: Fit, candidate: Candidate | None = None) -> list[str]:
+def unstable(fit: ModelFit, candidate: Candidate | None = None) -> list[str]:
     """Return the parameters on which runs disagree: beyond three standard deviations and beyond SAME_WITHIN of the value."""
     joint, alone = estimate(fit, candidate), estimates_by_run(fit, candidate)
     told = []
@@ -215,39 +225,41 @@ def unstable(fit: Fit, candidate: Candidate | None = None) -> list[str]:
     return told
 
 
-def held_out_gain(base: Fit, fit: Fit) -> float | None:
+def validation_gain(base: ModelFit, fit: ModelFit) -> float | None:
     """Return the share of the excess on untouched runs that a fit closes; None where those runs show no gap, or were not simulated."""
-    if not (np.isfinite(fit.held_out) and base.held_out > limit.NOISE_FLOOR**2):
+    if not (np.isfinite(fit.validation) and base.validation > limit.NOISE_FLOOR**2):
         return None
-    return float(1 - max(fit.held_out - 1, 0.0) / (base.held_out - 1))
+    return float(1 - max(fit.validation - 1, 0.0) / (base.validation - 1))
 
 
-def gain_interval(base: Fit, fit: Fit, untouched: Sequence[str], draws: int = 400, seed: int = 7) -> tuple[float, float] | None:
+def gain_interval(
+    base: ModelFit, fit: ModelFit, validation_runs: Sequence[str], draws: int = 400, seed: int = 7
+) -> tuple[float, float] | None:
     """Return the 90 % interval of :func:`held_out_gain`, by a bootstrap over blocks of spectral lines; None where that is None.
 
     Blocks of BLOCK neighbouring lines of all channels are drawn with replacement (Kuensch 1989, doi:10.1214/aos/1176347265).
     """
-    if held_out_gain(base, fit) is None:
+    if validation_gain(base, fit) is None:
         return None
     parts = []
-    for name in untouched:
-        before, after = base.powers[name], fit.powers[name]
-        for lines in np.array_split(np.arange(len(before)), max(1, len(before) // BLOCK)):
+    for name in validation_runs:
+        before, after = base.spectra[name], fit.spectra[name]
+        for lines in np.array_split(np.arange(len(before)), max(1, len(before) // BLOCK_LINES)):
             parts.append((before[lines].sum(), after[lines].sum(), before[lines].size))
     blocks = np.array(parts)
     random = np.random.Generator(np.random.PCG64(seed))
     old, new, count = blocks[random.integers(len(blocks), size=(draws, len(blocks)))].sum(axis=1).T
-    least = 0.1 * (base.held_out - 1)  # a draw may miss the lines that hold the gap
+    least = 0.1 * (base.validation - 1)  # a draw may miss the lines that hold the gap
     shares = 1 - np.maximum(new / count - 1, 0.0) / np.maximum(old / count - 1, least)
     low, high = np.percentile(shares, [5, 95])
     return float(low), float(high)
 
 
-def p_value(base: Fit, other: Fit, extra: int) -> float:
+def p_value(base: ModelFit, other: ModelFit, extra: int) -> float:
     """Return the probability of such a gain on the training runs by chance: likelihood ratio, chi-squared with `extra` freedoms.
 
     The gain counts in units of what the better model leaves, so that a gap that neither explains lends no significance.
     """
-    names = [trial.name for trial in base.polished.misfit.problem.trials]
-    gain = sum((base.runs[name] - other.runs[name]) * base.counts[name] for name in names) / max(other.train, 1.0)
+    names = [trial.name for trial in base.least_squares.misfit.problem.trials]
+    gain = sum((base.mean_squares[name] - other.mean_squares[name]) * base.counts[name] for name in names) / max(other.training, 1.0)
     return float(scipy.stats.chi2.sf(max(gain, 0.0), max(extra, 1)))

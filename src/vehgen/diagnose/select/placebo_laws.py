@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.detect.detection import Detection
-from vehgen.diagnose.fits.model_fit import Fit
+from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.fits.projection import Projection
 from vehgen.diagnose.localise.recovered_force import recover
 from vehgen.diagnose.localise.unknown_force import PlaceResult
-from vehgen.diagnose.select.search import Round
+from vehgen.diagnose.select.search import SearchRound
 from vehgen.fit.misfit import flatten
 from vehgen.fit.noise import transform
 from vehgen.simulate.frequency import force_response
@@ -28,7 +28,7 @@ SEED = 20240
 
 
 def decoy_shares(
-    base: Fit, place: PlaceResult, motion: Mapping[str, tuple[Array, Array]], numbers: int, count: int = COUNT, seed: int = SEED
+    base: ModelFit, place: PlaceResult, motion: Mapping[str, tuple[Array, Array]], numbers: int, count: int = COUNT, seed: int = SEED
 ) -> Array:
     """Return the share of the base's excess on the training runs that each of `count` decoys closes, `shape (count,)`.
 
@@ -43,7 +43,7 @@ def decoy_shares(
     numbers
         How many numbers a decoy may fit.
     """
-    misfit = base.polished.misfit
+    misfit = base.least_squares.misfit
     projection = Projection.of(misfit, place.x)
     left, size = projection.left, projection.size
     scales = [float(np.sqrt(np.mean(np.concatenate([item[i] for item in motion.values()]) ** 2))) for i in (0, 1)]
@@ -60,19 +60,19 @@ def decoy_shares(
             for t, trial in enumerate(misfit.problem.trials):
                 d, v = motion[trial.name]
                 force = np.sin(slope * d / scales[0] + rate * v / scales[1] + phase) - np.sin(phase)
-                frequency = np.fft.rfftfreq(len(d), trial.measurement.dt)
+                frequency = np.fft.rfftfreq(len(d), trial.recording.dt)
                 inside = (frequency >= misfit.band[0]) & (frequency <= misfit.band[1])
-                lines = transform(force[:, None], trial.measurement.dt, inside) * responses[t]
+                lines = transform(force[:, None], trial.recording.dt, inside) * responses[t]
                 parts.append(flatten(misfit.whiten(t, lines)))
             columns.append(np.concatenate(parts))
-        own = projection.free(np.array(columns).T)
+        own = projection.remainder(np.array(columns).T)
         remaining = left - own @ np.linalg.lstsq(own, left, rcond=None)[0]
         found.append(1 - max(float(remaining @ remaining) / size - 1, 0.0) / excess)
     return np.array(found)
 
 
-def _responses(base: Fit, place: PlaceResult) -> list[NDArray[np.complex128]]:
-    misfit = base.polished.misfit
+def _responses(base: ModelFit, place: PlaceResult) -> list[NDArray[np.complex128]]:
+    misfit = base.least_squares.misfit
     values = misfit.problem.space.values(misfit.split(place.x)[0])
     known = [misfit.problem.values_of(values, trial) for trial in misfit.problem.trials]
     return [
@@ -81,7 +81,7 @@ def _responses(base: Fit, place: PlaceResult) -> list[NDArray[np.complex128]]:
     ]
 
 
-def compare(found: Round, fit: Fit, detection: Detection) -> tuple[float, float] | None:
+def compare_with_placebo_laws(found: SearchRound, fit: ModelFit, detection: Detection) -> tuple[float, float] | None:
     """Return the shares of the excess on the training runs that an effect and the best decoy close.
 
     None where the effect is no law at the place that the place test found with one force.
@@ -91,7 +91,7 @@ def compare(found: Round, fit: Fit, detection: Detection) -> tuple[float, float]
     place = next((item for item in here if item.place.kind == fit.last.effect.attaches), here[0] if here else None)
     if place is None or fit.last.effect.edit is None:
         return None
-    motion = {run.run: (run.travel, run.rate) for run in recover(detection, place) if not run.untouched}
-    shares = decoy_shares(found.footing, place, motion, max(len(fit.last.parameters), 1))
-    before = max(found.footing.train - 1, 1e-9)
-    return 1 - max(fit.train - 1, 0.0) / before, float(shares.max())
+    motion = {run.run: (run.travel, run.rate) for run in recover(detection, place) if not run.validation}
+    shares = decoy_shares(found.current, place, motion, max(len(fit.last.parameters), 1))
+    before = max(found.current.training - 1, 1e-9)
+    return 1 - max(fit.training - 1, 0.0) / before, float(shares.max())

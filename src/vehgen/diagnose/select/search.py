@@ -10,106 +10,106 @@ from numpy.typing import NDArray
 
 from vehgen.codegen import compile_all
 from vehgen.diagnose.detect.detection import Detection
-from vehgen.diagnose.fits.candidate import Candidate, pose
-from vehgen.diagnose.fits.model_fit import NUISANCES, Fit, Footing
-from vehgen.diagnose.fits.multi_start import Origin, fit_candidate
-from vehgen.diagnose.fits.restarts import settle
+from vehgen.diagnose.fits.candidate import Candidate, build_problem
+from vehgen.diagnose.fits.model_fit import NUISANCES, CurrentModel, ModelFit
+from vehgen.diagnose.fits.multi_start import StartingPoint, fit_candidate
+from vehgen.diagnose.fits.restarts import restart
 from vehgen.diagnose.fits.screening import screen
 from vehgen.diagnose.localise.localisation import GLOBAL, localise, one_force, shortlist
 from vehgen.diagnose.localise.unknown_force import PlaceResult
-from vehgen.effects import Surveyor
+from vehgen.effects import EffectLocator
 from vehgen.fit.harmonic import find_line
 from vehgen.simulate import Simulator
 
 Array = NDArray[np.float64]
-Progress = Callable[[str, int, int, str], None]
+DiagnosisProgress = Callable[[str, int, int, str], None]
 """Called with the stage, how many of how many, and the best so far."""
 LEADING = 3
 """So many of the best fits are settled, where their response jumps."""
 
 
 @dataclass(frozen=True)
-class Round:
+class SearchRound:
     """One look for one effect: what `footing` leaves, the places tested and passed, and the candidates fitted, best first.
 
     `stopped` tells that Ctrl-C ended it before all candidates were fitted.
     """
 
-    footing: Fit
+    current: ModelFit
     places: tuple[PlaceResult, ...]
     passed: tuple[PlaceResult, ...]
-    fits: tuple[Fit, ...]
+    fits: tuple[ModelFit, ...]
     stopped: bool = False
 
 
-def look(
+def search_round(
     detection: Detection,
-    footing: Fit,
+    current: ModelFit,
     candidates: Sequence[Candidate],
     everything: bool = False,
-    tell: Progress | None = None,
+    progress: DiagnosisProgress | None = None,
     workers: int = 1,
-) -> Round:
+) -> SearchRound:
     """Test the places on what a fit leaves, then fit the candidates that may live there; `workers` processes compile their kernels."""
-    beside = f" beside {footing.label}" if footing.effects else ""
+    beside = f" beside {current.label}" if current.effects else ""
 
     def say(stage: str, done: int, total: int, best: str) -> None:
-        if tell is not None:
-            tell(stage + beside, done, total, best)
+        if progress is not None:
+            progress(stage + beside, done, total, best)
 
     say("localise", 0, 1, "")
     try:
-        places, passed = localise(footing)
+        places, passed = localise(current)
     except KeyboardInterrupt:
-        return Round(footing, (), (), (), True)
+        return SearchRound(current, (), (), (), True)
     say("localise", 1, 1, passed[0].place.label if passed else "no single place")
-    known = {(item.effect.name, item.place) for item in footing.effects}
+    known = {(item.effect.name, item.place) for item in current.effects}
     others = [item for item in candidates if (item.effect.name, item.place) not in known]
-    chosen = others if everything else shortlist(footing, others, places, passed)
-    if footing.effects and not passed and not everything:
+    chosen = others if everything else shortlist(current, others, places, passed)
+    if current.effects and not passed and not everything:
         chosen = [item for item in others if item.effect.attaches in ("run", "sensor") or item.effect.name in GLOBAL]
-    fits, stopped = name(detection, footing, passed, chosen, say, everything, workers)
-    return Round(footing, tuple(places), tuple(passed), tuple(fits), stopped)
+    fits, stopped = fit_candidates(detection, current, passed, chosen, say, everything, workers)
+    return SearchRound(current, tuple(places), tuple(passed), tuple(fits), stopped)
 
 
-def name(
+def fit_candidates(
     detection: Detection,
-    base: Fit,
+    base: ModelFit,
     passed: Sequence[PlaceResult],
     candidates: Sequence[Candidate],
-    tell: Progress,
+    progress: DiagnosisProgress,
     everything: bool = False,
     workers: int = 1,
-) -> tuple[list[Fit], bool]:
+) -> tuple[list[ModelFit], bool]:
     """Fit every candidate on top of a fit; return the fits, best first, and whether Ctrl-C ended this early.
 
     The candidates are screened first, unless `everything` is to be tried.
     """
-    footing = Footing.of(base)
+    footing = CurrentModel.of(base)
     trial = footing.problem.trials[0]
-    surveyor = Surveyor(trial.run.vehicle, dict(trial.values))
+    surveyor = EffectLocator(trial.run.vehicle, dict(trial.values))
     simulators: dict[object, Simulator] = {}
     space = footing.problem.space
     plain = np.zeros(len(detection.problem.trials) * len(NUISANCES.names))
-    fitted: Origin = footing.unit, footing.errors
+    fitted: StartingPoint = footing.unit, footing.errors
     begun = fitted if base.effects else (space.unit(space.start), plain)
     placed = begun
     if one_force(passed):
-        unit, errors = base.polished.misfit.split(passed[0].x)
+        unit, errors = base.least_squares.misfit.split(passed[0].x)
         placed = unit, errors.ravel()
-    fits: list[Fit] = []
+    fits: list[ModelFit] = []
     try:
         harmonics = any(item.effect.adjusts == "harmonic" for item in candidates)
-        lines = find_line(base.polished.misfit, base.polished.x) if harmonics else []
+        lines = find_line(base.least_squares.misfit, base.least_squares.x) if harmonics else []
         if not everything:
-            tell("screen", 0, 1, "")
+            progress("screen", 0, 1, "")
             candidates = screen(candidates, base, footing, surveyor, simulators)
-            tell("screen", 1, 1, f"{len(candidates)} candidates")
+            progress("screen", 1, 1, f"{len(candidates)} candidates")
         if workers > 1:
-            tell("compile", 0, 1, "")
-            posed = [pose(item, footing.problem, surveyor, simulators) for item in candidates if item.effect.edit is not None]
+            progress("compile", 0, 1, "")
+            posed = [build_problem(item, footing.problem, surveyor, simulators) for item in candidates if item.effect.edit is not None]
             compile_all([trial.simulator.kernel for problem in posed for trial in problem.trials], workers)
-            tell("compile", 1, 1, f"{len(posed)} vehicles")
+            progress("compile", 1, 1, f"{len(posed)} vehicles")
         for done, candidate in enumerate(candidates, start=1):
             harmonic = candidate.effect.adjusts == "harmonic"
             # what the base fit absorbed of the effect may mislead: begin at the file's values, or where the place test leaves them, too
@@ -117,7 +117,7 @@ def name(
             fit = fit_candidate(
                 candidate,
                 footing,
-                detection.held_out,
+                detection.validation_runs,
                 detection.floor.noises,
                 detection.band,
                 surveyor,
@@ -128,25 +128,25 @@ def name(
             if fit is not None:
                 fits.append(fit)
             best = min(fits, key=merit, default=base)
-            tell("name", done, len(candidates), f"{best.label}, chi {np.sqrt(best.train):.3f}")
+            progress("name", done, len(candidates), f"{best.label}, chi {np.sqrt(best.training):.3f}")
         fits.sort(key=merit)
         for i, fit in enumerate(fits[:LEADING]):
-            if np.isfinite(fit.held_out):
-                fits[i] = settle(fit, detection.held_out, detection.floor.noises)
+            if np.isfinite(fit.validation):
+                fits[i] = restart(fit, detection.validation_runs, detection.floor.noises)
     except KeyboardInterrupt:
         return sorted(fits, key=merit), True
     return sorted(fits, key=merit), False
 
 
-def merit(fit: Fit) -> float:
+def merit(fit: ModelFit) -> float:
     """Return what ranks fits: -2 ln of the likelihood on the training runs, with the price of the last effect's numbers (BIC)."""
-    training = [trial.name for trial in fit.polished.misfit.problem.trials]
+    training = [trial.name for trial in fit.least_squares.misfit.problem.trials]
     total = sum(fit.counts[item] for item in training)
-    return fit.train * total + own_numbers(fit) * float(np.log(total))
+    return fit.training * total + own_numbers(fit) * float(np.log(total))
 
 
-def own_numbers(fit: Fit) -> int:
+def own_numbers(fit: ModelFit) -> int:
     """Return how many numbers the last effect of a fit added: its parameters, and a line's four parts in every run."""
     last = fit.last
-    lines = 4 * len(fit.polished.misfit.problem.trials) if last.effect.adjusts == "harmonic" else 0
+    lines = 4 * len(fit.least_squares.misfit.problem.trials) if last.effect.adjusts == "harmonic" else 0
     return len(last.parameters) + len(last.shared) + lines

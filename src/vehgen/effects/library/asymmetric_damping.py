@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from vehgen.effects.base import Change, Effect, EffectParameter
 from vehgen.effects.library.law_effect import Given, on_spring
-from vehgen.effects.locator import Site
+from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import suspensions
 from vehgen.mechanics.laws import LAWS
 
 
-def _edit(site: Site, symbols: Given) -> Change:
+def _edit(site: EffectSite, symbols: Given) -> Change:
     ratio, c = symbols["ratio"], site.spring.c.text
     bump, more = f"2*({c})*{ratio}/(1 + {ratio})", f"2*({c})*(1 - {ratio})/(1 + {ratio})"
     law = {"asymmetric_damping": {"c": more, "ratio": "0"}}

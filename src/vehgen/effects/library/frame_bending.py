@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from vehgen.effects.base import Change, Effect, EffectParameter
 from vehgen.effects.library.law_effect import Given
-from vehgen.effects.locator import Site
+from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import long_bodies
 
 
-def _edit(site: Site, symbols: Given) -> Change:
+def _edit(site: EffectSite, symbols: Given) -> Change:
     return {
         "bodies": {
             site.place: {

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from vehgen.effects.base import Change, Effect, EffectParameter
-from vehgen.effects.locator import Site
+from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import ALL_TYRES, hinges, suspensions
 from vehgen.mechanics.laws import LAWS
 
 Given = Mapping[str, str]
 
 
-def law_edit(kind: str, law: str, write: Callable[[Site, Given], Change] | None = None) -> Callable[[Site, Given], Change]:
+def law_edit(kind: str, law: str, write: Callable[[EffectSite, Given], Change] | None = None) -> Callable[[EffectSite, Given], Change]:
     """Return the edit that adds a law to a suspension (or a link in its place), tyre or hinge.
 
     Parameters
@@ -25,7 +25,7 @@ def law_edit(kind: str, law: str, write: Callable[[Site, Given], Change] | None 
         Returns the law's entry from the symbols (default: each of its parameters is the symbol of that name).
     """
 
-    def edit(site: Site, symbols: Given) -> Change:
+    def edit(site: EffectSite, symbols: Given) -> Change:
         entry = {law: write(site, symbols) if write else dict(symbols)}
         if kind == "hinge":
             return {"hinges": {site.place: {"laws": [*site.laws(kind, site.place), entry]}}}
@@ -37,13 +37,13 @@ def law_edit(kind: str, law: str, write: Callable[[Site, Given], Change] | None 
     return edit
 
 
-def on_spring(site: Site, change: Change) -> Change:
+def on_spring(site: EffectSite, change: Change) -> Change:
     """Return a change of the suspension or link at a site, in the form of a vehicle file."""
     return {"links": {site.place: change}} if site.kind == "link" else {"axles": {site.place: {"suspension": change}}}
 
 
 def suspension_law(
-    name: str, law: str, signature: str, parameters: tuple[EffectParameter, ...], write: Callable[[Site, Given], Change] | None = None
+    name: str, law: str, signature: str, parameters: tuple[EffectParameter, ...], write: Callable[[EffectSite, Given], Change] | None = None
 ) -> Effect:
     """Return the effect of a law of the library on a suspension or link."""
     known = LAWS[law]

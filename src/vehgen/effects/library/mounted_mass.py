@@ -6,14 +6,14 @@ from collections.abc import Callable
 
 from vehgen.effects.base import Change, EffectParameter
 from vehgen.effects.library.law_effect import Given
-from vehgen.effects.locator import Site
+from vehgen.effects.locator import EffectSite
 from vehgen.files.names import joined_name
 
 
-def mass_edit(name: str) -> Callable[[Site, Given], Change]:
+def mass_edit(name: str) -> Callable[[EffectSite, Given], Change]:
     """Return the edit that cuts a heave-only mass out of a body and mounts it on a link."""
 
-    def edit(site: Site, symbols: Given) -> Change:
+    def edit(site: EffectSite, symbols: Given) -> Change:
         body, new = site.place, joined_name(name, site.place)
         mass, f, zeta, x = (symbols[key] for key in ("mass", "frequency", "damping_ratio", "x"))
         omega = f"(6.283185307179586*{f})"

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from vehgen.effects.base import Change, Effect, EffectParameter
 from vehgen.effects.library.law_effect import Given
-from vehgen.effects.locator import Site
+from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import ALL_TYRES, tyres
 
 
-def _edit(site: Site, symbols: Given) -> Change:
+def _edit(site: EffectSite, symbols: Given) -> Change:
     change: Change = {}
     for name, axle in site.vehicle.axles.items():
         if site.place in (ALL_TYRES, name):

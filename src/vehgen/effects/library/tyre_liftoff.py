@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from vehgen.effects.base import Change, Effect
 from vehgen.effects.library.law_effect import Given, law_edit
-from vehgen.effects.locator import Site
+from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import tyres
 from vehgen.mechanics.laws import LAWS
 
 _ADD = law_edit("tyre", "tyre_liftoff")
 
 
-def _edit(site: Site, symbols: Given) -> Change:
+def _edit(site: EffectSite, symbols: Given) -> Change:
     return _ADD(site, {"share": "1"})
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from vehgen.effects.base import Change, Effect, EffectParameter
 from vehgen.effects.library.law_effect import Given
-from vehgen.effects.locator import Site
+from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import tandems
 from vehgen.files.names import joined_name
 from vehgen.vehicle.model import Spring
@@ -14,7 +14,7 @@ def _spring(suspension: Spring) -> tuple[str, str]:
     return suspension.k.text, suspension.c.text
 
 
-def _edit(site: Site, symbols: Given) -> Change:
+def _edit(site: EffectSite, symbols: Given) -> Change:
     first, second = site.place.split("+")
     one, two = site.vehicle.axles[first], site.vehicle.axles[second]
     assert one.mass is not None

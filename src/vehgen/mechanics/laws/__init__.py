@@ -1,7 +1,7 @@
 """The library of force laws, one file each."""
 
 from vehgen.mechanics.laws.asymmetric_damping import ASYMMETRIC_DAMPING
-from vehgen.mechanics.laws.base import Kind, Law, LawParameter, LawStep, Motion
+from vehgen.mechanics.laws.base import Kind, Law, LawParameter, LawState, LawStep
 from vehgen.mechanics.laws.bump_stop import BUMP_STOP
 from vehgen.mechanics.laws.cubic_stiffness import CUBIC_STIFFNESS
 from vehgen.mechanics.laws.custom import custom_law
@@ -31,4 +31,4 @@ LAWS: dict[str, Law] = {
     )
 }
 
-__all__ = ["LAWS", "Kind", "Law", "LawParameter", "LawStep", "Motion", "custom_law"]
+__all__ = ["LAWS", "Kind", "Law", "LawParameter", "LawState", "LawStep", "custom_law"]

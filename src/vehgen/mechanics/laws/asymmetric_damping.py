@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from vehgen.mechanics.laws.base import Law, LawParameter, LawStep, Motion, positive
+from vehgen.mechanics.laws.base import Law, LawParameter, LawState, LawStep, positive
 
 
-def _write(motion: Motion, p: Mapping[str, sp.Expr]) -> LawStep:
+def _write(motion: LawState, p: Mapping[str, sp.Expr]) -> LawStep:
     bump, rebound = positive(motion.v), positive(-motion.v)
     beyond = positive(bump - p["blow_off"]) - positive(rebound - p["blow_off"])
     force = p["c"] * (p["ratio"] * bump - rebound - p["relief"] * beyond)

@@ -44,7 +44,7 @@ class LawParameter:
 
 
 @dataclass(frozen=True)
-class Motion:
+class LawState:
     """What a law may use: travel d [m] and rate v [m/s] in mid-step, step h [s], the element's k, c and static force, its states."""
 
     d: sp.Expr
@@ -96,7 +96,7 @@ class Law:
     source: str
     strength: str
     parameters: tuple[LawParameter, ...]
-    write: Callable[[Motion, Mapping[str, sp.Expr]], LawStep]
+    write: Callable[[LawState, Mapping[str, sp.Expr]], LawStep]
     states: tuple[str, ...] = ()
     attaches_to: tuple[Kind, ...] = EVERYWHERE
     neutral: float = 0.0

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from vehgen.mechanics.laws.base import Law, LawParameter, LawStep, Motion, positive
+from vehgen.mechanics.laws.base import Law, LawParameter, LawState, LawStep, positive
 
 
-def _write(motion: Motion, p: Mapping[str, sp.Expr]) -> LawStep:
+def _write(motion: LawState, p: Mapping[str, sp.Expr]) -> LawStep:
     force = p["k"] * (positive(motion.d - p["clearance"]) - positive(-motion.d - p["rebound"]))
     return LawStep(force=force, now=force, slope=p["k"] * motion.h / 2)
 

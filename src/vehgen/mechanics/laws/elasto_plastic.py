@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from vehgen.mechanics.laws.base import Law, LawParameter, LawStep, Motion
+from vehgen.mechanics.laws.base import Law, LawParameter, LawState, LawStep
 
 
-def _write(motion: Motion, p: Mapping[str, sp.Expr]) -> LawStep:
+def _write(motion: LawState, p: Mapping[str, sp.Expr]) -> LawStep:
     start = motion.states["s"]
     end = sp.Min(sp.Max(start + p["k"] * motion.h * motion.v, -p["force"]), p["force"])
     slope = p["k"] * motion.h / 2 * sp.Heaviside(p["force"])

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from vehgen.mechanics.laws.base import Law, LawParameter, LawStep, Motion
+from vehgen.mechanics.laws.base import Law, LawParameter, LawState, LawStep
 
 
-def _write(motion: Motion, p: Mapping[str, sp.Expr]) -> LawStep:
+def _write(motion: LawState, p: Mapping[str, sp.Expr]) -> LawStep:
     """Step z implicitly with |z| of mid-step lagged once: second order, no iteration.
 
     dz/dt = (v - (beta*|v|*|z| + (1 - beta)*v*z)*z)/travel is linear in z once the bracket is known.

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from vehgen.mechanics.laws.base import Law, LawParameter, LawStep, Motion
+from vehgen.mechanics.laws.base import Law, LawParameter, LawState, LawStep
 
 
-def _write(motion: Motion, p: Mapping[str, sp.Expr]) -> LawStep:
+def _write(motion: LawState, p: Mapping[str, sp.Expr]) -> LawStep:
     force = p["c2"] * motion.v * sp.Abs(motion.v)
     return LawStep(force=force, now=force)
 

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from vehgen.mechanics.laws.base import Law, LawParameter, LawStep, Motion, positive
+from vehgen.mechanics.laws.base import Law, LawParameter, LawState, LawStep, positive
 
 
-def _write(motion: Motion, p: Mapping[str, sp.Expr]) -> LawStep:
+def _write(motion: LawState, p: Mapping[str, sp.Expr]) -> LawStep:
     force = p["share"] * positive(-(motion.static + motion.k * motion.d + motion.c * motion.v))
     return LawStep(force=force, now=force, slope=p["share"] * (motion.k * motion.h / 2 + motion.c))
 

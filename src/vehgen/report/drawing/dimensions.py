@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from vehgen.mechanics import LinearModel
+from vehgen.mechanics import EquationsOfMotion
 from vehgen.report.drawing.canvas import ACCENT, FAINT, Canvas, Spot, text_size
 from vehgen.report.drawing.sketch import Sketch
 
@@ -68,7 +68,7 @@ def _draw_distance(canvas: Canvas, left: float, right: float, z: float, size: fl
     canvas.label(text, spots, size if wide else size - 1, color)
 
 
-def draw_hinge_heights(canvas: Canvas, model: LinearModel, sketch: Sketch, size: float) -> None:
+def draw_hinge_heights(canvas: Canvas, model: EquationsOfMotion, sketch: Sketch, size: float) -> None:
     """Draw how high a pin stands over the COGs of its two bodies, where the file tells."""
     for name, (x, z) in sketch.hinges.items():
         for body, point in model.vehicle.hinges[name].points.items():

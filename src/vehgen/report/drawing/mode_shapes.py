@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
-from vehgen.mechanics import LinearModel
-from vehgen.mechanics.rows import Entries
+from vehgen.mechanics import EquationsOfMotion
+from vehgen.mechanics.rows import SparseMatrix
 from vehgen.mechanics.symbols import to_sympy
 from vehgen.report.drawing.canvas import FAINT, FILLS, GHOST, INK, Canvas, text_size, wrap
 from vehgen.report.drawing.sketch import Sketch, make_sketch
@@ -37,14 +37,14 @@ class Movement:
         return forward + pitch * (z - box.z), up - pitch * (x - box.x)
 
 
-def mode_movements(model: LinearModel, modes: Sequence[Mode], values: Mapping[str, float]) -> list[Movement]:
+def mode_movements(model: EquationsOfMotion, modes: Sequence[Mode], values: Mapping[str, float]) -> list[Movement]:
     """Return the movement of every part in every mode, fore-aft motion of hinged bodies included."""
     bodies, n = list(model.vehicle.bodies), model.n_dof
     rows = [row for name in bodies for row in (model.motion.fore_aft[name], model.motion.heave[name], model.motion.pitch[name])]
     for name, axle in model.vehicle.axles.items():
         rows.append(model.motion.hop[name] if name in model.motion.hop else model.motion.rise(axle.body, to_sympy(axle.x)))
     masses = [term.inertia for group in model.energies.fore_aft.values() for term in group]
-    entries: Entries = {(i, j): value for i, row in enumerate(rows) for j, value in row.items()}
+    entries: SparseMatrix = {(i, j): value for i, row in enumerate(rows) for j, value in row.items()}
     entries |= {(len(rows), i): mass for i, mass in enumerate(masses)}
     matrix, weights = np.zeros((len(rows), n)), np.zeros(len(masses))
     for (i, j), value in model.evaluate(entries, values).items():
@@ -96,7 +96,7 @@ class _Strokes:
         canvas.dots(self.pins, 3.6, "white", INK, 4.0)
 
 
-def draw_modes(model: LinearModel, modes: Sequence[Mode], values: Mapping[str, float] | None = None) -> Figure:
+def draw_modes(model: EquationsOfMotion, modes: Sequence[Mode], values: Mapping[str, float] | None = None) -> Figure:
     """Draw every mode over the vehicle at rest (grey), the largest motion alike in all."""
     values = values or model.values()
     sketch = make_sketch(model, values)
@@ -136,7 +136,7 @@ def _draw_mode(
     canvas: Canvas,
     strokes: _Strokes,
     sketch: Sketch,
-    model: LinearModel,
+    model: EquationsOfMotion,
     movement: Movement,
     swing: float,
     origin: tuple[float, float],

@@ -16,10 +16,10 @@ from vehgen.cargo.module_model import ModuleModel
 from vehgen.report.drawing.canvas import ACCENT, FAINT, INK
 
 Array = NDArray[np.float64]
-SCALE = 0.12
+MODE_SCALE = 0.12
 """The largest displacement drawn, over the shortest side."""
 SURFACE = "#cfe0ee"
-COLOURS = colormaps["viridis"]
+MODE_COLOURS = colormaps["viridis"]
 VIEW = (22.0, -58.0)
 """Elevation and azimuth, degrees."""
 
@@ -30,7 +30,7 @@ def plot_module(model: ModuleModel) -> Figure:
     mesh, mode = model.mesh, model.modes.principal
     shape = model.modes.shapes[mode][:, :3]
     vertical = shape[:, 2] / shape[np.argmax(np.abs(shape[:, 2])), 2]
-    shape = shape * SCALE * mesh.nodes.max(axis=0).min() / np.abs(shape).max() * np.sign(shape[np.argmax(np.abs(shape[:, 2])), 2])
+    shape = shape * MODE_SCALE * mesh.nodes.max(axis=0).min() / np.abs(shape).max() * np.sign(shape[np.argmax(np.abs(shape[:, 2])), 2])
     above = _axes(figure, (0.0, 0.49, 0.9, 0.44), mesh.nodes, mesh.nodes)
     faces = Poly3DCollection(mesh.nodes[mesh.quads], facecolors=SURFACE, edgecolors=FAINT, linewidths=0.25, alpha=0.4)
     _add(above, faces)
@@ -49,10 +49,10 @@ def plot_module(model: ModuleModel) -> Figure:
     level = _level(mesh.nodes, mesh.quads)
     for chosen, alpha in ((level, 0.95), (~level, 0.3)):
         if chosen.any():
-            colours = COLOURS(scale(vertical[mesh.quads[chosen]].mean(axis=1)), alpha=alpha)
+            colours = MODE_COLOURS(scale(vertical[mesh.quads[chosen]].mean(axis=1)), alpha=alpha)
             _add(below, Poly3DCollection(moved[mesh.quads[chosen]], facecolors=colours, edgecolors=(0, 0, 0, 0.18), linewidths=0.2))
     if len(mesh.beams):
-        beam_colours = COLOURS(scale(vertical[mesh.beams].mean(axis=1)))
+        beam_colours = MODE_COLOURS(scale(vertical[mesh.beams].mean(axis=1)))
         _add(below, Line3DCollection(moved[mesh.beams], colors=beam_colours, linewidths=1.6, zorder=3))
     _add(below, Line3DCollection(_outline(mesh.nodes), colors=INK, linewidths=0.8, zorder=4, linestyles=(0, (4, 3))))
     below.set_title(
@@ -60,7 +60,7 @@ def plot_module(model: ModuleModel) -> Figure:
         fontsize=10.5,
         color=INK,
     )
-    bar = figure.colorbar(ScalarMappable(scale, COLOURS), cax=figure.add_axes((0.91, 0.1, 0.016, 0.27)))
+    bar = figure.colorbar(ScalarMappable(scale, MODE_COLOURS), cax=figure.add_axes((0.91, 0.1, 0.016, 0.27)))
     bar.set_label("vertical displacement, largest = 1", color=INK, fontsize=9)
     bar.ax.tick_params(labelsize=8)
     figure.suptitle(model.frame.file.title or model.frame.path.stem, x=0.015, ha="left", fontsize=12, color=INK, parse_math=False)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehgen.mechanics import LinearModel
+from vehgen.mechanics import EquationsOfMotion
 from vehgen.vehicle.model import GROUND
 
 CLEARANCE = 0.12
@@ -82,7 +82,7 @@ class Sketch:
         return max([box.top for box in self.boxes.values()] + [z for _, z in self.hinges.values()])
 
 
-def make_sketch(model: LinearModel, values: Mapping[str, float]) -> Sketch:
+def make_sketch(model: EquationsOfMotion, values: Mapping[str, float]) -> Sketch:
     """Place every part of a vehicle for drawing."""
     vehicle, layout = model.vehicle, model.layout
     entries = {(0, i): x for i, (x, _) in enumerate(layout.bodies.values())}
@@ -134,7 +134,7 @@ def _wheel_radius(bodies: list[float], axles: list[float]) -> float:
 
 
 def _attached(
-    model: LinearModel, axles: Mapping[str, float], hinges: Mapping[str, float], links: Mapping[str, tuple[float, str, str]]
+    model: EquationsOfMotion, axles: Mapping[str, float], hinges: Mapping[str, float], links: Mapping[str, tuple[float, str, str]]
 ) -> dict[str, list[float]]:
     """Return, per body, the positions of the axles, hinges and links on it."""
     found: dict[str, list[float]] = {name: [] for name in model.vehicle.bodies}
@@ -151,7 +151,7 @@ def _attached(
 
 
 def _outlines(
-    model: LinearModel, places: Mapping[str, float], attached: Mapping[str, list[float]], everything: Mapping[str, float]
+    model: EquationsOfMotion, places: Mapping[str, float], attached: Mapping[str, list[float]], everything: Mapping[str, float]
 ) -> dict[str, tuple[float, float, float, bool]]:
     """Return left, right, half the height [m] of every body and whether the file gives them."""
     outlines = {}
@@ -171,7 +171,7 @@ def _outlines(
     return outlines
 
 
-def is_beam(model: LinearModel, body: str, reach: list[float]) -> bool:
+def is_beam(model: EquationsOfMotion, body: str, reach: list[float]) -> bool:
     """Tell whether a body is a beam at hub height: short, not alone, and all its wheels sit on it without a suspension."""
     wheels = [axle for axle in model.vehicle.axles.values() if axle.body == body]
     rigid = bool(wheels) and all(axle.suspension is None for axle in wheels)
@@ -179,7 +179,7 @@ def is_beam(model: LinearModel, body: str, reach: list[float]) -> bool:
 
 
 def _heights(
-    model: LinearModel,
+    model: EquationsOfMotion,
     bodies: Mapping[str, tuple[float, float | None]],
     outlines: Mapping[str, tuple[float, float, float, bool]],
     links: Mapping[str, tuple[float, str, str]],

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyBboxPatch, Rectangle
 
 from vehgen.files.expressions import Expression
-from vehgen.mechanics import LinearModel
+from vehgen.mechanics import EquationsOfMotion
 from vehgen.mechanics.symbols import to_sympy
 from vehgen.report.drawing.canvas import ACCENT, FAINT, FILLS, INK, Canvas, Spot, text_size, within, wrap
 from vehgen.report.drawing.dimensions import Chain, draw_chains, draw_hinge_heights
@@ -23,7 +23,7 @@ _ROW, _TILT = 25.0, 35.0
 """Height of a row of dimensions in points; slope of crowded names in degrees."""
 
 
-def draw_vehicle(model: LinearModel, values: Mapping[str, float] | None = None) -> Figure:
+def draw_vehicle(model: EquationsOfMotion, values: Mapping[str, float] | None = None) -> Figure:
     """Draw a side view to scale: bodies, axles, hinges, links, COGs, and their distances [m].
 
     Outlines that the file does not give (`size`) are dashed, and so are heights above the road: it gives heights only relative to
@@ -55,7 +55,7 @@ def _acts(quantity: Expression) -> bool:
     return bool(to_sympy(quantity) != 0)
 
 
-def _canvas(model: LinearModel, sketch: Sketch, names: Mapping[str, str]) -> tuple[Canvas, float, list[Chain]]:
+def _canvas(model: EquationsOfMotion, sketch: Sketch, names: Mapping[str, str]) -> tuple[Canvas, float, list[Chain]]:
     """Choose the scale and the room around the vehicle; also returns how far below the road the dimensions begin [m], and these."""
     length = sketch.right - sketch.left
     scale = float(np.clip(10.3 / length, min(0.45, 60.0 / length), 1.15))
@@ -82,7 +82,7 @@ def _canvas(model: LinearModel, sketch: Sketch, names: Mapping[str, str]) -> tup
     return canvas, depth, chains
 
 
-def _notes(model: LinearModel, sketch: Sketch) -> str:
+def _notes(model: EquationsOfMotion, sketch: Sketch) -> str:
     notes = ["To scale; lengths in metres; heights above the road are assumed."]
     if not all(box.declared for box in sketch.boxes.values()):
         notes.append("Dashed outlines are not in the vehicle file.")
@@ -91,7 +91,7 @@ def _notes(model: LinearModel, sketch: Sketch) -> str:
     return " ".join(notes)
 
 
-def _chains(model: LinearModel, sketch: Sketch, road: float) -> list[Chain]:
+def _chains(model: EquationsOfMotion, sketch: Sketch, road: float) -> list[Chain]:
     """Choose what is dimensioned in a row: the axles; COGs and hinges from the front axle; carried bodies from their carriers."""
     axles = [(x, road) for x in sketch.axles.values()]
     carried = {name: body.carried_by.body for name, body in model.vehicle.bodies.items() if body.carried_by is not None}
@@ -171,7 +171,7 @@ def _name_axles(canvas: Canvas, sketch: Sketch, names: Mapping[str, str]) -> Non
             canvas.write(names[name], (x, -7 * canvas.point, "center", "top"), _TEXT, halo=True)
 
 
-def _name_parts(canvas: Canvas, model: LinearModel, sketch: Sketch) -> None:
+def _name_parts(canvas: Canvas, model: EquationsOfMotion, sketch: Sketch) -> None:
     """Write the names of bodies, hinges and links where there is room."""
     boxes = {name: (box.left, box.bottom, box.right, box.top) for name, box in sketch.boxes.items()}
     pad = 4 * canvas.point

@@ -6,7 +6,7 @@ import re
 
 import sympy as sp
 
-from vehgen.mechanics import GRAVITY, LinearModel
+from vehgen.mechanics import GRAVITY, EquationsOfMotion
 from vehgen.report.equations.notation import Latex, latex_text
 from vehgen.report.equations.writing import (
     LAWS_NOTE,
@@ -27,7 +27,7 @@ from vehgen.report.equations.writing import (
 _LINE = 66
 """A sum is broken into lines of about this many signs."""
 
-_HEAD = r"""\documentclass[10pt]{article}
+_DOCUMENT_HEAD = r"""\documentclass[10pt]{article}
 \usepackage[utf8]{inputenc}
 \usepackage[T1]{fontenc}
 \usepackage{amsmath}
@@ -40,11 +40,11 @@ _HEAD = r"""\documentclass[10pt]{article}
 \begin{document}"""
 
 
-def equations_latex(model: LinearModel) -> str:
+def equations_latex(model: EquationsOfMotion) -> str:
     """Return a complete LaTeX document: legend of symbols, equation of motion, matrices, weight, force laws."""
     printer = latex_printer(model)
     vehicle = model.vehicle
-    lines = [_HEAD.replace(r"\allowdisplaybreaks", rf"\allowdisplaybreaks\setcounter{{MaxMatrixCols}}{{{WHOLE_MATRIX + 1}}}")]
+    lines = [_DOCUMENT_HEAD.replace(r"\allowdisplaybreaks", rf"\allowdisplaybreaks\setcounter{{MaxMatrixCols}}{{{WHOLE_MATRIX + 1}}}")]
     lines.append(rf"\section*{{{latex_text(vehicle.title or vehicle.name)}}}")
     if vehicle.source:
         lines.append(f"Source: {latex_text(vehicle.source)}\n")
@@ -62,7 +62,7 @@ def equations_latex(model: LinearModel) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _balance(model: LinearModel) -> str:
+def _balance(model: EquationsOfMotion) -> str:
     marks = {"": "{}", "'": r"\dot {}", "''": r"\ddot {}"}
     sides = {
         side: " + ".join(f"{a}{marks[c].format(b)}" for where, a, b, c in balance(model) if where == side) for side in ("left", "right")
@@ -74,7 +74,7 @@ def _table(columns: str, rows: list[list[str]]) -> list[str]:
     return [rf"\begin{{longtable}}[l]{{@{{}}{columns}@{{}}}}", *(" & ".join(row) + r" \\" for row in rows), r"\end{longtable}"]
 
 
-def _coordinates(model: LinearModel) -> list[list[str]]:
+def _coordinates(model: EquationsOfMotion) -> list[list[str]]:
     symbols = coordinate_latex(model)
     rows = [
         [f"$q_{{{i}}}$", f"${symbol}$", f"$\\mathrm{{{item.unit}}}$", latex_text(item.meaning)]
@@ -87,7 +87,7 @@ def _coordinates(model: LinearModel) -> list[list[str]]:
     return rows
 
 
-def _parameters(model: LinearModel, printer: Latex) -> list[list[str]]:
+def _parameters(model: EquationsOfMotion, printer: Latex) -> list[list[str]]:
     rows = []
     for name, definition, unit, meaning in parameter_rows(model):
         symbol = printer.doprint(sp.Symbol(name, real=True))
@@ -144,7 +144,7 @@ def _signs(latex: str) -> int:
     return len(re.sub(r"\\[a-zA-Z]+|[\s{}_^\\]", "", latex))
 
 
-def _laws(model: LinearModel, printer: Latex) -> list[str]:
+def _laws(model: EquationsOfMotion, printer: Latex) -> list[str]:
     lines = []
     for column, (where, travel, laws) in enumerate(law_rows(model), 1):
         lines.append(rf"\paragraph{{$n_{{{column}}}$, {latex_text(where)}}} $d = {printer.doprint(travel)}$\\")

@@ -14,7 +14,7 @@ from sympy.printing.latex import LatexPrinter
 from sympy.printing.mathml import MathMLPresentationPrinter
 from sympy.printing.str import StrPrinter
 
-from vehgen.mechanics import LinearModel
+from vehgen.mechanics import EquationsOfMotion
 from vehgen.mechanics.symbols import number
 
 _GREEK = {
@@ -53,7 +53,7 @@ def split_name(text: str) -> Name:
     return Name(text, upright=True)
 
 
-def symbol_names(model: LinearModel) -> dict[sp.Symbol, Name]:
+def symbol_names(model: EquationsOfMotion) -> dict[sp.Symbol, Name]:
     """Return how the symbols of a model's matrices are written: parameters, and `g`."""
     names = {sp.Symbol(name, real=True): split_name(name) for name in (*model.parameters, *model.vehicle.parameters)}
     return {**names, sp.Symbol("g", real=True): Name("g")}

@@ -7,16 +7,16 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from vehgen.mechanics import GRAVITY, LinearModel
+from vehgen.mechanics import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.energies import Element
 from vehgen.mechanics.law_terms import LawTerm
-from vehgen.mechanics.laws import Motion
-from vehgen.mechanics.rows import Entries
+from vehgen.mechanics.laws import LawState
+from vehgen.mechanics.rows import SparseMatrix
 from vehgen.report.equations.notation import Latex, MathMl, Name, Plain, coordinate_name, gravity_symbol, latex_name, symbol_names, tidy
 
 WHOLE_MATRIX = 10
 """Matrices of more degrees of freedom are only listed entry by entry."""
-_LONG = 3
+_LONG_MATRIX = 3
 """A matrix shows the symbols of entries that have more operations than this; their values follow in the list."""
 _MATRICES = (
     ("M", "mass_entries", "mass matrix", True),
@@ -44,11 +44,11 @@ class Matrix:
         return place, self.entries.get(place, sp.S.Zero)
 
 
-def matrices(model: LinearModel) -> Iterator[Matrix]:
+def matrices(model: EquationsOfMotion) -> Iterator[Matrix]:
     """Yield the matrices that are not empty, and the weight vector."""
     widths = {"P": len(model.inputs), "Q": len(model.inputs), "F": len(model.forces)}
     for symbol, attribute, meaning, symmetric in _MATRICES:
-        found: Entries = getattr(model, attribute)
+        found: SparseMatrix = getattr(model, attribute)
         kept = {place: tidy(value) for place, value in sorted(found.items()) if value != 0 and not (symmetric and place[0] > place[1])}
         if kept:
             yield Matrix(symbol, meaning, (model.n_dof, widths.get(symbol, model.n_dof)), symmetric, kept)
@@ -61,12 +61,12 @@ def place_text(matrix: Matrix, place: tuple[int, int]) -> str:
     return f"{place[0] + 1}" if matrix.shape[1] == 1 and matrix.symbol == "W" else f"{place[0] + 1},{place[1] + 1}"
 
 
-def nonlinear(model: LinearModel) -> list[Element]:
+def nonlinear(model: EquationsOfMotion) -> list[Element]:
     """Return the elements with force laws."""
     return [element for element in model.elements if element.laws]
 
 
-def balance(model: LinearModel) -> list[tuple[str, str, str, str]]:
+def balance(model: EquationsOfMotion) -> list[tuple[str, str, str, str]]:
     """Return the terms of the equation of motion: (side, matrix, vector, its derivative marks)."""
     terms = [("left", "M", "q", "''"), ("left", "C", "q", "'"), ("left", "K", "q", "")]
     terms += [("left", "L", "n", "")] if nonlinear(model) else []
@@ -75,13 +75,13 @@ def balance(model: LinearModel) -> list[tuple[str, str, str, str]]:
     return terms + ([("right", "F", "f", "")] if model.forces else [])
 
 
-def balance_text(model: LinearModel) -> str:
+def balance_text(model: EquationsOfMotion) -> str:
     """Return the equation of motion as text."""
     sides = {side: " + ".join(f"{a} {b}{c}" for where, a, b, c in balance(model) if where == side) for side in ("left", "right")}
     return f"{sides['left']} = {sides['right']}"
 
 
-def vectors(model: LinearModel) -> list[tuple[str, list[str]]]:
+def vectors(model: EquationsOfMotion) -> list[tuple[str, list[str]]]:
     """Return what the other vectors of the equation hold: (symbol, what each component is)."""
     said = {"road": "height of the road under {} [m]", "ground": "height of the ground end of {} [m]"}
     inputs = [said[kind].format(name) for kind, _, name in (item.partition(".") for item in model.inputs)]
@@ -89,7 +89,7 @@ def vectors(model: LinearModel) -> list[tuple[str, list[str]]]:
     return [("w", inputs), ("f", forces)] if forces else [("w", inputs)]
 
 
-def law_rows(model: LinearModel) -> list[tuple[str, sp.Expr, list[tuple[str, str, list[tuple[str, sp.Expr, str]]]]]]:
+def law_rows(model: EquationsOfMotion) -> list[tuple[str, sp.Expr, list[tuple[str, str, list[tuple[str, sp.Expr, str]]]]]]:
     """Return every element with laws: (where it is, travel d, [(law, its equation, [(parameter, value, unit)])])."""
     rows = []
     for element in nonlinear(model):
@@ -112,7 +112,7 @@ def _law_equation(element: Element, term: LawTerm) -> str:
     if term.law.parameters:
         return term.law.equation + counted
     d, v, h, static = (sp.Symbol(name, real=True) for name in ("d", "v", "h", "static"))
-    return f"f = {Plain().doprint(term.law.write(Motion(d, v, h, element.k, element.c, static), term.parameters).now)}{counted}"
+    return f"f = {Plain().doprint(term.law.write(LawState(d, v, h, element.k, element.c, static), term.parameters).now)}{counted}"
 
 
 UNLOADED_NOTE = "here d counts from the unloaded position, and n holds what f adds to its static value"
@@ -124,7 +124,7 @@ LAWS_NOTE = (
 )
 
 
-def parameter_rows(model: LinearModel) -> list[tuple[str, sp.Expr | None, str, str]]:
+def parameter_rows(model: EquationsOfMotion) -> list[tuple[str, sp.Expr | None, str, str]]:
     """Return every parameter: (name, definition if dependent, unit, meaning); shifts of sensors and forces included."""
     dimensions, definitions = model.vehicle.dimensions, {symbol.name: value for symbol, value in model.definitions}
     rows: list[tuple[str, sp.Expr | None, str, str]] = [
@@ -135,7 +135,7 @@ def parameter_rows(model: LinearModel) -> list[tuple[str, sp.Expr | None, str, s
     return rows + [(name, None, "m", f"moves {name.removesuffix('.shift')} forward; 0 unless set") for name in shifts]
 
 
-def equations_text(model: LinearModel) -> str:
+def equations_text(model: EquationsOfMotion) -> str:
     """Return all equations as plain text, indices from 1."""
     text = Plain().doprint
     lines = [model.vehicle.title or model.vehicle.name, "", balance_text(model), "", "Coordinates q"]
@@ -170,7 +170,7 @@ class Section:
     rows: list[tuple[str, str, str]]
 
 
-def equations_mathml(model: LinearModel) -> list[Section]:
+def equations_mathml(model: EquationsOfMotion) -> list[Section]:
     """Return every matrix as presentation MathML for the page; nothing in it needs a script."""
     printer = MathMl(symbol_names(model))
     sections = []
@@ -195,7 +195,7 @@ def equations_mathml(model: LinearModel) -> list[Section]:
 
 def is_long(value: sp.Expr) -> bool:
     """Tell whether an entry is too long to stand inside a matrix."""
-    return int(sp.count_ops(value)) > _LONG
+    return int(sp.count_ops(value)) > _LONG_MATRIX
 
 
 def _entry_mathml(matrix: Matrix, place: tuple[int, int]) -> str:
@@ -207,7 +207,7 @@ def math(content: str) -> str:
     return f"<math>{content.replace('<mo>-</mo>', '<mo>−</mo>')}</math>"
 
 
-def balance_mathml(model: LinearModel) -> str:
+def balance_mathml(model: EquationsOfMotion) -> str:
     """Return the equation of motion as MathML."""
     signs = {"": "<mi>{}</mi>", "'": "<mover><mi>{}</mi><mo>˙</mo></mover>", "''": "<mover><mi>{}</mi><mo>¨</mo></mover>"}
     sides = {
@@ -217,28 +217,28 @@ def balance_mathml(model: LinearModel) -> str:
     return math(f"{sides['left']}<mo>=</mo>{sides['right']}")
 
 
-def coordinate_mathml(model: LinearModel) -> list[str]:
+def coordinate_mathml(model: EquationsOfMotion) -> list[str]:
     """Return the symbols of the coordinates as MathML."""
     printer = MathMl({})
     return [math(printer.name(coordinate_name(item.motion, item.owner)).toxml()) for item in model.coordinates]
 
 
-def expression_mathml(model: LinearModel, expression: sp.Expr) -> str:
+def expression_mathml(model: EquationsOfMotion, expression: sp.Expr) -> str:
     """Return an expression of parameters and coordinates as MathML."""
     names = {item.symbol: coordinate_name(item.motion, item.owner) for item in model.coordinates}
     return math(MathMl({**names, **symbol_names(model), **_input_names(model)}).doprint(expression))
 
 
-def _input_names(model: LinearModel) -> dict[sp.Symbol, Name]:
+def _input_names(model: EquationsOfMotion) -> dict[sp.Symbol, Name]:
     return {sp.Symbol(f"w_{i + 1}", real=True): Name("w", str(i + 1)) for i in range(len(model.inputs))}
 
 
-def latex_printer(model: LinearModel) -> Latex:
+def latex_printer(model: EquationsOfMotion) -> Latex:
     """Return a printer that knows a model's parameters and coordinates."""
     names = {item.symbol: coordinate_name(item.motion, item.owner) for item in model.coordinates}
     return Latex({**names, **symbol_names(model), **_input_names(model)})
 
 
-def coordinate_latex(model: LinearModel) -> list[str]:
+def coordinate_latex(model: EquationsOfMotion) -> list[str]:
     """Return the symbols of the coordinates in LaTeX."""
     return [latex_name(coordinate_name(item.motion, item.owner)) for item in model.coordinates]

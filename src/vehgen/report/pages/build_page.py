@@ -20,7 +20,7 @@ from vehgen.errors import InputError
 from vehgen.files import write_text
 from vehgen.files.document import MAX_BYTES
 from vehgen.files.reading import read_bytes
-from vehgen.mechanics import GRAVITY, LinearModel, StaticLoads
+from vehgen.mechanics import GRAVITY, EquationsOfMotion, StaticLoads
 from vehgen.report.drawing.mode_shapes import draw_modes
 from vehgen.report.drawing.vehicle import draw_vehicle
 from vehgen.report.equations import writing as equations
@@ -29,13 +29,13 @@ from vehgen.report.equations.notation import tidy
 from vehgen.report.figure_files import figure_svg, inline_svg
 from vehgen.simulate import Mode
 
-_LONG = 14.0
+_WIDE_EM = 14.0
 """A drawing wider than this is scrolled on the page instead of shrunk [inches]."""
 
 
 def write_build_folder(
     folder: Path,
-    model: LinearModel,
+    model: EquationsOfMotion,
     values: Mapping[str, float],
     modes: Sequence[Mode],
     loads: StaticLoads,
@@ -71,7 +71,7 @@ def build_files(folder: Path, plots: bool = True) -> list[Path]:
 
 
 def _page(
-    model: LinearModel,
+    model: EquationsOfMotion,
     values: Mapping[str, float],
     modes: Sequence[Mode],
     loads: StaticLoads,
@@ -95,7 +95,7 @@ def _page(
         gravity=GRAVITY,
         warnings=warnings,
         figures=_figures(model, texts),
-        long="drawing.svg" in texts and _width(texts["drawing.svg"]) > _LONG,
+        long="drawing.svg" in texts and _width(texts["drawing.svg"]) > _WIDE_EM,
         balance=Markup(equations.balance_mathml(model)),
         vectors=equations.vectors(model),
         sections=[
@@ -112,7 +112,7 @@ def _page(
     )
 
 
-def _parameters(model: LinearModel, values: Mapping[str, float]) -> list[dict[str, object]]:
+def _parameters(model: EquationsOfMotion, values: Mapping[str, float]) -> list[dict[str, object]]:
     vehicle = model.vehicle
     everything = vehicle.all_values({name: values[name] for name in vehicle.free_parameters})
     ranges, dimensions = vehicle.ranges(), vehicle.dimensions
@@ -144,17 +144,17 @@ def _unit(unit: str) -> str:
     return unit.replace("no unit", "–").replace("^2", "²").replace("^3", "³")
 
 
-def _axles(model: LinearModel, loads: StaticLoads) -> list[tuple[str, str, float]]:
+def _axles(model: EquationsOfMotion, loads: StaticLoads) -> list[tuple[str, str, float]]:
     return [(name, model.vehicle.axles[name].title, force) for name, force in loads.axles.items()]
 
 
-def _weight(model: LinearModel, values: Mapping[str, float]) -> float:
+def _weight(model: EquationsOfMotion, values: Mapping[str, float]) -> float:
     """Return the weight of all bodies and axles [N]."""
     masses = {(0, i): term.inertia for i, term in enumerate(model.energies.weights)}
     return GRAVITY * sum(model.evaluate(masses, values).values())
 
 
-def _figures(model: LinearModel, texts: Mapping[str, str]) -> dict[str, Markup]:
+def _figures(model: EquationsOfMotion, texts: Mapping[str, str]) -> dict[str, Markup]:
     title = str(escape(model.vehicle.title or model.vehicle.name))
     said = {"drawing": f"Side view of {title}, to scale", "modes": f"Mode shapes of {title}"}
     there = {name: texts.get(f"{name}.svg", "") for name in said}
@@ -167,7 +167,7 @@ def _width(svg: str) -> float:
     return float(found[1]) / 72 if found else 0.0
 
 
-def _laws(model: LinearModel) -> list[tuple[str, Markup, list[tuple[str, str, list[tuple[str, Markup, str]]]]]]:
+def _laws(model: EquationsOfMotion) -> list[tuple[str, Markup, list[tuple[str, str, list[tuple[str, Markup, str]]]]]]:
     return [
         (
             where,
@@ -190,7 +190,7 @@ def _versions() -> dict[str, str]:
     return {"vehgen": vehgen.__version__, **others, "Python": platform.python_version()}
 
 
-def _inputs(model: LinearModel) -> list[tuple[str, str]]:
+def _inputs(model: EquationsOfMotion) -> list[tuple[str, str]]:
     """Return name and SHA-256 of each of the vehicle's files."""
     found = []
     for path in model.vehicle.files:

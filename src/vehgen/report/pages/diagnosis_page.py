@@ -12,18 +12,18 @@ from matplotlib.figure import Figure
 
 from vehgen.diagnose.detect.detection import band_gaps, run_gaps
 from vehgen.diagnose.detect.harmonics import distortions
-from vehgen.diagnose.fits.model_fit import Fit
+from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.localise.free_form import fit_free_form, recover, strongest
 from vehgen.diagnose.pipeline import Diagnosis
 from vehgen.diagnose.select.estimates import estimate, estimates_by_run
-from vehgen.diagnose.select.search import Round
+from vehgen.diagnose.select.search import SearchRound
 from vehgen.files import write_text
 from vehgen.report.figure_files import figure_svg, inline_svg
 from vehgen.report.plots.comparison import plot_histories, plot_psds
 from vehgen.report.plots.diagnosis_plots import curves, plot_places, plot_waterfall
 from vehgen.report.plots.force_plots import plot_force
 
-MOST = 12
+MAX_ROWS = 12
 """So many candidates are listed at most."""
 
 
@@ -44,7 +44,7 @@ def write_diagnosis_page(diagnosis: Diagnosis, path: Path) -> None:
             noise=_noise(diagnosis),
             parameters=_parameters(diagnosis),
             conditions=_conditions(diagnosis),
-            untouched=len(diagnosis.detection.held_out),
+            untouched=len(diagnosis.detection.validation_runs),
             slope=max(noise.slope for noise in floor.noises.values()),
             corrected=list(floor.corrected),
             figures=figures,
@@ -65,14 +65,14 @@ def _noise(diagnosis: Diagnosis) -> list[str]:
     units = {"acceleration": "m/s²", "pitch_rate": "rad/s", "displacement": "m"}
     found: dict[str, tuple[str, list[float]]] = {}
     for trial in diagnosis.trials:
-        for channel, sigma in zip(trial.measurement.channels, diagnosis.detection.floor.noises[trial.name].sigma, strict=True):
+        for channel, sigma in zip(trial.recording.channels, diagnosis.detection.floor.noises[trial.name].sigma, strict=True):
             found.setdefault(channel.name, (units.get(channel.quantity, ""), []))[1].append(float(sigma))
     return [f"{name} {min(values):.3g} to {max(values):.3g} {unit}" for name, (unit, values) in found.items()]
 
 
 def _parameters(diagnosis: Diagnosis) -> list[dict[str, str]]:
     """Return the base parameters: the file's value, the refit of the base, and that with the effects."""
-    base, last = diagnosis.detection.base.polished, _last(diagnosis).polished
+    base, last = diagnosis.detection.base.least_squares, _last(diagnosis).least_squares
     units = {name: str(unit).strip("1") for name, unit in diagnosis.trials[0].run.vehicle.dimensions.items()}
     space = base.misfit.problem.space
     later = last.misfit.problem.best_values(last.values)
@@ -91,7 +91,7 @@ def _conditions(diagnosis: Diagnosis) -> list[tuple[str, str, str, str]]:
     """Return what the last fit supposes of every run: the recording's delay, the speed's and the road height's error."""
     fit = _last(diagnosis)
     found = []
-    for polished in (fit.polished, fit.checks):
+    for polished in (fit.least_squares, fit.validation_fit):
         if polished is None:
             continue
         _, errors = polished.misfit.split(polished.x)
@@ -121,7 +121,7 @@ def _runs(diagnosis: Diagnosis) -> list[dict[str, str]]:
 
 def _bands(diagnosis: Diagnosis) -> dict[str, list[tuple[str, str, str]]]:
     """Return by channel: the band, chi before and chi after, pooled over the untouched runs (over all, where there are none)."""
-    wanted = {trial.name for trial in (diagnosis.detection.held_out or diagnosis.trials)}
+    wanted = {trial.name for trial in (diagnosis.detection.validation_runs or diagnosis.trials)}
     after = {(item.run, item.channel, item.band): item.chi for item in band_gaps(diagnosis.detection, _last(diagnosis))}
     pooled: dict[tuple[str, tuple[float, float]], list[tuple[float, float]]] = {}
     for item in band_gaps(diagnosis.detection):
@@ -135,27 +135,27 @@ def _bands(diagnosis: Diagnosis) -> dict[str, list[tuple[str, str, str]]]:
     return found
 
 
-def _last(diagnosis: Diagnosis) -> Fit:
+def _last(diagnosis: Diagnosis) -> ModelFit:
     return diagnosis.chosen[-1] if diagnosis.chosen else diagnosis.detection.base
 
 
-def _round(item: Round) -> dict[str, object]:
+def _round(item: SearchRound) -> dict[str, object]:
     """Return one look for one effect: what it was added to, the places that passed and the best candidates."""
     return {
-        "footing": item.footing.label,
-        "chi": f"{item.footing.chi:.2f}",
+        "footing": item.current.label,
+        "chi": f"{item.current.chi:.2f}",
         "places": [f"{place.place.label} (chi {place.chi:.2f})" for place in item.passed[:4]],
-        "fits": [_row(fit) for fit in item.fits[:MOST]],
+        "fits": [_row(fit) for fit in item.fits[:MAX_ROWS]],
         "tried": len(item.fits),
     }
 
 
-def _row(fit: Fit) -> dict[str, str]:
+def _row(fit: ModelFit) -> dict[str, str]:
     parameters = ", ".join(f"{name} {item.value:.4g} {item.unit}".strip() for name, item in estimate(fit).items())
     return {
         "label": fit.last.label,
-        "train": f"{np.sqrt(fit.train):.3f}",
-        "held_out": f"{np.sqrt(fit.held_out):.3f}" if np.isfinite(fit.held_out) else "",
+        "train": f"{np.sqrt(fit.training):.3f}",
+        "held_out": f"{np.sqrt(fit.validation):.3f}" if np.isfinite(fit.validation) else "",
         "parameters": parameters,
     }
 

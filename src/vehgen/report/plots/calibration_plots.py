@@ -6,7 +6,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from vehgen.calibrate.summary import Outcome
+from vehgen.calibrate.summary import CalibrationSummary
 from vehgen.measure import record_psd
 from vehgen.report.drawing.canvas import INK
 from vehgen.report.figure_files import save_figure
@@ -15,15 +15,15 @@ from vehgen.report.plots.response_plot import COLOURS, STYLES
 
 WIDEST = 100.0
 """Intervals are cut off beyond this [%]."""
-HIGHEST = 25.0
+HIGHEST_SHOWN_HZ = 25.0
 """Frequencies shown [Hz]."""
 
 
-def save_calibration_figures(outcome: Outcome, folder: Path) -> list[Path]:
+def save_calibration_figures(outcome: CalibrationSummary, folder: Path) -> list[Path]:
     """Draw and save all figures of a calibration; returns their paths."""
     densities, histories = _curves(outcome)
     figures = [
-        plot_psds(densities, (outcome.calibration.settings.band[0], HIGHEST)),
+        plot_psds(densities, (outcome.calibration.settings.band[0], HIGHEST_SHOWN_HZ)),
         plot_histories(histories),
         plot_convergence(outcome),
     ]
@@ -40,7 +40,7 @@ def calibration_figure_files(folder: Path) -> list[Path]:
     return [folder / f"{what}.png" for what in ("psd", "histories", "convergence", "intervals")]
 
 
-def _curves(outcome: Outcome) -> tuple[list[Curve], list[Curve]]:
+def _curves(outcome: CalibrationSummary) -> tuple[list[Curve], list[Curve]]:
     calibration = outcome.calibration
     delays: dict[str, float] = {}
     if calibration.steps[-1].fits:
@@ -53,16 +53,16 @@ def _curves(outcome: Outcome) -> tuple[list[Curve], list[Curve]]:
     for trial in calibration.problem.trials:
         scenario = trial.scenario.adjusted(delays.get(trial.name, 0.0))
         simulated = calibration.problem.respond(calibration.array[None], trial, scenario)[0][0]
-        for i, channel in enumerate(trial.measurement.channels):
-            pair = (trial.measurement.values[:, i], simulated[:, i])
-            frequency = record_psd(pair[0], trial.measurement.dt)[0]
-            density = [record_psd(item, trial.measurement.dt)[1] for item in pair]
-            histories.append(Curve(trial.name, channel.name, channel.quantity, trial.measurement.time, *pair))
+        for i, channel in enumerate(trial.recording.channels):
+            pair = (trial.recording.values[:, i], simulated[:, i])
+            frequency = record_psd(pair[0], trial.recording.dt)[0]
+            density = [record_psd(item, trial.recording.dt)[1] for item in pair]
+            histories.append(Curve(trial.name, channel.name, channel.quantity, trial.recording.time, *pair))
             densities.append(Curve(trial.name, channel.name, channel.quantity, frequency, density[0], density[1]))
     return densities, histories
 
 
-def plot_convergence(outcome: Outcome) -> Figure:
+def plot_convergence(outcome: CalibrationSummary) -> Figure:
     """Plot the best objective after each generation, a line a step."""
     figure = Figure(figsize=(6.4, 3.4), layout="constrained")
     axes = figure.subplots()
@@ -76,13 +76,13 @@ def plot_convergence(outcome: Outcome) -> Figure:
     return figure
 
 
-def plot_intervals(outcome: Outcome) -> Figure:
+def plot_intervals(outcome: CalibrationSummary) -> Figure:
     """Plot every parameter's interval over its value; hollow marks with grey bars are known only with the gauge closed by decree."""
     items = [item for item in outcome.parameters if item.estimate.value > 0]
     figure = Figure(figsize=(7.2, 1.3 + 0.2 * len(items)), layout="constrained")
     axes = figure.subplots()
     shown: set[str] = set()
-    pivots = [outcome.structure.space.names[i] for i in outcome.structure.pivots]
+    pivots = [outcome.structure.space.names[i] for i in outcome.structure.fixed_parameters]
     for row, item in enumerate(items):
         estimate = item.estimate
         told = estimate.low is not None

@@ -15,8 +15,8 @@ from vehgen.report.drawing.canvas import INK
 Array = NDArray[np.float64]
 MEASURED = "#9aa7b1"
 SIMULATED = "#0b5fa5"
-REFERENCE = "#d55e00"
-UNITS = {
+REFERENCE_COLOUR = "#d55e00"
+QUANTITY_UNITS = {
     "acceleration": "m/s²",
     "pitch_rate": "rad/s",
     "velocity": "m/s",
@@ -25,7 +25,7 @@ UNITS = {
     "pitch_acceleration": "rad/s²",
 }
 LABELS = ("measured", "simulated")
-DECADES = 5
+PSD_DECADES = 5
 """What lies further below the peak of a PSD is cut off."""
 
 
@@ -68,10 +68,10 @@ def plot_psds(
         top = max(curve.measured[inside].max(), curve.simulated[inside].max())
         if reference is not None and curve.quantity == "acceleration":
             top = max(top, float(np.nanmax(reference[1].measured)))
-            axes.semilogy(reference[1].x, reference[1].measured, color=REFERENCE, lw=1.1, ls=(0, (4, 2)), label=reference[0])
-        axes.set_ylim(top * 10.0**-DECADES, 3 * top)
+            axes.semilogy(reference[1].x, reference[1].measured, color=REFERENCE_COLOUR, lw=1.1, ls=(0, (4, 2)), label=reference[0])
+        axes.set_ylim(top * 10.0**-PSD_DECADES, 3 * top)
         axes.set_xlim(*band)
-        unit = UNITS.get(curve.quantity, "")
+        unit = QUANTITY_UNITS.get(curve.quantity, "")
         axes.set_ylabel(f"PSD [({unit})²/Hz]", color=INK)
         axes.set_xlabel("frequency [Hz]", color=INK)
         _finish(axes, curve)
@@ -86,7 +86,7 @@ def plot_histories(curves: Sequence[Curve], labels: tuple[str, str] = LABELS) ->
         axes.plot(curve.x, curve.measured, color=MEASURED, lw=2.2, label=labels[0])
         axes.plot(curve.x, curve.simulated, color=SIMULATED, lw=0.9, label=labels[1])
         axes.set_xlim(*_busy(curve))
-        axes.set_ylabel(f"{curve.quantity.replace('_', ' ')} [{UNITS.get(curve.quantity, '')}]", color=INK)
+        axes.set_ylabel(f"{curve.quantity.replace('_', ' ')} [{QUANTITY_UNITS.get(curve.quantity, '')}]", color=INK)
         axes.set_xlabel("time [s]", color=INK)
         _finish(axes, curve)
     _legend(figure, panels)
@@ -97,7 +97,7 @@ def plot_pair(history: Curve, density: Curve, band: tuple[float, float], labels:
     """Plot one channel's history beside its PSD, each as two curves."""
     figure = Figure(figsize=(9.0, 2.3), layout="constrained")
     left, right = figure.subplots(1, 2)
-    unit = UNITS.get(history.quantity, "")
+    unit = QUANTITY_UNITS.get(history.quantity, "")
     left.plot(history.x, history.measured, color=MEASURED, lw=2.0, label=labels[0])
     left.plot(history.x, history.simulated, color=SIMULATED, lw=0.9, label=labels[1])
     left.set_xlim(*_busy(history))
@@ -107,7 +107,7 @@ def plot_pair(history: Curve, density: Curve, band: tuple[float, float], labels:
     right.semilogy(density.x[inside], density.measured[inside], color=MEASURED, lw=2.0)
     right.semilogy(density.x[inside], density.simulated[inside], color=SIMULATED, lw=0.9)
     top = max(density.measured[inside].max(), density.simulated[inside].max())
-    right.set_ylim(top * 10.0**-DECADES, 3 * top)
+    right.set_ylim(top * 10.0**-PSD_DECADES, 3 * top)
     right.set_xlabel("frequency [Hz]", color=INK)
     right.set_ylabel(f"PSD [({unit})²/Hz]", color=INK)
     for axes in (left, right):

@@ -10,15 +10,15 @@ from vehgen.diagnose.pipeline import Diagnosis
 from vehgen.fit.trial import Trial
 from vehgen.measure import record_psd
 from vehgen.report.drawing.canvas import INK
-from vehgen.report.plots.comparison import MEASURED, REFERENCE, SIMULATED, Curve
+from vehgen.report.plots.comparison import MEASURED, REFERENCE_COLOUR, SIMULATED, Curve
 
-MOST = 16
+MAX_PLACES = 16
 """So many places are drawn at most."""
 
 
 def plot_places(results: tuple[PlaceResult, ...], passed: tuple[PlaceResult, ...]) -> Figure:
     """Plot the chi that an unknown force at each place leaves; those that pass are blue."""
-    shown = sorted(results, key=lambda item: item.chi)[:MOST]
+    shown = sorted(results, key=lambda item: item.chi)[:MAX_PLACES]
     figure = Figure(figsize=(7.5, 0.9 + 0.26 * len(shown)), layout="constrained")
     axes = figure.subplots()
     names = {item.place.label for item in passed}
@@ -40,14 +40,14 @@ def plot_places(results: tuple[PlaceResult, ...], passed: tuple[PlaceResult, ...
 def _loudest(trials: tuple[Trial, ...]) -> int:
     """Return the number of the loudest hump run, or of the loudest run where there is no hump."""
     humps = [any(entry.hump is not None for entry in trial.run.file.road) for trial in trials]
-    return max(range(len(trials)), key=lambda t: (humps[t], float(np.mean(trials[t].measurement.values ** 2))))
+    return max(range(len(trials)), key=lambda t: (humps[t], float(np.mean(trials[t].recording.values ** 2))))
 
 
 def plot_waterfall(diagnosis: Diagnosis) -> Figure:
     """Plot the chi that each step leaves, on the runs for fitting and on the untouched ones: from the file's parameters to the noise."""
     detection, base = diagnosis.detection, diagnosis.detection.base
-    steps = [("as filed", detection.as_filed, detection.as_filed_untouched), ("recalibrated", base.train, base.held_out)]
-    steps += [(f"+ {fit.last.effect.name}\nat {fit.last.place}", fit.train, fit.held_out) for fit in diagnosis.chosen]
+    steps = [("as filed", detection.as_filed, detection.as_filed_validation), ("recalibrated", base.training, base.validation)]
+    steps += [(f"+ {fit.last.effect.name}\nat {fit.last.place}", fit.training, fit.validation) for fit in diagnosis.chosen]
     figure = Figure(figsize=(7.5, 3.0), layout="constrained")
     axes = figure.subplots()
     place = np.arange(len(steps))
@@ -56,7 +56,7 @@ def plot_waterfall(diagnosis: Diagnosis) -> Figure:
         axes.bar(place + side, chis, 0.38, color=colour, label=label)
         for x, chi in zip(place + side, chis, strict=True):
             axes.text(x, chi * 1.05, f"{chi:.2f}", ha="center", va="bottom", fontsize=8, color=INK)
-    axes.axhline(1.0, color=REFERENCE, lw=1.1, ls=(0, (4, 2)), label="noise floor")
+    axes.axhline(1.0, color=REFERENCE_COLOUR, lw=1.1, ls=(0, (4, 2)), label="noise floor")
     axes.set_yscale("log")
     axes.set_ylim(0.7, 2.0 * max(float(np.sqrt(float(value))) for step in steps for value in step[1:] if np.isfinite(float(value))))
     axes.set_xticks(place, [str(step[0]) for step in steps], fontsize=8.5)
@@ -68,17 +68,17 @@ def plot_waterfall(diagnosis: Diagnosis) -> Figure:
 
 def curves(diagnosis: Diagnosis) -> tuple[list[Curve], list[Curve]]:
     """Return PSDs and histories of the residual before (as measured) and after (as simulated), of the loudest untouched run's channels."""
-    old, new = diagnosis.detection.base.checks, diagnosis.chosen[-1].checks if diagnosis.chosen else None
+    old, new = diagnosis.detection.base.validation_fit, diagnosis.chosen[-1].validation_fit if diagnosis.chosen else None
     if old is None or new is None:
         return [], []
     trials = old.misfit.problem.trials
     loudest = _loudest(trials)
     trial = trials[loudest]
-    before, after = (trial.measurement.values - fit.misfit.simulate(fit.x)[loudest] for fit in (old, new))
+    before, after = (trial.recording.values - fit.misfit.simulate(fit.x)[loudest] for fit in (old, new))
     densities, histories = [], []
-    for i, channel in enumerate(trial.measurement.channels):
-        frequency, earlier = record_psd(before[:, i], trial.measurement.dt)
-        later = record_psd(after[:, i], trial.measurement.dt)[1]
+    for i, channel in enumerate(trial.recording.channels):
+        frequency, earlier = record_psd(before[:, i], trial.recording.dt)
+        later = record_psd(after[:, i], trial.recording.dt)[1]
         densities.append(Curve(trial.name, channel.name, channel.quantity, frequency, earlier, later))
-        histories.append(Curve(trial.name, channel.name, channel.quantity, trial.measurement.time, before[:, i], after[:, i]))
+        histories.append(Curve(trial.name, channel.name, channel.quantity, trial.recording.time, before[:, i], after[:, i]))
     return densities, histories

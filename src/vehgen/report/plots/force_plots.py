@@ -8,13 +8,13 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from vehgen.diagnose.localise.free_form import Curve, FreeForm
-from vehgen.diagnose.localise.recovered_force import Recovered
+from vehgen.diagnose.localise.recovered_force import RecoveredForce
 from vehgen.report.drawing.canvas import INK
 from vehgen.report.plots.comparison import SIMULATED
 
 Array = NDArray[np.float64]
 DOTS = "#8b98a3"
-BAND = "#d3dae0"
+BAND_COLOUR = "#d3dae0"
 INTERVAL = "#a9c8e6"
 LAST = 0.03
 """The time panel shows what lies between the first and the last moment at which the force exceeds this share of its largest."""
@@ -68,10 +68,10 @@ def plot_force(law: FreeForm, run: str | None = None) -> Figure:
     return figure
 
 
-def _choose(runs: tuple[Recovered, ...], name: str | None) -> Recovered:
+def _choose(runs: tuple[RecoveredForce, ...], name: str | None) -> RecoveredForce:
     if name is not None:
         return {item.run: item for item in runs}[name]
-    return max((item for item in runs if not item.untouched), key=lambda item: float(np.abs(item.force).max()))
+    return max((item for item in runs if not item.validation), key=lambda item: float(np.abs(item.force).max()))
 
 
 def _panel(axes: Axes, curve: Curve, scale: float, x: Array, dots: Array, label: str) -> None:
@@ -84,13 +84,13 @@ def _panel(axes: Axes, curve: Curve, scale: float, x: Array, dots: Array, label:
     axes.set_xlabel(label, color=INK)
 
 
-def _history(axes: Axes, run: Recovered, law: Array) -> None:
+def _history(axes: Axes, run: RecoveredForce, law: Array) -> None:
     size = float(np.abs(run.force).max())
     loud = np.flatnonzero(np.abs(run.force) > LAST * size)
     middle = float(run.time[int(np.argmax(np.abs(run.force)))])
     first, last = (float(run.time[i]) for i in (loud[0], loud[-1]))
     axes.fill_between(
-        run.time, run.force - 2 * run.deviation, run.force + 2 * run.deviation, color=BAND, lw=0.0, label="±2 standard deviations"
+        run.time, run.force - 2 * run.deviation, run.force + 2 * run.deviation, color=BAND_COLOUR, lw=0.0, label="±2 standard deviations"
     )
     axes.plot(run.time, run.force, color=INK, lw=1.0, label="recovered in time")
     axes.plot(run.time, law, color=SIMULATED, lw=1.3, ls=(0, (4, 1.5)), label="law, as the band shows it")

@@ -14,9 +14,9 @@ from vehgen.report.figure_files import save_figure
 from vehgen.report.plots.response_plot import COLOURS, STYLES
 from vehgen.vehicle import Vehicle
 
-HIGHEST = 25.0
+HIGHEST_SHOWN_HZ = 25.0
 """Frequencies shown [Hz]."""
-DECADES = 6
+SENSITIVITY_DECADES = 6
 """What lies further below the largest index of a panel is cut off."""
 
 
@@ -50,7 +50,7 @@ def plot_sensitivities(found: SensitivityIndices, channel: int, groups: dict[str
     rows = -(-len(groups) // 2)
     figure = Figure(figsize=(10.4, 0.5 + 2.6 * rows), layout="constrained")
     panels = list(figure.subplots(rows, 2, squeeze=False).ravel())
-    inside = (found.frequency > 0) & (found.frequency <= HIGHEST)
+    inside = (found.frequency > 0) & (found.frequency <= HIGHEST_SHOWN_HZ)
     for axes, (kind, names) in zip(panels, groups.items(), strict=False):
         top = 0.0
         for count, name in enumerate(names):
@@ -59,8 +59,8 @@ def plot_sensitivities(found: SensitivityIndices, channel: int, groups: dict[str
             style = STYLES[(count + count // len(COLOURS)) % len(STYLES)]
             axes.semilogy(found.frequency[inside], index, color=COLOURS[count % len(COLOURS)], linestyle=style, lw=1.2, label=name)
         if top > 0:
-            axes.set_ylim(top * 10.0**-DECADES, 3 * top)
-        axes.set_xlim(0, HIGHEST)
+            axes.set_ylim(top * 10.0**-SENSITIVITY_DECADES, 3 * top)
+        axes.set_xlim(0, HIGHEST_SHOWN_HZ)
         axes.set_title(kind, fontsize=9.5, loc="left", color=INK)
         axes.set_xlabel("frequency [Hz]", color=INK)
         axes.set_ylabel("index × parameter²", color=INK)

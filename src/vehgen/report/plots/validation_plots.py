@@ -12,9 +12,9 @@ from vehgen.measure import SPECTRA
 from vehgen.measure.astm import NOTE
 from vehgen.report.drawing.canvas import INK
 from vehgen.report.figure_files import save_figure
-from vehgen.report.plots.comparison import MEASURED, SIMULATED, UNITS, Curve, plot_histories, plot_psds
+from vehgen.report.plots.comparison import MEASURED, QUANTITY_UNITS, SIMULATED, Curve, plot_histories, plot_psds
 
-HIGHEST = 25.0
+HIGHEST_SHOWN_HZ = 25.0
 """Frequencies shown [Hz]."""
 
 
@@ -26,11 +26,11 @@ def save_validation_figures(validation: Validation, folder: Path, astm: str | No
     histories = [Curve(item.run, item.channel, item.quantity, item.time, item.measured, item.simulated) for item in validation.channels]
     reference = None
     if astm is not None:
-        frequency = np.geomspace(1.0, HIGHEST, 200)
+        frequency = np.geomspace(1.0, HIGHEST_SHOWN_HZ, 200)
         spectrum = SPECTRA[astm].at(frequency)
         reference = (f"{SPECTRA[astm].name} ({NOTE})", Curve("", astm, "acceleration", frequency, spectrum, spectrum))
     paths = validation_figure_files(folder)
-    figures = (plot_psds(densities, (0.3, HIGHEST), reference), plot_histories(histories), plot_band_rms(validation))
+    figures = (plot_psds(densities, (0.3, HIGHEST_SHOWN_HZ), reference), plot_histories(histories), plot_band_rms(validation))
     for path, figure in zip(paths, figures, strict=True):
         save_figure(figure, path)
     return paths
@@ -60,7 +60,7 @@ def plot_band_rms(validation: Validation) -> Figure:
         axes.set_ylim(0, 1.15 * top)
         axes.set_xticks(place, [f"{low:g}-{high:g}" for low, high in validation.bands])
         axes.set_xlabel("band [Hz]", color=INK)
-        axes.set_ylabel(f"rms [{UNITS.get(item.quantity, '')}]", color=INK)
+        axes.set_ylabel(f"rms [{QUANTITY_UNITS.get(item.quantity, '')}]", color=INK)
         axes.set_title(f"{item.run}: {item.channel}", fontsize=9.5, loc="left", color=INK, parse_math=False)
         axes.spines[["top", "right"]].set_visible(False)
     for axes in panels[count:]:
