@@ -10,7 +10,7 @@ import pytest
 
 from vehgen.errors import InputError
 from vehgen.files import guarding_results, write_text
-from vehgen.files.manifest import KEY, MANIFEST, MAX_BYTES, is_own, mark_own, read_manifest
+from vehgen.files.manifest import KEY, MANIFEST, MAX_MANIFEST_BYTES, is_own, mark_own, read_manifest
 
 HASH = hashlib.sha256(b"mine").hexdigest()
 
@@ -47,7 +47,7 @@ DAMAGED = {
     "hash empty": b'{"vehgen files": {"mine.csv": ""}}',
     "hash not ASCII": '{"vehgen files": {"mine.csv": "é"}}'.encode(),
     "deep": b"[" * 200_000,
-    "too long": json.dumps({KEY: {"mine.csv": HASH}}).encode() + b" " * MAX_BYTES,
+    "too long": json.dumps({KEY: {"mine.csv": HASH}}).encode() + b" " * MAX_MANIFEST_BYTES,
     "huge number": b'{"vehgen files": ' + b"9" * 10_000 + b"}",
 }
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from vehgen.fit.noise import EVEN, KNOT_FREQUENCIES_HZ, Noise, RoadAnswer, estimate_noise, taper, transform
+from vehgen.fit.noise import EVEN, KNOT_WAVENUMBERS, Noise, RoadAnswer, estimate_noise, taper, transform
 
 
 def make_answer(random, n=400, channels=4, axles=3):
@@ -19,7 +19,7 @@ def draw(noise, answer, random):
 def test_the_whitener_makes_the_density_one():
     random = np.random.default_rng(0)
     answer = make_answer(random)
-    noise = Noise(10.0 ** random.uniform(-6, -3, len(KNOT_FREQUENCIES_HZ)), np.array([1e-4, 0.1, 1.0, 0.01]), 0.7)
+    noise = Noise(10.0 ** random.uniform(-6, -3, len(KNOT_WAVENUMBERS)), np.array([1e-4, 0.1, 1.0, 0.01]), 0.7)
     white = noise.whitener(answer)
     found = white @ noise.density(answer) @ white.conj().transpose(0, 2, 1)
     assert np.abs(found - np.eye(4)).max() < 1e-6
@@ -28,7 +28,7 @@ def test_the_whitener_makes_the_density_one():
 def test_the_loss_is_minus_two_ln_of_the_likelihood_and_its_slopes_are_its_derivatives():
     random = np.random.default_rng(1)
     answer = make_answer(random, n=50)
-    noise = Noise(10.0 ** random.uniform(-4, -1, len(KNOT_FREQUENCIES_HZ)), random.uniform(0.5, 2, 4), 0.7)
+    noise = Noise(10.0 ** random.uniform(-4, -1, len(KNOT_WAVENUMBERS)), random.uniform(0.5, 2, 4), 0.7)
     lines = random.standard_normal((50, 4)) + 1j * random.standard_normal((50, 4))
     loss, by_level, by_sigma = noise.loss_and_slopes(lines, answer)
     direct = sum(
@@ -50,9 +50,9 @@ def test_the_loss_is_minus_two_ln_of_the_likelihood_and_its_slopes_are_its_deriv
 def test_level_and_sigma_come_out_of_noise_that_was_drawn_with_them():
     random = np.random.default_rng(2)
     answer = make_answer(random, n=800)
-    truth = Noise(np.full(len(KNOT_FREQUENCIES_HZ), 2e-3), np.array([0.05, 0.2, 0.1, 0.3]))
+    truth = Noise(np.full(len(KNOT_WAVENUMBERS), 2e-3), np.array([0.05, 0.2, 0.1, 0.3]))
     found = estimate_noise(
-        [(draw(truth, answer, random), answer) for _ in range(3)], Noise(np.full(len(KNOT_FREQUENCIES_HZ), 1e-5), np.ones(4))
+        [(draw(truth, answer, random), answer) for _ in range(3)], Noise(np.full(len(KNOT_WAVENUMBERS), 1e-5), np.ones(4))
     )
     assert found.sigma == pytest.approx(truth.sigma, rel=0.2)
     inside = (answer.wavenumber > 0.3) & (answer.wavenumber < 15)

@@ -18,7 +18,7 @@ from vehgen.calibrate.objective import PsdObjective
 from vehgen.errors import InputError
 from vehgen.files import write_text
 from vehgen.files.reading import read_text
-from vehgen.files.tables import MOST_BYTES
+from vehgen.files.tables import MAX_TABLE_BYTES
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.least_squares import LeastSquaresFit, fit_least_squares
 from vehgen.fit.misfit import Nuisances
@@ -214,7 +214,7 @@ def _load(path: Path | None, problem: Problem, settings: Settings) -> list[Searc
     if path is None or not path.is_file():
         raise InputError(f"there is no search to resume{'' if path is None else f' at {path}'}")
     try:
-        data = json.loads(read_text(path, MOST_BYTES, "a checkpoint of a calibration", state=True))
+        data = json.loads(read_text(path, MAX_TABLE_BYTES, "a checkpoint of a calibration", state=True))
         found, states = data["fingerprint"], [SearchState.from_json(json.dumps(item)) for item in data["states"]]
     except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise InputError(f"{path} is not a checkpoint of a calibration: {error}") from error

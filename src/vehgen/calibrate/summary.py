@@ -18,7 +18,7 @@ from vehgen.calibrate.identifiability import Structure, find_structure
 from vehgen.calibrate.intervals import LEVEL, Estimate, Uncertainty, refit
 from vehgen.calibrate.objective import PsdObjective
 from vehgen.files.reading import read_bytes
-from vehgen.files.tables import MOST_BYTES
+from vehgen.files.tables import MAX_TABLE_BYTES
 from vehgen.fit.parallel import Runner
 from vehgen.fit.prior_data import PriorData
 from vehgen.mechanics import static_loads
@@ -304,7 +304,7 @@ def provenance(calibration: Calibration) -> dict[str, Any]:
             *run.vehicle.files,
         ):
             if isinstance(path, Path) and path.is_file():
-                files[path.name] = hashlib.sha256(read_bytes(path, MOST_BYTES)).hexdigest()
+                files[path.name] = hashlib.sha256(read_bytes(path, MAX_TABLE_BYTES)).hexdigest()
     return {
         "vehgen": __version__,
         "python": platform.python_version(),

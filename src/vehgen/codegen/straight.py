@@ -28,7 +28,7 @@ from numba.extending import intrinsic
 from numba.np.arrayobj import make_array
 
 SINGLE, DOUBLE = ir.FloatType(), ir.DoubleType()
-_PLAIN = {
+_PLAIN_FUNCTIONS = {
     "math": SimpleNamespace(sqrt=np.sqrt),  # of a negative number: not a number, as when compiled
     "lower": lambda a, b: a if a < b else b,
     "upper": lambda a, b: a if a > b else b,
@@ -49,7 +49,7 @@ def straight(function: Callable[..., None]) -> Any:
     Where numba is told not to compile (NUMBA_DISABLE_JIT), it stays a function of plain Python.
     """
     if not compiles():
-        function.__globals__.update(_PLAIN)
+        function.__globals__.update(_PLAIN_FUNCTIONS)
         return function
 
     def choose(_context: Any, work: Any, j: Any, dt: Any, drives: Any) -> Any:

@@ -15,7 +15,7 @@ from vehgen.errors import InputError, Position, shortened, shown
 from vehgen.files import reading
 from vehgen.files.names import unprintable
 
-MAX_BYTES = 1_000_000
+MAX_DOCUMENT_BYTES = 1_000_000
 MAX_VALUES = 20_000
 MAX_NESTING = 20
 MAX_DIGITS = 400
@@ -77,7 +77,7 @@ def read_document(path: Path) -> Located:
         For a missing, oversized, malformed or hostile file (a pipe, aliases that multiply, custom tags, deep nesting, duplicate keys).
 
     """
-    return read_text(reading.read_text(path, MAX_BYTES, "a YAML file"), path)
+    return read_text(reading.read_text(path, MAX_DOCUMENT_BYTES, "a YAML file"), path)
 
 
 def read_text(text: str, path: Path | str) -> Located:

@@ -26,7 +26,7 @@ MAX_LENGTH = 1000
 MAX_EXPRESSION_DEPTH = 100
 _NUMBER_TOKEN = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _SYMBOL = re.compile(r"[A-Za-z_]\w*", re.ASCII)
-_SIGNS = "+-*/^(),"
+_SIGN_CHARACTERS = "+-*/^(),"
 _OPERATORS: dict[type[ast.operator], str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
 FUNCTIONS = ("sqrt", "abs", "sign", "min", "max")
 _ALLOWED = f"only numbers, units, parameter names, + - * / ** and {', '.join(FUNCTIONS)} may stand in an expression"
@@ -208,7 +208,7 @@ def _replace_quantities(text: str) -> tuple[str, list[tuple[float, Dimension]], 
             quantities.append((value, dimension))
         elif text[position].isspace():
             piece, end = " ", position + 1
-        elif text[position] in _SIGNS:
+        elif text[position] in _SIGN_CHARACTERS:
             piece, end = ("**" if text[position] == "^" else text[position]), position + 1
         else:
             raise ExpressionError(f"{_ALLOWED}, found {text[position]!r}", position)

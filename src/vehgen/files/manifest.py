@@ -25,7 +25,7 @@ from vehgen.files.atomic import replace_file
 MANIFEST = ".vehgen-files.json"
 """The name of the list."""
 KEY = "vehgen files"
-MAX_BYTES = 4 * 2**20
+MAX_MANIFEST_BYTES = 4 * 2**20
 """A longer list is not read [bytes]: about forty thousand names."""
 PATIENCE = 2.0
 """How long to wait for another process that holds the list [s]."""
@@ -58,7 +58,7 @@ def read_manifest(folder: Path) -> dict[str, str]:
     """Return the names and SHA-256 hashes (hexadecimal) that a folder's list holds; empty without a list that can be used."""
     try:
         found = (folder / MANIFEST).lstat()
-        if not stat.S_ISREG(found.st_mode) or found.st_size > MAX_BYTES:
+        if not stat.S_ISREG(found.st_mode) or found.st_size > MAX_MANIFEST_BYTES:
             return {}
         data = json.loads((folder / MANIFEST).read_bytes())
     except (OSError, ValueError, RecursionError):

@@ -19,7 +19,7 @@ MAX_NAME = 64
 MAX_COLUMN = 200
 MAX_TEXT = 2000
 NAME_RULE = f"letters, digits and the signs _ . - were expected, beginning with a letter, a digit or _, at most {MAX_NAME} in all"
-_SIGNS = "_.-"
+_NAME_SIGNS = "_.-"
 _UNPRINTABLE = {"Cc", "Cs", "Cn", "Zl", "Zp"}
 _LINE_SIGNS = "\t\n\r"
 
@@ -29,7 +29,7 @@ def is_name(text: str) -> bool:
     return (
         0 < len(text) <= MAX_NAME
         and text[0] not in ".-"
-        and all(_is_letter_or_digit(character) or character in _SIGNS for character in text)
+        and all(_is_letter_or_digit(character) or character in _NAME_SIGNS for character in text)
         and unicodedata.normalize("NFKC", text) == text
     )
 
@@ -43,7 +43,7 @@ def is_identifier(text: str) -> bool:
 def as_name(text: str) -> str:
     """Return the nearest name to a text, such as that of a file: what may not stand in a name becomes an underscore."""
     plain = unicodedata.normalize("NFKC", text)
-    found = "".join(character if _is_letter_or_digit(character) or character in _SIGNS else "_" for character in plain)
+    found = "".join(character if _is_letter_or_digit(character) or character in _NAME_SIGNS else "_" for character in plain)
     found = found if found[:1] not in ("", ".", "-") else f"_{found}"
     return found[:MAX_NAME] if is_name(found[:MAX_NAME]) else "_"
 

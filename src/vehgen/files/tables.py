@@ -12,11 +12,11 @@ from vehgen.errors import InputError, Position, did_you_mean
 from vehgen.files.csv_rows import csv_rows
 from vehgen.files.reading import read_lines
 
-MOST_BYTES = 200_000_000
+MAX_TABLE_BYTES = 200_000_000
 """No table is larger [bytes]."""
-MOST_NUMBERS = 20_000_000
+MAX_TABLE_NUMBERS = 20_000_000
 """So many numbers may be asked of a table at once: 160 MB."""
-LARGEST = 1e12
+LARGEST_MEASURED = 1e12
 """Beyond it a number was not measured, in whatever unit."""
 
 
@@ -29,7 +29,7 @@ def read_columns(path: Path, names: tuple[str, ...]) -> tuple[NDArray[np.float64
         For a file that is missing, not regular or too large, a missing or repeated column, and at the line and cell of anything that is
         not a number of at most LARGEST.
     """
-    rows = csv_rows(read_lines(path, MOST_BYTES, "a CSV file"), path)
+    rows = csv_rows(read_lines(path, MAX_TABLE_BYTES, "a CSV file"), path)
     header = [cell.strip() for cell in next(rows, (1, []))[1]]
     columns = [array("d") for _ in names]
     places: list[int] = []
@@ -40,12 +40,12 @@ def read_columns(path: Path, names: tuple[str, ...]) -> tuple[NDArray[np.float64
                 number = float(row[place])
             except (ValueError, IndexError):
                 number = np.nan
-            if not -LARGEST <= number <= LARGEST:
+            if not -LARGEST_MEASURED <= number <= LARGEST_MEASURED:
                 raise _wrong(row, name, place, path, line)
             column.append(number)
-        if len(columns) * len(columns[0]) > MOST_NUMBERS:
+        if len(columns) * len(columns[0]) > MAX_TABLE_NUMBERS:
             raise InputError(
-                f"more than {MOST_NUMBERS} numbers in {len(columns)} columns; cut the recording to the pass", Position(path, line, 1)
+                f"more than {MAX_TABLE_NUMBERS} numbers in {len(columns)} columns; cut the recording to the pass", Position(path, line, 1)
             )
     if not places:
         raise InputError("a header line and at least one line of numbers were expected", Position(path, 1, 1))
@@ -69,5 +69,5 @@ def _wrong(row: list[str], name: str, place: int, path: Path, line: int) -> Inpu
         finite = np.isfinite(float(text))
     except ValueError:
         finite = False
-    reason = f"beyond {LARGEST:g}, which nothing measures" if finite else "not a finite number"
+    reason = f"beyond {LARGEST_MEASURED:g}, which nothing measures" if finite else "not a finite number"
     return InputError(f"{text[:40]!r} in column {name!r} is {reason}", position)

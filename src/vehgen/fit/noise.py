@@ -23,6 +23,7 @@ import scipy.optimize
 import scipy.signal
 from numpy.typing import NDArray
 
+from vehgen.road.iso8608 import REFERENCE_CYCLES_PER_M
 from vehgen.simulate.frequency import frequency_response
 
 if TYPE_CHECKING:
@@ -30,9 +31,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-REFERENCE_CYCLES_PER_M = 0.1
-"""n0 of ISO 8608 [cycles/m]."""
-KNOT_FREQUENCIES_HZ = 0.1 * 2.0 ** np.arange(9)
+KNOT_WAVENUMBERS = 0.1 * 2.0 ** np.arange(9)
 """Wavenumbers between which the road's level is interpolated [cycles/m]."""
 RAMP = 0.75
 """Length of the taper's ramps [s]."""
@@ -40,7 +39,7 @@ SMALLEST_LEVEL, LARGEST_LEVEL = 1e-10, 1e-2
 """A road smoother than this Gd(n0) [m^3] counts as even (class A begins at 16e-6); none is rougher."""
 ROUGHEST_LEVEL = 3.0
 """Change of ln(level) from one knot to the next that counts as one standard deviation."""
-EVEN = np.full(len(KNOT_FREQUENCIES_HZ), SMALLEST_LEVEL)
+EVEN = np.full(len(KNOT_WAVENUMBERS), SMALLEST_LEVEL)
 """Levels of an even road."""
 COLOUR_AT = 44.0
 """Frequency at which coloured noise has the density of white noise of its sigma [Hz]: the top of the band, where it is measured."""
@@ -135,8 +134,8 @@ class Noise:
 
 def _interpolation(wavenumber: Array) -> Array:
     """Return the weights of ln(levels) at wavenumbers, `shape (n, len(KNOTS))`."""
-    hats = np.eye(len(KNOT_FREQUENCIES_HZ))
-    return np.column_stack([np.interp(np.log(wavenumber), np.log(KNOT_FREQUENCIES_HZ), hat) for hat in hats])
+    hats = np.eye(len(KNOT_WAVENUMBERS))
+    return np.column_stack([np.interp(np.log(wavenumber), np.log(KNOT_WAVENUMBERS), hat) for hat in hats])
 
 
 def _adjoint(matrices: Complex) -> Complex:
@@ -188,7 +187,7 @@ def estimate_noise(residuals: Sequence[tuple[Complex, RoadAnswer]], start: Noise
     """
     power = np.mean([np.mean(np.abs(lines) ** 2, axis=0) / (2 * answer.dt) for lines, answer in residuals], axis=0)
     floor = 1e-4 * np.sqrt(power)
-    knots = len(KNOT_FREQUENCIES_HZ)
+    knots = len(KNOT_WAVENUMBERS)
 
     def read(x: Array) -> Noise:
         return Noise(np.exp(x[:knots]), np.exp(x[knots:]), start.slope)

@@ -25,7 +25,7 @@ from vehgen.phones.export import PITCH_RATE_STREAM, SPEED_STREAM, VERTICAL_ACCEL
 
 Array = NDArray[np.float64]
 MAX_COLUMNS = 200
-LARGEST = 1e20
+LARGEST_EXPORTED = 1e20
 """Beyond it a number was not measured; times in ns since 1970 are the largest that are."""
 _DECIMAL_COMMA = re.compile(r'^"?[+-]?\d*,\d+(?:[eE][+-]?\d+)?"?$')
 _NUMBER_CELL = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
@@ -62,9 +62,9 @@ class Table:
             if self.decimal_comma:
                 text = text.replace(",", ".")
             number = float(text) if _NUMBER_CELL.fullmatch(text) else np.nan
-            if np.isfinite(number) and abs(number) > LARGEST:
+            if np.isfinite(number) and abs(number) > LARGEST_EXPORTED:
                 raise InputError(
-                    f"{shown(text)} in column {shown(self.header[index])} is beyond {LARGEST:g}, which nothing measures",
+                    f"{shown(text)} in column {shown(self.header[index])} is beyond {LARGEST_EXPORTED:g}, which nothing measures",
                     Position(self.name, line, index + 1),
                 )
             if np.isnan(number) and text.lower() not in _MISSING:

@@ -19,7 +19,7 @@ CLASSES: dict[str, tuple[float, float, float]] = {
     name: (factor * 8e-6, factor * 16e-6, factor * 32e-6) for name, factor in zip("ABCDEFGH", (4.0**i for i in range(8)), strict=True)
 }
 """Class -> (lower, geometric mean, upper) bound of the displacement PSD Gd(n0) [m^3]; A has no lower and H no upper bound of its own."""
-LONGEST = 50_000.0
+LONGEST_ROAD_M = 50_000.0
 """No random road is longer [m]: at the spacing of its points these are five million."""
 TAPER = 2.0
 """The road rises smoothly from level over its first metres, so that a vehicle can start at rest."""
@@ -71,8 +71,10 @@ class Iso8608Road:
 
 def check_length(length: float) -> None:
     """Refuse random roads that are longer than LONGEST, together, before they are made; raises InputError."""
-    if not length <= LONGEST:
-        raise InputError(f"random roads are made up to {LONGEST:g} m, found {length:.3g} m: a shorter or slower run, or fewer of them")
+    if not length <= LONGEST_ROAD_M:
+        raise InputError(
+            f"random roads are made up to {LONGEST_ROAD_M:g} m, found {length:.3g} m: a shorter or slower run, or fewer of them"
+        )
 
 
 def displacement_psd(roughness: str, n: Array) -> Array:

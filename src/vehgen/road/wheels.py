@@ -12,7 +12,7 @@ from vehgen.road.speed import SpeedLaw
 from vehgen.road.track import Track
 
 Array = NDArray[np.float64]
-LONGEST = 1e6
+LONGEST_PASS_S = 1e6
 """Longer than this nobody drives to a hump [s]."""
 
 
@@ -63,8 +63,10 @@ def pass_time(track: Track, speed: SpeedLaw, offsets: Array) -> float:
         return 0.0
     late = 1.0
     while speed.distance(np.array([late]))[0] < target:
-        if late > LONGEST:
-            raise InputError(f"the last axle has not left the road's last hump, at {target:.4g} m, after {LONGEST:g} s; give `duration`")
+        if late > LONGEST_PASS_S:
+            raise InputError(
+                f"the last axle has not left the road's last hump, at {target:.4g} m, after {LONGEST_PASS_S:g} s; give `duration`"
+            )
         late *= 2.0
     early = 0.0
     while late - early > 1e-6:

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from vehgen.errors import InputError
 from vehgen.simulate.runfile import MAX_STEPS, Run
 
-MOST_NUMBERS = 25_000_000
+MAX_RESPONSE_NUMBERS = 25_000_000
 """So many numbers may describe what excites one vehicle and what it answers: 200 MB."""
 MOST_RESPONSES = 250_000_000
 """So many numbers may a population's answers hold: 2 GB."""
@@ -60,8 +60,8 @@ def check_run(run: Run, duration: float, way: float, n_wheels: int) -> None:
     reason = None
     if steps > MAX_STEPS:
         reason = f"a run has at most {MAX_STEPS} steps; {duration:g} s in steps of {file.step:g} s are more"
-    elif numbers > MOST_NUMBERS:
-        reason = f"{steps:.0f} steps of this vehicle are {numbers:.3g} numbers in memory; at most {MOST_NUMBERS:.3g} were expected"
+    elif numbers > MAX_RESPONSE_NUMBERS:
+        reason = f"{steps:.0f} steps of this vehicle are {numbers:.3g} numbers in memory; at most {MAX_RESPONSE_NUMBERS:.3g} were expected"
     elif steps * n_wheels * len(file.road) > MOST_LOOKUPS:
         reason = f"{steps:.0f} steps over a road of {len(file.road)} entries; a shorter run or fewer entries were expected"
     if reason is not None:

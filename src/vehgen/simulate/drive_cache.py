@@ -8,7 +8,7 @@ from threading import Lock
 
 from vehgen.codegen import Excitation
 
-MOST_BYTES = 100_000_000
+MAX_CACHED_BYTES = 100_000_000
 """Drives are forgotten, the oldest first, beyond this size [bytes]."""
 
 
@@ -34,7 +34,7 @@ class ExcitationCache:
             if key not in self._known:
                 self._known[key] = drive, alive
                 self._bytes += _size(drive)
-            while self._bytes > MOST_BYTES and len(self._known) > 1:
+            while self._bytes > MAX_CACHED_BYTES and len(self._known) > 1:
                 self._bytes -= _size(self._known.popitem(last=False)[1][0])
         return drive
 

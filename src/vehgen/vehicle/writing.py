@@ -14,7 +14,7 @@ from vehgen.files.units import NONE
 from vehgen.vehicle.loading import bundled_models
 from vehgen.vehicle.model import Vehicle
 
-_PLAIN = re.compile(r"[A-Za-z_][A-Za-z0-9_./-]*|-?\d[\d.]*(?:e[+-]?\d+)? [A-Za-z](?:[A-Za-z0-9^/ -]*[A-Za-z0-9])?", re.ASCII)
+_PLAIN_SCALAR = re.compile(r"[A-Za-z_][A-Za-z0-9_./-]*|-?\d[\d.]*(?:e[+-]?\d+)? [A-Za-z](?:[A-Za-z0-9^/ -]*[A-Za-z0-9])?", re.ASCII)
 """Words, paths and quantities such as `1.5 kg m^2`, which need no quotes."""
 _WORDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}
 """What YAML, of one version or another, reads as something else than a text."""
@@ -22,7 +22,7 @@ _WORDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}
 
 def yaml_text(text: str) -> str:
     """Return a text as a YAML scalar on one line that every reader of YAML reads back as it is, whatever it holds."""
-    if _PLAIN.fullmatch(text) and text.lower() not in _WORDS:
+    if _PLAIN_SCALAR.fullmatch(text) and text.lower() not in _WORDS:
         return text
     if text.isprintable():
         return "'" + text.replace("'", "''") + "'"

@@ -22,9 +22,9 @@ _GREEK = {
 }
 _SHORT = re.compile(r"([A-Za-z])([A-Za-z]?\d+[A-Za-z]?|[A-Z]|[A-Z][A-Za-z]\d*|[a-z][A-Z]?)?$")
 _LATEX = {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"} | {key: "\\" + key for key in "&%$#_{}"}
-_PLAIN = {"–": "--", "—": "---", "‘": "`", "’": "'", "“": "``", "”": "''"}
-_PLAIN |= {sign: rf"\ensuremath{{{code}}}" for sign, code in (("·", r"\cdot"), ("×", r"\times"), ("°", r"^\circ"), ("µ", r"\mu"))}
-_PLAIN |= {"²": r"\ensuremath{^2}", "³": r"\ensuremath{^3}"}
+_PLAIN_SIGNS = {"–": "--", "—": "---", "‘": "`", "’": "'", "“": "``", "”": "''"}
+_PLAIN_SIGNS |= {sign: rf"\ensuremath{{{code}}}" for sign, code in (("·", r"\cdot"), ("×", r"\times"), ("°", r"^\circ"), ("µ", r"\mu"))}
+_PLAIN_SIGNS |= {"²": r"\ensuremath{^2}", "³": r"\ensuremath{^3}"}
 """What pdflatex writes of the signs beyond ASCII that a vehicle file is likely to hold."""
 
 
@@ -160,8 +160,8 @@ def latex_text(text: str) -> str:
     def write(sign: str) -> str:
         if sign in _LATEX:
             return _LATEX[sign]
-        if sign in _PLAIN or sign in letters:
-            return _PLAIN.get(sign) or letters[sign]
+        if sign in _PLAIN_SIGNS or sign in letters:
+            return _PLAIN_SIGNS.get(sign) or letters[sign]
         if sign.isascii():
             return sign if sign.isprintable() else " "
         if sign.isalpha() and sign <= "ž":

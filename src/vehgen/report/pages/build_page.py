@@ -18,7 +18,7 @@ import vehgen
 from vehgen.codegen import KernelSource
 from vehgen.errors import InputError
 from vehgen.files import write_text
-from vehgen.files.document import MAX_BYTES
+from vehgen.files.document import MAX_DOCUMENT_BYTES
 from vehgen.files.reading import read_bytes
 from vehgen.mechanics import GRAVITY, EquationsOfMotion, StaticLoads
 from vehgen.report.drawing.mode_shapes import draw_modes
@@ -195,7 +195,7 @@ def _inputs(model: EquationsOfMotion) -> list[tuple[str, str]]:
     found = []
     for path in model.vehicle.files:
         try:
-            found.append((path.name, f"SHA-256 {hashlib.sha256(read_bytes(path, MAX_BYTES)).hexdigest()}"))
+            found.append((path.name, f"SHA-256 {hashlib.sha256(read_bytes(path, MAX_DOCUMENT_BYTES)).hexdigest()}"))
         except InputError:
             found.append((path.name, "no longer there when this page was written"))
     return found

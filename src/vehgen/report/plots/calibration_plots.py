@@ -10,13 +10,11 @@ from vehgen.calibrate.summary import CalibrationSummary
 from vehgen.measure import record_psd
 from vehgen.report.drawing.canvas import INK
 from vehgen.report.figure_files import save_figure
-from vehgen.report.plots.comparison import SIMULATED, Curve, plot_histories, plot_psds
+from vehgen.report.plots.comparison import HIGHEST_SHOWN_HZ, SIMULATED, Curve, plot_histories, plot_psds
 from vehgen.report.plots.response_plot import COLOURS, STYLES
 
 WIDEST = 100.0
 """Intervals are cut off beyond this [%]."""
-HIGHEST_SHOWN_HZ = 25.0
-"""Frequencies shown [Hz]."""
 
 
 def save_calibration_figures(outcome: CalibrationSummary, folder: Path) -> list[Path]:

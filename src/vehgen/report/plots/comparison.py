@@ -25,6 +25,8 @@ QUANTITY_UNITS = {
     "pitch_acceleration": "rad/s²",
 }
 LABELS = ("measured", "simulated")
+HIGHEST_SHOWN_HZ = 25.0
+"""Frequencies shown [Hz]."""
 PSD_DECADES = 5
 """What lies further below the peak of a PSD is cut off."""
 

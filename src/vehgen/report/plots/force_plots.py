@@ -20,7 +20,7 @@ LAST = 0.03
 """The time panel shows what lies between the first and the last moment at which the force exceeds this share of its largest."""
 TALL = 1.5
 """The time panel reaches to this multiple of the largest force, even where the band is wider."""
-LONGEST = 4.0
+LONGEST_SHOWN_S = 4.0
 """It shows so much time at most, about the largest force [s]."""
 
 
@@ -95,5 +95,5 @@ def _history(axes: Axes, run: RecoveredForce, law: Array) -> None:
     axes.plot(run.time, run.force, color=INK, lw=1.0, label="recovered in time")
     axes.plot(run.time, law, color=SIMULATED, lw=1.3, ls=(0, (4, 1.5)), label="law, as the band shows it")
     axes.set_ylim(-TALL * size, TALL * size)
-    axes.set_xlim(max(first, middle - LONGEST / 2), min(last, middle + LONGEST / 2))
+    axes.set_xlim(max(first, middle - LONGEST_SHOWN_S / 2), min(last, middle + LONGEST_SHOWN_S / 2))
     axes.set_xlabel("time [s]", color=INK)

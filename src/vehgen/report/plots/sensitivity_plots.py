@@ -11,11 +11,10 @@ from vehgen.calibrate.sensitivity import SensitivityIndices
 from vehgen.files.units import DAMPING, LENGTH, MASS, STIFFNESS
 from vehgen.report.drawing.canvas import INK
 from vehgen.report.figure_files import save_figure
+from vehgen.report.plots.comparison import HIGHEST_SHOWN_HZ
 from vehgen.report.plots.response_plot import COLOURS, STYLES
 from vehgen.vehicle import Vehicle
 
-HIGHEST_SHOWN_HZ = 25.0
-"""Frequencies shown [Hz]."""
 SENSITIVITY_DECADES = 6
 """What lies further below the largest index of a panel is cut off."""
 

@@ -12,10 +12,7 @@ from vehgen.measure import SPECTRA
 from vehgen.measure.astm import NOTE
 from vehgen.report.drawing.canvas import INK
 from vehgen.report.figure_files import save_figure
-from vehgen.report.plots.comparison import MEASURED, QUANTITY_UNITS, SIMULATED, Curve, plot_histories, plot_psds
-
-HIGHEST_SHOWN_HZ = 25.0
-"""Frequencies shown [Hz]."""
+from vehgen.report.plots.comparison import HIGHEST_SHOWN_HZ, MEASURED, QUANTITY_UNITS, SIMULATED, Curve, plot_histories, plot_psds
 
 
 def save_validation_figures(validation: Validation, folder: Path, astm: str | None = None) -> list[Path]:
