@@ -112,7 +112,7 @@ def checked_for_name(case: Case, verdict: Verdict) -> Verdict:
     """A refusal that has no line must at least name a file of the case."""
     if verdict.answer.message is None or (case.format != "export" and is_regular(case)):
         return verdict
-    if any(Path(name).name in verdict.answer.message for name in (*case.files, *case.special)):
+    if any(Path(name).name in verdict.answer.message for name in (case.main, *case.files, *case.special)):
         return verdict
     return Verdict(FAULT, (*verdict.reasons, f"no file is named: {verdict.answer.message[:150]}"), verdict.answer)
 

@@ -6,6 +6,7 @@ Run by :class:`tests.fuzzing.harness.Worker` as `python -m tests.fuzzing.worker 
 from __future__ import annotations
 
 import gc
+import importlib
 import io
 import json
 import math
@@ -73,7 +74,8 @@ def child(job: dict[str, Any], audit: Audit, pipe: int) -> None:
     start = address_space()
     resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(job["seconds"]) + 1, resource.RLIM_INFINITY))
     resource.setrlimit(resource.RLIMIT_AS, (start + int(job["megabytes"] * 2**20), resource.RLIM_INFINITY))
-    audit.arm([str(folder / "out"), os.environ["VEHGEN_CACHE"]] if job["command"] else [str(folder / "out")], job["kernels"])
+    own = [os.environ["VEHGEN_CACHE"], os.environ["MPLCONFIGDIR"]] if job["command"] else []
+    audit.arm([str(folder / "out"), *own], job["kernels"])
     answer: dict[str, Any] = {}
     done = False
     began = resident()
@@ -141,6 +143,7 @@ def warm(scratch: Path) -> None:
             warnings.simplefilter("ignore", ModelWarning)
             warm_up([(format, name)])
     os.chdir(scratch)
+    importlib.import_module("matplotlib.font_manager")  # asks the system for its fonts, once
     (scratch / "healthy" / "no.mat").write_bytes(b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM" + bytes(200))
     by_api({"format": "export", "main": str(scratch / "healthy" / "no.mat")})  # importing its reader asks for the machine's name
     for command in COMMANDS:

@@ -31,4 +31,4 @@ def marked(format: str, name: str, text: str, refused: bool = True, command: tup
     place = (main, text[: text.index(HERE)].count("\n") + 1) if HERE in text else None
     beside = {"my_truck.yaml": read("docs/examples/my_truck.yaml"), **{key.replace("_csv", ".csv"): data for key, data in files.items()}}
     case = Case(format, {**beside, main: text.replace(HERE, "").encode("utf-8", "surrogatepass")}, main, command)
-    return Nasty(f"{format}: {name}", case, place, refused)
+    return Nasty(f"{format}: {name[:60]}", case, place, refused)

@@ -25,7 +25,7 @@ def hostile(i: int, text: str) -> list[Nasty]:
     return [
         changed("cargo", f"name {i}", CARGO, "on: ", f"name: §{name}\non: "),
         changed("cargo", f"body {i}", CARGO, "on: semitrailer", f"on: §{name}"),
-        changed("frame", f"material {i}", FRAME, "  steel:", f"  §{name}:"),
+        changed("frame", f"material {i}", FRAME.replace("material: steel,", f"material: {name},"), "  steel:", f"  §{name}:"),
         changed("facts", f"axle {i}", FACTS, "{axle1:", f"{{§{name}:"),
         changed("facts", f"parameter {i}", FACTS, "{a1:", f"{{§{name}:"),
         changed("effects", f"name {i}", EFFECTS, "  soft_damper", f"  §{name}"),
