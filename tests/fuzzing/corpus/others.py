@@ -52,7 +52,7 @@ ROWS = b"Time (s),X (m/s^2),Y (m/s^2),Z (m/s^2)\n" + b"".join(b"%d.%02d,0,0,9.81
 ARCHIVE = archive_of({"Accelerometer.csv": ROWS})
 
 OTHERS: tuple[Nasty, ...] = (
-    *(nasty for i, text in enumerate(HOSTILE) for nasty in (hostile(i, text) if i in (0, 6, 10, 33) else ())),
+    *(nasty for i, text in enumerate(HOSTILE) for nasty in (hostile(i, text) if i in (0, 6, 10, 34) else ())),
     *(nasty for i, text in enumerate(HOSTILE) for nasty in free(i, text)[i % 3 : i % 3 + 1]),
     changed("cargo", "1e300 kg", CARGO, "10 t", "§1e300 kg"),
     changed("cargo", "no mass", CARGO, "10 t", "§0 t"),

@@ -13,11 +13,11 @@ SIMULATE = ("simulate", "run.yaml", "--out", "out/response.csv")
 
 
 def channel(i: int, text: str) -> list[Nasty]:
-    """Return runs whose channel, sensor or output is a hostile text."""
+    """Return runs whose channel, sensor or output is a hostile text; the heading of a column may be any text of one line."""
     name = quoted(text)
     return [
-        marked("run", f"channel {i}", RUN.replace(": az", f": §{name}")),
-        marked("run", f"column {i}", RUN.replace("az", f"{{column: §{name}}}")),
+        marked("run", f"channel {i}", RUN.replace(": az", f": {name}"), refused=False),
+        marked("run", f"column {i}", RUN.replace("az", f"{{column: {name}}}"), refused=False),
         marked("run", f"sensor {i}", RUN.replace("  S:", f"  §{name}:")),
         marked("run", f"output {i}", f"{RUN}outputs:\n  §{name}: {{axle: front, quantity: tyre_force}}\n"),
         marked("run", f"force {i}", f"{RUN}forces:\n  §{name}: {{body: body, harmonic: {{amplitude: 1 N, frequency: 1 Hz}}}}\n"),

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 
 from tests.fuzzing.bulk_mutations import carried, doubling
 from tests.fuzzing.cases import Case
-from tests.fuzzing.corpus.entry import Nasty, marked
+from tests.fuzzing.corpus.entry import HERE, Nasty, marked
 from tests.fuzzing.hostile import MARK, TEXTS
 
 REST = """\
@@ -17,6 +18,8 @@ axles:
   axle: {body: body, tyre: {k: 1 MN/m}}
 """
 HOSTILE = [text for text in TEXTS if MARK in text and text != f"é{MARK}\U0001f69a"]
+ALLOWED = re.compile(r"\w[\w.-]{0,63}")
+"""A name, as docs/vehicle-file.md has it."""
 
 
 def quoted(text: str) -> str:
@@ -26,10 +29,10 @@ def quoted(text: str) -> str:
 
 def named(i: int, text: str) -> list[Nasty]:
     """Return vehicles whose name, body, axle, parameter or set is a hostile text."""
-    name = quoted(text)
+    name, allowed = quoted(text), ALLOWED.fullmatch(text) is not None
     axle = f"axles:\n  axle: {{body: {name}, tyre: {{k: 1 MN/m}}}}\n"
     return [
-        marked("vehicle", f"name {i}", f"name: §{name}\n{REST}"),
+        marked("vehicle", f"name {i}", f"name: {'' if allowed else HERE}{name}\n{REST}", refused=not allowed),
         marked("vehicle", f"body {i}", f"bodies:\n  §{name}: {{mass: 1 t, motions: [heave]}}\n{axle}"),
         marked("vehicle", f"axle {i}", REST.replace("  axle:", f"  §{name}:")),
         marked("vehicle", f"parameter {i}", f"parameters:\n  §{name}: {{value: 1 kg}}\n{REST}"),
