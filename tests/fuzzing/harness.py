@@ -22,8 +22,6 @@ COMPILING = {"simulate", "build", "import", "calibrate", "diagnose", "validate",
 KERNEL_LIMITS = Limits(60.0, 3000.0)
 """What a command may cost that compiles a kernel: its compiler takes seconds by itself."""
 
-COMMAND_LIMITS = Limits(2.0, 300.0)
-
 
 class Worker:
     """A worker process and its scratch folder; a context manager.
@@ -82,14 +80,18 @@ class Worker:
         self._process.stdin.flush()
         return dict(json.loads(self._read()))
 
-    def try_case(self, case: Case) -> Verdict:
-        """Write a case's files, have them read, and judge the answer."""
+    def try_case(self, case: Case, limits: Limits | None = None, patience: float = 10.0) -> Verdict:
+        """Write a case's files, have them read, and judge the answer.
+
+        `limits` stand in place of the usual ones; `patience` [s] is how long a file that is waited for may take beyond its CPU time.
+        """
         self._number += 1
         folder = self.scratch / "cases" / f"{self._number:06d}"
         case.write(folder)
         kernels = bool(case.command) and case.command[0] in COMPILING
-        limits = KERNEL_LIMITS if kernels else COMMAND_LIMITS if case.command else Limits()
+        limits = limits or (KERNEL_LIMITS if kernels else Limits())
         job = {"folder": str(folder), "format": case.format, "main": case.main, "command": list(case.command), "kernels": kernels}
+        job["wait"] = patience + 3 * limits.seconds
         found = self.ask({**job, "seconds": limits.seconds, "megabytes": limits.megabytes})
         new = new_files(case, folder)
         if not kernels and found.get("kernels"):
@@ -110,7 +112,7 @@ def checked_for_name(case: Case, verdict: Verdict) -> Verdict:
     """A refusal that has no line must at least name a file of the case."""
     if verdict.answer.message is None or (case.format != "export" and is_regular(case)):
         return verdict
-    if any(Path(name).name in verdict.answer.message for name in (*case.files, *case.special)):
+    if any(Path(name).name in verdict.answer.message for name in (case.main, *case.files, *case.special)):
         return verdict
     return Verdict(FAULT, (*verdict.reasons, f"no file is named: {verdict.answer.message[:150]}"), verdict.answer)
 
@@ -120,8 +122,10 @@ def new_files(case: Case, folder: Path) -> list[str]:
     brought = {*case.files, *case.special}
     present = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_symlink() or not path.is_dir()}
     stray = sorted(name for name in present - brought if not name.startswith("out/"))
-    changed = [name for name, data in case.files.items() if name not in case.special and (folder / name).read_bytes() != data]
-    return [f"a file was written: {name[:80]}" for name in stray] + [f"a file was changed: {name[:80]}" for name in changed]
+    changed = [name for name, data in case.files.items() if name in present - set(case.special) and (folder / name).read_bytes() != data]
+    gone = sorted(brought - present - {name for name, kind in case.special.items() if kind == "folder"})
+    words = {"written": stray, "changed": changed, "removed": gone}
+    return [f"a file was {word}: {name[:80]}" for word, names in words.items() for name in names]
 
 
 def read_answer(found: dict[str, Any], faults: list[str]) -> Answer:

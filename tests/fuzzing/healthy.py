@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import zipfile
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -181,6 +182,6 @@ def healthy() -> dict[str, tuple[Case, ...]]:
         "frame": (Case("frame", {"frame.yaml": frame}, "frame.yaml"),),
         "facts": (Case("facts", {"facts.yaml": FACTS.encode()}, "facts.yaml"),),
         "effects": (Case("effects", {"effects.yaml": EFFECTS.encode()}, "effects.yaml"),),
-        "table": (run.with_text(history, ()),),
+        "table": (replace(run.with_text(history, ()), format="table"),),
         "export": tuple(exports),
     }

@@ -65,10 +65,8 @@ def strange(text: str, allowed: str = "") -> set[str]:
 def last_place(path: Path) -> tuple[int, int]:
     """Return the number of lines of a file, and the length of its longest line plus one."""
     text = path.read_bytes().decode("utf-8", "replace")
-    lines = max(text.split("\n"), text.splitlines(), key=len) or [""]
-    if len(lines) > 1 and not lines[-1]:
-        lines = lines[:-1]
-    return len(lines), max(len(line) for line in text.split("\n")) + 2
+    lines = max(text.count("\n") + (not text.endswith("\n")), len(text.splitlines()), 1)
+    return lines, max(len(line) for line in text.split("\n")) + 2
 
 
 def check_message(message: str) -> list[str]:

@@ -1,0 +1,40 @@
+"""The harness sees every kind of mischief: a fuzzer that finds nothing must be able to find something."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.fuzzing.cases import Case, read_case
+from tests.fuzzing.faults import Faults
+from tests.fuzzing.harness import Worker
+from tests.fuzzing.judge import ACCEPTED, FAULT, REFUSED, Limits
+from tests.fuzzing.mischief import EXPECTED, MISCHIEF
+
+
+def mischief(name: str) -> Case:
+    return Case("mischief", {"mischief.yaml": name.encode()}, "mischief.yaml")
+
+
+@pytest.mark.parametrize("name", MISCHIEF)
+def test_mischief_is_seen(worker: Worker, name: str):
+    verdict = worker.try_case(mischief(name), Limits(0.5), patience=1.0)
+    if expected := EXPECTED[MISCHIEF[name]]:
+        assert verdict.outcome == FAULT
+        assert any(reason.startswith(expected) for reason in verdict.reasons), verdict.reasons
+    else:
+        assert verdict.outcome == (REFUSED if name == "refuse" else ACCEPTED), verdict.reasons
+
+
+def test_a_fault_is_kept_once_and_done_again(worker: Worker, tmp_path: Path):
+    faults = Faults()
+    for number, name in enumerate(("crash", "crash", "two_lines", "refuse")):
+        faults.add(number, mischief(name), worker.try_case(mischief(name)))
+    assert faults.outcomes == {("mischief", FAULT): 3, ("mischief", REFUSED): 1}
+    assert sorted(faults.counts.values()) == [1, 2]
+    faults.write(tmp_path)
+    kept = sorted(path.name for path in tmp_path.iterdir())
+    assert kept == ["mischief-001", "mischief-002"]
+    assert read_case(tmp_path / kept[0]) == mischief("crash")
+    assert worker.try_case(read_case(tmp_path / kept[0])).outcome == FAULT
