@@ -5,8 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import sympy as sp
+
+from vehgen.effects.places import ALL_TYRES
 from vehgen.files.expressions import Expression
 from vehgen.mechanics import EquationsOfMotion, derive, static_loads
+from vehgen.mechanics.energies import pitch_inertia
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.model import Spring
 
@@ -77,17 +81,19 @@ class EffectLocator:
         known = {name: values.get(name, 0.0) for name in self._model.parameters}
         self._known = vehicle.all_values({name: known[name] for name in vehicle.free_parameters})
         self._loads = static_loads(self._model, known)
-        entries = {(0, i): x for i, x in enumerate(self._model.layout.axles.values())}
-        self._axles = dict(zip(vehicle.axles, (self._model.evaluate(entries, known)[0, i] for i in range(len(entries))), strict=True))
-        entries = {(0, i): x for i, (x, _) in enumerate(self._model.layout.bodies.values())}
-        self._bodies = dict(
-            zip(self._model.layout.bodies, (self._model.evaluate(entries, known)[0, i] for i in range(len(entries))), strict=True)
-        )
+        layout = self._model.layout
+        self._axles = self._evaluate(layout.axles, known)
+        self._bodies = self._evaluate({name: x for name, (x, _) in layout.bodies.items()}, known)
+        self._inertias = self._evaluate({name: pitch_inertia(body) for name, body in vehicle.bodies.items()}, known)
+
+    def _evaluate(self, expressions: Mapping[str, sp.Expr], values: Mapping[str, float]) -> dict[str, float]:
+        found = self._model.evaluate({(0, i): item for i, item in enumerate(expressions.values())}, values)
+        return {name: found[0, i] for i, name in enumerate(expressions)}
 
     def site(self, place: str) -> EffectSite:
-        """Return the site of an axle, link, hinge, body or group of axles joined by `+`."""
+        """Return the site of an axle, link, hinge, body, group of axles joined by `+`, or of all tyres, sized as their mean."""
         vehicle, known = self.vehicle, self._known
-        names = place.split("+")
+        names = list(vehicle.axles) if place == ALL_TYRES else place.split("+")
         load = k = c = kt = 0.0
         body = names[0]
         for name in names:
@@ -111,11 +117,11 @@ class EffectLocator:
         if body not in vehicle.bodies:
             body = next(iter(vehicle.bodies))
         mass = vehicle.bodies[body].mass.evaluate(known)
-        given = vehicle.bodies[body].pitch_inertia
-        inertia = given.evaluate(known) if given is not None else mass
         marks = [self._axles[name] - self._bodies[body] for name, axle in vehicle.axles.items() if axle.body == body]
         marks += [joint.points[body].x.evaluate(known) for joint in vehicle.hinges.values() if body in joint.points]
         length = max(marks) - min(marks) if len(marks) > 1 else 1.0
         if names[0] in vehicle.bodies:
             load = mass * 9.81
-        return EffectSite(vehicle, place, load, k, c, kt, mass, inertia, length)
+        if place == ALL_TYRES:
+            load, k, c, kt = (size / len(names) for size in (load, k, c, kt))
+        return EffectSite(vehicle, place, load, k, c, kt, mass, self._inertias[body], length)
