@@ -1,28 +1,30 @@
+"""The library of effects."""
+
+import importlib
 import importlib.util
+import pkgutil
 import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from vehgen.effects import EFFECTS, EffectLocator
+from vehgen.effects import EFFECTS, Effect, EffectLocator
 from vehgen.mechanics import derive
 from vehgen.simulate import natural_modes
 from vehgen.vehicle import load_vehicle, parse_vehicle
 from vehgen.vehicle.loading import extend_vehicle
 from vehgen.vehicle.writing import yaml_document
 
-ASKED = {
-    "dry_friction", "cubic_stiffness", "progressive_stiffness", "bump_stop", "asymmetric_damping", "quadratic_damping", "hysteresis",
-    "relaxation", "tyre_liftoff", "tyre_damping", "tyre_footprint", "hinge_friction", "hinge_stiffness", "suspended_cab",
-    "frame_bending", "walking_beam", "cargo_module", "engine_harmonic", "sensor_gain", "sensor_position", "sensor_tilt", "sensor_delay",
-    "speed_error",
-}  # fmt: skip
 DOCS = Path(__file__).parents[2] / "docs"
 
 
-def test_the_library_holds_every_effect():
-    assert set(EFFECTS) == ASKED
+def test_the_library_holds_the_effect_of_every_file_in_its_folder():
+    folder = importlib.import_module("vehgen.effects.library")
+    modules = [importlib.import_module(f"{folder.__name__}.{item.name}") for item in pkgutil.iter_modules(folder.__path__)]
+    written = {id(value): module for module in modules for value in vars(module).values() if isinstance(value, Effect)}
+    assert set(written) == {id(effect) for effect in EFFECTS.values()}
+    assert all(vars(written[id(effect)])[name.upper()] is effect for name, effect in EFFECTS.items())
 
 
 @pytest.mark.parametrize("effect", EFFECTS.values(), ids=list(EFFECTS))
@@ -39,14 +41,13 @@ def test_every_edit_gives_a_vehicle_that_vehgen_accepts(name):
     vehicle = load_vehicle(name)
     surveyor = EffectLocator(vehicle, vehicle.values())
     for effect in EFFECTS.values():
-        if effect.edit is not None:
-            for place in effect.places(vehicle, ())[:2]:
-                change = effect.change(surveyor.site(place))
-                changed = extend_vehicle(vehicle, change)
-                written = parse_vehicle(yaml_document({"extends": name, **change}))
-                assert (written.bodies, written.axles, written.parameters) == (changed.bodies, changed.axles, changed.parameters)
-                assert set(effect.symbols(place).values()) <= set(changed.ranges())
-                assert derive(changed).n_dof >= derive(vehicle).n_dof
+        for place in effect.places(vehicle, ())[:2] if effect.changes_vehicle else ():
+            change = effect.change(surveyor.site(place))
+            changed = extend_vehicle(vehicle, change)
+            written = parse_vehicle(yaml_document({"extends": name, **change}))
+            assert (written.bodies, written.axles, written.parameters) == (changed.bodies, changed.axles, changed.parameters)
+            assert set(effect.search_names(place)) <= set(changed.ranges())
+            assert derive(changed).n_dof >= derive(vehicle).n_dof
 
 
 def test_every_edit_fits_a_vehicle_with_the_longest_names():
@@ -56,13 +57,13 @@ def test_every_edit_fits_a_vehicle_with_the_longest_names():
     text = Path(base.files[0]).read_text(encoding="utf-8")
     vehicle = parse_vehicle(re.sub(r"\w+", lambda match: parts.get(match[0], match[0]), text))
     assert set(vehicle.bodies) == {parts[name] for name in base.bodies}
-    surveyor = EffectLocator(vehicle, vehicle.values())
+    locator = EffectLocator(vehicle, vehicle.values())
     for effect in EFFECTS.values():
-        if effect.edit is not None:
-            names = [name for place in effect.places(vehicle, ()) for name in effect.symbols(place).values()]
+        if effect.changes_vehicle:
+            names = [name for place in effect.places(vehicle, ()) for name in effect.search_names(place)]
             assert len(set(names)) == len(names)
             for place in effect.places(vehicle, ())[:1]:
-                extend_vehicle(vehicle, effect.change(surveyor.site(place)))
+                extend_vehicle(vehicle, effect.change(locator.site(place)))
 
 
 def frequencies(vehicle):

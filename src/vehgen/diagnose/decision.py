@@ -27,10 +27,6 @@ from vehgen.fit.trial import Trial
 
 MOST_EFFECTS = 3
 """So many effects are added at most."""
-CLOCKS = (
-    "no run tells which of the sensors is late and which early: only the difference of their clocks shows; record both by one clock, "
-    "or let both feel a knock at a known time"
-)
 
 
 class Decision:
@@ -256,8 +252,9 @@ class Decision:
         """Return which run would tell tied models apart, by what each predicts."""
         if self.interrupted:
             return None
-        if all(fit.last.effect.adjusts == "sensor_delay" for fit in (chain[-1], *ties)):
-            return CLOCKS
+        advice = chain[-1].last.effect.tie_advice
+        if advice and all(fit.last.effect.tie_advice == advice for fit in ties):
+            return advice
         self.progress("propose", 0, 1, "")
         found = propose(self.detection, (chain[-1], *ties))
         return found.text if found else None

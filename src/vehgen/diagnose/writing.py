@@ -32,7 +32,7 @@ def effect_file(fit: ModelFit, base: Problem, verdict: Verdict, folder: Path, na
     }
     comments = [f"{verdict.verdict}: {verdict.reason}"]
     for candidate in fit.effects:
-        if candidate.effect.edit is None:
+        if not candidate.effect.changes_vehicle:
             told = ", ".join(f"{key} = {item.value:.5g} {item.unit}".strip() for key, item in estimate(fit, candidate).items())
             comments.append(f"{candidate.label} is an effect of the runs, to be corrected there: {told}")
             continue

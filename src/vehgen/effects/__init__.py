@@ -2,7 +2,21 @@
 
 from vehgen.effects.base import Change, Effect, EffectParameter
 from vehgen.effects.entry import extended_library, load_effects
+from vehgen.effects.kinds import LineEffect, RunEffect, VehicleEffect
 from vehgen.effects.locator import EffectLocator, EffectSite
 from vehgen.effects.registry import EFFECTS, library
 
-__all__ = ["EFFECTS", "Change", "Effect", "EffectLocator", "EffectParameter", "EffectSite", "extended_library", "library", "load_effects"]
+__all__ = [
+    "EFFECTS",
+    "Change",
+    "Effect",
+    "EffectLocator",
+    "EffectParameter",
+    "EffectSite",
+    "LineEffect",
+    "RunEffect",
+    "VehicleEffect",
+    "extended_library",
+    "library",
+    "load_effects",
+]

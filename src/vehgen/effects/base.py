@@ -1,15 +1,28 @@
-"""What an effect is: a named edit of a vehicle or of its runs, with what its parameters may be and what it looks like."""
+"""What an effect is: where it lives, what it changes, what it costs, where its fits begin, and how to say so.
+
+Of the vehicle, of its runs and sensors, or a line of the spectrum: for the three kinds see :mod:`vehgen.effects.kinds`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
-from vehgen.effects.locator import EffectSite
-from vehgen.files.names import MAX_TEXT, joined_name
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.effects.evidence import Origins, PlaceEvidence, Residual, StartingPoint
+from vehgen.effects.locator import EffectLocator, EffectSite
+from vehgen.effects.places import ALL_TYRES, Places, in_words
+from vehgen.fit.adjustments import Adjustment
+from vehgen.fit.trial import Trial
+from vehgen.simulate import Simulator
 from vehgen.vehicle import Vehicle
 
+Array = NDArray[np.float64]
 Change = dict[str, Any]
 """Plain mappings, lists, texts and numbers in the form of a vehicle file."""
 
@@ -43,7 +56,17 @@ class EffectParameter:
 
 
 @dataclass(frozen=True)
-class Effect:
+class SearchDimension:
+    """A parameter that an effect adds to the search: its name in the vehicle's model, bounds and start [SI]."""
+
+    name: str
+    low: float
+    high: float
+    start: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Effect(ABC):
     """An effect that could be missing from a model.
 
     Attributes
@@ -54,47 +77,123 @@ class Effect:
         What it does, what it is, what it looks like in recordings, where it comes from.
     attaches
         What it lives at: suspension, tyre, hinge, body, axles, sensor, run.
+    places
+        Names the places of a vehicle, or the sensors or channels of its runs, at which it can live.
     parameters
         Its parameters.
-    places
-        Names the places of a vehicle (or sensors of its runs) at which it can live.
-    edit
-        Returns the change of the vehicle's file; the symbols of its parameters are given by name. None for effects of runs.
-    adjusts
-        For effects of runs: which quantity of a run its one parameter changes (see :mod:`vehgen.fit.adjustments`).
+    is_global
+        Whether no single place explains it, or it reaches several: it is tried wherever one unknown force at one place does not suffice.
+    tie_advice
+        What to do where only effects with this same advice explain the recordings equally well; empty where another run may decide.
     """
 
     name: str
     title: str
-    equation: str
-    meaning: str
-    signature: str
-    source: str
+    equation: str = ""
+    meaning: str = ""
+    signature: str = ""
+    source: str = ""
     attaches: str
-    parameters: tuple[EffectParameter, ...]
-    places: Callable[[Vehicle, tuple[str, ...]], tuple[str, ...]]
-    edit: Callable[[EffectSite, Mapping[str, str]], Change] | None = None
-    adjusts: str = ""
+    places: Places
+    parameters: tuple[EffectParameter, ...] = ()
+    is_global: bool = False
+    tie_advice: str = ""
 
-    def symbols(self, place: str) -> dict[str, str]:
-        """Return the names its parameters take in a vehicle file."""
-        safe = "".join(letter if letter.isalnum() else "_" for letter in place)
-        return {parameter.name: joined_name(self.name, safe, parameter.name) for parameter in self.parameters}
+    @property
+    def changes_vehicle(self) -> bool:
+        """Whether it changes the vehicle; other effects change how its runs and recordings are read."""
+        return False
+
+    @property
+    def is_single_force(self) -> bool:
+        """Whether it acts as a force at its place, so that the place test speaks for or against it."""
+        return not self.is_global
+
+    @property
+    def solved_parameters(self) -> tuple[EffectParameter, ...]:
+        """Return those of its parameters that are not searched but solved for in every run (see :meth:`solve`)."""
+        return ()
+
+    @abstractmethod
+    def n_numbers(self, n_runs: int) -> int:
+        """Return how many numbers it costs to fit it to some runs."""
+
+    def search_dimensions(self, place: str, locator: EffectLocator) -> tuple[SearchDimension, ...]:
+        """Return the parameters that it adds to the search at a place."""
+        return ()
+
+    def search_names(self, place: str) -> tuple[str, ...]:
+        """Return the names of its search dimensions."""
+        return ()
+
+    def adjustments(self, place: str, noise_sigma: Mapping[str, Array]) -> tuple[Adjustment, ...]:
+        """Return the adjustments of runs or sensors that it adds to a fit.
+
+        Parameters
+        ----------
+        place
+            One of its places.
+        noise_sigma
+            Standard deviations of the channels' noise by trial, each `shape (n_channels,)`, where the noise is known.
+        """
+        return ()
 
     def change(self, site: EffectSite, values: Mapping[str, float] | None = None) -> Change:
-        """Return the change of a vehicle's file with its parameters declared, at `values` or at their first start."""
-        assert self.edit is not None
-        symbols = self.symbols(site.place)
-        declared: Change = {}
-        for parameter in self.parameters:
-            low, high = parameter.bounds(site)
-            value = (values or {}).get(parameter.name, parameter.first(site)[0])
-            unit = f" {parameter.unit}" if parameter.unit else ""
-            declared[symbols[parameter.name]] = {
-                "value": f"{value!r}{unit}",
-                "range": [f"{low!r}{unit}", f"{high!r}{unit}"],
-                "meaning": f"{self.title}: {parameter.meaning}"[:MAX_TEXT],
-            }
-        change = self.edit(site, symbols)
-        change["parameters"] = {**declared, **change.get("parameters", {})}
-        return change
+        """Return the change of the vehicle's file at a site and at `values` of its parameters; empty where it leaves the vehicle alone."""
+        return {}
+
+    def change_trials(
+        self, trials: Sequence[Trial], place: str, locator: EffectLocator, simulators: dict[object, Simulator]
+    ) -> tuple[Trial, ...]:
+        """Return the trials with the effect at a place of their vehicle; `simulators` are shared, and filled as needed."""
+        return tuple(trials)
+
+    def starts(self, place: str, locator: EffectLocator, residual: Residual | None = None) -> list[tuple[float, ...]]:
+        """Return where its own numbers may begin, one tuple a start.
+
+        Parameters
+        ----------
+        place, locator
+            Where, and what knows the sizes of places.
+        residual
+            What the fit that it is added to leaves, where that is known.
+        """
+        return list(product(*(parameter.starts for parameter in self.parameters)))
+
+    def origins(self, origins: Origins) -> list[StartingPoint]:
+        """Return where the base parameters begin when it is fitted; what they absorbed of an effect may mislead."""
+        return distinct(origins.placed, origins.fitted)
+
+    def is_likely(self, place: str, evidence: PlaceEvidence) -> bool:
+        """Return whether it is worth fitting at a place, by what the place test found."""
+        if place == ALL_TYRES:
+            return not evidence.one_force or "tyre" in evidence.kinds
+        touches = not evidence.parts.isdisjoint(place.split("+"))
+        return touches or (self.is_global and not evidence.one_force)
+
+    def solve(self, place: str, adjustments: Sequence[Adjustment], trial: Trial, response: Array, values: Mapping[str, float]) -> Array:
+        """Return its `solved_parameters` in a run, `shape (n_solved,)`.
+
+        Parameters
+        ----------
+        place, adjustments
+            Where, and its adjustments, whose neutral numbers are the fitted ones.
+        trial
+            The run.
+        response
+            What the sensors would read without it, `shape (n_samples, n_channels)`.
+        values
+            The vehicle's parameters [SI].
+        """
+        return np.zeros(0)
+
+    def describe(self, vehicle: Vehicle, place: str, values: Mapping[str, float]) -> str:
+        """Return it in words with the value of its first parameter: `Dry friction of about 446 N in the rear suspension`."""
+        first = next((item for item in self.parameters if item.name in values), None)
+        size = f" of about {values[first.name]:.3g} {first.unit}".rstrip() if first else ""
+        return f"{self.title}{size} {in_words(vehicle, self.attaches, place)}"
+
+
+def distinct(*points: StartingPoint) -> list[StartingPoint]:
+    """Return starting points, each once."""
+    return [point for i, point in enumerate(points) if all(point is not other for other in points[:i])]

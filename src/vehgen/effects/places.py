@@ -1,73 +1,99 @@
-"""Where effects can live: functions that name the places of a vehicle."""
+"""Where effects can live: functions that name the places of a vehicle and of its runs."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
+from vehgen.fit.trial import Trial
+from vehgen.mechanics import PointOutput
 from vehgen.vehicle import Vehicle
 
+Places = Callable[[Vehicle, Sequence[Trial]], tuple[str, ...]]
+"""Names the places of a vehicle and its runs."""
 ALL_TYRES = "all tyres"
 ALL_RUNS = "all runs"
 
 
-def suspensions(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+def suspensions(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return every axle with a suspension, then every link: both are a spring and damper with room for laws."""
     return (*(name for name, axle in vehicle.axles.items() if axle.suspension is not None), *vehicle.links)
 
 
-def axles(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+def axles(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return every axle."""
     return tuple(vehicle.axles)
 
 
-def all_tyres(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+def all_tyres(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return all tyres as one place."""
     return (ALL_TYRES,) if vehicle.axles else ()
 
 
-def tyres(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+def tyres(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return all tyres as one place, then every axle's."""
     return (ALL_TYRES, *vehicle.axles) if vehicle.axles else ()
 
 
-def hinges(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+def hinges(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return every hinge."""
     return tuple(vehicle.hinges)
 
 
-def pitching_bodies(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+def pitching_bodies(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return every body that heaves and pitches and rides on axles or hinges; a tandem's beam, which the body carries, is none."""
     carried = {axle.body for axle in vehicle.axles.values()} | {name for hinge in vehicle.hinges.values() for name in hinge.points}
     return tuple(name for name, body in vehicle.bodies.items() if name in carried and body.carried_by is None)
 
 
-def front_body(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+def front_body(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return the body of the first axle of a vehicle of three axles or more: the one that may carry a cab."""
     return (next(iter(vehicle.axles.values())).body,) if len(vehicle.axles) > 2 else ()
 
 
-def loading_bodies(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+def loading_bodies(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return the bodies that may carry a load: all that pitch but the one with the cab, or that one where there is no other."""
-    every = pitching_bodies(vehicle, sensors)
-    return tuple(name for name in every if name not in front_body(vehicle, sensors)) or every
+    every = pitching_bodies(vehicle, trials)
+    return tuple(name for name in every if name not in front_body(vehicle, trials)) or every
 
 
-def long_bodies(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+def long_bodies(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return bodies that pitch and do not bend yet."""
-    return tuple(name for name in pitching_bodies(vehicle, sensors) if vehicle.bodies[name].bending is None)
+    return tuple(name for name in pitching_bodies(vehicle, trials) if vehicle.bodies[name].bending is None)
 
 
-def tandems(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+def tandems(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return pairs of neighbouring axles of one body behind the first axle, whose suspensions are linear, as `first+second`."""
     names = [name for name, axle in vehicle.axles.items() if axle.suspension is not None and not axle.suspension.laws][1:]
     return tuple(f"{one}+{two}" for one, two in pairwise(names) if vehicle.axles[one].body == vehicle.axles[two].body)
 
 
-def sensors_(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+def sensors(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return every sensor of the runs."""
-    return sensors
+    return tuple(dict.fromkeys(channel.sensor for trial in trials for channel in trial.recording.channels))
 
 
-def runs(vehicle: Vehicle, sensors: tuple[str, ...]) -> tuple[str, ...]:
+def sensors_on_bodies(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
+    """Return every sensor of the runs that sits at a point of a body; one of an axle or link has no place to shift."""
+    every = (channel for trial in trials for channel in trial.recording.channels)
+    return tuple(dict.fromkeys(channel.sensor for channel in every if isinstance(channel.output, PointOutput)))
+
+
+def channels(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
+    """Return every channel of the runs."""
+    return tuple(dict.fromkeys(name for trial in trials for name in trial.channels))
+
+
+def runs(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return all runs as one place, where the vehicle has wheels to run on."""
     return (ALL_RUNS,) if vehicle.axles else ()
+
+
+def in_words(vehicle: Vehicle, attaches: str, place: str) -> str:
+    """Return where an effect is that lives at a suspension, tyre, hinge, body, pair of axles, sensor or run: `in the rear suspension`."""
+    if place in (ALL_TYRES, ALL_RUNS):
+        return f"in {place}"
+    if attaches == "suspension":
+        return f"in the link {place}" if place in vehicle.links else f"in the {place} suspension"
+    phrases = {"tyre": "in the tyres of {}", "hinge": "in the hinge {}", "body": "on the {}"}
+    return phrases.get(attaches, "at {}").format(place.replace("+", " and "))

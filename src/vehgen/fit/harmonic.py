@@ -86,12 +86,12 @@ def _phase(time: Array, frequency: float, drift: float) -> Array:
     return np.asarray(2 * np.pi * frequency * (time + drift * time**2 / (2 * duration)))
 
 
-def find_line(misfit: Misfit, x: Array, most: int = 2) -> list[tuple[float, float]]:
-    """Return the frequencies [Hz] and drifts of the `most` strongest lines in what a fit leaves.
+def find_line(misfit: Misfit, x: Array, most: int = 2, lowest: float = LOWEST, highest: float = HIGHEST) -> list[tuple[float, float]]:
+    """Return the frequencies [Hz] and drifts of the `most` strongest lines, between two frequencies [Hz], in what a fit leaves.
 
     Peaks of the whitened power of all runs, averaged over SMOOTH; about each, the frequency and drift that collect most of it.
     """
-    grid = np.arange(LOWEST, HIGHEST, 0.05)
+    grid = np.arange(lowest, highest, 0.05)
     power = np.zeros_like(grid)
     lines = misfit.whitened_spectrum(x)
     for t, line in enumerate(lines):
@@ -122,9 +122,9 @@ def _refine(misfit: Misfit, x: Array, about: float) -> tuple[float, float]:
     return float(frequencies[frequency]), float(DRIFTS[drift])
 
 
-def harmonic_adjustments(body: str, noises: Mapping[str, Array]) -> Sequence[Adjustment]:
-    """Return the two adjustments of a line at a body: its frequency, weighed by the channels' `noises`, and its drift."""
-    line = Harmonic(body, 0.05, 25.0, LOWEST, HIGHEST + 5.0, dict(noises))
+def harmonic_adjustments(body: str, noises: Mapping[str, Array], low: float = LOWEST, high: float = HIGHEST + 5.0) -> Sequence[Adjustment]:
+    """Return the two adjustments of a line at a body: its frequency, `low` to `high` [Hz], weighed by the `noises`, and its drift."""
+    line = Harmonic(body, 0.05, 25.0, low, high, dict(noises))
     return line, Adjustment(f"{body} drift", 0.002, 0.0, -0.05, 0.05)
 
 

@@ -56,6 +56,17 @@ class Trial:
         measurement = self.recording.of_sensors(tuple(sensors))
         return replace(self, recording=measurement, simulator=_simulator(self.run, measurement, simulators))
 
+    def with_vehicle(self, vehicle: Vehicle, simulators: dict[object, Simulator]) -> Trial:
+        """Return the trial with another vehicle that has at least its parameters; `simulators` are shared, and filled as needed."""
+        run = replace(self.run, vehicle=vehicle)
+        outputs = tuple(channel.output for channel in self.recording.channels)
+        key = (id(vehicle), repr(outputs), repr(run.forces()))
+        if key not in simulators:
+            simulators[key] = Simulator(vehicle, outputs, run.forces())
+        simulator = simulators[key]
+        values = simulator.model.values(overrides=run.values())
+        return replace(self, run=run, simulator=simulator, values=values)
+
 
 def load_trials(paths: Sequence[str | Path], vehicle: Vehicle | None = None) -> list[Trial]:
     """Read run files with their recordings; `vehicle` takes the place of the one they name.

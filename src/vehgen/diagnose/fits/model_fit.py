@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.fits.candidate import Candidate, retarget
+from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.least_squares import LeastSquaresFit, fit_least_squares
 from vehgen.fit.misfit import Misfit, Noises, Nuisances
@@ -180,7 +180,7 @@ def evaluate_fit(effects: tuple[Candidate, ...], fit: LeastSquaresFit, validatio
             (id(vehicle), repr(tuple(c.output for c in trial.recording.channels)), repr(trial.run.forces())): trial.simulator
             for trial in problem.trials
         }
-        trials = [retarget(trial, vehicle, shared) for trial in validation_runs]
+        trials = [trial.with_vehicle(vehicle, shared) for trial in validation_runs]
         numbers = fit.misfit.adjusted(fit.x)
         frozen = Problem(
             tuple(replace(t, values=t.values | {k: v for k, v in fixed.items() if k not in t.fixed}) for t in trials), _nothing()

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.fits.candidate import Candidate, build_problem, starts
+from vehgen.diagnose.fits.candidate import Candidate, build_problem
 from vehgen.diagnose.fits.model_fit import (
     BASE_PRIOR_SIGMA,
     COARSE_TOLERANCE,
@@ -19,6 +19,7 @@ from vehgen.diagnose.fits.model_fit import (
     refine,
 )
 from vehgen.effects import EffectLocator
+from vehgen.effects.evidence import StartingPoint
 from vehgen.fit.least_squares import LeastSquaresFit, fit_least_squares
 from vehgen.fit.misfit import Misfit, Noises
 from vehgen.fit.problem import Problem
@@ -27,8 +28,6 @@ from vehgen.fit.trial import Trial
 from vehgen.simulate import Simulator
 
 Array = NDArray[np.float64]
-StartingPoint = tuple[Array, Array]
-"""Where base parameters, in the unit cube, and the nuisances of runs begin."""
 HOPELESS = 0.5
 """A candidate that leaves more than this share of the excess after the rough fits is not refined."""
 MOST_STARTS = 8
@@ -70,7 +69,7 @@ def fit_candidate(
     """
     problem = build_problem(candidate, current.problem, surveyor, simulators)
     rough = _Rough(candidate, current, problem, noises, band)
-    best = rough.search(origins, begin or list(starts(candidate, surveyor)))
+    best = rough.search(origins, begin or candidate.effect.starts(candidate.place, surveyor))
     if best is None:
         return None
     effects = (*current.effects, candidate)

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.fits.candidate import Candidate, build_problem, starts
+from vehgen.diagnose.fits.candidate import Candidate, build_problem
 from vehgen.diagnose.fits.first_order import ProbeMotion
 from vehgen.diagnose.fits.model_fit import NUISANCES, CurrentModel, ModelFit
 from vehgen.diagnose.fits.projection import Projection
@@ -33,7 +33,7 @@ def screen(
     surveyor: EffectLocator,
     simulators: dict[object, Simulator],
 ) -> list[Candidate]:
-    """Return the candidates worth fitting: all of sensors, runs and engines, of the others the MOST with the largest first-order gain.
+    """Return the candidates worth fitting: all that leave the vehicle alone, of the others the MOST with the largest first-order gain.
 
     Parameters
     ----------
@@ -42,8 +42,8 @@ def screen(
     surveyor, simulators
         As for :func:`vehgen.diagnose.fits.candidate.pose`.
     """
-    always = [item for item in candidates if item.effect.edit is None]
-    forces = [item for item in candidates if item.effect.edit is not None]
+    always = [item for item in candidates if not item.effect.changes_vehicle]
+    forces = [item for item in candidates if item.effect.changes_vehicle]
     if len(forces) <= MAX_CANDIDATES:
         return list(candidates)
     misfit, x = base.least_squares.misfit, base.least_squares.x
@@ -54,7 +54,7 @@ def screen(
         problem = build_problem(candidate, current.problem, surveyor, simulators)
         exact: Misfit | None = None
         best = 0.0
-        for combination in starts(candidate, surveyor):
+        for combination in candidate.effect.starts(candidate.place, surveyor):
             point = problem.space.start.copy()
             point[len(current.unit) :] = combination[: len(candidate.parameters)]
             unit = np.concatenate([current.unit, problem.space.unit(point)[len(current.unit) :]])

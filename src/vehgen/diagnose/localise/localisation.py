@@ -8,10 +8,7 @@ from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.localise.unknown_force import Place, PlaceResult, list_places, score_locations
-from vehgen.effects.places import ALL_TYRES
-
-GLOBAL = ("speed_error", "tyre_footprint", "tyre_damping", "tyre_liftoff", "frame_bending", "suspended_cab", "cargo_module", "walking_beam")
-"""Effects that no single place explains, or that reach several: they are tried whatever the place test says."""
+from vehgen.effects.evidence import PlaceEvidence
 
 ONCE = 1_000_000
 """The derivatives by nuisances serve for all places: they differ little, and take most of the time."""
@@ -67,18 +64,8 @@ def shortlist(
         part for item in places if item.place.channels and _reaches(item, excess) for part in (item.place.name, *item.place.channels)
     }
     silenced |= {channels[part] for part in silenced if part in channels}
-    found = []
-    for candidate in candidates:
-        if candidate.effect.attaches == "sensor":
-            wanted = candidate.place in silenced
-        elif candidate.place == ALL_TYRES:
-            wanted = not single or any(item.place.kind == "tyre" for item in passed)
-        else:
-            touches = any(part in names for part in candidate.place.split("+"))
-            wanted = touches or (candidate.effect.name in GLOBAL and not single)
-        if wanted:
-            found.append(candidate)
-    return found
+    evidence = PlaceEvidence(frozenset(names), frozenset(item.place.kind for item in passed), single, frozenset(silenced))
+    return [candidate for candidate in candidates if candidate.effect.is_likely(candidate.place, evidence)]
 
 
 def owner(place: Place) -> str:

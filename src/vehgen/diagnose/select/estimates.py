@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.stats
@@ -14,7 +14,7 @@ from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.verdict import NamedParameter
 from vehgen.effects import EffectParameter
-from vehgen.fit.harmonic import Harmonic
+from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.fit.noise import taper
 
@@ -50,8 +50,8 @@ def estimate(fit: ModelFit, candidate: Candidate | None = None) -> dict[str, Nam
     """Return an effect's own parameters (default: of the effect added last) with 90 % intervals.
 
     Three parts add up in quadrature: noise, from the Fisher information of the fit, widened by the root of its mean square; what the runs
-    ask for beyond it (:func:`disagreement`); and the scatter of other minima that do as well. A line's amplitude is the median over the
-    runs, its interval their spread and that of the body's parameters.
+    ask for beyond it (:func:`disagreement`); and the scatter of other minima that do as well. What is solved for in every run is the median
+    over the runs, its interval their spread and that of the base parameters.
     """
     candidate = candidate or fit.last
     misfit, x = fit.least_squares.misfit, fit.least_squares.x
@@ -71,9 +71,7 @@ def estimate(fit: ModelFit, candidate: Candidate | None = None) -> dict[str, Nam
         spread = float(np.hypot(np.hypot(noise, minima), disagreement([item for item in alone if item.parameter == parameter.name])))
         interval = (value - spread, value + spread) if spread > 0 else None
         found[parameter.name] = NamedParameter(value, interval, parameter.unit)
-    if candidate.effect.adjusts == "harmonic":
-        found["amplitude"] = _amplitude(fit, candidate, covariance)
-    return found
+    return found | _solved(fit, candidate, covariance)
 
 
 def disagreement(alone: Sequence[RunEstimate]) -> float:
@@ -139,38 +137,46 @@ def _columns(fit: ModelFit, candidate: Candidate) -> list[tuple[EffectParameter,
     for parameter, symbol in zip(candidate.effect.parameters, candidate.parameters, strict=False):
         column = space.names.index(symbol)
         found.append((parameter, column, float(fit.least_squares.values[column]), float(slopes[column])))
-    places = [item.place for item in misfit.shared]
     for parameter, item in zip(candidate.effect.parameters, candidate.shared, strict=False):
-        i = next(i for i, own in enumerate(misfit.shared) if type(own) is type(item) and places[i] == item.place)
+        i = _index(misfit, item)
         found.append((parameter, misfit.n_parameters + i, float(misfit.adjusted(x)[i]), item.scale))
     return found
 
 
-def _amplitude(fit: ModelFit, candidate: Candidate, covariance: Array) -> NamedParameter:
+def _index(misfit: Misfit, adjustment: Adjustment) -> int:
+    """Return where an adjustment stands among those of a fit."""
+    return next(i for i, own in enumerate(misfit.shared) if type(own) is type(adjustment) and own.place == adjustment.place)
+
+
+def _solved(fit: ModelFit, candidate: Candidate, covariance: Array) -> dict[str, NamedParameter]:
+    """Return those of an effect's parameters that are solved for in every run: medians with 90 % intervals."""
     misfit, x = fit.least_squares.misfit, fit.least_squares.x
-    i = next(i for i, own in enumerate(misfit.shared) if isinstance(own, Harmonic) and own.place == candidate.place)
-    line = misfit.shared[i]
-    assert isinstance(line, Harmonic)
-    numbers = misfit.adjusted(x)[i:]
+    effect = candidate.effect
+    if not effect.solved_parameters:
+        return {}
+    numbers = misfit.adjusted(x)
+    adjustments = [replace(item, neutral=float(numbers[_index(misfit, item)])) for item in candidate.shared]
     unit, errors = misfit.split(x)
 
-    def middle(at: Array) -> float:
+    def by_run(at: Array) -> Array:
         values = misfit.problem.space.values(at)
         found = []
         for trial, error in zip(misfit.problem.trials, errors, strict=True):
             without = misfit.problem.respond(values[None], trial, misfit.nuisances.adjust(trial.scenario, error))[0][0]
-            found.append(line.amplitude(trial, without, numbers, misfit.problem.values_of(values, trial)))
-        spreads.append(float(np.std(found)) / np.sqrt(len(found)))
-        return float(np.median(found))
+            found.append(effect.solve(candidate.place, adjustments, trial, without, misfit.problem.values_of(values, trial)))
+        return np.array(found)
 
-    spreads: list[float] = []
-    value = middle(unit)
-    scatter = spreads[0]
-    step = 1e-3
-    gradient = np.array([(middle(unit + step * row) - value) / step for row in np.eye(len(unit))])
-    n = len(unit)
-    spread = float(np.sqrt(max(gradient @ covariance[:n, :n] @ gradient, 0.0) + scatter**2))
-    return NamedParameter(value, (value - NINETY * spread, value + NINETY * spread), candidate.effect.parameters[2].unit)
+    runs = by_run(unit)
+    medians, scatter = np.median(runs, axis=0), np.std(runs, axis=0) / np.sqrt(len(runs))
+    n, step = len(unit), 1e-3
+    slopes = [(np.median(by_run(unit + step * row), axis=0) - medians) / step for row in np.eye(n)]
+    found = {}
+    for parameter, value, own, gradient in zip(
+        effect.solved_parameters, medians, scatter, np.reshape(slopes, (n, len(medians))).T, strict=True
+    ):
+        spread = NINETY * float(np.sqrt(max(gradient @ covariance[:n, :n] @ gradient, 0.0) + own**2))
+        found[parameter.name] = NamedParameter(float(value), (float(value) - spread, float(value) + spread), parameter.unit)
+    return found
 
 
 def estimates_by_run(fit: ModelFit, candidate: Candidate | None = None) -> list[RunEstimate]:

@@ -89,7 +89,7 @@ def compare_with_placebo_laws(found: SearchRound, fit: ModelFit, detection: Dete
     forces = [item for item in found.passed if item.unknowns == 1 and item.place.kind != "body" and item.place.rows]
     here = [item for item in forces if item.place.name == fit.last.place]
     place = next((item for item in here if item.place.kind == fit.last.effect.attaches), here[0] if here else None)
-    if place is None or fit.last.effect.edit is None:
+    if place is None or not fit.last.effect.changes_vehicle:
         return None
     motion = {run.run: (run.travel, run.rate) for run in recover(detection, place) if not run.validation}
     shares = decoy_shares(found.current, place, motion, max(len(fit.last.parameters), 1))

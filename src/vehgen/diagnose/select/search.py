@@ -12,13 +12,13 @@ from vehgen.codegen import compile_all
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, build_problem
 from vehgen.diagnose.fits.model_fit import NUISANCES, CurrentModel, ModelFit
-from vehgen.diagnose.fits.multi_start import StartingPoint, fit_candidate
+from vehgen.diagnose.fits.multi_start import fit_candidate
 from vehgen.diagnose.fits.restarts import restart
 from vehgen.diagnose.fits.screening import screen
-from vehgen.diagnose.localise.localisation import GLOBAL, localise, one_force, shortlist
+from vehgen.diagnose.localise.localisation import localise, one_force, shortlist
 from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.effects import EffectLocator
-from vehgen.fit.harmonic import find_line
+from vehgen.effects.evidence import Origins, Residual, StartingPoint
 from vehgen.simulate import Simulator
 
 Array = NDArray[np.float64]
@@ -63,11 +63,10 @@ def search_round(
     except KeyboardInterrupt:
         return SearchRound(current, (), (), (), True)
     say("localise", 1, 1, passed[0].place.label if passed else "no single place")
-    known = {(item.effect.name, item.place) for item in current.effects}
-    others = [item for item in candidates if (item.effect.name, item.place) not in known]
+    others = [item for item in candidates if not item.is_among(current.effects)]
     chosen = others if everything else shortlist(current, others, places, passed)
     if current.effects and not passed and not everything:
-        chosen = [item for item in others if item.effect.attaches in ("run", "sensor") or item.effect.name in GLOBAL]
+        chosen = [item for item in others if not item.effect.is_single_force]
     fits, stopped = fit_candidates(detection, current, passed, chosen, say, everything, workers)
     return SearchRound(current, tuple(places), tuple(passed), tuple(fits), stopped)
 
@@ -97,23 +96,19 @@ def fit_candidates(
     if one_force(passed):
         unit, errors = base.least_squares.misfit.split(passed[0].x)
         placed = unit, errors.ravel()
+    origins, residual = Origins(begun, placed, fitted), Residual(base.least_squares.misfit, base.least_squares.x)
     fits: list[ModelFit] = []
     try:
-        harmonics = any(item.effect.adjusts == "harmonic" for item in candidates)
-        lines = find_line(base.least_squares.misfit, base.least_squares.x) if harmonics else []
         if not everything:
             progress("screen", 0, 1, "")
             candidates = screen(candidates, base, footing, surveyor, simulators)
             progress("screen", 1, 1, f"{len(candidates)} candidates")
         if workers > 1:
             progress("compile", 0, 1, "")
-            posed = [build_problem(item, footing.problem, surveyor, simulators) for item in candidates if item.effect.edit is not None]
+            posed = [build_problem(item, footing.problem, surveyor, simulators) for item in candidates if item.effect.changes_vehicle]
             compile_all([trial.simulator.kernel for problem in posed for trial in problem.trials], workers)
             progress("compile", 1, 1, f"{len(posed)} vehicles")
         for done, candidate in enumerate(candidates, start=1):
-            harmonic = candidate.effect.adjusts == "harmonic"
-            # what the base fit absorbed of the effect may mislead: begin at the file's values, or where the place test leaves them, too
-            first = begun if candidate.effect.attaches == "run" else placed
             fit = fit_candidate(
                 candidate,
                 footing,
@@ -122,8 +117,8 @@ def fit_candidates(
                 detection.band,
                 surveyor,
                 simulators,
-                [fitted] if harmonic or first is fitted else [first, fitted],
-                lines if harmonic else None,
+                candidate.effect.origins(origins),
+                candidate.effect.starts(candidate.place, surveyor, residual),
             )
             if fit is not None:
                 fits.append(fit)
@@ -146,7 +141,5 @@ def merit(fit: ModelFit) -> float:
 
 
 def own_numbers(fit: ModelFit) -> int:
-    """Return how many numbers the last effect of a fit added: its parameters, and a line's four parts in every run."""
-    last = fit.last
-    lines = 4 * len(fit.least_squares.misfit.problem.trials) if last.effect.adjusts == "harmonic" else 0
-    return len(last.parameters) + len(last.shared) + lines
+    """Return how many numbers the last effect of a fit added."""
+    return fit.last.effect.n_numbers(len(fit.least_squares.misfit.problem.trials))

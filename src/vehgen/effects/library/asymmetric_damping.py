@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from vehgen.effects.base import Change, Effect, EffectParameter
+from vehgen.effects.base import Change, EffectParameter
+from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.library.law_effect import Given, on_spring
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import suspensions
@@ -16,15 +17,15 @@ def _edit(site: EffectSite, symbols: Given) -> Change:
     return on_spring(site, {"c": bump, "laws": [*site.laws(site.kind, site.place), law]})
 
 
-ASYMMETRIC_DAMPING = Effect(
-    "asymmetric_damping",
-    LAWS["asymmetric_damping"].title,
-    "f = 2 c ratio/(1 + ratio)*v in bump, 2 c/(1 + ratio)*v in rebound",
-    LAWS["asymmetric_damping"].meaning,
-    "the body rises faster than it falls: even harmonics that follow the rate, a mean that sinks over rough roads",
-    LAWS["asymmetric_damping"].source,
-    "suspension",
-    (EffectParameter("ratio", "", "damping in bump over that in rebound, their mean kept", 0.05, 1.0, (0.3, 0.6)),),
-    suspensions,
-    _edit,
+ASYMMETRIC_DAMPING = VehicleEffect(
+    name="asymmetric_damping",
+    title=LAWS["asymmetric_damping"].title,
+    equation="f = 2 c ratio/(1 + ratio)*v in bump, 2 c/(1 + ratio)*v in rebound",
+    meaning=LAWS["asymmetric_damping"].meaning,
+    signature="the body rises faster than it falls: even harmonics that follow the rate, a mean that sinks over rough roads",
+    source=LAWS["asymmetric_damping"].source,
+    attaches="suspension",
+    places=suspensions,
+    parameters=(EffectParameter("ratio", "", "damping in bump over that in rebound, their mean kept", 0.05, 1.0, (0.3, 0.6)),),
+    edit=_edit,
 )

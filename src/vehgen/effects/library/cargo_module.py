@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from vehgen.effects.base import Effect
+from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.library.mounted_mass import mass_edit, mass_parameters
 from vehgen.effects.places import loading_bodies
 
-CARGO_MODULE = Effect(
-    "cargo_module",
-    "Cargo module",
-    "m z'' = k*(z_body - z) + c*(z_body' - z')",
-    "a load, an engine or a building module that vibrates vertically on the body; its mass is cut out of the body's",
-    "a resonance with its antiresonance on that body, the same at every amplitude",
-    "Wu & Li 2023, Sect. 2.5, doi:10.3390/s23249691",
-    "body",
-    mass_parameters((3.0, 6.0), (0.15,)),
-    loading_bodies,
-    mass_edit("module"),
+CARGO_MODULE = VehicleEffect(
+    name="cargo_module",
+    title="Cargo module",
+    equation="m z'' = k*(z_body - z) + c*(z_body' - z')",
+    meaning="a load, an engine or a building module that vibrates vertically on the body; its mass is cut out of the body's",
+    signature="a resonance with its antiresonance on that body, the same at every amplitude",
+    source="Wu & Li 2023, Sect. 2.5, doi:10.3390/s23249691",
+    attaches="body",
+    places=loading_bodies,
+    parameters=mass_parameters((3.0, 6.0), (0.15,)),
+    is_global=True,
+    edit=mass_edit("module"),
 )

@@ -6,8 +6,8 @@ from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 
 CUBIC_STIFFNESS = suspension_law(
-    "cubic_stiffness",
-    "cubic_stiffness",
-    "frequencies rise with amplitude; odd harmonics; bump and rebound alike",
-    (EffectParameter("k3", "N/m^3", "cubic stiffness", 0.01, 30.0, (0.3, 3.0), lambda site: site.k / site.travel**2),),
+    name="cubic_stiffness",
+    law="cubic_stiffness",
+    signature="frequencies rise with amplitude; odd harmonics; bump and rebound alike",
+    parameters=(EffectParameter("k3", "N/m^3", "cubic stiffness", 0.01, 30.0, (0.3, 3.0), lambda site: site.k / site.travel**2),),
 )

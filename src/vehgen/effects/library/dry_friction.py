@@ -6,8 +6,10 @@ from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 
 DRY_FRICTION = suspension_law(
-    "dry_friction",
-    "dry_friction",
-    "small motions pass the suspension as if it were locked, large ones are damped; hump and rough-road runs disagree on its stiffness",
-    (EffectParameter("force", "N", "force at which it slips", 0.002, 0.4, (0.02, 0.06, 0.15), lambda site: site.load),),
+    name="dry_friction",
+    law="dry_friction",
+    signature=(
+        "small motions pass the suspension as if it were locked, large ones are damped; hump and rough-road runs disagree on its stiffness"
+    ),
+    parameters=(EffectParameter("force", "N", "force at which it slips", 0.002, 0.4, (0.02, 0.06, 0.15), lambda site: site.load),),
 )

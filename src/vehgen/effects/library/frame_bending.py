@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from vehgen.effects.base import Change, Effect, EffectParameter
+from vehgen.effects.base import Change, EffectParameter
+from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.library.law_effect import Given
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import long_bodies
@@ -18,19 +19,20 @@ def _edit(site: EffectSite, symbols: Given) -> Change:
     }
 
 
-FRAME_BENDING = Effect(
-    "frame_bending",
-    "Frame bending",
-    "(m/5)*(eta'' + 2 zeta omega eta' + omega^2 eta) = force along (3 s^2 - 1)/2",
-    "a long frame bends between its supports",
-    "a lightly damped resonance between body and hop frequencies; its ends move against its middle",
-    "R. D. Blevins, Formulas for Natural Frequency and Mode Shape, 1979, ISBN 9780442207106",
-    "body",
-    (
+FRAME_BENDING = VehicleEffect(
+    name="frame_bending",
+    title="Frame bending",
+    equation="(m/5)*(eta'' + 2 zeta omega eta' + omega^2 eta) = force along (3 s^2 - 1)/2",
+    meaning="a long frame bends between its supports",
+    signature="a lightly damped resonance between body and hop frequencies; its ends move against its middle",
+    source="R. D. Blevins, Formulas for Natural Frequency and Mode Shape, 1979, ISBN 9780442207106",
+    attaches="body",
+    places=long_bodies,
+    parameters=(
         EffectParameter("frequency", "Hz", "natural frequency of the free body", 3.0, 30.0, (4.5, 7.0, 10.0, 15.0)),
         EffectParameter("damping_ratio", "", "damping ratio", 0.003, 0.3, (0.06,)),
         EffectParameter("length", "m", "length over which it bends", 0.8, 2.5, (1.2,), lambda site: max(site.length, 1.0)),
     ),
-    long_bodies,
-    _edit,
+    is_global=True,
+    edit=_edit,
 )

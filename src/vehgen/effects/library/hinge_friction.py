@@ -6,10 +6,10 @@ from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import hinge_law
 
 HINGE_FRICTION = hinge_law(
-    "hinge_friction",
-    "dry_friction",
-    "Hinge friction (Coulomb)",
-    "a greased plate that sticks: both bodies pitch as one until the moment slips",
-    "small pitch motions of the two bodies are locked together, large ones are not",
-    (EffectParameter("force", "N m", "moment at which it slips", 0.002, 0.4, (0.02, 0.1), lambda site: site.load),),
+    name="hinge_friction",
+    law="dry_friction",
+    title="Hinge friction (Coulomb)",
+    meaning="a greased plate that sticks: both bodies pitch as one until the moment slips",
+    signature="small pitch motions of the two bodies are locked together, large ones are not",
+    parameters=(EffectParameter("force", "N m", "moment at which it slips", 0.002, 0.4, (0.02, 0.1), lambda site: site.load),),
 )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from vehgen.effects.base import Change, Effect, EffectParameter
+from vehgen.effects.base import Change, EffectParameter
+from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import ALL_TYRES, hinges, suspensions
 from vehgen.mechanics.laws import LAWS
@@ -42,26 +43,35 @@ def on_spring(site: EffectSite, change: Change) -> Change:
     return {"links": {site.place: change}} if site.kind == "link" else {"axles": {site.place: {"suspension": change}}}
 
 
-def suspension_law(
-    name: str, law: str, signature: str, parameters: tuple[EffectParameter, ...], write: Callable[[EffectSite, Given], Change] | None = None
-) -> Effect:
+def suspension_law(*, name: str, law: str, signature: str, parameters: tuple[EffectParameter, ...]) -> VehicleEffect:
     """Return the effect of a law of the library on a suspension or link."""
     known = LAWS[law]
-    return Effect(
-        name,
-        known.title,
-        known.equation,
-        known.meaning,
-        signature,
-        known.source,
-        "suspension",
-        parameters,
-        suspensions,
-        law_edit("suspension", law, write),
+    return VehicleEffect(
+        name=name,
+        title=known.title,
+        equation=known.equation,
+        meaning=known.meaning,
+        signature=signature,
+        source=known.source,
+        attaches="suspension",
+        places=suspensions,
+        parameters=parameters,
+        edit=law_edit("suspension", law),
     )
 
 
-def hinge_law(name: str, law: str, title: str, meaning: str, signature: str, parameters: tuple[EffectParameter, ...]) -> Effect:
+def hinge_law(*, name: str, law: str, title: str, meaning: str, signature: str, parameters: tuple[EffectParameter, ...]) -> VehicleEffect:
     """Return the effect of a law of the library on a hinge."""
     known = LAWS[law]
-    return Effect(name, title, known.equation, meaning, signature, known.source, "hinge", parameters, hinges, law_edit("hinge", law))
+    return VehicleEffect(
+        name=name,
+        title=title,
+        equation=known.equation,
+        meaning=meaning,
+        signature=signature,
+        source=known.source,
+        attaches="hinge",
+        places=hinges,
+        parameters=parameters,
+        edit=law_edit("hinge", law),
+    )

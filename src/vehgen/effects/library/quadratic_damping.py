@@ -6,8 +6,8 @@ from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 
 QUADRATIC_DAMPING = suspension_law(
-    "quadratic_damping",
-    "quadratic_damping",
-    "damping grows with amplitude and speed; odd harmonics",
-    (EffectParameter("c2", "N s^2/m^2", "quadratic damping", 0.02, 30.0, (0.5, 4.0), lambda site: site.c / 0.2),),
+    name="quadratic_damping",
+    law="quadratic_damping",
+    signature="damping grows with amplitude and speed; odd harmonics",
+    parameters=(EffectParameter("c2", "N s^2/m^2", "quadratic damping", 0.02, 30.0, (0.5, 4.0), lambda site: site.c / 0.2),),
 )

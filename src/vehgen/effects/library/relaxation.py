@@ -6,10 +6,10 @@ from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 
 RELAXATION = suspension_law(
-    "relaxation",
-    "relaxation",
-    "stiffness and damping change with frequency, not with amplitude: low and high frequencies want different k and c",
-    (
+    name="relaxation",
+    law="relaxation",
+    signature="stiffness and damping change with frequency, not with amplitude: low and high frequencies want different k and c",
+    parameters=(
         EffectParameter("k", "N/m", "stiffness of the series spring", 0.05, 10.0, (0.5, 2.0), lambda site: site.k),
         EffectParameter("time", "s", "relaxation time, dashpot over spring", 0.002, 1.0, (0.02, 0.1)),
     ),

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from vehgen.effects.base import Effect, EffectParameter
-from vehgen.effects.places import sensors_
+from vehgen.effects.base import EffectParameter
+from vehgen.effects.kinds import RunEffect
+from vehgen.effects.places import sensors_on_bodies
 
-SENSOR_POSITION = Effect(
-    "sensor_position",
-    "Sensor position",
-    "x = x_nominal + shift",
-    "a sensor that is not where its run file says",
-    "acceleration of one sensor is off by a share of the pitch acceleration; its pitch rate fits",
-    "Wu & Li 2023, Eqs. 15 to 18, doi:10.3390/s23249691",
-    "sensor",
-    (EffectParameter("shift", "m", "ahead of where the run file says", -2.0, 2.0, (-0.4, 0.4)),),
-    sensors_,
-    adjusts="position",
+SENSOR_POSITION = RunEffect(
+    name="sensor_position",
+    title="Sensor position",
+    equation="x = x_nominal + shift",
+    meaning="a sensor that is not where its run file says",
+    signature="acceleration of one sensor is off by a share of the pitch acceleration; its pitch rate fits",
+    source="Wu & Li 2023, Eqs. 15 to 18, doi:10.3390/s23249691",
+    attaches="sensor",
+    places=sensors_on_bodies,
+    parameters=(EffectParameter("shift", "m", "ahead of where the run file says", -2.0, 2.0, (-0.4, 0.4)),),
+    adjustment=None,
 )

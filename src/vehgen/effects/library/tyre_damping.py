@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from vehgen.effects.base import Change, Effect, EffectParameter
+from vehgen.effects.base import Change, EffectParameter
+from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.library.law_effect import Given
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import ALL_TYRES, tyres
@@ -17,15 +18,16 @@ def _edit(site: EffectSite, symbols: Given) -> Change:
     return {"axles": change}
 
 
-TYRE_DAMPING = Effect(
-    "tyre_damping",
-    "Tyre damping",
-    "f = 2*ratio*sqrt(k_t*m)*v",
-    "rubber that loses energy as the tyre is pressed",
-    "axle hops decay faster and the road's high frequencies pass more strongly, at every amplitude",
-    "H. B. Pacejka, Tire and Vehicle Dynamics, 3rd ed., 2012, doi:10.1016/C2010-0-68548-8",
-    "tyre",
-    (EffectParameter("ratio", "", "damping ratio of the unsprung mass on its tyres alone", 1e-3, 0.5, (0.02, 0.1)),),
-    tyres,
-    _edit,
+TYRE_DAMPING = VehicleEffect(
+    name="tyre_damping",
+    title="Tyre damping",
+    equation="f = 2*ratio*sqrt(k_t*m)*v",
+    meaning="rubber that loses energy as the tyre is pressed",
+    signature="axle hops decay faster and the road's high frequencies pass more strongly, at every amplitude",
+    source="H. B. Pacejka, Tire and Vehicle Dynamics, 3rd ed., 2012, doi:10.1016/C2010-0-68548-8",
+    attaches="tyre",
+    places=tyres,
+    parameters=(EffectParameter("ratio", "", "damping ratio of the unsprung mass on its tyres alone", 1e-3, 0.5, (0.02, 0.1)),),
+    is_global=True,
+    edit=_edit,
 )

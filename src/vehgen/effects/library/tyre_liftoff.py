@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from vehgen.effects.base import Change, Effect
+from vehgen.effects.base import Change
+from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.library.law_effect import Given, law_edit
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import tyres
@@ -15,15 +16,15 @@ def _edit(site: EffectSite, symbols: Given) -> Change:
     return _ADD(site, {"share": "1"})
 
 
-TYRE_LIFTOFF = Effect(
-    "tyre_liftoff",
-    LAWS["tyre_liftoff"].title,
-    LAWS["tyre_liftoff"].equation,
-    LAWS["tyre_liftoff"].meaning,
-    "after a high or fast hump the wheel flies and lands: misfits right behind the hump that vanish on lower humps",
-    LAWS["tyre_liftoff"].source,
-    "tyre",
-    (),
-    tyres,
-    _edit,
+TYRE_LIFTOFF = VehicleEffect(
+    name="tyre_liftoff",
+    title=LAWS["tyre_liftoff"].title,
+    equation=LAWS["tyre_liftoff"].equation,
+    meaning=LAWS["tyre_liftoff"].meaning,
+    signature="after a high or fast hump the wheel flies and lands: misfits right behind the hump that vanish on lower humps",
+    source=LAWS["tyre_liftoff"].source,
+    attaches="tyre",
+    places=tyres,
+    is_global=True,
+    edit=_edit,
 )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from vehgen.effects.base import Change, Effect, EffectParameter
+from vehgen.effects.base import Change, EffectParameter
+from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.library.law_effect import Given
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import tandems
@@ -55,18 +56,19 @@ def _edit(site: EffectSite, symbols: Given) -> Change:
     }
 
 
-WALKING_BEAM = Effect(
-    "walking_beam",
-    "Walking beam (load-sharing tandem)",
-    "the share of k and c of both axles acts at the pivot of a beam that joins them, the rest at the axles",
-    "a tandem whose axles share their load; only the tyres resist the rocking",
-    "the two axles answer as one: their separate hops and the tandem's comb of frequencies change",
-    "D. Cebon, Handbook of Vehicle-Road Interaction, 1999, ISBN 9789026515545",
-    "axles",
-    (
+WALKING_BEAM = VehicleEffect(
+    name="walking_beam",
+    title="Walking beam (load-sharing tandem)",
+    equation="the share of k and c of both axles acts at the pivot of a beam that joins them, the rest at the axles",
+    meaning="a tandem whose axles share their load; only the tyres resist the rocking",
+    signature="the two axles answer as one: their separate hops and the tandem's comb of frequencies change",
+    source="D. Cebon, Handbook of Vehicle-Road Interaction, 1999, ISBN 9789026515545",
+    attaches="axles",
+    places=tandems,
+    parameters=(
         EffectParameter("share", "", "share of stiffness and damping at the pivot: 1 is a beam that rocks freely", 0.1, 1.0, (0.95, 0.6)),
         EffectParameter("split", "", "how far the pivot lies ahead of the rear axle, over the distance of the axles", 0.3, 0.7, (0.5,)),
     ),
-    tandems,
-    _edit,
+    is_global=True,
+    edit=_edit,
 )

@@ -1,0 +1,196 @@
+"""The three kinds of effect: of the vehicle, of its runs and sensors, and lines of the spectrum."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.effects.base import Change, Effect, EffectParameter, SearchDimension, distinct
+from vehgen.effects.evidence import Origins, PlaceEvidence, Residual, StartingPoint
+from vehgen.effects.locator import EffectLocator, EffectSite
+from vehgen.files.names import MAX_TEXT, joined_name
+from vehgen.fit.adjustments import Adjustment
+from vehgen.fit.harmonic import Harmonic, harmonic_adjustments
+from vehgen.fit.trial import Trial
+from vehgen.simulate import Simulator
+from vehgen.vehicle.loading import extend_vehicle
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class VehicleEffect(Effect):
+    """An effect of the vehicle: a force law, a mass, a mode that its file lacks.
+
+    Attributes
+    ----------
+    edit
+        Returns the change of the vehicle's file at a site; the symbols of its parameters are given by name.
+    """
+
+    edit: Callable[[EffectSite, Mapping[str, str]], Change]
+
+    @property
+    def changes_vehicle(self) -> bool:
+        """True."""
+        return True
+
+    def n_numbers(self, n_runs: int) -> int:
+        """Return the number of its parameters: they hold in all runs."""
+        return len(self.parameters)
+
+    def symbols(self, place: str) -> dict[str, str]:
+        """Return the names its parameters take in a vehicle file."""
+        safe = "".join(letter if letter.isalnum() else "_" for letter in place)
+        return {parameter.name: joined_name(self.name, safe, parameter.name) for parameter in self.parameters}
+
+    def search_names(self, place: str) -> tuple[str, ...]:
+        """Return the names its parameters take in a vehicle file."""
+        return tuple(self.symbols(place).values())
+
+    def search_dimensions(self, place: str, locator: EffectLocator) -> tuple[SearchDimension, ...]:
+        """Return its parameters, scaled by the sizes of the place."""
+        site = locator.site(place)
+        named = zip(self.search_names(place), self.parameters, strict=True)
+        return tuple(SearchDimension(name, *item.bounds(site), item.first(site)[0]) for name, item in named)
+
+    def change(self, site: EffectSite, values: Mapping[str, float] | None = None) -> Change:
+        """Return the change of a vehicle's file with its parameters declared, at `values` or at their first start."""
+        symbols = self.symbols(site.place)
+        declared: Change = {}
+        for parameter in self.parameters:
+            low, high = parameter.bounds(site)
+            value = (values or {}).get(parameter.name, parameter.first(site)[0])
+            unit = f" {parameter.unit}" if parameter.unit else ""
+            declared[symbols[parameter.name]] = {
+                "value": f"{value!r}{unit}",
+                "range": [f"{low!r}{unit}", f"{high!r}{unit}"],
+                "meaning": f"{self.title}: {parameter.meaning}"[:MAX_TEXT],
+            }
+        change = self.edit(site, symbols)
+        change["parameters"] = {**declared, **change.get("parameters", {})}
+        return change
+
+    def change_trials(
+        self, trials: Sequence[Trial], place: str, locator: EffectLocator, simulators: dict[object, Simulator]
+    ) -> tuple[Trial, ...]:
+        """Return the trials with the changed vehicle."""
+        vehicle = extend_vehicle(trials[0].run.vehicle, self.change(locator.site(place)), f"{self.name} at {place}")
+        return tuple(trial.with_vehicle(vehicle, simulators) for trial in trials)
+
+    def starts(self, place: str, locator: EffectLocator, residual: Residual | None = None) -> list[tuple[float, ...]]:
+        """Return the starts of its parameters, scaled by the sizes of the place, in every combination."""
+        site = locator.site(place)
+        return list(product(*(parameter.first(site) for parameter in self.parameters)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunEffect(Effect):
+    """An effect of all runs or of a sensor, with one parameter: a speed, a contact length, a gain, a delay, a tilt, a position.
+
+    Attributes
+    ----------
+    adjustment
+        The adjustment that its parameter is the number of. None: its parameter is one that every model has, the shift of a sensor along
+        its body.
+    scale, neutral
+        The size of a typical change of the adjustment, and the number that changes nothing.
+    """
+
+    adjustment: type[Adjustment] | None
+    scale: float = 1.0
+    neutral: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse what is not one parameter."""
+        if len(self.parameters) != 1:
+            raise ValueError(f"{self.name}: an effect of runs or sensors has one parameter, found {len(self.parameters)}")
+
+    @property
+    def is_single_force(self) -> bool:
+        """False: no force explains a wrong reading or a wrong speed."""
+        return False
+
+    def n_numbers(self, n_runs: int) -> int:
+        """Return 1: its number holds in all runs."""
+        return 1
+
+    def search_names(self, place: str) -> tuple[str, ...]:
+        """Return the name of a sensor's shift in the model, for effects that search it."""
+        return (f"{place}.shift",) if self.adjustment is None else ()
+
+    def search_dimensions(self, place: str, locator: EffectLocator) -> tuple[SearchDimension, ...]:
+        """Return a sensor's shift, begun where the run file says that the sensor is, or as near as its range allows."""
+        (parameter,) = self.parameters
+        start = min(max(self.neutral, parameter.low), parameter.high)
+        return tuple(SearchDimension(name, parameter.low, parameter.high, start) for name in self.search_names(place))
+
+    def adjustments(self, place: str, noise_sigma: Mapping[str, Array]) -> tuple[Adjustment, ...]:
+        """Return its adjustment."""
+        (parameter,) = self.parameters
+        return () if self.adjustment is None else (self.adjustment(place, self.scale, self.neutral, parameter.low, parameter.high),)
+
+    def origins(self, origins: Origins) -> list[StartingPoint]:
+        """Return where the base parameters begin: for an effect of all runs as filed, as a place tells nothing of it."""
+        return distinct(origins.filed, origins.fitted) if self.attaches == "run" else super().origins(origins)
+
+    def is_likely(self, place: str, evidence: PlaceEvidence) -> bool:
+        """Return whether leaving out its sensor, or a channel of it, helps; for effects of no sensor as for others."""
+        return place in evidence.sensors if self.attaches == "sensor" else super().is_likely(place, evidence)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LineEffect(Effect):
+    """A line in the spectrum that a force at a body drives: its frequency and drift are searched, the rest follows linearly in every run.
+
+    Its parameters are the frequency [Hz], the drift over a run, and the force's amplitude [N] (see :mod:`vehgen.fit.harmonic`).
+
+    Attributes
+    ----------
+    looked_for
+        The frequencies between which lines are looked for in what a fit leaves [Hz]; the fit may leave them within the parameter's range.
+    """
+
+    SEARCHED: ClassVar[int] = 2
+    NUMBERS_PER_RUN: ClassVar[int] = 4
+    looked_for: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        """Refuse other parameters."""
+        names = [parameter.name for parameter in self.parameters]
+        if names != ["frequency", "drift", "amplitude"]:
+            raise ValueError(f"{self.name}: a line has the parameters frequency, drift and amplitude, found {names}")
+
+    @property
+    def solved_parameters(self) -> tuple[EffectParameter, ...]:
+        """Return the amplitude."""
+        return self.parameters[self.SEARCHED :]
+
+    def n_numbers(self, n_runs: int) -> int:
+        """Return its frequency and drift, and in every run two phases each of a force and a moment."""
+        return self.SEARCHED + self.NUMBERS_PER_RUN * n_runs
+
+    def adjustments(self, place: str, noise_sigma: Mapping[str, Array]) -> tuple[Adjustment, ...]:
+        """Return the line and its drift."""
+        frequency = self.parameters[0]
+        return tuple(harmonic_adjustments(place, noise_sigma, frequency.low, frequency.high))
+
+    def starts(self, place: str, locator: EffectLocator, residual: Residual | None = None) -> list[tuple[float, ...]]:
+        """Return the strongest lines of what the fit leaves; without it as other effects."""
+        return super().starts(place, locator) if residual is None else list(residual.lines(*self.looked_for))
+
+    def origins(self, origins: Origins) -> list[StartingPoint]:
+        """Return where the last fit ended: the base parameters cannot have absorbed a line."""
+        return [origins.fitted]
+
+    def solve(self, place: str, adjustments: Sequence[Adjustment], trial: Trial, response: Array, values: Mapping[str, float]) -> Array:
+        """Return the amplitude of the vertical force in a run [N], `shape (1,)`."""
+        line = adjustments[0]
+        assert isinstance(line, Harmonic)
+        numbers = np.array([item.neutral for item in adjustments])
+        return np.array([line.amplitude(trial, response, numbers, values)])
