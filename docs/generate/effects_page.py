@@ -48,17 +48,69 @@ effects:
     parameters:
       k: {unit: N/m, low: 0.25, high: 15, starts: [3], times: k, meaning: half the stiffness of the stops}
       gap: {unit: mm, low: 1, high: 60, starts: [8, 15, 25], meaning: clearance}
+  stiff_carcass:
+    title: Hardening tyres
+    meaning: tyres that grow stiffer as they are pressed
+    attaches: tyre
+    global: true                        # of all tyres as well as of each
+    force: k3*d^3
+    parameters:
+      k3: {unit: N/m^3, low: 0.1, high: 100, starts: [1, 10], times: kt/(20 mm)^2, meaning: cubic stiffness}
+  late_phone:
+    title: Phone with a late clock
+    meaning: a phone that stamps its samples late
+    adjusts: delay                      # speed, footprint, gain, delay, tilt or position
+    parameters:
+      late: {unit: ms, low: -200, high: 200, starts: [-20, 20], meaning: late against the first sensor}
+  cooling_fan:
+    title: Cooling fan
+    meaning: a fan that is out of balance
+    line: {low: 8 Hz, high: 30 Hz}      # in between, the strongest lines are tried
 ```
 
-An entry has either `force`, an expression as of [your own law](force-laws.md#your-own-law), or `law`, one of the
-[force laws](force-laws.md) with each of its parameters a number with its unit or an expression of the effect's. `low`, `high` and `starts`
-count in `unit`, or with `times` as multiples of a size of the place: an expression of its static `load`, its suspension's `k` and `c`,
-its tyre's `kt`, its body's `mass`, `inertia` and `length`, and a typical `travel`. `signature` and `source` may be left out.
-Units are checked when the file is read.
+An entry is one of three kinds:
+
+- **of the vehicle**: `force`, an expression as of [your own law](force-laws.md#your-own-law), or `law`, one of the
+  [force laws](force-laws.md) with each of its parameters a number with its unit or an expression of the effect's. `attaches` says where.
+- **of runs or sensors**: `adjusts` names one quantity, its one parameter is that quantity's number. `speed` (true speed over that of the
+  run file) and `footprint` (contact length of the tyres) are of all runs, `gain` (reading over truth) of a channel, `delay` (how late),
+  `tilt` (nose-down angle) and `position` (how far ahead of where the run file says) of a sensor.
+- **a line of the spectrum**: `line` gives the frequencies between which it lies. Frequency and drift are searched; the force at a body,
+  its amplitude and phase, is solved for in every run. It has no parameters of its own.
+
+`low`, `high` and `starts` count in `unit`, or with `times` as multiples of a size of the place: an expression of its static `load`, its
+suspension's `k` and `c`, its tyre's `kt`, its body's `mass`, `inertia` and `length`, and a typical `travel` (of all tyres: their mean).
+Runs and sensors have no sizes. `signature`, `source` and `global` may be left out. `global: true` says that no single place explains the
+effect: it is tried wherever a force at one place does not suffice. Units are checked when the file is read.
 `python -m vehgen schema --effects` prints the JSON Schema.
 
-What needs more than a force law (a new body, say) is an `Effect` object in any installed package that names it under the entry point group
-`vehgen.effects`."""
+What needs more (a new body, say) is an object in any installed package that names it under the entry point group `vehgen.effects`:
+
+```python
+from vehgen.effects import EffectParameter, VehicleEffect
+from vehgen.effects.places import hinges
+
+HINGE_DAMPING = VehicleEffect(
+    name="hinge_damping",
+    title="Hinge damping",
+    equation="M = c*(pitch rate of the second body - pitch rate of the first)",
+    meaning="a damper between the two bodies",
+    attaches="hinge",
+    places=hinges,
+    parameters=(EffectParameter("c", "N m s", "damping against pitch", 0.001, 1.0, (0.02,), lambda site: site.load),),
+    edit=lambda site, symbols: {"hinges": {site.place: {"c": symbols["c"]}}},
+)
+```
+
+```toml
+[project.entry-points."vehgen.effects"]
+hinge_damping = "my_package:HINGE_DAMPING"
+```
+
+`edit` returns what a vehicle file that extends the base would say. A `RunEffect` names an `adjustment`, a class of
+[vehgen.fit.adjustments](../src/vehgen/fit/adjustments.py) or one of your own; a `LineEffect` says between which frequencies lines are
+`looked_for`; what is neither is a class of your own with the methods of [`Effect`](../src/vehgen/effects/base.py). Each may set
+`is_global`."""
 SHOWN = {"hinge_friction": "L2_q", "hinge_stiffness": "L2_q", "walking_beam": "L2_az", "cargo_module": "L2_az", "sensor_delay": "L2_az"}
 """The channel that shows an effect best; L1_az otherwise."""
 PLACES = {"walking_beam": "axle4+axle5", "cargo_module": "semitrailer", "frame_bending": "semitrailer", "sensor_delay": "L2"}
@@ -92,7 +144,7 @@ def page() -> str:
 
 def draw() -> None:
     """Draw every effect."""
-    from vehgen.diagnose.fits.candidate import build_problem, list_candidates, starts
+    from vehgen.diagnose.fits.candidate import build_problem, list_candidates
     from vehgen.effects import EffectLocator
     from vehgen.fit.harmonic import Harmonic
     from vehgen.fit.misfit import Misfit
@@ -119,7 +171,7 @@ def draw() -> None:
         wanted = PLACES.get(effect.name)
         candidate = next((item for item in candidates if item.place == wanted), candidates[0])
         posed = build_problem(candidate, problem, surveyor, {})
-        combination = list(starts(candidate, surveyor))[-1]
+        combination = effect.starts(candidate.place, surveyor)[-1]
         values = posed.space.start.copy()
         if candidate.parameters:
             values[problem.space.size :] = combination[: len(candidate.parameters)]

@@ -13,7 +13,7 @@ from vehgen.effects import EFFECTS, EffectLocator, extended_library, load_effect
 from vehgen.effects.entry import effects_schema
 from vehgen.errors import InputError
 from vehgen.files.document import read_text
-from vehgen.mechanics import Place
+from vehgen.mechanics import Place, derive
 from vehgen.mechanics.law_terms import RATE, TRAVEL, read_laws
 from vehgen.mechanics.outputs import PointOutput
 from vehgen.road import ConstantSpeed, Hump, Track
@@ -23,6 +23,7 @@ from vehgen.vehicle.loading import extend_vehicle
 
 PAGE = Path(__file__).parents[2] / "docs" / "effects.md"
 (EXAMPLE,) = re.findall(r"```yaml\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+(PACKAGE,) = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
 SMALL = """effects:
   stiffer:
     title: A stiffer spring
@@ -47,10 +48,10 @@ def site():
     return EffectLocator(vehicle, vehicle.values()).site("rear")
 
 
-def test_the_pages_example_is_two_effects_of_a_vehicle(file, site):
+def test_the_pages_example_begins_with_two_laws_of_a_suspension(file, site):
     effects = load_effects(file)
-    assert list(effects) == ["soft_damper", "symmetric_stop"]
-    damper, stop = effects.values()
+    assert list(effects) == ["soft_damper", "symmetric_stop", "stiff_carcass", "late_phone", "cooling_fan"]
+    damper, stop, *_ = effects.values()
     assert damper.equation == "f = c3*v^3 + k3*d^3"
     assert damper.places(site.vehicle, ()) == ("front", "rear")
     c3, k3 = damper.parameters
@@ -150,8 +151,123 @@ def test_a_bad_entry_is_refused_at_its_place(tmp_path, old, new, place, message)
     assert str(caught.value.position) == f"{path}:{place}"
 
 
+RUN = """effects:
+  late:
+    title: Late
+    meaning: a clock
+    adjusts: delay
+    parameters:
+      by: {unit: ms, low: -20, high: 90, starts: [10, 30], meaning: late}
+"""
+LINE = """effects:
+  fan:
+    title: Fan
+    meaning: a fan
+    line: {low: 8 Hz, high: 30 Hz}
+"""
+
+
+def test_an_entry_of_a_global_law_on_tyres_reaches_all_of_them(file):
+    vehicle = load_vehicle("tractor5")
+    effect, locator = load_effects(file)["stiff_carcass"], EffectLocator(vehicle, vehicle.values())
+    assert effect.is_global
+    assert effect.places(vehicle, ()) == ("all tyres", *vehicle.axles)
+    (every,), (first,) = (effect.search_dimensions(place, locator) for place in ("all tyres", "axle1"))
+    mean = sum(locator.site(axle).kt for axle in vehicle.axles) / 5
+    assert every.high / first.high == pytest.approx(mean / locator.site("axle1").kt)
+    changed = extend_vehicle(vehicle, effect.change(locator.site("all tyres")))
+    assert all(len(read_laws(changed, "tyre", axle)) == len(read_laws(vehicle, "tyre", axle)) + 1 for axle in vehicle.axles)
+
+
+def test_an_entry_of_runs_takes_the_quantity_of_the_library_in_its_own_unit_and_range(tmp_path):
+    (tmp_path / "a.yaml").write_text(RUN, encoding="utf-8")
+    effect = load_effects(tmp_path / "a.yaml")["late"]
+    (parameter,) = effect.parameters
+    assert (parameter.unit, parameter.low, parameter.high) == ("s", pytest.approx(-0.02), pytest.approx(0.09))
+    assert parameter.starts == pytest.approx((0.01, 0.03))
+    (own,), (known,) = effect.adjustments("F", {}), EFFECTS["sensor_delay"].adjustments("F", {})
+    assert type(own) is type(known)
+    assert (own.scale, own.neutral) == (known.scale, known.neutral)
+    assert (own.low, own.high) == pytest.approx((-0.02, 0.09))
+    assert effect.n_numbers(4) == 1
+    assert not effect.changes_vehicle
+
+
+@pytest.mark.parametrize("told", ["", "    global: true\n", "    global: false\n"])
+@pytest.mark.parametrize(("quantity", "known"), [("speed", "speed_error"), ("gain", "sensor_gain"), ("position", "sensor_position")])
+def test_an_entry_says_whether_it_is_global_or_the_library_does(tmp_path, told, quantity, known):
+    text = RUN.replace("delay", quantity).replace("unit: ms, low: -20, high: 90, starts: [10, 30]", "low: 0.5, high: 2, starts: [1]")
+    text = text.replace("low: 0.5", "unit: m, low: 0.5") if quantity == "position" else text
+    (tmp_path / "a.yaml").write_text(text.replace("    parameters", f"{told}    parameters"), encoding="utf-8")
+    assert load_effects(tmp_path / "a.yaml")["late"].is_global == ("true" in told if told else EFFECTS[known].is_global)
+
+
+def test_an_entry_of_a_line_is_looked_for_between_its_frequencies(tmp_path):
+    (tmp_path / "a.yaml").write_text(LINE, encoding="utf-8")
+    effect = load_effects(tmp_path / "a.yaml")["fan"]
+    vehicle = load_vehicle("tractor5")
+    assert effect.looked_for == pytest.approx((8.0, 30.0))
+    line, _ = effect.adjustments("tractor", {})
+    assert (line.low, line.high) == pytest.approx((8.0, 30.0))
+    assert effect.places(vehicle, ()) == ("tractor", "semitrailer")
+    assert effect.n_numbers(3) == 2 + 3 * 4
+    assert [item.name for item in effect.solved_parameters] == ["amplitude"]
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "new", "place", "message"),
+    [
+        (RUN, "adjusts: delay", "adjusts: dely", "5:14", "'speed', 'footprint', 'gain', 'delay', 'tilt' or 'position'"),
+        (RUN, "    adjusts: delay\n", "", "2:3", "found none of them"),
+        (RUN, "    adjusts: delay", "    line: {low: 1 Hz, high: 2 Hz}\n    adjusts: delay", "2:3", "found adjusts and line"),
+        (RUN, "    adjusts: delay", "    adjusts: delay\n    attaches: hinge", "6:5", "leave `attaches` out"),
+        (RUN, "    adjusts: delay\n", "    force: by*d\n", "2:3", "lacks the key 'attaches'"),
+        (RUN, "unit: ms", "unit: mm", "7:18", "delay is in s or a unit like it, found mm"),
+        (RUN, "unit: ms, ", "", "7:7", "delay is in s or a unit like it, found no unit"),
+        (RUN, "adjusts: delay", "adjusts: gain", "7:18", "gain is a plain number, found ms"),
+        (RUN, "starts: [10, 30]", "starts: [10, 300]", "7:55", "a start must lie within"),
+        (RUN, "meaning: late}", "meaning: late, times: load}", "7:75", "leave `times` out"),
+        (
+            RUN,
+            "    parameters:\n      by: {unit: ms, low: -20, high: 90, starts: [10, 30], meaning: late}\n",
+            "",
+            "5:14",
+            "one parameter, found 0",
+        ),
+        (RUN, "late}\n", "late}\n      to: {low: 0, high: 1, starts: [0], meaning: b}\n", "5:14", "one parameter, found 2"),
+        (RUN.replace("delay", "speed"), "unit: ms, low: -20", "low: 0", "7:17", "speed is above 0"),
+        (RUN, "adjusts: delay", "adjusts: delay\n    global: perhaps", "6:13", "valid boolean"),
+        (LINE, "low: 8 Hz", "low: 8 m", "5:17", "low must be in 1/s, found m"),
+        (LINE, "low: 8 Hz", "low: f1", "5:17", "unknown symbol 'f1'"),
+        (LINE, "low: 8 Hz", "low: 80 Hz", "5:17", "below `high`, found 80 and 30 Hz"),
+        (LINE, "low: 8 Hz", "low: 0 Hz", "5:17", "above 0"),
+        (LINE, "low: 8 Hz, ", "", "5:5", "lacks the key 'low'"),
+        (LINE, "    line", "    attaches: hinge\n    line", "5:5", "leave `attaches` out"),
+        (LINE, "    line", "    parameters: {a: {low: 0, high: 1, starts: [0], meaning: b}}\n    line", "5:18", "no parameters of its own"),
+    ],
+)
+def test_a_bad_entry_of_runs_or_a_line_is_refused_at_its_place(tmp_path, text, old, new, place, message):
+    assert old in text
+    path = tmp_path / "bad.yaml"
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(InputError, match=re.escape(message)) as caught:
+        load_effects(path)
+    assert str(caught.value.position) == f"{path}:{place}"
+
+
+def test_the_pages_python_is_an_effect_that_damps_a_hinge():
+    made = {}
+    exec(compile(PACKAGE, str(PAGE), "exec"), made)
+    effect, vehicle = made["HINGE_DAMPING"], load_vehicle("tractor5")
+    (place,) = effect.places(vehicle, ())
+    changed = extend_vehicle(vehicle, effect.change(EffectLocator(vehicle, vehicle.values()).site(place), {"c": 5e4}))
+    before, after = derive(vehicle).numeric(), derive(changed).numeric()
+    pitch = [i for i, item in enumerate(derive(vehicle).coordinates) if item.name in ("pitch.tractor", "pitch.semitrailer")]
+    assert np.linalg.eigvalsh((after.C - before.C)[np.ix_(pitch, pitch)]) == pytest.approx([0, 1e5], abs=1e-6)
+
+
 def test_two_files_may_not_share_a_name(tmp_path, file):
-    assert list(extended_library([file]))[-2:] == ["soft_damper", "symmetric_stop"]
+    assert list(extended_library([file]))[-2:] == ["late_phone", "cooling_fan"]
     with pytest.raises(InputError, match="'soft_damper' already"):
         extended_library([file, file])
 
@@ -159,8 +275,9 @@ def test_two_files_may_not_share_a_name(tmp_path, file):
 def test_the_command_lists_them(file, capsys):
     assert main(["effects", "--library", str(file), "--json"]) == 0
     listed = json.loads(capsys.readouterr().out)
-    assert listed[-2]["name"] == "soft_damper"
-    assert listed[-2]["parameters"][0] == {"name": "c3", "unit": "N s^3/m^3", "meaning": "cubic damping"}
+    assert [item["name"] for item in listed if item["is_global"]][-1] == "stiff_carcass"
+    assert listed[-5]["name"] == "soft_damper"
+    assert listed[-5]["parameters"][0] == {"name": "c3", "unit": "N s^3/m^3", "meaning": "cubic damping"}
     assert main(["effects", "--library", "missing.yaml"]) == 2
     assert "no file missing.yaml" in capsys.readouterr().err
 

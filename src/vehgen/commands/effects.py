@@ -28,6 +28,7 @@ def run(options: argparse.Namespace) -> None:
                     "title": effect.title,
                     "equation": effect.equation,
                     "attaches": effect.attaches,
+                    "is_global": effect.is_global,
                     "meaning": effect.meaning,
                     "signature": effect.signature,
                     "source": effect.source,

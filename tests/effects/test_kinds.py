@@ -1,0 +1,137 @@
+"""How each kind of effect acts: where it lives, what it adds to a fit, what it costs, where its fits begin."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from vehgen.effects import EFFECTS, EffectLocator, LineEffect, RunEffect, VehicleEffect, registry
+from vehgen.effects.evidence import Origins, PlaceEvidence
+from vehgen.errors import InputError
+from vehgen.fit.adjustments import Adjustment
+from vehgen.vehicle import load_vehicle
+
+FRICTION, GAIN, SPEED, ENGINE = (EFFECTS[name] for name in ("dry_friction", "sensor_gain", "speed_error", "engine_harmonic"))
+
+
+def point(number):
+    return np.array([number]), np.zeros(0)
+
+
+def found(parts=(), kinds=(), one_force=True, sensors=()):
+    return PlaceEvidence(frozenset(parts), frozenset(kinds), one_force, frozenset(sensors))
+
+
+def test_the_library_has_all_three_kinds_and_each_costs_its_numbers():
+    kinds = [VehicleEffect, RunEffect, LineEffect]
+    assert [sum(isinstance(effect, kind) for effect in EFFECTS.values()) for kind in kinds] == [16, 6, 1]
+    assert FRICTION.n_numbers(3) == FRICTION.n_numbers(9) == 1
+    assert EFFECTS["tyre_liftoff"].n_numbers(3) == 0
+    assert GAIN.n_numbers(3) == 1
+    assert ENGINE.n_numbers(3) == 2 + 3 * 4
+
+
+def test_only_effects_of_the_vehicle_add_to_its_file():
+    vehicle = load_vehicle("tractor5")
+    locator = EffectLocator(vehicle, vehicle.values())
+    for effect in EFFECTS.values():
+        place = next(iter(effect.places(vehicle, ())), "axle1")
+        assert bool(effect.change(locator.site(place))) == effect.changes_vehicle
+
+
+def test_fits_begin_where_what_they_add_was_not_absorbed():
+    filed, placed, fitted = point(0.1), point(0.2), point(0.3)
+    origins = Origins(filed, placed, fitted)
+    assert FRICTION.origins(origins) == [placed, fitted]
+    assert GAIN.origins(origins) == [placed, fitted]
+    assert SPEED.origins(origins) == [filed, fitted]
+    assert ENGINE.origins(origins) == [fitted]
+    assert FRICTION.origins(Origins(fitted, fitted, fitted)) == [fitted]
+
+
+@pytest.mark.parametrize(
+    ("name", "place", "evidence", "likely"),
+    [
+        ("dry_friction", "rear", found(parts=["rear"]), True),
+        ("dry_friction", "rear", found(parts=["front"]), False),
+        ("dry_friction", "rear", found(parts=["front"], one_force=False), False),
+        ("walking_beam", "axle4+axle5", found(parts=["axle5"]), True),
+        ("cargo_module", "semitrailer", found(parts=["axle1"], one_force=False), True),
+        ("cargo_module", "semitrailer", found(parts=["axle1"]), False),
+        ("tyre_damping", "all tyres", found(parts=["axle1"], kinds=["tyre"]), True),
+        ("tyre_damping", "all tyres", found(parts=["axle1"], kinds=["suspension"]), False),
+        ("tyre_footprint", "all tyres", found(kinds=["suspension"], one_force=False), True),
+        ("speed_error", "all runs", found(parts=["axle1"], one_force=False), True),
+        ("speed_error", "all runs", found(parts=["axle1"]), False),
+        ("sensor_gain", "F_az", found(sensors=["F", "F_az"]), True),
+        ("sensor_gain", "F_az", found(parts=["F_az"], one_force=False, sensors=["F_q"]), False),
+        ("engine_harmonic", "body", found(parts=["rear"], one_force=False), False),
+    ],
+)
+def test_a_place_test_speaks_for_the_effects_that_it_can_see(name, place, evidence, likely):
+    assert EFFECTS[name].is_likely(place, evidence) == likely
+
+
+def test_an_effect_made_global_is_tried_wherever_one_force_does_not_suffice():
+    everywhere = replace(FRICTION, is_global=True)
+    assert everywhere.is_likely("rear", found(parts=["front"], one_force=False))
+    assert not everywhere.is_single_force
+    assert FRICTION.is_single_force
+    assert not GAIN.is_single_force
+
+
+def test_a_sensor_of_an_axle_has_no_position_to_be_wrong_about():
+    point_output = SimpleNamespace(sensor="stroke", output=object())
+    trial = SimpleNamespace(recording=SimpleNamespace(channels=[point_output]), channels=("stroke_d",))
+    vehicle = load_vehicle("sedan2")
+    assert EFFECTS["sensor_position"].places(vehicle, [trial]) == ()
+    assert EFFECTS["sensor_delay"].places(vehicle, [trial]) == ("stroke",)
+    assert EFFECTS["sensor_gain"].places(vehicle, [trial]) == ("stroke_d",)
+
+
+def test_an_effect_says_in_words_what_it_is_where():
+    sedan, tractor = load_vehicle("sedan2"), load_vehicle("tractor5")
+    assert FRICTION.describe(sedan, "rear", {"force": 445.6}) == f"{FRICTION.title} of about 446 N in the rear suspension"
+    assert SPEED.describe(sedan, "all runs", {"scale": 1.0312}) == "Speed error of about 1.03 in all runs"
+    assert EFFECTS["tyre_liftoff"].describe(tractor, "axle4", {}).endswith(" in the tyres of axle4")
+    assert EFFECTS["walking_beam"].describe(tractor, "axle4+axle5", {"share": 0.9}).endswith(" of about 0.9 at axle4 and axle5")
+
+
+def test_wrong_parameters_are_refused_when_an_effect_is_made():
+    with pytest.raises(ValueError, match="one parameter, found 0"):
+        replace(GAIN, parameters=())
+    with pytest.raises(ValueError, match="frequency, drift and amplitude"):
+        replace(ENGINE, parameters=ENGINE.parameters[:1])
+
+
+class Offset(Adjustment):
+    """A channel's constant offset."""
+
+    def response(self, trial, response, numbers):
+        return response + numbers[0] * np.array([name == self.place for name in trial.channels])
+
+
+def install(monkeypatch, *effects):
+    """Let effects be found as if packages had named them."""
+    points = [SimpleNamespace(name=getattr(effect, "name", "none"), load=lambda effect=effect: effect) for effect in effects]
+    monkeypatch.setattr(registry, "entry_points", lambda group: points if group == "vehgen.effects" else [])
+
+
+def test_packages_may_add_effects_of_every_kind_and_global_ones(monkeypatch):
+    own = (
+        replace(FRICTION, name="rust", is_global=True),
+        replace(GAIN, name="offset", adjustment=Offset, neutral=0.0, is_global=True),
+        replace(ENGINE, name="fan", looked_for=(8.0, 12.0)),
+    )
+    install(monkeypatch, *own)
+    assert list(registry.library().values())[-3:] == list(own)
+
+
+def test_what_packages_add_must_be_effects_with_names_of_their_own(monkeypatch):
+    install(monkeypatch, FRICTION)
+    with pytest.raises(InputError, match="two effects are named 'dry_friction'"):
+        registry.library()
+    install(monkeypatch, "dry_friction")
+    with pytest.raises(InputError, match="is not an Effect"):
+        registry.library()
