@@ -15,6 +15,7 @@ from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit
 from vehgen.diagnose.inputs.checks import check_inputs, explain_gap
 from vehgen.diagnose.localise.free_form import fit_free_form, recover, strongest
 from vehgen.diagnose.localise.localisation import suffices
+from vehgen.diagnose.reasons import describe_effects, explained_share
 from vehgen.diagnose.result import Diagnosis
 from vehgen.diagnose.select.criteria import adds, excess, needs_both, p_value_of, passes, seeds, tied, unfinished
 from vehgen.diagnose.select.estimates import estimate, gain_interval, unstable, validation_gain
@@ -211,7 +212,8 @@ class Decision:
         ties = tied(step, fit)
         effects = [self._effect(step, fit, 0, [item.last.label for item in ties])]
         effects += [self._effect(step, item, 0, []) for item in ties[:2]]
-        reason = f"{fit.label} closes {self._share(fit)}"
+        vehicle = self.detection.trials[0].run.vehicle
+        reason = f"{describe_effects(vehicle, fit, effects[:1])}: it explains {explained_share(self.base, fit)}"
         if ties:
             reason = f"{sentence([fit.label, *(item.label for item in ties)])} explain the runs equally well"
         return self._named([fit], ties, effects, reason)
@@ -224,7 +226,8 @@ class Decision:
             for i, (step, others) in enumerate(zip(steps, alternatives, strict=True))
         ]
         ties = [item for others in alternatives for item in others]
-        reason = f"{last.label} close {self._share(last)}"
+        vehicle = self.detection.trials[0].run.vehicle
+        reason = f"{describe_effects(vehicle, last, effects)}: together they explain {explained_share(self.base, last)}"
         if ties:
             reason += f", and so {'does' if len(ties) == 1 else 'do'} {sentence([item.last.label for item in ties])}"
         return self._named(chain, ties, effects, reason)
@@ -243,10 +246,6 @@ class Decision:
 
     def _round_of(self, fit: ModelFit) -> SearchRound:
         return next(item for item in self.rounds if any(own.key == fit.key for own in item.fits))
-
-    def _share(self, fit: ModelFit) -> str:
-        closed = validation_gain(self.base, fit)
-        return f"{100 * closed:.1f} % of the excess on untouched runs" if closed is not None else "the gap on the runs for fitting"
 
     def _apart(self, chain: list[ModelFit], ties: list[ModelFit]) -> str | None:
         """Return which run would tell tied models apart, by what each predicts."""

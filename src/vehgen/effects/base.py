@@ -191,7 +191,7 @@ class Effect(ABC):
         """Return it in words with the value of its first parameter: `Dry friction of about 446 N in the rear suspension`."""
         first = next((item for item in self.parameters if item.name in values), None)
         size = f" of about {values[first.name]:.3g} {first.unit}".rstrip() if first else ""
-        return f"{self.title}{size} {in_words(vehicle, self.attaches, place)}"
+        return f"{self.title.partition(' (')[0]}{size} {in_words(vehicle, self.attaches, place)}"
 
 
 def distinct(*points: StartingPoint) -> list[StartingPoint]:
