@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from itertools import product
 from typing import Any
 
@@ -39,6 +39,7 @@ class EffectParameter:
     name: str
     unit: str
     meaning: str
+    _: KW_ONLY
     low: float
     high: float
     starts: tuple[float, ...]

@@ -167,9 +167,11 @@ class EntryReader:
         unit = item.unit if factor == 1.0 else str(dimension)
         if item.times is not None:
             self.expect(item.times, dimension, {}, *path, "times", names=SIZES)
-            return EffectParameter(name, unit, item.meaning, item.low, item.high, item.starts, partial(_size, item.times))
+            return EffectParameter(
+                name, unit, item.meaning, low=item.low, high=item.high, starts=item.starts, scale=partial(_size, item.times)
+            )
         starts = tuple(start * factor for start in item.starts)
-        return EffectParameter(name, unit, item.meaning, item.low * factor, item.high * factor, starts)
+        return EffectParameter(name, unit, item.meaning, low=item.low * factor, high=item.high * factor, starts=starts)
 
     def library_law(self, given: dict[str, dict[str, Expression]]) -> tuple[str, dict[str, Expression]]:
         """Return the law's name and what its parameters are."""

@@ -26,6 +26,8 @@ ASYMMETRIC_DAMPING = VehicleEffect(
     source=LAWS["asymmetric_damping"].source,
     attaches="suspension",
     places=suspensions,
-    parameters=(EffectParameter("ratio", "", "damping in bump over that in rebound, their mean kept", 0.05, 1.0, (0.3, 0.6)),),
+    parameters=(
+        EffectParameter("ratio", "", "damping in bump over that in rebound, their mean kept", low=0.05, high=1.0, starts=(0.3, 0.6)),
+    ),
     edit=_edit,
 )

@@ -10,8 +10,18 @@ BUMP_STOP = suspension_law(
     law="bump_stop",
     signature="sharp peaks of acceleration when travel passes a threshold; nothing below it",
     parameters=(
-        EffectParameter("k", "N/m", "stiffness of the stops", 0.5, 30.0, (6.0,), lambda site: site.k),
-        EffectParameter("clearance", "m", "travel in bump before the stop is met", 0.05, 4.0, (0.5, 1.2, 2.0), lambda site: site.travel),
-        EffectParameter("rebound", "m", "travel in rebound before the stop is met", 0.05, 6.0, (1.5,), lambda site: site.travel),
+        EffectParameter("k", "N/m", "stiffness of the stops", low=0.5, high=30.0, starts=(6.0,), scale=lambda site: site.k),
+        EffectParameter(
+            "clearance",
+            "m",
+            "travel in bump before the stop is met",
+            low=0.05,
+            high=4.0,
+            starts=(0.5, 1.2, 2.0),
+            scale=lambda site: site.travel,
+        ),
+        EffectParameter(
+            "rebound", "m", "travel in rebound before the stop is met", low=0.05, high=6.0, starts=(1.5,), scale=lambda site: site.travel
+        ),
     ),
 )

@@ -9,5 +9,9 @@ CUBIC_STIFFNESS = suspension_law(
     name="cubic_stiffness",
     law="cubic_stiffness",
     signature="frequencies rise with amplitude; odd harmonics; bump and rebound alike",
-    parameters=(EffectParameter("k3", "N/m^3", "cubic stiffness", 0.01, 30.0, (0.3, 3.0), lambda site: site.k / site.travel**2),),
+    parameters=(
+        EffectParameter(
+            "k3", "N/m^3", "cubic stiffness", low=0.01, high=30.0, starts=(0.3, 3.0), scale=lambda site: site.k / site.travel**2
+        ),
+    ),
 )

@@ -11,5 +11,9 @@ DRY_FRICTION = suspension_law(
     signature=(
         "small motions pass the suspension as if it were locked, large ones are damped; hump and rough-road runs disagree on its stiffness"
     ),
-    parameters=(EffectParameter("force", "N", "force at which it slips", 0.002, 0.4, (0.02, 0.06, 0.15), lambda site: site.load),),
+    parameters=(
+        EffectParameter(
+            "force", "N", "force at which it slips", low=0.002, high=0.4, starts=(0.02, 0.06, 0.15), scale=lambda site: site.load
+        ),
+    ),
 )

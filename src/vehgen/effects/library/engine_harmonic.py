@@ -16,9 +16,17 @@ ENGINE_HARMONIC = LineEffect(
     attaches="body",
     places=pitching_bodies,
     parameters=(
-        EffectParameter("frequency", "Hz", "frequency of the line at the start of a run", 5.0, 45.0, (25.0,)),
-        EffectParameter("drift", "", "relative change of the frequency over a run of T seconds", -0.03, 0.03, (0.0,)),
-        EffectParameter("amplitude", "N", "amplitude of the vertical force at the body's COG", 0.0, 0.1, (0.02,), lambda site: site.load),
+        EffectParameter("frequency", "Hz", "frequency of the line at the start of a run", low=5.0, high=45.0, starts=(25.0,)),
+        EffectParameter("drift", "", "relative change of the frequency over a run of T seconds", low=-0.03, high=0.03, starts=(0.0,)),
+        EffectParameter(
+            "amplitude",
+            "N",
+            "amplitude of the vertical force at the body's COG",
+            low=0.0,
+            high=0.1,
+            starts=(0.02,),
+            scale=lambda site: site.load,
+        ),
     ),
     looked_for=(5.0, 40.0),
 )

@@ -29,9 +29,11 @@ FRAME_BENDING = VehicleEffect(
     attaches="body",
     places=long_bodies,
     parameters=(
-        EffectParameter("frequency", "Hz", "natural frequency of the free body", 3.0, 30.0, (4.5, 7.0, 10.0, 15.0)),
-        EffectParameter("damping_ratio", "", "damping ratio", 0.003, 0.3, (0.06,)),
-        EffectParameter("length", "m", "length over which it bends", 0.8, 2.5, (1.2,), lambda site: max(site.length, 1.0)),
+        EffectParameter("frequency", "Hz", "natural frequency of the free body", low=3.0, high=30.0, starts=(4.5, 7.0, 10.0, 15.0)),
+        EffectParameter("damping_ratio", "", "damping ratio", low=0.003, high=0.3, starts=(0.06,)),
+        EffectParameter(
+            "length", "m", "length over which it bends", low=0.8, high=2.5, starts=(1.2,), scale=lambda site: max(site.length, 1.0)
+        ),
     ),
     is_global=True,
     edit=_edit,

@@ -11,5 +11,7 @@ HINGE_FRICTION = hinge_law(
     title="Hinge friction (Coulomb)",
     meaning="a greased plate that sticks: both bodies pitch as one until the moment slips",
     signature="small pitch motions of the two bodies are locked together, large ones are not",
-    parameters=(EffectParameter("force", "N m", "moment at which it slips", 0.002, 0.4, (0.02, 0.1), lambda site: site.load),),
+    parameters=(
+        EffectParameter("force", "N m", "moment at which it slips", low=0.002, high=0.4, starts=(0.02, 0.1), scale=lambda site: site.load),
+    ),
 )

@@ -22,6 +22,10 @@ HINGE_STIFFNESS = VehicleEffect(
     source="Wu & Li 2023, Fig. 3 (which leaves it out), doi:10.3390/s23249691",
     attaches="hinge",
     places=hinges,
-    parameters=(EffectParameter("k", "N m", "stiffness against pitch, per rad", 0.02, 100.0, (1.0, 10.0), lambda site: site.load),),
+    parameters=(
+        EffectParameter(
+            "k", "N m", "stiffness against pitch, per rad", low=0.02, high=100.0, starts=(1.0, 10.0), scale=lambda site: site.load
+        ),
+    ),
     edit=_edit,
 )

@@ -10,8 +10,12 @@ HYSTERESIS = suspension_law(
     law="hysteresis",
     signature="a loop of force over travel that does not depend on the rate; rounded corners tell it from dry friction",
     parameters=(
-        EffectParameter("force", "N", "force of the fully developed loop", 0.002, 0.4, (0.03, 0.12), lambda site: site.load),
-        EffectParameter("travel", "m", "travel over which the loop develops", 0.05, 3.0, (0.3, 1.0), lambda site: site.travel),
-        EffectParameter("beta", "", "share of the loss that follows |v|", 0.3, 1.0, (0.55,)),
+        EffectParameter(
+            "force", "N", "force of the fully developed loop", low=0.002, high=0.4, starts=(0.03, 0.12), scale=lambda site: site.load
+        ),
+        EffectParameter(
+            "travel", "m", "travel over which the loop develops", low=0.05, high=3.0, starts=(0.3, 1.0), scale=lambda site: site.travel
+        ),
+        EffectParameter("beta", "", "share of the loss that follows |v|", low=0.3, high=1.0, starts=(0.55,)),
     ),
 )

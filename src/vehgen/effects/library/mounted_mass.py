@@ -33,8 +33,10 @@ def mass_edit(name: str) -> Callable[[EffectSite, Given], Change]:
 def mass_parameters(frequencies: tuple[float, ...], share: tuple[float, ...]) -> tuple[EffectParameter, ...]:
     """Return mass, natural frequency, damping ratio and place of a mounted mass."""
     return (
-        EffectParameter("mass", "kg", "mass", 0.01, 0.6, share, lambda site: site.mass),
-        EffectParameter("frequency", "Hz", "natural frequency on its mounts", 0.8, 12.0, frequencies),
-        EffectParameter("damping_ratio", "", "damping ratio", 0.005, 0.7, (0.1,)),
-        EffectParameter("x", "m", "ahead of the COG of the body", -0.7, 0.7, (0.0,), lambda site: max(site.length, 1.0)),
+        EffectParameter("mass", "kg", "mass", low=0.01, high=0.6, starts=share, scale=lambda site: site.mass),
+        EffectParameter("frequency", "Hz", "natural frequency on its mounts", low=0.8, high=12.0, starts=frequencies),
+        EffectParameter("damping_ratio", "", "damping ratio", low=0.005, high=0.7, starts=(0.1,)),
+        EffectParameter(
+            "x", "m", "ahead of the COG of the body", low=-0.7, high=0.7, starts=(0.0,), scale=lambda site: max(site.length, 1.0)
+        ),
     )

@@ -10,7 +10,9 @@ PROGRESSIVE_STIFFNESS = suspension_law(
     law="progressive_stiffness",
     signature="stiffer in bump than in rebound: even harmonics and a shifted mean over rough roads",
     parameters=(
-        EffectParameter("k", "N/m", "stiffness added beyond `start`", 0.05, 5.0, (0.5, 2.0), lambda site: site.k),
-        EffectParameter("start", "m", "travel in bump at which it joins in", 0.02, 3.0, (0.3, 1.0), lambda site: site.travel),
+        EffectParameter("k", "N/m", "stiffness added beyond `start`", low=0.05, high=5.0, starts=(0.5, 2.0), scale=lambda site: site.k),
+        EffectParameter(
+            "start", "m", "travel in bump at which it joins in", low=0.02, high=3.0, starts=(0.3, 1.0), scale=lambda site: site.travel
+        ),
     ),
 )

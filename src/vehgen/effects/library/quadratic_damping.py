@@ -9,5 +9,7 @@ QUADRATIC_DAMPING = suspension_law(
     name="quadratic_damping",
     law="quadratic_damping",
     signature="damping grows with amplitude and speed; odd harmonics",
-    parameters=(EffectParameter("c2", "N s^2/m^2", "quadratic damping", 0.02, 30.0, (0.5, 4.0), lambda site: site.c / 0.2),),
+    parameters=(
+        EffectParameter("c2", "N s^2/m^2", "quadratic damping", low=0.02, high=30.0, starts=(0.5, 4.0), scale=lambda site: site.c / 0.2),
+    ),
 )

@@ -16,7 +16,7 @@ SENSOR_GAIN = RunEffect(
     source="ISO 16063-1:1998, calibration of vibration transducers",
     attaches="sensor",
     places=channels,
-    parameters=(EffectParameter("gain", "", "reading over truth", 0.7, 1.4, (0.9, 1.1)),),
+    parameters=(EffectParameter("gain", "", "reading over truth", low=0.7, high=1.4, starts=(0.9, 1.1)),),
     adjustment=Gain,
     scale=0.05,
     neutral=1.0,

@@ -15,6 +15,6 @@ SENSOR_POSITION = RunEffect(
     source="Wu & Li 2023, Eqs. 15 to 18, doi:10.3390/s23249691",
     attaches="sensor",
     places=sensors_on_bodies,
-    parameters=(EffectParameter("shift", "m", "ahead of where the run file says", -2.0, 2.0, (-0.4, 0.4)),),
+    parameters=(EffectParameter("shift", "m", "ahead of where the run file says", low=-2.0, high=2.0, starts=(-0.4, 0.4)),),
     adjustment=None,
 )

@@ -16,7 +16,9 @@ SENSOR_TILT = RunEffect(
     source="D. H. Titterton, J. L. Weston, Strapdown Inertial Navigation Technology, 2004, doi:10.1049/PBRA017E",
     attaches="sensor",
     places=sensors,
-    parameters=(EffectParameter("tilt", "rad", "nose-down angle of the sensor on its body", -0.8, 0.8, (-0.4, -0.15, 0.15, 0.4)),),
+    parameters=(
+        EffectParameter("tilt", "rad", "nose-down angle of the sensor on its body", low=-0.8, high=0.8, starts=(-0.4, -0.15, 0.15, 0.4)),
+    ),
     adjustment=Tilt,
     scale=0.1,
 )

@@ -18,7 +18,12 @@ SPEED_ERROR = RunEffect(
     places=runs,
     parameters=(
         EffectParameter(
-            "scale", "", "true speed over that of the run file", 0.85, 1.15, tuple(round(0.9 + 0.01 * i, 2) for i in range(21) if i != 10)
+            "scale",
+            "",
+            "true speed over that of the run file",
+            low=0.85,
+            high=1.15,
+            starts=tuple(round(0.9 + 0.01 * i, 2) for i in range(21) if i != 10),
         ),
     ),
     is_global=True,

@@ -27,7 +27,9 @@ TYRE_DAMPING = VehicleEffect(
     source="H. B. Pacejka, Tire and Vehicle Dynamics, 3rd ed., 2012, doi:10.1016/C2010-0-68548-8",
     attaches="tyre",
     places=tyres,
-    parameters=(EffectParameter("ratio", "", "damping ratio of the unsprung mass on its tyres alone", 1e-3, 0.5, (0.02, 0.1)),),
+    parameters=(
+        EffectParameter("ratio", "", "damping ratio of the unsprung mass on its tyres alone", low=1e-3, high=0.5, starts=(0.02, 0.1)),
+    ),
     is_global=True,
     edit=_edit,
 )

@@ -16,7 +16,7 @@ TYRE_FOOTPRINT = RunEffect(
     source="D. Cebon, Handbook of Vehicle-Road Interaction, 1999, ISBN 9789026515545",
     attaches="tyre",
     places=all_tyres,
-    parameters=(EffectParameter("length", "m", "contact length", 0.01, 0.5, (0.1, 0.25)),),
+    parameters=(EffectParameter("length", "m", "contact length", low=0.01, high=0.5, starts=(0.1, 0.25)),),
     is_global=True,
     adjustment=Footprint,
     scale=0.05,

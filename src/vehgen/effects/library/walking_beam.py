@@ -66,8 +66,12 @@ WALKING_BEAM = VehicleEffect(
     attaches="axles",
     places=tandems,
     parameters=(
-        EffectParameter("share", "", "share of stiffness and damping at the pivot: 1 is a beam that rocks freely", 0.1, 1.0, (0.95, 0.6)),
-        EffectParameter("split", "", "how far the pivot lies ahead of the rear axle, over the distance of the axles", 0.3, 0.7, (0.5,)),
+        EffectParameter(
+            "share", "", "share of stiffness and damping at the pivot: 1 is a beam that rocks freely", low=0.1, high=1.0, starts=(0.95, 0.6)
+        ),
+        EffectParameter(
+            "split", "", "how far the pivot lies ahead of the rear axle, over the distance of the axles", low=0.3, high=0.7, starts=(0.5,)
+        ),
     ),
     is_global=True,
     edit=_edit,
