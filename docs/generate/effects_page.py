@@ -97,9 +97,7 @@ HINGE_DAMPING = VehicleEffect(
     meaning="a damper between the two bodies",
     attaches="hinge",
     places=hinges,
-    parameters=(
-        EffectParameter("c", "N m s", "damping against pitch", low=0.001, high=1.0, starts=(0.02,), scale=lambda site: site.load),
-    ),
+    parameters=(EffectParameter("c", "N m s", "damping against pitch", low=0.001, high=1.0, starts=(0.02,), scale=lambda site: site.load),),
     edit=lambda site, symbols: {"hinges": {site.place: {"c": symbols["c"]}}},
 )
 ```
