@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from vehgen.fit.adjustments import Adjustment, Gain, SensorDelay
-from vehgen.fit.least_squares import fit_least_squares
+from vehgen.fit.least_squares import FitOptions, fit_least_squares
 from vehgen.fit.misfit import Nuisances
 from vehgen.fit.noise import EVEN, Noise
 from vehgen.fit.problem import make_problem
@@ -43,9 +43,8 @@ def problem(tmp_path_factory):
 def fitted(problem, *shared):
     noises = {problem.trials[0].name: Noise(EVEN, SIGMA)}
     nuisances = Nuisances(delay=0.05, speed=0.005)
-    fit = fit_least_squares(
-        problem, problem.space.unit(problem.space.start), nuisances, (0.5, 40.0), noises=noises, prior_sigma=0.1, shared=shared
-    )
+    options = FitOptions(nuisances, (0.5, 40.0), prior_sigma=0.1)
+    fit = fit_least_squares(problem, problem.space.unit(problem.space.start), options, noises=noises, shared=shared)
     return fit.misfit.adjusted(fit.x)
 
 

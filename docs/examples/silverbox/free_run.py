@@ -17,7 +17,7 @@ from prepare import DISPLACEMENT, FINER, HERE, RUNS, STEP, TESTS, read_silverbox
 
 from vehgen.codegen import Excitation
 from vehgen.effects import EFFECTS, EffectLocator
-from vehgen.fit.least_squares import fit_least_squares
+from vehgen.fit.least_squares import FitOptions, fit_least_squares
 from vehgen.fit.misfit import Nuisances
 from vehgen.fit.noise import EVEN, Noise
 from vehgen.fit.problem import make_problem
@@ -46,7 +46,8 @@ def fit(vehicle: Vehicle, runs: list[Path]) -> dict[str, float]:
         trials.append(replace(trial, run=replace(trial.run, file=trial.run.file.model_copy(update={"forces": forces}))))
     problem = make_problem(trials)
     noises = {trial.name: Noise(EVEN, np.array([3e-4 * DISPLACEMENT])) for trial in trials}
-    found = fit_least_squares(problem, problem.space.unit(problem.space.start), Nuisances(0.0, 0.0, 0.0), WHOLE_BAND, noises=noises)
+    options = FitOptions(Nuisances(0.0, 0.0, 0.0), WHOLE_BAND)
+    found = fit_least_squares(problem, problem.space.unit(problem.space.start), options, noises=noises)
     return problem.best_values(found.values)
 
 

@@ -20,7 +20,7 @@ from vehgen.files import write_text
 from vehgen.files.reading import read_text
 from vehgen.files.tables import MAX_TABLE_BYTES
 from vehgen.fit.band import CALIBRATION_BAND_HZ
-from vehgen.fit.least_squares import LeastSquaresFit, fit_least_squares
+from vehgen.fit.least_squares import FitOptions, LeastSquaresFit, fit_least_squares
 from vehgen.fit.misfit import Nuisances
 from vehgen.fit.parallel import Runner
 from vehgen.fit.prior_data import PriorData
@@ -168,7 +168,7 @@ def _polish_all(
     problem: Problem, state: SearchState, settings: Settings, facts: PriorData | None, runner: Runner, tell: CalibrationProgress, label: str
 ) -> tuple[LeastSquaresFit, ...]:
     own_facts = None if facts is None else replace(facts, problem=problem)
-    job = partial(fit_least_squares, problem, nuisances=settings.nuisances, band=settings.band, prior_data=own_facts)
+    job = partial(fit_least_squares, problem, options=FitOptions(settings.nuisances, settings.band), prior_data=own_facts)
     fits: list[LeastSquaresFit] = []
     points = starting_points(problem, state, settings)
     for fit in runner.map(job, points):

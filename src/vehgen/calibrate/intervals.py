@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from vehgen.calibrate.identifiability import Structure
 from vehgen.errors import InputError
 from vehgen.files.expressions import ExpressionError, parse
-from vehgen.fit.least_squares import LeastSquaresFit, fit_least_squares
+from vehgen.fit.least_squares import FitOptions, LeastSquaresFit, fit_least_squares
+from vehgen.fit.linearisation import linearise
 from vehgen.fit.prior_data import PriorData
 from vehgen.simulate import Mode, natural_modes
 
@@ -63,7 +64,7 @@ class Uncertainty:
         self.structure = structure
         self.values = fit.values
         space = fit.misfit.problem.space
-        jacobian = fit.misfit.jacobian(fit.x)
+        jacobian = linearise(fit.misfit, fit.x).jacobian
         information = jacobian.T @ jacobian
         n = fit.misfit.n_parameters
         cross, own = information[:n, n:], information[n:, n:]
@@ -224,8 +225,7 @@ def refit(fit: LeastSquaresFit, seed: int, facts: PriorData | None = None) -> Ar
     again = fit_least_squares(
         misfit.problem.with_trials(trials),
         unit,
-        misfit.nuisances,
-        misfit.band,
+        FitOptions(misfit.nuisances, misfit.band),
         noises=misfit.noises,
         start=misfit.split(fit.x)[1].ravel(),
         shared=misfit.shared,

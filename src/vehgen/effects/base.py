@@ -19,7 +19,7 @@ from vehgen.effects.locator import EffectLocator, EffectSite
 from vehgen.effects.places import ALL_TYRES, Places, in_words
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.trial import Trial
-from vehgen.simulate import Simulator
+from vehgen.simulate import SimulatorPool
 from vehgen.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -143,10 +143,8 @@ class Effect(ABC):
         """Return the change of the vehicle's file at a site and at `values` of its parameters; empty where it leaves the vehicle alone."""
         return {}
 
-    def change_trials(
-        self, trials: Sequence[Trial], place: str, locator: EffectLocator, simulators: dict[object, Simulator]
-    ) -> tuple[Trial, ...]:
-        """Return the trials with the effect at a place of their vehicle; `simulators` are shared, and filled as needed."""
+    def change_trials(self, trials: Sequence[Trial], place: str, locator: EffectLocator, simulators: SimulatorPool) -> tuple[Trial, ...]:
+        """Return the trials with the effect at a place of their vehicle; `simulators` are shared."""
         return tuple(trials)
 
     def starts(self, place: str, locator: EffectLocator, residual: Residual | None = None) -> list[tuple[float, ...]]:

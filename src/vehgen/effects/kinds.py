@@ -17,7 +17,7 @@ from vehgen.files.names import MAX_TEXT, joined_name
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.harmonic import Harmonic, harmonic_adjustments
 from vehgen.fit.trial import Trial
-from vehgen.simulate import Simulator
+from vehgen.simulate import SimulatorPool
 from vehgen.vehicle.loading import extend_vehicle
 
 Array = NDArray[np.float64]
@@ -76,9 +76,7 @@ class VehicleEffect(Effect):
         change["parameters"] = {**declared, **change.get("parameters", {})}
         return change
 
-    def change_trials(
-        self, trials: Sequence[Trial], place: str, locator: EffectLocator, simulators: dict[object, Simulator]
-    ) -> tuple[Trial, ...]:
+    def change_trials(self, trials: Sequence[Trial], place: str, locator: EffectLocator, simulators: SimulatorPool) -> tuple[Trial, ...]:
         """Return the trials with the changed vehicle."""
         vehicle = extend_vehicle(trials[0].run.vehicle, self.change(locator.site(place)), f"{self.name} at {place}")
         return tuple(trial.with_vehicle(vehicle, simulators) for trial in trials)

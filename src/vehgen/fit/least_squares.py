@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.optimize
@@ -12,6 +12,7 @@ from threadpoolctl import threadpool_limits
 
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.band import CALIBRATION_BAND_HZ
+from vehgen.fit.linearisation import lineariser
 from vehgen.fit.misfit import Misfit, Noises, Nuisances
 from vehgen.fit.noise import EVEN, Noise, estimate_noise, transform
 from vehgen.fit.prior_data import PriorData
@@ -57,22 +58,41 @@ class LeastSquaresFit:
         return tuple(name for name, u in zip(self.misfit.problem.space.names, unit, strict=True) if min(u, 1 - u) < AT_BOUND)
 
 
+@dataclass(frozen=True)
+class FitOptions:
+    """How a least-squares fit is done.
+
+    `nuisances` and `band` [Hz] as in :class:`Misfit`; the noise, where it is not known, is estimated from the residuals and the fit
+    repeated `noise_rounds` times; a fit evaluates the residuals at most `max_steps` times and ends at a relative change of their sum of
+    squares of `tolerance`. `jacobian_refresh` as in :func:`vehgen.fit.linearisation.lineariser`. `prior_sigma` is the standard deviation,
+    in the unit cube, of the prior about the space's start; the last `n_effect_parameters` parameters have a prior of WEAK_PRIOR_SIGMA.
+    """
+
+    nuisances: Nuisances = field(default_factory=Nuisances)
+    band: tuple[float, float] = CALIBRATION_BAND_HZ
+    noise_rounds: int = NOISE_ROUNDS
+    max_steps: int = 60
+    tolerance: float = FINE_TOLERANCE
+    jacobian_refresh: int = 1
+    prior_sigma: float = WEAK_PRIOR_SIGMA
+    n_effect_parameters: int = 0
+
+    def priors(self, n_parameters: int) -> Array:
+        """Return the standard deviation of every parameter's prior, `shape (n_parameters,)`."""
+        n_own = self.n_effect_parameters
+        return np.concatenate([np.full(n_parameters - n_own, self.prior_sigma), np.full(n_own, WEAK_PRIOR_SIGMA)])
+
+
 def fit_least_squares(
     problem: Problem,
     unit: Array,
-    nuisances: Nuisances | None = None,
-    band: tuple[float, float] = CALIBRATION_BAND_HZ,
-    rounds: int = NOISE_ROUNDS,
+    options: FitOptions | None = None,
+    *,
     noises: Noises | None = None,
     start: Array | None = None,
     prior_data: PriorData | None = None,
-    max_steps: int = 60,
     shared: Sequence[Adjustment] = (),
     numbers: Sequence[float] = (),
-    tolerance: float = FINE_TOLERANCE,
-    prior_sigma: float = WEAK_PRIOR_SIGMA,
-    n_effect_parameters: int = 0,
-    jacobian_refresh: int = 1,
 ) -> LeastSquaresFit:
     """Fit parameters and nuisances by least squares, from a point of the unit cube.
 
@@ -82,43 +102,28 @@ def fit_least_squares(
         Trials and searched parameters.
     unit
         Where to begin, `shape (n_parameters,)`.
-    nuisances, band
-        As in :class:`Misfit`.
-    rounds
-        How often the noise is estimated from the residuals and the fit repeated.
+    options
+        How the fit is done.
     noises
         Known noise; it is then not estimated.
     start
         Where the nuisances begin, `shape (n_unknowns - n_parameters,)`; by default delays come from cross-correlation.
-    facts
+    prior_data
         What is known from elsewhere.
-    max_steps
-        Evaluations of the residuals in one fit.
     shared, numbers
         Adjustments fitted along, and the numbers at which they begin (default: neutral).
-    hold, free
-        Standard deviation of the spring that holds parameters to the space's start, in the unit cube; the last `free` of them are held
-        by HOLD only.
-    renew
-        As in :class:`Misfit`.
-    tolerance
-        Relative change of the sum of squares at which the last fit ends.
     """
+    options = options or FitOptions()
     known = noises is not None
-    priors = np.concatenate(
-        [np.full(problem.space.size - n_effect_parameters, prior_sigma), np.full(n_effect_parameters, WEAK_PRIOR_SIGMA)]
-    )
     noises = noises or first_noises(problem)
-    values = problem.space.values(unit)
-    misfit = Misfit(problem, noises, values, nuisances, band, shared, jacobian_refresh)
+    misfit = Misfit(problem, noises, problem.space.values(unit), options.nuisances, options.band, shared)
     begun = [(value - item.neutral) / item.scale for item, value in zip(shared, numbers, strict=True)] if numbers else [0.0] * len(shared)
     x = np.concatenate([np.clip(unit, 0.0, 1.0), begun, first_delays(misfit, unit, begun) if start is None else start])
-    result = _fit(misfit, x, prior_data, max_steps, tolerance if known else COARSE_TOLERANCE, priors)
-    for left in reversed(range(0 if known else rounds - 1)):
+    result = _fit(misfit, x, prior_data, options, options.tolerance if known else COARSE_TOLERANCE)
+    for left in reversed(range(0 if known else options.noise_rounds - 1)):
         noises = estimate_noises(misfit, result)
-        misfit = Misfit(problem, noises, problem.space.values(misfit.split(result)[0]), nuisances, band, shared, jacobian_refresh)
-        result = _fit(misfit, result, prior_data, max_steps, COARSE_TOLERANCE if left else tolerance, priors)
-    misfit.jacobian_refresh = 1  # who asks from now on wants derivatives at x itself
+        misfit = Misfit(problem, noises, problem.space.values(misfit.split(result)[0]), options.nuisances, options.band, shared)
+        result = _fit(misfit, result, prior_data, options, COARSE_TOLERANCE if left else options.tolerance)
     residuals = misfit.residuals(result)
     prior = float((misfit.split(result)[1] ** 2).sum())
     lines = zip(misfit.problem.trials, misfit.residual_spectrum(result), strict=True)
@@ -128,7 +133,7 @@ def fit_least_squares(
     return LeastSquaresFit(misfit, result, float(np.mean(residuals**2)), loss)
 
 
-def _fit(misfit: Misfit, x: Array, prior_data: PriorData | None, max_steps: int, tolerance: float, priors: Array) -> Array:
+def _fit(misfit: Misfit, x: Array, prior_data: PriorData | None, options: FitOptions, tolerance: float) -> Array:
     n, rest = misfit.n_parameters, misfit.n_unknowns - misfit.n_parameters
     low = np.concatenate([np.zeros(n), np.full(rest, -np.inf)])
     high = np.concatenate([np.ones(n), np.full(rest, np.inf)])
@@ -136,15 +141,16 @@ def _fit(misfit: Misfit, x: Array, prior_data: PriorData | None, max_steps: int,
         low[n + i], high[n + i] = item.bounds
     inside = np.clip(x, low + 1e-6, high - 1e-6)
     space = misfit.problem.space
-    middle = space.unit(space.start)
+    middle, priors = space.unit(space.start), options.priors(n)
     inverse_priors = np.hstack([np.diag(1 / priors), np.zeros((n, rest))])
+    derive = lineariser(misfit, options.jacobian_refresh)
 
     def residuals(x: Array) -> Array:
         own = np.concatenate([misfit.residuals(x), (x[:n] - middle) / priors])
         return own if prior_data is None else np.concatenate([own, prior_data.residuals(space.values(x[:n]))])
 
     def jacobian(x: Array) -> Array:
-        own = np.vstack([misfit.jacobian(x), inverse_priors])
+        own = np.vstack([derive(x).jacobian, inverse_priors])
         if prior_data is None:
             return own
         values = space.values(x[:n])
@@ -152,7 +158,16 @@ def _fit(misfit: Misfit, x: Array, prior_data: PriorData | None, max_steps: int,
 
     with threadpool_limits(1, user_api="blas"):  # tall and thin matrices: more threads only wait for one another
         found = scipy.optimize.least_squares(
-            residuals, inside, jacobian, (low, high), method="trf", x_scale="jac", xtol=1e-7, ftol=tolerance, gtol=1e-8, max_nfev=max_steps
+            residuals,
+            inside,
+            jacobian,
+            (low, high),
+            method="trf",
+            x_scale="jac",
+            xtol=1e-7,
+            ftol=tolerance,
+            gtol=1e-8,
+            max_nfev=options.max_steps,
         )
     return np.asarray(found.x)
 

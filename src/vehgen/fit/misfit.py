@@ -7,8 +7,7 @@ is fitted along with the parameters: its delay, the scales of its speed and of i
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,9 +24,6 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Noises = dict[str, Noise]
 """Noise by name of the trial."""
-UNIT_DIFFERENCE = 1e-6
-"""Step of the differences to each side, in the unit cube and in units of a nuisance's uncertainty: so short that jumps of a response
-seldom cross a sample."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +58,7 @@ class _Weight:
 
 
 class Misfit:
-    """Whitened residuals and their derivatives.
+    """Whitened residuals.
 
     The unknowns x are the searched parameters in the unit cube, then the shared adjustments in units of their scales, then each trial's
     nuisances in units of their standard deviations (which also enter as residuals, their prior).
@@ -81,9 +77,6 @@ class Misfit:
         Frequencies compared [Hz].
     shared
         What may be wrong with runs or sensors, fitted along.
-    renew
-        Every how many calls the derivatives by nuisances are computed anew; in between the last ones serve, which change little. Beyond
-        1 all derivatives are one-sided, which takes half of the time.
     """
 
     def __init__(
@@ -94,16 +87,12 @@ class Misfit:
         nuisances: Nuisances | None = None,
         band: tuple[float, float] = CALIBRATION_BAND_HZ,
         shared: Sequence[Adjustment] = (),
-        jacobian_refresh: int = 1,
     ) -> None:
         self.problem = problem
         self.noises = noises
         self.nuisances = nuisances or Nuisances()
         self.band = band
         self.shared = tuple(shared)
-        self.jacobian_refresh = jacobian_refresh
-        self._calls = 0
-        self._kept: list[Array] = []
         self._weights = [self._weight(trial, problem.best_values(reference)) for trial in problem.trials]
 
     def _weight(self, trial: Trial, reference: Mapping[str, float]) -> _Weight:
@@ -176,63 +165,6 @@ class Misfit:
     def residuals(self, x: Array) -> Array:
         """Return the whitened residuals, the nuisances' priors last: each of unit variance where model and noise are right."""
         return np.concatenate([*(flatten(lines) for lines in self.whitened_spectrum(x)), x[self.n_parameters + len(self.shared) :]])
-
-    @contextmanager
-    def quickly(self, jacobian_refresh: int) -> Iterator[None]:
-        """Within this context derivatives are one-sided, those by nuisances computed anew every `renew` calls only."""
-        before, self.jacobian_refresh, self._calls = self.jacobian_refresh, jacobian_refresh, 0
-        try:
-            yield
-        finally:
-            self.jacobian_refresh, self._calls = before, 0
-
-    def whitened_derivatives(self, x: Array) -> list[Complex]:
-        """Return the derivatives of :meth:`whitened_spectrum` by differences, each `shape (n_unknowns, n_lines, n_channels)`."""
-        unit, errors = self.split(x)
-        numbers = self.adjusted(x)
-        n, s, k = self.n_parameters, len(self.shared), len(self.nuisances.names)
-        quick = self.jacobian_refresh > 1
-        values = self.problem.space.values(unit + np.vstack([np.eye(n), np.zeros((1, n)) if quick else -np.eye(n)]) * UNIT_DIFFERENCE)
-        middle = self.problem.space.values(unit)[None]
-        found = []
-        fresh = self._calls % self.jacobian_refresh == 0
-        self._calls += 1
-        if fresh:
-            self._kept = []
-        for t, (trial, weight, error) in enumerate(zip(self.problem.trials, self._weights, errors, strict=True)):
-            derived = np.zeros((self.n_unknowns, len(trial.recording.time), len(trial.channels)))
-            responses = self.respond(trial, values, numbers, error) if len(values) else np.zeros((0, *derived.shape[1:]))
-            centre = responses[n] if quick else None
-            if n:
-                derived[:n] = (
-                    (responses[:n] - responses[n]) / UNIT_DIFFERENCE if quick else (responses[:n] - responses[n:]) / (2 * UNIT_DIFFERENCE)
-                )
-            for j, item in enumerate(self.shared):
-                step = UNIT_DIFFERENCE * item.scale * np.eye(s)[j]
-                derived[n + j] = self._slope(trial, middle, (numbers, step), (error, np.zeros(k)), centre)
-            if fresh:
-                steps = UNIT_DIFFERENCE * np.eye(k)
-                self._kept.append(np.zeros((k, *derived.shape[1:])))
-                for j, step in enumerate(steps):
-                    self._kept[t][j] = self._slope(trial, middle, (numbers, np.zeros(s)), (error, step), centre)
-            derived[n + s + t * k : n + s + (t + 1) * k] = self._kept[t]
-            found.append(-_apply(weight.whitener, transform(derived, trial.recording.dt, weight.inside)))
-        return found
-
-    def _slope(self, trial: Trial, values: Array, numbers: tuple[Array, Array], error: tuple[Array, Array], centre: Array | None) -> Array:
-        """Return the change of a trial's response per STEP, when numbers and errors (value, step) are moved by their steps."""
-        ahead = self.respond(trial, values, numbers[0] + numbers[1], error[0] + error[1])[0]
-        if centre is not None:
-            return np.asarray((ahead - centre) / UNIT_DIFFERENCE)
-        behind = self.respond(trial, values, numbers[0] - numbers[1], error[0] - error[1])[0]
-        return np.asarray((ahead - behind) / (2 * UNIT_DIFFERENCE))
-
-    def jacobian(self, x: Array) -> Array:
-        """Return the derivatives of :meth:`residuals`, `shape (n_residuals, n_unknowns)`."""
-        start = self.n_parameters + len(self.shared)
-        prior = np.zeros((self.n_unknowns - start, self.n_unknowns))
-        prior[:, start:] = np.eye(self.n_unknowns - start)
-        return np.vstack([*(flatten(lines, first=1).T for lines in self.whitened_derivatives(x)), prior])
 
     def draw(self, x: Array, random: np.random.Generator) -> list[Array]:
         """Return measurements as they might have come out: the response plus noise, one array a trial (for a bootstrap)."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vehgen.errors import InputError, ModelWarning
 from vehgen.fit.space import SearchSpace, search_space
 from vehgen.fit.trial import Trial
-from vehgen.simulate import Scenario, Simulator
+from vehgen.simulate import Scenario, SimulatorPool
 
 Array = NDArray[np.float64]
 
@@ -63,7 +63,7 @@ class Problem:
 
     def of_sensors(self, sensors: Sequence[str]) -> Problem:
         """Return the problem with some sensors only."""
-        shared: dict[object, Simulator] = {}
+        shared = SimulatorPool()
         return self.with_trials([trial.of_sensors(sensors, shared) for trial in self.trials])
 
     def searching(self, names: Sequence[str], fixed: dict[str, float]) -> Problem:

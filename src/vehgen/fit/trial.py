@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from vehgen.errors import InputError, did_you_mean
 from vehgen.measure import Recording, read_recording
-from vehgen.simulate import Run, Scenario, Simulator, load_run, make_scenario
+from vehgen.simulate import Run, Scenario, Simulator, SimulatorPool, load_run, make_scenario
 from vehgen.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -42,7 +42,7 @@ class Trial:
         """Names of the measured channels."""
         return tuple(channel.name for channel in self.recording.channels)
 
-    def of_sensors(self, sensors: Sequence[str], simulators: dict[object, Simulator]) -> Trial:
+    def of_sensors(self, sensors: Sequence[str], simulators: SimulatorPool) -> Trial:
         """Return the trial with some of its sensors only.
 
         Raises
@@ -56,14 +56,10 @@ class Trial:
         measurement = self.recording.of_sensors(tuple(sensors))
         return replace(self, recording=measurement, simulator=_simulator(self.run, measurement, simulators))
 
-    def with_vehicle(self, vehicle: Vehicle, simulators: dict[object, Simulator]) -> Trial:
-        """Return the trial with another vehicle that has at least its parameters; `simulators` are shared, and filled as needed."""
+    def with_vehicle(self, vehicle: Vehicle, simulators: SimulatorPool) -> Trial:
+        """Return the trial with another vehicle that has at least its parameters; `simulators` are shared."""
         run = replace(self.run, vehicle=vehicle)
-        outputs = tuple(channel.output for channel in self.recording.channels)
-        key = (id(vehicle), repr(outputs), repr(run.forces()))
-        if key not in simulators:
-            simulators[key] = Simulator(vehicle, outputs, run.forces())
-        simulator = simulators[key]
+        simulator = _simulator(run, self.recording, simulators)
         values = simulator.model.values(overrides=run.values())
         return replace(self, run=run, simulator=simulator, values=values)
 
@@ -76,7 +72,7 @@ def load_trials(paths: Sequence[str | Path], vehicle: Vehicle | None = None) -> 
     InputError
         For a run that cannot be used, with its place.
     """
-    simulators: dict[object, Simulator] = {}
+    simulators = SimulatorPool()
     trials: list[Trial] = []
     for path in paths:
         trial = make_trial(load_run(path, vehicle), Path(path).stem, simulators)
@@ -87,7 +83,7 @@ def load_trials(paths: Sequence[str | Path], vehicle: Vehicle | None = None) -> 
     return trials
 
 
-def make_trial(run: Run, name: str, simulators: dict[object, Simulator] | None = None) -> Trial:
+def make_trial(run: Run, name: str, simulators: SimulatorPool | None = None) -> Trial:
     """Read a run's recording and lay out its scenario on the recording's clock.
 
     Parameters
@@ -97,14 +93,14 @@ def make_trial(run: Run, name: str, simulators: dict[object, Simulator] | None =
     name
         What to call it.
     simulators
-        Simulators that trials with the same vehicle and channels share; filled as needed.
+        Simulators that trials with the same vehicle and channels share.
     """
     measurement = read_recording(run)
     dt = measurement.dt
     keep = samples_kept(run, dt)
     step = dt / keep
     length = float(measurement.time[-1] - measurement.time[0])
-    simulator = _simulator(run, measurement, {} if simulators is None else simulators)
+    simulator = _simulator(run, measurement, simulators or SimulatorPool())
     values = simulator.model.values(overrides=run.values())
     timed = replace(run, file=run.file.model_copy(update={"duration": float(measurement.time[-1])}))
     scenario = replace(
@@ -119,12 +115,9 @@ def samples_kept(run: Run, dt: float) -> int:
     return max(1, round(dt / min(run.file.step, LONGEST_STEP_S)))
 
 
-def _simulator(run: Run, measurement: Recording, simulators: dict[object, Simulator]) -> Simulator:
+def _simulator(run: Run, measurement: Recording, simulators: SimulatorPool) -> Simulator:
     outputs = tuple(channel.output for channel in measurement.channels)
-    key = (run.vehicle.files, run.vehicle.name, repr(outputs), repr(run.forces()))
-    if key not in simulators:
-        simulators[key] = Simulator(run.vehicle, outputs, run.forces())
-    return simulators[key]
+    return simulators.simulator(run.vehicle, outputs, run.forces())
 
 
 def _check_length(run: Run, scenario: Scenario, simulator: Simulator, values: dict[str, float], name: str) -> None:

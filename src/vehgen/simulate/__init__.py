@@ -3,6 +3,7 @@
 from vehgen.simulate.exact import exact_response, newmark_response
 from vehgen.simulate.lint import lint
 from vehgen.simulate.modes import Mode, natural_modes
+from vehgen.simulate.pool import SimulatorPool
 from vehgen.simulate.runfile import Run, load_run
 from vehgen.simulate.scenario import Scenario, Signal, make_scenario
 from vehgen.simulate.simulator import Response, Simulator, simulate, write_csv
@@ -14,6 +15,7 @@ __all__ = [
     "Scenario",
     "Signal",
     "Simulator",
+    "SimulatorPool",
     "exact_response",
     "lint",
     "load_run",

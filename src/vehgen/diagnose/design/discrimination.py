@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from vehgen.diagnose.design.candidate_runs import CandidateRun
 from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, NUISANCES, ModelFit
 from vehgen.fit.least_squares import best_delay
+from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.fit.noise import Noise, transform
 from vehgen.fit.problem import Problem
@@ -107,7 +108,7 @@ class FittedModel:
         if key not in self._locals:
             kept = np.isin(self.trial.channels, channels)
             misfit = self.misfit(run, replace(self.noise, sigma=np.where(kept, 1.0, ABSENT) * self.noise.sigma))
-            self._locals[key] = misfit, misfit.jacobian(self.x)
+            self._locals[key] = misfit, linearise(misfit, self.x).jacobian
         return self._locals[key]
 
     @cached_property
@@ -123,7 +124,7 @@ class FittedModel:
         misfit = self.fit.least_squares.misfit
         n = misfit.n_parameters
         own = sum(len(item.parameters) for item in self.fit.effects)
-        jacobian = misfit.jacobian(self.fit.least_squares.x)
+        jacobian = linearise(misfit, self.fit.least_squares.x).jacobian
         whole = jacobian.T @ jacobian
         whole[:n, :n] += np.diag(np.concatenate([np.full(n - own, BASE_PRIOR_SIGMA), np.full(own, SPREAD)]) ** -2.0)
         k = n + len(misfit.shared)
@@ -171,7 +172,7 @@ def separate(truth: FittedModel, fitted: FittedModel, run: CandidateRun, channel
     late[k + NUISANCES.names.index("delay")] = _later(truth, fitted, run) / NUISANCES.delay
     x, (distance, residuals) = min(((item, left(item)) for item in (fitted.x, late)), key=lambda item: item[1][0])
     if x is late:
-        jacobian = misfit.jacobian(x)
+        jacobian = linearise(misfit, x).jacobian
     for turn in range(REFITS):
         normal, slope = jacobian.T @ jacobian, jacobian.T @ residuals
         normal[:k, :k] += fitted.information
@@ -185,7 +186,7 @@ def separate(truth: FittedModel, fitted: FittedModel, run: CandidateRun, channel
         x, distance, residuals = new, nearer, residuals_there
         if settled or distance < 1.0 or turn == REFITS - 1:
             break
-        jacobian = misfit.jacobian(x)
+        jacobian = linearise(misfit, x).jacobian
     return Separation(distance if np.isfinite(distance) else 0.0, count, x)
 
 

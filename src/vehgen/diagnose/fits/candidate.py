@@ -13,7 +13,7 @@ from vehgen.fit.misfit import Noises
 from vehgen.fit.problem import Problem
 from vehgen.fit.space import SearchSpace
 from vehgen.fit.trial import Trial
-from vehgen.simulate import Simulator
+from vehgen.simulate import SimulatorPool
 from vehgen.vehicle import Vehicle
 
 
@@ -55,7 +55,7 @@ def list_candidates(vehicle: Vehicle, trials: Sequence[Trial], effects: Sequence
     ]
 
 
-def build_problem(candidate: Candidate, base: Problem, surveyor: EffectLocator, simulators: dict[object, Simulator]) -> Problem:
+def build_problem(candidate: Candidate, base: Problem, surveyor: EffectLocator, simulators: SimulatorPool) -> Problem:
     """Return the base problem with the candidate's effect added to its trials and its parameters to the search.
 
     Parameters
@@ -67,7 +67,7 @@ def build_problem(candidate: Candidate, base: Problem, surveyor: EffectLocator, 
     surveyor
         Knows the sizes of places.
     simulators
-        Compiled simulators to share; filled as needed.
+        Simulators to share.
     """
     trials = candidate.effect.change_trials(base.trials, candidate.place, surveyor, simulators)
     added = candidate.effect.search_dimensions(candidate.place, surveyor)

@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.fit.adjustments import Adjustment
-from vehgen.fit.least_squares import LeastSquaresFit, fit_least_squares
+from vehgen.fit.least_squares import COARSE_TOLERANCE, FitOptions, LeastSquaresFit, fit_least_squares
 from vehgen.fit.misfit import Misfit, Noises, Nuisances
 from vehgen.fit.problem import Problem
 from vehgen.fit.resolution import resolve
 from vehgen.fit.space import SearchSpace
 from vehgen.fit.trial import Trial
-from vehgen.simulate import Simulator
+from vehgen.simulate import SimulatorPool
 
 Array = NDArray[np.float64]
 NUISANCES = Nuisances(delay=0.05, speed=0.005, height=0.02)
@@ -25,19 +25,19 @@ BASE_RANGE = 0.3
 """The base may move its parameters by this share of a logarithm about the file's values: looser, it absorbs the effect."""
 BASE_PRIOR_SIGMA = 0.17
 """Standard deviation of a base parameter in the unit cube: 0.1 of a logarithm."""
-COARSE_TOLERANCE = 1e-4
 JACOBIAN_REFRESH = 5
-"""As in Misfit: saves two thirds of the time."""
-FINE_TOLERANCE = 1e-6
+"""The derivatives by nuisances serve for so many steps of a fit: saves two thirds of the time."""
+DIAGNOSIS_TOLERANCE = 1e-6
+"""Relative change of the sum of squares at which a fit of a diagnosis ends."""
 
 
 @dataclass(frozen=True)
 class ModelFit:
-    """A fitted model: the base with `effects`; `train` and `held_out` mean squares of whitened residuals (1 is noise alone).
+    """A fitted model: the base with `effects`; `training` and `validation` are mean squares of whitened residuals (1 is noise alone).
 
-    `runs` are the mean squares run by run, training runs first; `counts` how many residuals stand behind each; `powers` the mean squares
-    line by line and channel by channel, `shape (n_lines, n_channels)`; `checks` the misfit and nuisances of the untouched runs. `equals`
-    are the unknowns of other minima that do as well, where the response jumps.
+    `mean_squares` are those run by run, training runs first; `counts` how many residuals stand behind each; `spectra` the squares line by
+    line and channel by channel, `shape (n_lines, n_channels)`; `validation_fit` the misfit and nuisances of the validation runs.
+    `equivalent_minima` are the unknowns of other minima that do as well, where the response jumps.
     """
 
     effects: tuple[Candidate, ...]
@@ -120,16 +120,8 @@ def narrow(problem: Problem) -> Problem:
 def fit_base(problem: Problem, validation_runs: Sequence[Trial], noises: Noises, band: tuple[float, float]) -> ModelFit:
     """Fit the base model."""
     problem = resolve(*_begin(problem, noises, band))
-    fit = fit_least_squares(
-        problem,
-        problem.space.unit(problem.space.start),
-        NUISANCES,
-        band,
-        noises=noises,
-        prior_sigma=BASE_PRIOR_SIGMA,
-        tolerance=FINE_TOLERANCE,
-        jacobian_refresh=JACOBIAN_REFRESH,
-    )
+    options = FitOptions(NUISANCES, band, tolerance=DIAGNOSIS_TOLERANCE, jacobian_refresh=JACOBIAN_REFRESH, prior_sigma=BASE_PRIOR_SIGMA)
+    fit = fit_least_squares(problem, problem.space.unit(problem.space.start), options, noises=noises)
     return evaluate_fit((), fit, validation_runs, noises)
 
 
@@ -138,31 +130,26 @@ def mean_square_as_filed(trials: Sequence[Trial], noises: Noises, band: tuple[fl
     if not trials:
         return float("nan")
     problem = resolve(*_begin(Problem(tuple(trials), _nothing()), noises, band))
-    fit = fit_least_squares(
-        problem, np.zeros(0), NUISANCES, band, noises=noises, tolerance=COARSE_TOLERANCE, jacobian_refresh=JACOBIAN_REFRESH
-    )
+    options = FitOptions(NUISANCES, band, tolerance=COARSE_TOLERANCE, jacobian_refresh=JACOBIAN_REFRESH)
+    fit = fit_least_squares(problem, np.zeros(0), options, noises=noises)
     return _pooled(*_by_run(_powers(fit)))
 
 
 def refine(problem: Problem, fit: LeastSquaresFit, x: Array, n_effect_parameters: int) -> LeastSquaresFit:
-    """Fit finely from the unknowns `x` of another fit, on a problem with the same unknowns; `free` as in :func:`polish`."""
+    """Fit finely from the unknowns `x` of another fit, on a problem with the same unknowns, of which the last are the effects'."""
     misfit = fit.misfit
     unit, errors = misfit.split(x)
-    return fit_least_squares(
-        problem,
-        unit,
+    options = FitOptions(
         NUISANCES,
         misfit.band,
-        noises=misfit.noises,
-        start=errors.ravel(),
+        max_steps=25,
+        tolerance=DIAGNOSIS_TOLERANCE,
+        jacobian_refresh=JACOBIAN_REFRESH,
         prior_sigma=BASE_PRIOR_SIGMA,
         n_effect_parameters=n_effect_parameters,
-        shared=misfit.shared,
-        numbers=tuple(misfit.adjusted(x)),
-        max_steps=25,
-        tolerance=FINE_TOLERANCE,
-        jacobian_refresh=JACOBIAN_REFRESH,
     )
+    numbers = tuple(misfit.adjusted(x))
+    return fit_least_squares(problem, unit, options, noises=misfit.noises, start=errors.ravel(), shared=misfit.shared, numbers=numbers)
 
 
 def evaluate_fit(effects: tuple[Candidate, ...], fit: LeastSquaresFit, validation_runs: Sequence[Trial], noises: Noises) -> ModelFit:
@@ -176,10 +163,9 @@ def evaluate_fit(effects: tuple[Candidate, ...], fit: LeastSquaresFit, validatio
         problem = fit.misfit.problem
         fixed = problem.best_values(fit.values)
         vehicle = problem.trials[0].run.vehicle
-        shared: dict[object, Simulator] = {
-            (id(vehicle), repr(tuple(c.output for c in trial.recording.channels)), repr(trial.run.forces())): trial.simulator
-            for trial in problem.trials
-        }
+        shared = SimulatorPool()
+        for trial in problem.trials:
+            shared.add(vehicle, [channel.output for channel in trial.recording.channels], trial.run.forces(), trial.simulator)
         trials = [trial.with_vehicle(vehicle, shared) for trial in validation_runs]
         numbers = fit.misfit.adjusted(fit.x)
         frozen = Problem(
@@ -189,16 +175,8 @@ def evaluate_fit(effects: tuple[Candidate, ...], fit: LeastSquaresFit, validatio
             replace(item, neutral=float(value), scale=0.0) for item, value in zip(fit.misfit.shared, numbers, strict=True)
         )
         frozen = resolve(*_begin(frozen, noises, fit.misfit.band, frozen_shared))
-        again = fit_least_squares(
-            frozen,
-            np.zeros(0),
-            NUISANCES,
-            fit.misfit.band,
-            noises=noises,
-            shared=frozen_shared,
-            tolerance=FINE_TOLERANCE,
-            jacobian_refresh=JACOBIAN_REFRESH,
-        )
+        options = FitOptions(NUISANCES, fit.misfit.band, tolerance=DIAGNOSIS_TOLERANCE, jacobian_refresh=JACOBIAN_REFRESH)
+        again = fit_least_squares(frozen, np.zeros(0), options, noises=noises, shared=frozen_shared)
         checked = _powers(again)
         own, own_counts = _by_run(checked)
         later = _pooled(own, own_counts)

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from vehgen.diagnose.fits.candidate import Candidate, build_problem
 from vehgen.diagnose.fits.model_fit import (
     BASE_PRIOR_SIGMA,
-    COARSE_TOLERANCE,
     JACOBIAN_REFRESH,
     NUISANCES,
     CurrentModel,
@@ -20,12 +19,12 @@ from vehgen.diagnose.fits.model_fit import (
 )
 from vehgen.effects import EffectLocator
 from vehgen.effects.evidence import StartingPoint
-from vehgen.fit.least_squares import LeastSquaresFit, fit_least_squares
+from vehgen.fit.least_squares import COARSE_TOLERANCE, FitOptions, LeastSquaresFit, fit_least_squares
 from vehgen.fit.misfit import Misfit, Noises
 from vehgen.fit.problem import Problem
 from vehgen.fit.resolution import resolve
 from vehgen.fit.trial import Trial
-from vehgen.simulate import Simulator
+from vehgen.simulate import SimulatorPool
 
 Array = NDArray[np.float64]
 HOPELESS = 0.5
@@ -46,7 +45,7 @@ def fit_candidate(
     noises: Noises,
     band: tuple[float, float],
     surveyor: EffectLocator,
-    simulators: dict[object, Simulator],
+    simulators: SimulatorPool,
     origins: Sequence[StartingPoint],
     begin: Sequence[tuple[float, ...]] | None = None,
 ) -> ModelFit | None:
@@ -106,21 +105,16 @@ class _Rough:
         return fit.chi2 - 1 <= CLOSED_SHARE * max(self.current.training - 1, 0.0)
 
     def _fit(self, unit: Array, errors: Array, numbers: tuple[float, ...], steps: int) -> LeastSquaresFit:
-        return fit_least_squares(
-            self.problem,
-            unit,
+        options = FitOptions(
             NUISANCES,
             self.band,
-            noises=self.noises,
-            start=errors,
-            prior_sigma=BASE_PRIOR_SIGMA,
-            n_effect_parameters=self.n_effect_parameters,
-            shared=self.shared,
-            numbers=numbers,
             max_steps=steps,
             tolerance=COARSE_TOLERANCE,
             jacobian_refresh=JACOBIAN_REFRESH,
+            prior_sigma=BASE_PRIOR_SIGMA,
+            n_effect_parameters=self.n_effect_parameters,
         )
+        return fit_least_squares(self.problem, unit, options, noises=self.noises, start=errors, shared=self.shared, numbers=numbers)
 
     def _starts(self, origins: Sequence[StartingPoint], begin: Sequence[tuple[float, ...]]) -> list[tuple[Array, Array, tuple[float, ...]]]:
         """Return the points at which fits may begin, the lowest first: parameters, nuisances, numbers of adjustments."""

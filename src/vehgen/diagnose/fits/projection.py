@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA
+from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
 
 Array = NDArray[np.float64]
@@ -26,11 +27,11 @@ class Projection:
 
     @classmethod
     def of(cls, misfit: Misfit, x: Array) -> Projection:
-        """Return the projection at unknowns x: parameters held by HOLD, everything else by its own prior."""
+        """Return the projection at unknowns x: parameters held by BASE_PRIOR_SIGMA, everything else by its own prior."""
         total = misfit.n_unknowns
         held = np.ones(total)
         held[: misfit.n_parameters] = 1 / BASE_PRIOR_SIGMA
-        slopes = np.vstack([*(flatten(item, first=1).T for item in misfit.whitened_derivatives(x)), np.diag(held)])
+        slopes = np.vstack([*(flatten(item, first=1).T for item in linearise(misfit, x).spectra), np.diag(held)])
         residual = np.concatenate([*(flatten(item) for item in misfit.whitened_spectrum(x)), np.zeros(total)])
         basis = np.linalg.qr(slopes)[0]
         return cls(basis, residual - basis @ (basis.T @ residual))

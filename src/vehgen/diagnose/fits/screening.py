@@ -19,7 +19,7 @@ from vehgen.diagnose.fits.model_fit import NUISANCES, CurrentModel, ModelFit
 from vehgen.diagnose.fits.projection import Projection
 from vehgen.effects import EffectLocator
 from vehgen.fit.misfit import Misfit, flatten
-from vehgen.simulate import Simulator
+from vehgen.simulate import SimulatorPool
 
 Array = NDArray[np.float64]
 MAX_CANDIDATES = 14
@@ -31,7 +31,7 @@ def screen(
     base: ModelFit,
     current: CurrentModel,
     surveyor: EffectLocator,
-    simulators: dict[object, Simulator],
+    simulators: SimulatorPool,
 ) -> list[Candidate]:
     """Return the candidates worth fitting: all that leave the vehicle alone, of the others the MOST with the largest first-order gain.
 

@@ -17,13 +17,12 @@ from numpy.typing import NDArray
 
 from vehgen.codegen import Excitation
 from vehgen.diagnose.detect.noise_floor import find_noise_floor
-from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, BASE_RANGE, COARSE_TOLERANCE, JACOBIAN_REFRESH, NUISANCES
+from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, BASE_RANGE, JACOBIAN_REFRESH, NUISANCES
 from vehgen.diagnose.inputs.finding import Finding
 from vehgen.diagnose.inputs.labels import correlate, relabelled, true_labels
 from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.fit.adjustments import Adjustment, SpeedScale
-from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA as LOOSE
-from vehgen.fit.least_squares import LeastSquaresFit, fit_least_squares
+from vehgen.fit.least_squares import COARSE_TOLERANCE, WEAK_PRIOR_SIGMA, FitOptions, LeastSquaresFit, fit_least_squares
 from vehgen.fit.noise import transform
 from vehgen.fit.problem import Problem, make_problem
 from vehgen.fit.trial import Trial
@@ -114,19 +113,22 @@ class _BaseRefits:
             errors[:, NUISANCES.names.index("delay")] = lags / NUISANCES.delay
             start = errors.ravel()
         same = all(one is other for one, other in zip(problem.trials, self.trials, strict=True))
-        fit = fit_least_squares(
-            problem,
-            problem.space.unit(problem.space.start) if unit is None else unit,
+        options = FitOptions(
             NUISANCES,
             self.band,
-            noises=self.noises if same else find_noise_floor(problem.trials, self.band).noises,
-            start=start,
-            prior_sigma=BASE_PRIOR_SIGMA if unit is None else LOOSE,
-            shared=() if change is None else (change,),
-            numbers=() if change is None else (value,),
             max_steps=20,
             tolerance=COARSE_TOLERANCE,
             jacobian_refresh=JACOBIAN_REFRESH,
+            prior_sigma=BASE_PRIOR_SIGMA if unit is None else WEAK_PRIOR_SIGMA,
+        )
+        fit = fit_least_squares(
+            problem,
+            problem.space.unit(problem.space.start) if unit is None else unit,
+            options,
+            noises=self.noises if same else find_noise_floor(problem.trials, self.band).noises,
+            start=start,
+            shared=() if change is None else (change,),
+            numbers=() if change is None else (value,),
         )
         lines = np.concatenate([item.ravel() for item in fit.misfit.whitened_spectrum(fit.x)])
         return fit, float((np.mean(np.abs(lines) ** 2) - 1) / self.excess)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.fit.linearisation import Lineariser, linearise, lineariser
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.mechanics.rows import Row
 from vehgen.simulate.frequency import force_response
@@ -80,7 +81,7 @@ def list_places(misfit: Misfit) -> list[Place]:
     return places
 
 
-def score_locations(misfit: Misfit, x: Array, places: Sequence[Place]) -> list[PlaceResult]:
+def score_locations(misfit: Misfit, x: Array, places: Sequence[Place], derive: Lineariser | None = None) -> list[PlaceResult]:
     """Return each hypothesis with the chi it leaves.
 
     Parameters
@@ -91,22 +92,27 @@ def score_locations(misfit: Misfit, x: Array, places: Sequence[Place]) -> list[P
         The base fit.
     places
         Hypotheses of :func:`list_places`.
+    derive
+        What linearises the misfit (default: anew at every point, by differences to both sides).
     """
     found = []
-    lines, derivatives = misfit.whitened_spectrum(x), misfit.whitened_derivatives(x)
+    derive = derive or lineariser(misfit)
+    lines, derivatives = misfit.whitened_spectrum(x), derive(x).spectra
     for place in places:
-        result = _test(misfit, x, place, lines, derivatives)
+        result = _test(misfit, x, place, lines, derivatives, derive)
         if result is not None:
             found.append(result)
     return found
 
 
-def _test(misfit: Misfit, x: Array, place: Place, lines: list[Complex], derivatives: list[Complex]) -> PlaceResult | None:
+def _test(
+    misfit: Misfit, x: Array, place: Place, lines: list[Complex], derivatives: Sequence[Complex], derive: Lineariser
+) -> PlaceResult | None:
     best, best_chi = x, np.inf
     unknowns = 0
     for turn in range(GAUSS_NEWTON_STEPS):
         if turn:
-            lines, derivatives = misfit.whitened_spectrum(x), misfit.whitened_derivatives(x)
+            lines, derivatives = misfit.whitened_spectrum(x), derive(x).spectra
         parts, slopes, count = [], [], 0
         for t in range(len(misfit.problem.trials)):
             basis = _basis(misfit, x, place, t)
@@ -149,7 +155,7 @@ def posterior(misfit: Misfit, result: PlaceResult) -> Array:
 
     What the hypothesis cannot see, as an element's own stiffness, is known no better than by the prior.
     """
-    derivatives = misfit.whitened_derivatives(result.x)
+    derivatives = linearise(misfit, result.x).spectra
     slopes = [flatten(_project(item, _basis(misfit, result.x, result.place, t)), first=1).T for t, item in enumerate(derivatives)]
     rows, _ = _prior(misfit, result.x)
     shown = _shown(np.vstack(slopes), np.vstack([flatten(item, first=1).T for item in derivatives]), rows)

@@ -15,6 +15,7 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.verdict import NamedParameter
 from vehgen.effects import EffectParameter
 from vehgen.fit.adjustments import Adjustment
+from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.fit.noise import taper
 
@@ -101,7 +102,7 @@ def _normal(misfit: Misfit, x: Array, n_effect_parameters: int) -> tuple[dict[in
     """
     trials = misfit.problem.trials
     n, known = misfit.n_parameters, misfit.n_parameters + len(misfit.shared)
-    jacobians = {i: flatten(slopes, first=1).T for i, slopes in enumerate(misfit.whitened_derivatives(x))}
+    jacobians = {i: flatten(slopes, first=1).T for i, slopes in enumerate(linearise(misfit, x).spectra)}
     smooth = {i: jacobian for i, jacobian in jacobians.items() if not trials[i].jumps}
     asked = slice(n - n_effect_parameters, known)
     whole, part = (_moved(items.values(), misfit.n_unknowns)[asked] for items in (jacobians, smooth))

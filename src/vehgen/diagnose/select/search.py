@@ -19,7 +19,7 @@ from vehgen.diagnose.localise.localisation import localise, one_force, shortlist
 from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.effects import EffectLocator
 from vehgen.effects.evidence import Origins, Residual, StartingPoint
-from vehgen.simulate import Simulator
+from vehgen.simulate import SimulatorPool
 
 Array = NDArray[np.float64]
 DiagnosisProgress = Callable[[str, int, int, str], None]
@@ -87,7 +87,7 @@ def fit_candidates(
     footing = CurrentModel.of(base)
     trial = footing.problem.trials[0]
     surveyor = EffectLocator(trial.run.vehicle, dict(trial.values))
-    simulators: dict[object, Simulator] = {}
+    simulators = SimulatorPool()
     space = footing.problem.space
     plain = np.zeros(len(detection.problem.trials) * len(NUISANCES.names))
     fitted: StartingPoint = footing.unit, footing.errors
