@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from vehgen.effects import EFFECTS, Effect
+from vehgen.simulate import SimulatorPool
 
 HERE = Path(__file__).parents[1]
 PAGE = HERE / "effects.md"
@@ -170,7 +171,7 @@ def draw() -> None:
             continue
         wanted = PLACES.get(effect.name)
         candidate = next((item for item in candidates if item.place == wanted), candidates[0])
-        posed = build_problem(candidate, problem, surveyor, {})
+        posed = build_problem(candidate, problem, surveyor, SimulatorPool())
         combination = effect.starts(candidate.place, surveyor)[-1]
         values = posed.space.start.copy()
         if candidate.parameters:

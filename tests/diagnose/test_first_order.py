@@ -10,6 +10,7 @@ from vehgen.diagnose.fits.model_fit import NUISANCES, CurrentModel
 from vehgen.effects import EffectLocator, library
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.fit.trial import load_trials
+from vehgen.simulate import SimulatorPool
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +36,7 @@ def _both(detection, name, share):
     base = detection.base.least_squares
     footing, trial = CurrentModel.of(detection.base), detection.problem.trials[0]
     candidates = list_candidates(trial.run.vehicle, detection.trials, [library()[name]])
-    problem = build_problem(candidates[0], footing.problem, EffectLocator(trial.run.vehicle, dict(trial.values)), {})
+    problem = build_problem(candidates[0], footing.problem, EffectLocator(trial.run.vehicle, dict(trial.values)), SimulatorPool())
     values = problem.space.start.copy()
     values[: len(footing.unit)] = base.values
     values[len(footing.unit)] *= share

@@ -66,7 +66,7 @@ def test_a_quantised_or_noiseless_recording_is_not_clipped_and_not_stuck(plain):
 
 @pytest.mark.parametrize("both", [True, False])
 def test_a_clipped_accelerometer_is_found_with_level_and_share(plain, both):
-    truth = next(trial for trial in plain if trial.name == "high").measurement.values[:, 0]
+    truth = next(trial for trial in plain if trial.name == "high").recording.values[:, 0]
     level = 0.5 * truth.max()
 
     def clip(values):
