@@ -17,7 +17,7 @@ def main() -> None:
     """Diagnose the hidden case and draw where, and how far."""
     found = diagnose(load_trials(sorted((HERE / "examples" / "hidden").glob("*.yaml"))))
     IMAGES.mkdir(parents=True, exist_ok=True)
-    save_figure(plot_places(found.places, found.passed), IMAGES / "places.svg")
+    save_figure(plot_places(found.evidence.places), IMAGES / "places.svg")
     save_figure(plot_waterfall(found), IMAGES / "steps.svg")
 
 

@@ -190,15 +190,16 @@ def draw() -> None:
 
 def _figure(effect: Effect, t: np.ndarray, base: np.ndarray, changed: np.ndarray, channels: list[str]):  # type: ignore[no-untyped-def]
     from vehgen.measure import record_psd
-    from vehgen.report.plots.comparison import Curve, plot_pair
+    from vehgen.measure.curves import ChannelCurves
+    from vehgen.report.plots.comparison import plot_pair
 
     channel = SHOWN.get(effect.name, "L1_az")
     i = channels.index(channel)
     quantity = "acceleration" if channel.endswith("az") else "pitch_rate"
     frequency, before = record_psd(base[:, i], 0.01)
     after = record_psd(changed[:, i], 0.01)[1]
-    history = Curve("", channel, quantity, t, base[:, i], changed[:, i])
-    return plot_pair(history, Curve("", channel, quantity, frequency, before, after), (0.5, 25.0), ("without", "with"))
+    history = ChannelCurves("", channel, quantity, t, base[:, i], changed[:, i])
+    return plot_pair(history, ChannelCurves("", channel, quantity, frequency, before, after), (0.5, 25.0), ("without", "with"))
 
 
 if __name__ == "__main__":

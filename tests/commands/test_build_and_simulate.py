@@ -68,6 +68,38 @@ def test_build_writes_its_folder_and_nothing_else(work: Path, capsys: pytest.Cap
     )
 
 
+@pytest.mark.parametrize("name", ["truck_walking_beam", "tractor5_module"])
+def test_report_draws_a_built_vehicle_again_from_its_file(work: Path, capsys: pytest.CaptureFixture[str], name: str):
+    assert main(["build", name, "--out", "first"]) == 0
+    assert main(["report", "first/build.json", "--out", "again", "--json"]) == 0
+    drawn = written(work / "again")
+    assert drawn == written(work / "first") - {"build.json"}
+    for name in drawn:
+        assert (work / "first" / name).read_bytes() == (work / "again" / name).read_bytes(), name
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"vehicle": {}}, "holds no vehicle's data"),
+        ({"vehicle": {"extends": "../secret.yaml"}}, "secret"),
+        ({"vehicle": {"name": "__import__('os')", "bodies": {"b": {"mass": "__import__('os')"}}}}, "build.json"),
+        ({"values": {}}, "other parameters than its vehicle has"),
+        ({"modes": {"coordinates": [], "modes": "many"}}, "`modes.modes`"),
+    ],
+)
+def test_a_damaged_build_is_refused_in_one_line(work: Path, capsys: pytest.CaptureFixture[str], change: dict[str, Any], said: str):
+    assert main(["build", "quarter_car", "--no-plots", "--out", "a"]) == 0
+    data = json.loads((work / "a" / "build.json").read_text(encoding="utf-8"))
+    (work / "build.json").write_text(json.dumps({**data, "plots": True, **change}), encoding="utf-8")
+    capsys.readouterr()
+    assert main(["report", "build.json", "--out", "b"]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+    assert not (work / "b").exists()
+
+
 def test_build_without_plots_into_a_chosen_folder_twice_the_same(work: Path, capsys: pytest.CaptureFixture[str]):
     assert main(["build", "quarter_car", "--no-plots", "--out", "a/b"]) == 0
     text = capsys.readouterr().out

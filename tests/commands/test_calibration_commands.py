@@ -1,9 +1,18 @@
 import json
+from pathlib import Path
 
 import pytest
 
 from tests.fit.recordings import sedan_truth, write_run
+from vehgen.calibrate.calibration import Settings, calibrate
+from vehgen.calibrate.genetic import GeneticSearch
+from vehgen.calibrate.result import CalibrationSummary
+from vehgen.calibrate.summary import summarise
 from vehgen.commands import main
+from vehgen.errors import InputError
+from vehgen.files.results import json_text
+from vehgen.fit.problem import make_problem
+from vehgen.fit.trial import load_trials
 
 SMALL = ["--generations", "5", "--size", "20", "--starts", "1"]
 
@@ -38,6 +47,28 @@ def test_calibrate_writes_vehicle_result_and_figures(run, tmp_path, capsys):
     data = json.loads(capsys.readouterr().out)
     assert data["worst_acceleration_error"] < 0.05
     assert len(data["channels"]) == 4
+    for folder, name in ((out, "calibration.json"), (tmp_path / "val", "validation.json")):
+        same_figures_again(folder, name, tmp_path / "again", capsys)
+
+
+def same_figures_again(folder, name, again, capsys):
+    assert main(["report", str(folder / name), "--out", str(again), "--json"]) == 0
+    files = [Path(path) for path in json.loads(capsys.readouterr().out)["files"]]
+    assert {path.name for path in files} == {path.name for path in folder.glob("*.png")}
+    for path in files:
+        assert path.read_bytes() == (folder / path.name).read_bytes(), path.name
+        path.unlink()
+
+
+def test_a_calibration_survives_its_file(run, tmp_path):
+    problem = make_problem(load_trials([run]))
+    summary = summarise(calibrate(problem, Settings(search=GeneticSearch(1, 10, 2), starts=1)), replicates=2)
+    again = CalibrationSummary.from_dict(json.loads(json_text(summary)))
+    assert again == summary
+    assert again.parameters == summary.parameters
+    assert [row[0] for row in again.table()[1]] == list(problem.space.names)
+    with pytest.raises(InputError, match="read from a file"):
+        again.vehicle_text(tmp_path, "x")
 
 
 def test_calibrate_prints_tables_for_people(run, tmp_path, capsys):
@@ -78,6 +109,7 @@ def test_sensitivity_and_sensors(run, tmp_path, capsys):
     data = json.loads(capsys.readouterr().out)
     assert set(data["channels"]["F_az"]) == {"kf", "mr"}
     assert len(data["channels"]["F_az"]["kf"]["index"]) == len(data["frequency_hz"])
+    same_figures_again(tmp_path / "s", "sensitivity.json", tmp_path / "again", capsys)
     assert main(["sensors", "sedan2.yaml", run, "--count", "2", "--json"]) == 0
     best = json.loads(capsys.readouterr().out)["best"]
     assert best[1]["mean_error"] < best[0]["mean_error"]

@@ -108,13 +108,13 @@ def test_markup_in_names_is_text(capsys: pytest.CaptureFixture[str]):
         verdict="no_difference",
         reason=f"{MARKUP} fits",
         effects=[],
-        gap=SimpleNamespace(runs=[{"run": MARKUP, "untouched": False, "before": 1.0, "after": 1.0}]),
+        gap=SimpleNamespace(runs=[SimpleNamespace(run=MARKUP, validation=False, before=1.0, after=1.0)]),
         notes=[MARKUP],
         next_experiment=MARKUP,
     )
     diagnose._show(SimpleNamespace(verdict=verdict), [Path(MARKUP)])
     text = capsys.readouterr().out
-    assert f"no difference: {SHOWN} fits" in text
+    assert f"{SHOWN} fits." in text
     assert f"note: {SHOWN}" in text
     assert f"measure next: {SHOWN}" in text
     print_table(MARKUP, (MARKUP,), [(MARKUP,)])

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from benchmarks.hidden_effects.generator import Case, Effect, Hump, RandomRoad, RunSpec, true_parameters, write_case
 
+from vehgen.diagnose.collecting import force_evidence
 from vehgen.diagnose.localise import unknown_force as place_test
 from vehgen.diagnose.localise.free_form import fit_free_form, recover
 from vehgen.diagnose.localise.recovered_force import RecoveredForce, strongest
@@ -93,16 +94,16 @@ def test_a_body_has_a_moment_over_its_pitch(cubic):
     detection, results = cubic
     law = fit_free_form(recover(detection, pick(results, "body body"), component=1))
     assert law.units == ("rad", "rad/s", "N m")
-    assert [axes.get_xlabel() for axes in plot_force(law).axes] == ["pitch [rad]", "its rate [rad/s]", "time [s]"]
+    assert [axes.get_xlabel() for axes in plot_force(force_evidence(law)).axes] == ["pitch [rad]", "its rate [rad/s]", "time [s]"]
     assert " rad the force" in law.describe()
 
 
 def test_the_figure_has_three_panels_and_can_show_any_run(spring):
-    figure = plot_force(spring, "low")
+    figure = plot_force(force_evidence(spring, "low"))
     assert len(figure.axes) == 3
     assert "<svg" in figure_svg(figure)
     with pytest.raises(KeyError):
-        plot_force(spring, "no such run")
+        force_evidence(spring, "no such run")
 
 
 def by_hand(law, name, seed, untouched=False):

@@ -122,7 +122,7 @@ def test_the_silverbox_lacks_a_cubic_spring(runs):
     effect = found.effects[0]
     assert (effect.name, effect.place) == ("cubic_stiffness", "spring")
     assert effect.parameters["k3"].value == pytest.approx(3.92e9, rel=0.02)
-    assert effect.held_out_gain > 0.97
+    assert effect.validation_gain > 0.97
 
 
 def test_at_a_low_level_nothing_is_named(runs):

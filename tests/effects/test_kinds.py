@@ -90,14 +90,6 @@ def test_a_sensor_of_an_axle_has_no_position_to_be_wrong_about():
     assert EFFECTS["sensor_gain"].places(vehicle, [trial]) == ("stroke_d",)
 
 
-def test_an_effect_says_in_words_what_it_is_where():
-    sedan, tractor = load_vehicle("sedan2"), load_vehicle("tractor5")
-    assert FRICTION.describe(sedan, "rear", {"force": 445.6}) == "Dry friction of about 446 N in the rear suspension"
-    assert SPEED.describe(sedan, "all runs", {"scale": 1.0312}) == "Speed error of about 1.03 in all runs"
-    assert EFFECTS["tyre_liftoff"].describe(tractor, "axle4", {}).endswith(" in the tyres of axle4")
-    assert EFFECTS["walking_beam"].describe(tractor, "axle4+axle5", {"share": 0.9}).endswith(" of about 0.9 at axle4 and axle5")
-
-
 def test_wrong_parameters_are_refused_when_an_effect_is_made():
     with pytest.raises(ValueError, match="one parameter, found 0"):
         replace(GAIN, parameters=())

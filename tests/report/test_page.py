@@ -80,7 +80,7 @@ def pages(tmp_path_factory):
 
 def test_the_folder_holds_what_it_should(tmp_path):
     written = build(tmp_path / "deep" / "folder", "quarter_car")
-    names = {"kernel.py", "kernel_legend.txt", "equations.txt", "equations.tex", "drawing.svg", "modes.svg", "index.html"}
+    names = {"kernel.py", "kernel_legend.txt", "equations.txt", "equations.tex", "drawing.svg", "modes.svg", "index.html", "build.json"}
     assert {path.name for path in written} == names
     assert {path.name for path in (tmp_path / "deep" / "folder").iterdir()} == names
     assert (tmp_path / "deep" / "folder" / "kernel.py").read_text(encoding="utf-8") == write_kernel(model("quarter_car")).text
@@ -88,7 +88,8 @@ def test_the_folder_holds_what_it_should(tmp_path):
 
 def test_plots_can_be_left_out(tmp_path):
     written = build(tmp_path, "quarter_car", plots=False)
-    assert {path.name for path in written} == {"kernel.py", "kernel_legend.txt", "equations.txt", "equations.tex", "index.html"}
+    names = {"kernel.py", "kernel_legend.txt", "equations.txt", "equations.tex", "index.html", "build.json"}
+    assert {path.name for path in written} == names
     assert "<svg" not in (tmp_path / "index.html").read_text(encoding="utf-8")
 
 

@@ -68,6 +68,7 @@ def test_the_page_is_whole_and_fetches_nothing(tmp_path):
         "drawing.svg",
         "modes.svg",
         "index.html",
+        "build.json",
     }
     page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
     for part in ("semitrailer pitch", "look out", "module heave", "fifth_wheel", "SHA-256", "<svg", "<math"):

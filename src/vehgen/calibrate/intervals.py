@@ -7,7 +7,7 @@ told. Intervals of positive quantities are symmetric on a logarithmic scale.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -181,7 +181,7 @@ class Uncertainty:
         found = self._modes(values)
         return np.array([[mode.undamped_hz for mode in found], [mode.damping_ratio for mode in found]])
 
-    def _modes(self, values: Array) -> list[Mode]:
+    def _modes(self, values: Array) -> Sequence[Mode]:
         trial = self.fit.misfit.problem.trials[0]
         names = self.structure.space.names
         return natural_modes(trial.simulator.model, trial.values | dict(zip(names, values.tolist(), strict=True)))

@@ -4,33 +4,54 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from vehgen.errors import InputError
+from vehgen.files.result_fields import Array1D, Array2D, Array3D
+from vehgen.files.results import Result, Table
+from vehgen.files.units import DAMPING, LENGTH, MASS, STIFFNESS
 from vehgen.measure import record_psd
 from vehgen.mechanics import derive
 from vehgen.simulate import Run, make_scenario
 from vehgen.simulate.sensitivity import direct_sensitivities
+from vehgen.vehicle import Vehicle
 
 Array = NDArray[np.float64]
+MAX_SHOWN = 500
+"""A file with more channels or parameters than this is refused: no figure could show them."""
 
 
-@dataclass(frozen=True)
-class SensitivityIndices:
+@dataclass(frozen=True, eq=False)
+class SensitivityIndices(Result):
     """PSDs of sensitivities: `index shape (n_parameters, n_channels, n)`, in squared units of channel over parameter, per Hz.
 
     `values shape (n_parameters,)` [SI]; `frequency shape (n,)` [Hz]; `relative shape (n_parameters, n_channels)` is the RMS change of a
-    channel for a change of 1 % of the parameter, over the channel's own RMS.
+    channel for a change of 1 % of the parameter, over the channel's own RMS; `kinds` are the parameters' kinds, in words.
     """
 
+    KIND: ClassVar[str] = "sensitivity"
+    DRAWING: ClassVar[str] = "vehgen.report.plots.sensitivity_plots:plot_first_channel"
+
     names: tuple[str, ...]
-    values: Array
-    channels: tuple[str, ...]
-    frequency: Array
-    index: Array
-    relative: Array
+    values: Array1D
+    channels: Annotated[tuple[str, ...], Field(max_length=MAX_SHOWN)]
+    frequency: Array1D
+    index: Array3D
+    relative: Array2D
+    kinds: Annotated[tuple[str, ...], Field(max_length=MAX_SHOWN)]
+
+    def __post_init__(self) -> None:
+        shape = len(self.names), len(self.channels), len(self.frequency)
+        if self.index.shape != shape or self.relative.shape != shape[:2] or not len(self.values) == len(self.kinds) == shape[0]:
+            raise ValueError("a number for every parameter, channel and frequency was expected")
+
+    def table(self) -> Table:
+        """Return the relative changes, a row a parameter."""
+        return ("parameter", *self.channels), [(name, *row) for name, row in zip(self.names, self.relative.tolist(), strict=True)]
 
 
 def sensitivity_indices(run: Run, names: Sequence[str] | None = None) -> SensitivityIndices:
@@ -63,4 +84,13 @@ def sensitivity_indices(run: Run, names: Sequence[str] | None = None) -> Sensiti
     relative = change / np.where(rms > 0, rms, np.nan)
     channels = tuple(channel.name for channel in model.channels)
     parameters = np.array([values[name] for name in chosen])
-    return SensitivityIndices(chosen, parameters, channels, frequency, density.transpose(0, 2, 1), relative)
+    kinds = tuple(_kind(name, run.vehicle) for name in chosen)
+    return SensitivityIndices(chosen, parameters, channels, frequency, density.transpose(0, 2, 1), relative, kinds)
+
+
+def _kind(name: str, vehicle: Vehicle) -> str:
+    """Return a parameter's kind in words: masses, suspension stiffnesses, tyre stiffnesses, dampings, distances, others."""
+    if any(name in axle.tyre.k.names for axle in vehicle.axles.values()):
+        return "tyre stiffnesses"
+    kinds = {MASS: "masses", STIFFNESS: "suspension and link stiffnesses", DAMPING: "dampings", LENGTH: "distances"}
+    return kinds.get(vehicle.dimensions[name], "inertias and others")

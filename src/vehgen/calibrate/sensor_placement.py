@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from typing import ClassVar
 
 import numpy as np
 import scipy.linalg
@@ -17,6 +18,8 @@ from numpy.typing import NDArray
 
 from vehgen.calibrate.identifiability import null_space, stacked_derivatives
 from vehgen.errors import InputError
+from vehgen.files.result_fields import Array1D
+from vehgen.files.results import Cell, Result, Table
 from vehgen.mechanics import derive
 from vehgen.mechanics.outputs import Place, PointOutput
 from vehgen.simulate import Run, make_scenario
@@ -61,18 +64,29 @@ class Layout:
     """
 
     places: tuple[SensorCandidate, ...]
-    error: Array
+    error: Array1D
     score: float
 
 
-@dataclass(frozen=True)
-class SensorAdvice:
-    """The best set of each size up to `len(best)`, and each candidate's own score."""
+@dataclass(frozen=True, eq=False)
+class SensorAdvice(Result):
+    """The best set of each size up to `len(best)`, and each candidate's own score, `single shape (n_candidates,)`."""
+
+    KIND: ClassVar[str] = "sensor advice"
+    DRAWING: ClassVar[str] = "vehgen.report.plots.result_plots:plot_sensor_advice"
 
     names: tuple[str, ...]
     best: tuple[Layout, ...]
     candidates: tuple[SensorCandidate, ...]
-    single: Array
+    single: Array1D
+
+    def table(self) -> Table:
+        """Return the best sets, a row each, with the mean and every parameter's standard deviation of ln(parameter)."""
+        rows: list[tuple[Cell, ...]] = [
+            (len(layout.places), "; ".join(place.words for place in layout.places), layout.score**0.5, *layout.error.tolist())
+            for layout in self.best
+        ]
+        return ("sensors", "where", "mean error", *self.names), rows
 
 
 def advise_sensors(run: Run, count: int = 3, names: Sequence[str] | None = None) -> SensorAdvice:

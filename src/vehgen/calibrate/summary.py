@@ -1,133 +1,42 @@
-"""What a calibration tells its user: values, intervals, what cannot be told, how well it fits; as JSON and as a vehicle file."""
+"""Work out what a calibration tells: intervals, what cannot be told, how well it fits, tyre loads, and where it all came from."""
 
 from __future__ import annotations
 
-import hashlib
-import platform
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
-from functools import partial
+from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.calibrate.calibration import Calibration, Settings, StepResult
-from vehgen.calibrate.identifiability import Structure, find_structure
-from vehgen.calibrate.intervals import LEVEL, Estimate, Uncertainty, refit
+from vehgen.calibrate.bootstrap import bootstrap_intervals
+from vehgen.calibrate.calibration import Calibration, StepResult
+from vehgen.calibrate.identifiability import find_structure
+from vehgen.calibrate.intervals import LEVEL, Estimate, Uncertainty
 from vehgen.calibrate.objective import PsdObjective
-from vehgen.files.reading import read_bytes
-from vehgen.files.tables import MAX_TABLE_BYTES
+from vehgen.calibrate.result import (
+    CalibrationSummary,
+    CombinationSummary,
+    FitSummary,
+    Interval,
+    ModeSummary,
+    NoiseSummary,
+    ParameterSummary,
+)
+from vehgen.files.provenance import file_hashes, versions
 from vehgen.fit.parallel import Runner
 from vehgen.fit.prior_data import PriorData
+from vehgen.measure import record_psd
+from vehgen.measure.curves import ChannelCurves
 from vehgen.mechanics import static_loads
 from vehgen.mechanics.outputs import ElementOutput
 from vehgen.simulate import Simulator
-from vehgen.vehicle.writing import quantity, variant_text
+from vehgen.vehicle.writing import quantity
 
 Array = NDArray[np.float64]
 WEAK_WIDTH = 0.5
 """An interval that is wider than this share of the search range says little: the parameter counts as weak."""
-
-
-@dataclass(frozen=True)
-class ParameterSummary:
-    """One parameter: its estimate, and what stands behind it.
-
-    `status` is `identified`, `weak` (its interval spans most of its range), `gauge` (no data of this kind can tell it: see the null
-    directions) or `bound` (its range, not the data, set it). `given` is its estimate with the gauge closed by decree.
-    """
-
-    estimate: Estimate
-    unit: str
-    range: tuple[float, float]
-    status: str
-    step: str
-    given: Estimate | None = None
-
-
-@dataclass(frozen=True)
-class CalibrationSummary:
-    """Everything a calibration tells, ready for JSON, tables and figures."""
-
-    calibration: Calibration
-    parameters: tuple[ParameterSummary, ...]
-    structure: Structure
-    null_directions: tuple[dict[str, float], ...]
-    combinations: tuple[Estimate, ...]
-    modes: tuple[tuple[Estimate, Estimate], ...]
-    bootstrap: tuple[Estimate, ...]
-    objective: dict[str, float]
-    least_tyre_loads: dict[str, float]
-    spread: dict[str, tuple[float, float]]
-    provenance: dict[str, Any]
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON (SI units)."""
-        calibration = self.calibration
-        last = calibration.steps[-1]
-        pivots = [self.structure.space.names[i] for i in self.structure.fixed_parameters]
-        return {
-            "vehicle": calibration.problem.trials[0].run.vehicle.name,
-            "method": calibration.settings.method,
-            "stopped": calibration.stopped,
-            "parameters": {
-                item.estimate.name: {
-                    "value": item.estimate.value,
-                    "interval": _pair(item.estimate),
-                    "unit": item.unit,
-                    "range": list(item.range),
-                    "status": item.status,
-                    "step": item.step,
-                    "interval_given_pivots": _pair(item.given),
-                }
-                for item in self.parameters
-            },
-            "confidence": LEVEL,
-            "rank": self.structure.rank,
-            "searched": self.structure.space.size,
-            "pivots": pivots,
-            "null_directions": list(self.null_directions),
-            "combinations": {item.name: {"value": item.value, "interval": _pair(item)} for item in self.combinations},
-            "modes": [
-                {
-                    "name": hz.name,
-                    "undamped_hz": hz.value,
-                    "interval": _pair(hz),
-                    "damping_ratio": zeta.value,
-                    "damping_interval": _pair(zeta),
-                }
-                for hz, zeta in self.modes
-            ],
-            "bootstrap": {item.name: {"value": item.value, "interval": _pair(item)} for item in self.bootstrap},
-            "objective": self.objective,
-            "chi2": last.fits[0].chi2 if last.fits else None,
-            "fits": [{"loss": fit.loss, "chi2": fit.chi2, "on_bound": list(fit.on_bound)} for fit in last.fits],
-            "spread": {name: list(pair) for name, pair in self.spread.items()},
-            "nuisances": _nuisances(last),
-            "noise": _noise(last),
-            "tyre_load_minimum": self.least_tyre_loads,
-            "history": [list(step.state.history) for step in calibration.steps],
-            "provenance": self.provenance,
-        }
-
-    def vehicle_text(self, folder: Path, name: str) -> str:
-        """Return the calibrated vehicle file, which extends the vehicle that was calibrated."""
-        calibration = self.calibration
-        vehicle = calibration.problem.trials[0].run.vehicle
-        runs = ", ".join(trial.name for trial in calibration.problem.trials)
-        comments = [
-            f"calibrated by vehgen {self.provenance['vehgen']}: {calibration.settings.method} from {runs}, seed {self.provenance['seed']}",
-            f"comments give {LEVEL:.0%} intervals; 'gauge' marks what recordings of this kind cannot tell one by one",
-        ]
-        notes = {}
-        for item in self.parameters:
-            pair = _pair(item.estimate)
-            known = "" if pair is None else f" {pair[0]:.4g} to {pair[1]:.4g}"
-            notes[item.estimate.name] = f"{item.status}{known}"
-        title = f"{vehicle.title or vehicle.name}, calibrated"
-        return variant_text(vehicle, folder, name, title, calibration.values, comments, notes)
 
 
 def summarise(
@@ -137,62 +46,79 @@ def summarise(
     replicates: int = 0,
     runner: Runner | None = None,
 ) -> CalibrationSummary:
-    """Work out what a calibration tells.
+    """Work out what a calibration, finished or stopped, tells.
 
     Parameters
     ----------
-    calibration
-        Finished or stopped.
-    facts
-        What was known from elsewhere.
+    calibration, prior_data
+        The calibration; what was known from elsewhere.
     combinations
         Expressions of the vehicle's parameters to estimate beside those found automatically.
-    replicates
-        Size of a bootstrap that checks the intervals of the combinations and frequencies; 0 leaves it out.
-    runner
-        Where the bootstrap runs.
+    replicates, runner
+        Size of a bootstrap that checks the intervals of the combinations and frequencies (0 leaves it out), and where it runs.
     """
     problem = calibration.problem
     structure = find_structure(problem, calibration.array)
-    outcomes: list[ParameterSummary] = []
-    ratios: list[Estimate] = []
-    modes: tuple[tuple[Estimate, Estimate], ...] = ()
-    boot: list[Estimate] = []
+    found: dict[str, ParameterSummary] = {}
+    last, uncertainty = calibration.steps[-1], None
     for result in calibration.steps:
-        own = None if prior_data is None else PriorData(result.problem, prior_data.facts)
-        uncertainty = None
-        if result.fits:
-            uncertainty = Uncertainty(result.fits[0], find_structure(result.problem, result.fits[0].values), own)
-        outcomes += _parameters(result, uncertainty, structure)
-        if uncertainty is not None and result is calibration.steps[-1]:
-            ratios = [*uncertainty.ratios(), *(uncertainty.combination(text) for text in combinations)]
-            modes = tuple(uncertainty.frequencies())
-            if replicates:
-                boot = _bootstrap(result, uncertainty, own, ratios, replicates, calibration.settings.seed, runner or Runner())
-    order = {name: i for i, name in enumerate(problem.space.names)}
-    outcomes.sort(key=lambda item: order[item.estimate.name])
+        uncertainty = _uncertainty(result, prior_data)
+        found |= _parameters(result, uncertainty)
+    ratios = () if uncertainty is None else (*uncertainty.ratios(), *(uncertainty.combination(text) for text in combinations))
+    boot: list[Estimate] = []
+    if uncertainty is not None and replicates:
+        facts, seed = _facts_of(last, prior_data), calibration.settings.seed
+        boot = bootstrap_intervals(last, uncertainty, facts, ratios, replicates, seed, runner or Runner())
+    psds, histories = _curves(calibration)
     return CalibrationSummary(
-        calibration=calibration,
-        parameters=tuple(outcomes),
-        structure=structure,
+        vehicle=problem.trials[0].run.vehicle.name,
+        method=calibration.settings.method,
+        stopped=calibration.stopped,
+        parameters={name: found[name] for name in problem.space.names if name in found},
+        confidence=LEVEL,
+        rank=structure.rank,
+        searched=structure.space.size,
+        pivots=tuple(structure.space.names[i] for i in structure.fixed_parameters),
         null_directions=tuple(structure.directions(calibration.array)),
-        combinations=tuple(ratios),
-        modes=modes,
-        bootstrap=tuple(boot),
+        combinations=_combinations(ratios),
+        modes=() if uncertainty is None else _modes(uncertainty),
+        bootstrap=_combinations(boot),
         objective=_objective(calibration),
-        least_tyre_loads=least_tyre_loads(calibration),
-        spread=_spread(calibration.steps[-1]),
+        chi2=last.fits[0].chi2 if last.fits else None,
+        fits=tuple(FitSummary(fit.loss, fit.chi2, tuple(fit.on_bound)) for fit in last.fits),
+        spread=_spread(last),
+        nuisances=_nuisances(last),
+        noise=_noise(last),
+        tyre_load_minimum=least_tyre_loads(calibration),
+        history=tuple(tuple(step.state.history) for step in calibration.steps),
+        steps=tuple(step.step.label for step in calibration.steps),
+        band=calibration.settings.band,
+        psds=psds,
+        histories=histories,
         provenance=provenance(calibration),
+        calibration=calibration,
     )
 
 
-def _parameters(result: StepResult, uncertainty: Uncertainty | None, structure: Structure) -> list[ParameterSummary]:
+def _uncertainty(result: StepResult, prior_data: PriorData | None) -> Uncertainty | None:
+    """Return how sure a step's best fit is; None without a polish."""
+    if not result.fits:
+        return None
+    return Uncertainty(result.fits[0], find_structure(result.problem, result.fits[0].values), _facts_of(result, prior_data))
+
+
+def _facts_of(result: StepResult, prior_data: PriorData | None) -> PriorData | None:
+    """Return what was known from elsewhere, of a step's own parameters."""
+    return None if prior_data is None else PriorData(result.problem, prior_data.facts)
+
+
+def _parameters(result: StepResult, uncertainty: Uncertainty | None) -> dict[str, ParameterSummary]:
     vehicle = result.problem.trials[0].run.vehicle
     space = result.problem.space
     bounds = result.fits[0].on_bound if result.fits else ()
     estimates = uncertainty.parameters() if uncertainty else [Estimate(name, value) for name, value in result.values.items()]
     given = uncertainty.given_fixed_parameters() if uncertainty else [None] * space.size
-    found = []
+    found: dict[str, ParameterSummary] = {}
     for i, (estimate, closed) in enumerate(zip(estimates, given, strict=True)):
         if estimate.name not in result.step.kept:
             continue
@@ -207,31 +133,9 @@ def _parameters(result: StepResult, uncertainty: Uncertainty | None, structure: 
             status = "weak" if high - low > WEAK_WIDTH else "identified"
         unit = quantity(vehicle, estimate.name, 1.0).partition(" ")[2]
         limits = (float(space.lower[i]), float(space.upper[i]))
-        found.append(ParameterSummary(estimate, unit, limits, status, result.step.label, closed))
-    return found
-
-
-def _bootstrap(
-    result: StepResult,
-    uncertainty: Uncertainty,
-    facts: PriorData | None,
-    ratios: Sequence[Estimate],
-    replicates: int,
-    seed: int,
-    runner: Runner,
-) -> list[Estimate]:
-    seeds = [int(item) for item in np.random.SeedSequence([seed, 3]).generate_state(replicates)]
-    rows = np.array(list(runner.map(partial(refit, result.fits[0], facts=facts), seeds)))
-    tail = 50 * (1 - LEVEL)
-    found = []
-    for estimate in ratios:
-        spread = np.array([uncertainty.expression(estimate.name)(row) for row in rows])
-        low, high = np.percentile(spread, [tail, 100 - tail])
-        found.append(Estimate(estimate.name, estimate.value, float(low), float(high)))
-    spread = np.array([uncertainty.mode_table(row)[0] for row in rows])
-    for j, (hz, _) in enumerate(uncertainty.frequencies()):
-        low, high = np.percentile(spread[:, j], [tail, 100 - tail])
-        found.append(Estimate(f"{hz.name} [Hz]", hz.value, float(low), float(high)))
+        found[estimate.name] = ParameterSummary(
+            estimate.value, _interval(estimate), unit, limits, status, result.step.label, _interval(closed)
+        )
     return found
 
 
@@ -279,48 +183,49 @@ def _nuisances(result: StepResult) -> dict[str, dict[str, float]]:
     }
 
 
-def _noise(result: StepResult) -> list[dict[str, Any]]:
-    if not result.fits:
-        return []
-    return [
-        {"run": name, "sigma": noise.sigma.tolist(), "road_level_m3": noise.levels.tolist()}
-        for name, noise in result.fits[0].misfit.noises.items()
-    ]
+def _noise(result: StepResult) -> tuple[NoiseSummary, ...]:
+    noises = result.fits[0].misfit.noises if result.fits else {}
+    return tuple(NoiseSummary(name, noise.sigma, noise.levels) for name, noise in noises.items())
+
+
+def _curves(calibration: Calibration) -> tuple[tuple[ChannelCurves, ...], tuple[ChannelCurves, ...]]:
+    """Return PSDs and histories, measured beside simulated, at the delays of the runs' clocks that the last fit found."""
+    delays = {run: known.get("delay", 0.0) for run, known in _nuisances(calibration.steps[-1]).items()}
+    psds, histories = [], []
+    for trial in calibration.problem.trials:
+        scenario = trial.scenario.adjusted(delays.get(trial.name, 0.0))
+        simulated = calibration.problem.respond(calibration.array[None], trial, scenario)[0][0]
+        for i, channel in enumerate(trial.recording.channels):
+            pair = (trial.recording.values[:, i], simulated[:, i])
+            frequency = record_psd(pair[0], trial.recording.dt)[0]
+            name = trial.name, channel.name, channel.quantity
+            psds.append(ChannelCurves(*name, frequency, *(record_psd(item, trial.recording.dt)[1] for item in pair)))
+            histories.append(ChannelCurves(*name, trial.recording.time, *pair))
+    return tuple(psds), tuple(histories)
 
 
 def provenance(calibration: Calibration) -> dict[str, Any]:
     """Return versions, inputs' hashes and settings: what it takes to make the result again."""
-    import numba
-    import scipy
-
-    from vehgen import __version__
-
-    files: dict[str, str] = {}
+    paths: list[Path] = []
     for trial in calibration.problem.trials:
         run = trial.run
-        for path in (
-            run.document.position.file if run.document.position else None,
-            run.folder / (run.file.recording or ""),
-            *run.vehicle.files,
-        ):
-            if isinstance(path, Path) and path.is_file():
-                files[path.name] = hashlib.sha256(read_bytes(path, MAX_TABLE_BYTES)).hexdigest()
-    return {
-        "vehgen": __version__,
-        "python": platform.python_version(),
-        "numpy": np.__version__,
-        "scipy": scipy.__version__,
-        "numba": numba.__version__,
-        "seed": calibration.settings.seed,
-        "settings": _plain(calibration.settings),
-        "inputs": files,
-    }
+        named = run.document.position.file if run.document.position else None
+        paths += [path for path in (named, run.folder / (run.file.recording or ""), *run.vehicle.files) if isinstance(path, Path)]
+    settings = asdict(calibration.settings)
+    return {**versions(), "seed": calibration.settings.seed, "settings": settings, "inputs": file_hashes(paths)}
 
 
-def _plain(settings: Settings) -> dict[str, Any]:
-    found: Mapping[str, Any] = asdict(settings)
-    return dict(found)
+def _modes(uncertainty: Uncertainty) -> tuple[ModeSummary, ...]:
+    pairs = uncertainty.frequencies()
+    return tuple(ModeSummary(hz.name, hz.value, _interval(hz), zeta.value, _interval(zeta)) for hz, zeta in pairs)
 
 
-def _pair(estimate: Estimate | None) -> list[float] | None:
-    return None if estimate is None or estimate.low is None or estimate.high is None else [estimate.low, estimate.high]
+def _combinations(estimates: Sequence[Estimate]) -> dict[str, CombinationSummary]:
+    return {item.name: CombinationSummary(item.value, _interval(item)) for item in estimates}
+
+
+def _interval(estimate: Estimate | None) -> Interval | None:
+    return None if estimate is None or estimate.low is None or estimate.high is None else (estimate.low, estimate.high)
+
+
+__all__ = ["CalibrationSummary", "least_tyre_loads", "provenance", "summarise"]

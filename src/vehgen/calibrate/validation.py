@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
-from vehgen.errors import InputError
+from vehgen.errors import InputError, did_you_mean
+from vehgen.files.result_fields import Array1D, Flags
+from vehgen.files.results import Result, Table
 from vehgen.fit.trial import Trial
-from vehgen.measure import ARTICULATED_BANDS, TWO_AXLE_BANDS, band_rms, record_psd, relative_errors, welch_psd
+from vehgen.measure import ARTICULATED_BANDS, SPECTRA, TWO_AXLE_BANDS, band_rms, record_psd, relative_errors, welch_psd
+from vehgen.measure.astm import NOTE
+from vehgen.measure.curves import ChannelCurves
 
 Array = NDArray[np.float64]
 Bands = tuple[tuple[float, float], ...]
@@ -19,11 +25,15 @@ SEGMENT = 4.0
 LOUD = 2.0
 NOISE_BAND_SHARES = (0.82, 0.94)
 """The top of the band, as shares of the highest frequency."""
+REFERENCE_HZ = (1.0, 25.0)
+"""Frequencies of a reference spectrum [Hz]."""
+MAX_CHANNELS = 500
+"""A file with more channels than this is refused: no figure could show them."""
 LONGEST_RECORD = 3.0
 """A run without a hump that is longer than this many segments is averaged by Welch's method."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ChannelComparison:
     """One channel of one run, measured against simulated.
 
@@ -35,24 +45,56 @@ class ChannelComparison:
     run: str
     channel: str
     quantity: str
-    frequency: Array
-    measured_psd: Array
-    simulated_psd: Array
-    measured_rms: Array
-    simulated_rms: Array
-    errors: Array
-    audible: NDArray[np.bool_]
-    time: Array
-    measured: Array
-    simulated: Array
+    measured_rms: Array1D
+    simulated_rms: Array1D
+    errors: Annotated[Array1D, Field(alias="relative_errors")]
+    audible: Annotated[Flags, Field(alias="above_noise")]
+    frequency: Array1D
+    measured_psd: Array1D
+    simulated_psd: Array1D
+    time: Array1D
+    measured: Array1D
+    simulated: Array1D
+
+    def __post_init__(self) -> None:
+        if not len(self.measured_rms) == len(self.simulated_rms) == len(self.errors) == len(self.audible):
+            raise ValueError("a number a band was expected")
+
+    @property
+    def psds(self) -> ChannelCurves:
+        """The PSDs as curves."""
+        return ChannelCurves(self.run, self.channel, self.quantity, self.frequency, self.measured_psd, self.simulated_psd)
+
+    @property
+    def histories(self) -> ChannelCurves:
+        """The histories as curves."""
+        return ChannelCurves(self.run, self.channel, self.quantity, self.time, self.measured, self.simulated)
 
 
-@dataclass(frozen=True)
-class Validation:
-    """All channels of all runs, in bands [Hz]."""
+@dataclass(frozen=True, eq=False)
+class ReferenceSpectrum:
+    """A standard's spectrum of acceleration to draw beside the measured ones: `frequency` [Hz], `psd` [m^2/s^4/Hz], both `shape (n,)`."""
 
-    bands: Bands
-    channels: tuple[ChannelComparison, ...]
+    name: str
+    frequency: Array1D
+    psd: Array1D
+
+
+@dataclass(frozen=True, eq=False)
+class Validation(Result):
+    """All channels of all runs of a vehicle, in bands [Hz]; `reference` is a spectrum to draw beside them."""
+
+    KIND: ClassVar[str] = "validation"
+    DRAWING: ClassVar[str] = "vehgen.report.plots.validation_plots:plot_validation"
+
+    vehicle: str
+    bands: Annotated[Bands, Field(alias="bands_hz")]
+    channels: Annotated[tuple[ChannelComparison, ...], Field(max_length=MAX_CHANNELS)]
+    reference: ReferenceSpectrum | None = None
+
+    def __post_init__(self) -> None:
+        if any(len(item.errors) != len(self.bands) for item in self.channels):
+            raise ValueError("a number a band was expected of every channel")
 
     @property
     def worst(self) -> float:
@@ -60,6 +102,20 @@ class Validation:
         errors = [np.abs(item.errors[item.audible]) for item in self.channels if item.quantity == "acceleration"]
         every = np.concatenate(errors) if errors else np.zeros(0)
         return float(np.nanmax(every)) if every.size else float("nan")
+
+    def _packed(self, data: dict[str, Any]) -> dict[str, Any]:
+        return {**data, "worst_acceleration_error": None if np.isnan(self.worst) else self.worst}
+
+    def table(self) -> Table:
+        """Return the band RMS, a row a run, channel and band."""
+        columns = ("run", "channel", "from [Hz]", "to [Hz]", "measured rms", "simulated rms", "relative error", "above noise")
+        return columns, [
+            (item.run, item.channel, *band, float(measured), float(simulated), float(error), bool(audible))
+            for item in self.channels
+            for band, measured, simulated, error, audible in zip(
+                self.bands, item.measured_rms, item.simulated_rms, item.errors, item.audible, strict=True
+            )
+        ]
 
 
 def validate(trials: Sequence[Trial], bands: Bands | None = None) -> Validation:
@@ -100,19 +156,33 @@ def validate(trials: Sequence[Trial], bands: Bands | None = None) -> Validation:
                     run=trial.name,
                     channel=channel.name,
                     quantity=channel.quantity,
-                    frequency=frequency,
-                    measured_psd=densities[0],
-                    simulated_psd=densities[1],
                     measured_rms=rms[0],
                     simulated_rms=rms[1],
                     errors=relative_errors(rms[1], rms[0]),
                     audible=rms[0] > LOUD * _noise_rms(frequency, densities[0], bands),
+                    frequency=frequency,
+                    measured_psd=densities[0],
+                    simulated_psd=densities[1],
                     time=trial.recording.time,
                     measured=measured,
                     simulated=simulated,
                 )
             )
-    return Validation(bands, tuple(found))
+    return Validation(trials[0].run.vehicle.name, bands, tuple(found))
+
+
+def reference_spectrum(name: str) -> ReferenceSpectrum:
+    """Return a standard's spectrum, of :data:`vehgen.measure.SPECTRA`, as figures of a validation show it.
+
+    Raises
+    ------
+    InputError
+        For a name that no spectrum has.
+    """
+    if name not in SPECTRA:
+        raise InputError(f"no spectrum {name!r}; {did_you_mean(name, SPECTRA)}")
+    frequency = np.geomspace(*REFERENCE_HZ, 200)
+    return ReferenceSpectrum(f"{SPECTRA[name].name} ({NOTE})", frequency, SPECTRA[name].at(frequency))
 
 
 def _noise_rms(frequency: Array, density: Array, bands: Bands) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -92,7 +92,7 @@ def _carrier(vehicle: Vehicle, on: str, free: Mapping[str, float]) -> Carrier:
 
 
 def _match(
-    before: EquationsOfMotion, after: EquationsOfMotion, light: list[Mode], heavy: list[Mode], values: Mapping[str, float]
+    before: EquationsOfMotion, after: EquationsOfMotion, light: Sequence[Mode], heavy: Sequence[Mode], values: Mapping[str, float]
 ) -> list[tuple[str, float | None, float]]:
     """Give each laden mode the unladen one of the most similar shape in the coordinates they share (assignment problem)."""
     names = [item.name for item in after.coordinates]

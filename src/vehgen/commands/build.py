@@ -12,6 +12,8 @@ from vehgen.commands.terminal import add_vehicle, console, load, print_json, pri
 from vehgen.files import check_results
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from vehgen.mechanics import EquationsOfMotion, StaticLoads
     from vehgen.simulate import Mode
 
@@ -34,16 +36,12 @@ def run(options: argparse.Namespace) -> None:
 
     check_results(build_files(folder, plots=not options.no_plots))
     from vehgen.codegen import Kernel
-    from vehgen.mechanics import Place, PointOutput, derive, static_loads
+    from vehgen.mechanics import derive, static_loads
     from vehgen.simulate import natural_modes
+    from vehgen.simulate.build import body_channels
     from vehgen.simulate.lint import lint
 
-    outputs = [
-        PointOutput(f"{name}_{quantity}", Place(name, name), quantity)
-        for name in vehicle.bodies
-        for quantity in ("acceleration", "pitch_rate")
-    ]
-    model = derive(vehicle, outputs)
+    model = derive(vehicle, body_channels(vehicle))
     values = model.values(options.parameter_set)
     modes = natural_modes(model, values)
     loads = static_loads(model, values)
@@ -62,7 +60,7 @@ def run(options: argparse.Namespace) -> None:
     console().print(f"built in {seconds:.1f} s; open {folder / 'index.html'}", highlight=False, markup=False)
 
 
-def _show(model: EquationsOfMotion, values: dict[str, float], modes: list[Mode], loads: StaticLoads) -> None:
+def _show(model: EquationsOfMotion, values: dict[str, float], modes: Sequence[Mode], loads: StaticLoads) -> None:
     vehicle = model.vehicle
     title = vehicle.title or vehicle.name
     counts = (
@@ -106,7 +104,7 @@ def _show(model: EquationsOfMotion, values: dict[str, float], modes: list[Mode],
 def _summary(
     model: EquationsOfMotion,
     values: dict[str, float],
-    modes: list[Mode],
+    modes: Sequence[Mode],
     loads: StaticLoads,
     findings: list[str],
     counts: dict[str, int],

@@ -13,9 +13,15 @@ from vehgen.files import check_results, write_text
 
 if TYPE_CHECKING:
     from vehgen.calibrate.calibration import Settings
-    from vehgen.calibrate.summary import CalibrationSummary
+    from vehgen.calibrate.result import CalibrationSummary
 
 EXAMPLE = "python -m vehgen calibrate tractor5.yaml hump_2ms.yaml hump_3ms.yaml --method joint --out calibrated"
+
+
+CALIBRATION_CURVES = ("psds", "histories", "steps", "band")
+"""What calibration.json holds and --json leaves out."""
+MAX_CHI2 = 1.2
+"""Above this the residuals are larger than the noise model allows."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -45,12 +51,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Calibrate and write the vehicle file, the result and figures."""
-    import json
-
     from vehgen.calibrate.calibration import calibrate
     from vehgen.calibrate.summary import summarise
     from vehgen.commands.progress import Bars
     from vehgen.files.names import joined_name
+    from vehgen.files.results import json_text
     from vehgen.fit.parallel import runner_at
     from vehgen.fit.prior_data import load_prior_data
     from vehgen.fit.problem import make_problem
@@ -77,11 +82,11 @@ def run(options: argparse.Namespace) -> None:
             if found.stopped:
                 progress.say("stopped: the best so far is kept; --resume goes on")
         outcome = summarise(found, facts, options.combination, 0 if found.stopped else options.bootstrap, runner)
-    data = outcome.to_dict()
     write_text(files[0], outcome.vehicle_text(folder, name))
-    write_text(files[1], json.dumps(data, indent=1))
+    write_text(files[1], json_text(outcome))
     files += save_calibration_figures(outcome, folder)
     if options.json:
+        data = {key: value for key, value in outcome.to_dict().items() if key not in CALIBRATION_CURVES}
         print_json({**data, "files": [str(path) for path in files]})
     else:
         _show(outcome, files)
@@ -137,23 +142,12 @@ def _band(text: str) -> tuple[float, float]:
 
 
 def _show(outcome: CalibrationSummary, files: list[Path]) -> None:
-    calibration = outcome.calibration
     rows = []
-    for item in outcome.parameters:
-        estimate = item.estimate
-        interval = "" if estimate.low is None or estimate.high is None else f"{estimate.low:.4g} to {estimate.high:.4g}"
-        rows.append((estimate.name, f"{estimate.value:.5g}", item.unit, interval, item.status))
-    print_table(
-        f"{calibration.problem.trials[0].run.vehicle.name}: {calibration.settings.method}",
-        ("parameter", "value", "unit", "90 % interval", "status"),
-        rows,
-        right=(1,),
-    )
+    for name, item in outcome.parameters.items():
+        rows.append((name, f"{item.value:.5g}", item.unit, _to(item.interval, ".4g"), item.status))
+    print_table(f"{outcome.vehicle}: {outcome.method}", ("parameter", "value", "unit", "90 % interval", "status"), rows, right=(1,))
     if outcome.modes:
-        modes = [
-            (hz.name, f"{hz.value:.3f}", "" if hz.low is None else f"{hz.low:.3f} to {hz.high:.3f}", f"{zeta.value:.3f}")
-            for hz, zeta in outcome.modes
-        ]
+        modes = [(mode.name, f"{mode.undamped_hz:.3f}", _to(mode.interval, ".3f"), f"{mode.damping_ratio:.3f}") for mode in outcome.modes]
         print_table("natural modes", ("mode", "undamped [Hz]", "90 % interval", "damping ratio"), modes, right=(1, 3))
     print_table(
         "objective (Eq. 5): area between the PSDs over the measured area",
@@ -165,26 +159,29 @@ def _show(outcome: CalibrationSummary, files: list[Path]) -> None:
     tell_written(files)
 
 
+def _to(interval: tuple[float, float] | None, digits: str) -> str:
+    return "" if interval is None else f"{interval[0]:{digits}} to {interval[1]:{digits}}"
+
+
 def _warnings(outcome: CalibrationSummary) -> list[str]:
     found = []
-    rank, searched = outcome.structure.rank, outcome.structure.space.size
+    rank, searched = outcome.rank, outcome.searched
     if rank < searched:
         moved = "; ".join(", ".join(list(direction)[:8]) + (" ..." if len(direction) > 8 else "") for direction in outcome.null_directions)
         found.append(
             f"of {searched} parameters these sensors can tell {rank} combinations, whatever the run: values marked gauge are one of many "
             f"(they trade along: {moved}); --facts can close this"
         )
-    bound = [item.estimate.name for item in outcome.parameters if item.status == "bound"]
+    bound = [name for name, item in outcome.parameters.items() if item.status == "bound"]
     if bound:
         found.append(f"set by the search range, not by the data: {', '.join(bound)}")
     found += [
         f"the tyre of {name} would have left the road (its load falls to {share:.2f} of the static load): the linear tyre does not hold"
-        for name, share in outcome.least_tyre_loads.items()
+        for name, share in outcome.tyre_load_minimum.items()
         if share < 0
     ]
-    fits = outcome.calibration.steps[-1].fits
-    if fits and fits[0].chi2 > 1.2:
+    if outcome.chi2 is not None and outcome.chi2 > MAX_CHI2:
         found.append(
-            f"the residuals are larger than the noise model allows (chi2 {fits[0].chi2:.2f}): `diagnose` looks for what is missing"
+            f"the residuals are larger than the noise model allows (chi2 {outcome.chi2:.2f}): `diagnose` looks for what is missing"
         )
     return found

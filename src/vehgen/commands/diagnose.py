@@ -29,7 +29,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Diagnose, write the report and the vehicle file, and print the verdict."""
-    import json
     import os
     from dataclasses import replace
 
@@ -38,6 +37,7 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.diagnose.writing import effect_file, file_name, files_named_so
     from vehgen.effects import extended_library
     from vehgen.errors import InputError, did_you_mean
+    from vehgen.files.results import json_text
     from vehgen.fit.trial import load_trials
     from vehgen.report.pages.diagnosis_page import write_diagnosis_page
     from vehgen.vehicle import load_vehicle
@@ -63,11 +63,10 @@ def run(options: argparse.Namespace) -> None:
         write_text(path, effect_file(found.chosen[-1], found.detection.problem, found.verdict, folder, name))
         found = replace(found, verdict=replace(found.verdict, vehicle_file=str(path)))
         files.append(path)
-    data = found.verdict.to_dict()
-    write_text(files[0], json.dumps(data, indent=1, allow_nan=False))
+    write_text(files[0], json_text(found))
     write_diagnosis_page(found, files[1])
     if options.json:
-        print_json({**data, "files": [str(path) for path in files]})
+        print_json({**found.verdict.to_dict(), "files": [str(path) for path in files]})
     else:
         _show(found, files)
     if found.stopped:
@@ -76,7 +75,7 @@ def run(options: argparse.Namespace) -> None:
 
 def _show(found: Diagnosis, files: list[Path]) -> None:
     verdict = found.verdict
-    say(f": {verdict.reason}", heading=verdict.verdict.replace("_", " "))
+    say("", heading=f"{verdict.reason}.")
     effect_rows = [
         (
             effect.name,
@@ -92,7 +91,7 @@ def _show(found: Diagnosis, files: list[Path]) -> None:
         print_table("what is missing", ("effect", "place", "parameter", "value", "90 % interval"), effect_rows, right=(3,))
     columns = ("run", "used for", "before", "after") if verdict.effects else ("run", "used for", "chi")
     rows = [
-        (run["run"], "checking" if run["untouched"] else "fitting", f"{run['before']:.3f}", f"{run['after']:.3f}")[: len(columns)]
+        (run.run, "checking" if run.validation else "fitting", f"{run.before:.3f}", f"{run.after:.3f}")[: len(columns)]
         for run in verdict.gap.runs
     ]
     print_table("chi (1 is noise alone)", columns, rows, right=(2, 3)[: len(columns) - 2])

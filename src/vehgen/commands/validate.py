@@ -13,6 +13,10 @@ from vehgen.files import check_results, write_text
 EXAMPLE = "python -m vehgen validate calibrated/tractor5_calibrated.yaml road_b.yaml --out validation"
 
 
+VALIDATION_CURVES = ("frequency", "measured_psd", "simulated_psd", "time", "measured", "simulated")
+"""What validation.json holds and --json leaves out."""
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.add_argument("vehicle", metavar="VEHICLE", help="a vehicle file, for example one that `calibrate` wrote")
@@ -25,17 +29,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Validate and write the table and figures."""
-    import json
+    from dataclasses import replace
 
-    from vehgen.calibrate.validation import validate
-    from vehgen.errors import InputError, did_you_mean
+    from vehgen.calibrate.validation import reference_spectrum, validate
+    from vehgen.errors import InputError
+    from vehgen.files.results import json_text
     from vehgen.fit.trial import load_trials
-    from vehgen.measure import SPECTRA
     from vehgen.report.plots.validation_plots import save_validation_figures, validation_figure_files
     from vehgen.vehicle import load_vehicle
 
-    if options.astm is not None and options.astm not in SPECTRA:
-        raise InputError(f"no spectrum {options.astm!r}; {did_you_mean(options.astm, SPECTRA)}")
+    reference = reference_spectrum(options.astm) if options.astm is not None else None
     bands = None
     if options.bands:
         try:
@@ -48,27 +51,13 @@ def run(options: argparse.Namespace) -> None:
     folder = folder_named(options.out, f"{Path(options.vehicle).stem}_validation")
     files = [folder / "validation.json"]
     check_results([*files, *validation_figure_files(folder)])
-    found = validate(trials, bands)
-    data = {
-        "vehicle": vehicle.name,
-        "bands_hz": [list(band) for band in found.bands],
-        "channels": [
-            {
-                "run": item.run,
-                "channel": item.channel,
-                "quantity": item.quantity,
-                "measured_rms": item.measured_rms.tolist(),
-                "simulated_rms": item.simulated_rms.tolist(),
-                "above_noise": item.audible.tolist(),
-                "relative_errors": [None if error != error else float(error) for error in item.errors],
-            }
-            for item in found.channels
-        ],
-        "worst_acceleration_error": None if found.worst != found.worst else found.worst,
-    }
-    write_text(files[0], json.dumps(data, indent=1))
-    files += save_validation_figures(found, folder, options.astm)
+    found = replace(validate(trials, bands), reference=reference)
+    write_text(files[0], json_text(found))
+    files += save_validation_figures(found, folder)
     if options.json:
+        data = found.to_dict()
+        del data["reference"]
+        data["channels"] = [{key: value for key, value in channel.items() if key not in VALIDATION_CURVES} for channel in data["channels"]]
         print_json({**data, "files": [str(path) for path in files]})
         return
     for item in found.channels:

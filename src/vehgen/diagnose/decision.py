@@ -2,29 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from vehgen.diagnose import thresholds as limit
+from vehgen.diagnose import wording
+from vehgen.diagnose.collecting import run_chis
 from vehgen.diagnose.design.experiment import VISIBLE, propose, propose_stronger
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit
 from vehgen.diagnose.inputs.checks import check_inputs, explain_gap
-from vehgen.diagnose.localise.free_form import fit_free_form, recover, strongest
+from vehgen.diagnose.localise.free_form import FreeForm, fit_free_form, recover, strongest
 from vehgen.diagnose.localise.localisation import suffices
-from vehgen.diagnose.reasons import describe_effects, explained_share
-from vehgen.diagnose.result import Diagnosis
+from vehgen.diagnose.result import Decided, DiagnosisModels
 from vehgen.diagnose.select.criteria import adds, excess, needs_both, p_value_of, passes, seeds, tied, unfinished
 from vehgen.diagnose.select.estimates import estimate, gain_interval, unstable, validation_gain
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.search import DiagnosisProgress, SearchRound, search_round
-from vehgen.diagnose.verdict import Gap, NamedEffect, Verdict, VerdictName, sentence
+from vehgen.diagnose.verdict import Gap, NamedEffect, NamedParameter, PlaceChi, Verdict, VerdictName
 from vehgen.effects import Effect
 from vehgen.errors import InputError
-from vehgen.fit.trial import Trial
 
 MOST_EFFECTS = 3
 """So many effects are added at most."""
@@ -49,28 +49,28 @@ class Decision:
         self.interrupted = False
         self.tried = len(self._candidates(self.base))
 
-    def decide(self) -> Diagnosis:
-        """Return the diagnosis; after Ctrl-C what was found until then."""
+    def decide(self) -> Decided:
+        """Return the verdict with the fitted models; after Ctrl-C what was found until then."""
         try:
             return self._decide()
         except KeyboardInterrupt:
             self.interrupted = True
             return self._name(self.chain) if self.chain else self._stopped()
 
-    def _decide(self) -> Diagnosis:
+    def _decide(self) -> Decided:
         detection = self.detection
         shown = check_inputs(detection.trials)
         fatal = [item.message for item in shown if item.fatal]
         self.notes += [item.message for item in shown if not item.fatal]
         if fatal:
-            return self._end("insufficient_data", "; ".join(fatal), "record these channels anew, or leave them out of the run files")
+            return self._end("insufficient_data", wording.unusable(fatal), "record these channels anew, or leave them out of the run files")
         if max(detection.chi, float(np.sqrt(self.base.training))) <= limit.NOISE_FLOOR:
-            return self._end("no_missing_effect", f"the recalibrated model is at the noise floor: chi {detection.chi:.3f}")
+            return self._end("no_missing_effect", wording.no_missing_effect(detection.chi))
         if not detection.validation_runs:
             count = len(detection.trials)
             return self._end(
                 "insufficient_data",
-                f"chi is {detection.chi:.2f}, but at least three runs are needed, so that one stays untouched ({count} given)",
+                wording.too_few_runs(detection.chi, count),
                 f"record at least three runs{', with two hump heights or speeds' if detection.trials[0].run.vehicle.axles else ''}",
             )
         if not self._candidates(self.base):
@@ -93,30 +93,31 @@ class Decision:
         if not self.chain or unfinished(self.chain[-1], self.base):
             wrong = explain_gap(detection)
             if wrong:
-                return self._end("insufficient_data", wrong[0].message, "; ".join(item.message for item in wrong[1:]) or None)
+                return self._end(
+                    "insufficient_data", wording.unusable([wrong[0].message]), "; ".join(item.message for item in wrong[1:]) or None
+                )
         return self._name(self.chain) if self.chain else self._unknown(first)
 
-    def _too_weak(self, first: SearchRound, best: ModelFit, good: bool) -> Diagnosis | None:
-        """Return the verdict where the best effect is not told from chance, from random laws, or by the untouched runs."""
+    def _too_weak(self, first: SearchRound, best: ModelFit, good: bool) -> Decided | None:
+        """Return the verdict where the best effect is not told from chance, from random laws, or by the validation runs."""
         chi, p = self.detection.chi, p_value_of(first, best, self.tried)
         if p > limit.SIGNIFICANT and (good or chi <= VISIBLE):
-            return self._propose(f"chi is {chi:.3f}, but no effect is told from chance (p {p:.2g})", best)
+            return self._propose(wording.not_told_from_chance(chi, p), best)
         if chi <= limit.WEAK and not good:
-            return self._propose(f"chi is {chi:.3f}: a small gap, of which no effect closes enough to be named", best)
+            return self._propose(wording.small_gap(chi), best)
         if not good:
             return None
         interval = gain_interval(self.base, best, self.validation_runs)
         if interval is None or interval[0] <= 0:
-            return self._propose(f"{best.label} suits the runs for fitting, but the untouched runs do not show it", best)
+            return self._propose(wording.not_seen_again(self._words(best.last)), best)
         rivals = compare_with_placebo_laws(first, best, self.detection)
         if rivals is not None and rivals[1] >= rivals[0] - limit.DECOY:
-            told = f"{best.label} closes {100 * rivals[0]:.0f} % of the excess, a random law at the same place {100 * rivals[1]:.0f} %"
-            return self._propose(told, best)
+            return self._propose(wording.like_a_random_law(self._words(best.last), *rivals), best)
         if rivals is not None:
-            self.notes.append(f"the best of {COUNT} random laws at the same place closes {100 * rivals[1]:.0f} % of the excess")
+            self.notes.append(wording.best_random_law(COUNT, rivals[1]))
         return None
 
-    def _propose(self, reason: str, best: ModelFit) -> Diagnosis:
+    def _propose(self, reason: str, best: ModelFit) -> Decided:
         self.progress("propose", 0, 1, "")
         louder = propose_stronger(self.detection, best)
         return self._end("too_weak", reason, louder.text if louder and louder.separates else "no run within reach would show it clearly")
@@ -167,58 +168,59 @@ class Decision:
 
     def _gap(self, fit: ModelFit | None = None) -> Gap:
         last = fit or self.base
-        return Gap(self.base.chi, last.chi, 1.0, _runs(self.base, last, self.detection.validation_runs))
+        return Gap(self.base.chi, last.chi, 1.0, run_chis(self.base, last, self.validation_runs))
 
-    def _places(self) -> tuple[tuple[str, float], ...]:
-        return tuple((item.place.label, item.chi) for item in self.rounds[0].passed[:5])
+    def _places(self) -> tuple[PlaceChi, ...]:
+        return tuple(PlaceChi(item.place.label, item.chi) for item in self.rounds[0].passed[:5]) if self.rounds else ()
 
-    def _end(self, verdict: VerdictName, reason: str, next_experiment: str | None = None) -> Diagnosis:
-        places = self._places() if self.rounds else ()
-        found = Verdict(verdict, reason, (), self._gap(), places, next_experiment=next_experiment, notes=tuple(self.notes))
-        return Diagnosis(self.detection.trials, self.detection, tuple(self.rounds), (), found, self.interrupted)
+    def _end(self, verdict: VerdictName, reason: str, next_experiment: str | None = None) -> Decided:
+        found = Verdict(verdict, reason, (), self._gap(), self._places(), next_experiment=next_experiment, notes=tuple(self.notes))
+        return self._decided(found, ())
 
-    def _stopped(self) -> Diagnosis:
+    def _decided(self, verdict: Verdict, chain: Sequence[ModelFit], law: FreeForm | None = None) -> Decided:
+        return Decided(DiagnosisModels(self.detection, tuple(self.rounds), tuple(chain), law), verdict, self.interrupted)
+
+    def _stopped(self) -> Decided:
         self.interrupted = True
         fits = self.rounds[0].fits if self.rounds else ()
-        done = f"{len(fits)} candidates" if fits else "no candidate"
-        best = f"; the best so far is {fits[0].label}, chi {np.sqrt(fits[0].training):.2f}" if fits else ""
-        return self._end("insufficient_data", f"stopped by hand after {done}{best}", "let the diagnosis run to its end")
+        best = (self._words(fits[0].last), float(np.sqrt(fits[0].training))) if fits else None
+        return self._end("insufficient_data", wording.stopped(len(fits), best), "let the diagnosis run to its end")
 
-    def _unknown(self, first: SearchRound) -> Diagnosis:
-        where = sentence([item.place.label for item in first.passed[:3]]) if first.passed else "no single place"
-        if first.fits:
-            best = first.fits[0]
-            reason = f"the best of {len(first.fits)} candidates, {best.label}, leaves chi {np.sqrt(best.training):.2f}"
-        else:
-            reason = "none of the effects tried can live where the model errs"
+    def _unknown(self, first: SearchRound) -> Decided:
+        best = (len(first.fits), self._words(first.fits[0].last), float(np.sqrt(first.fits[0].training))) if first.fits else None
         if self.base.least_squares.on_bound:
             edge = ", ".join(self.base.least_squares.on_bound)
             self.notes.append(
                 f"the refit, within 35 % of the file's values, ends at its edge for {edge}: if they are uncertain, calibrate first"
             )
-        ended = self._end("not_in_library", f"{reason}; the residual wants an unknown force at {where}")
+        ended = self._end(
+            "not_in_library",
+            wording.not_in_library(best, [wording.force_words(item.place.kind, item.place.name) for item in first.passed[:3]]),
+        )
         shown = strongest(first.passed)
         law = None if shown is None else fit_free_form(recover(self.detection, shown))
         if law is None:
             return ended
         verdict = replace(ended.verdict, free_form=law.to_dict(), notes=(*ended.verdict.notes, law.describe()))
-        return replace(ended, verdict=verdict, law=law)
+        return self._decided(verdict, (), law)
 
-    def _name(self, chain: list[ModelFit]) -> Diagnosis:
+    def _name(self, chain: list[ModelFit]) -> Decided:
         return self._name_one(chain[0]) if len(chain) == 1 else self._name_several(chain)
 
-    def _name_one(self, fit: ModelFit) -> Diagnosis:
+    def _name_one(self, fit: ModelFit) -> Decided:
         step = self._round_of(fit)
         ties = tied(step, fit)
         effects = [self._effect(step, fit, 0, [item.last.label for item in ties])]
         effects += [self._effect(step, item, 0, []) for item in ties[:2]]
-        vehicle = self.detection.trials[0].run.vehicle
-        reason = f"{describe_effects(vehicle, fit, effects[:1])}: it explains {explained_share(self.base, fit)}"
         if ties:
-            reason = f"{sentence([fit.label, *(item.label for item in ties)])} explain the runs equally well"
-        return self._named([fit], ties, effects, reason)
+            told = [item.sentence for item in effects] + [self._words(item.last) for item in ties[2:]]
+            return self._named([fit], ties, effects, wording.ambiguous(told))
+        return self._named([fit], ties, effects, wording.named([effects[0].sentence], validation_gain(self.base, fit)))
 
-    def _name_several(self, chain: list[ModelFit]) -> Diagnosis:
+    def _words(self, candidate: Candidate, parameters: Mapping[str, NamedParameter] | None = None) -> str:
+        return wording.candidate_words(self.detection.trials[0].run.vehicle, candidate, parameters)
+
+    def _name_several(self, chain: list[ModelFit]) -> Decided:
         last, steps = chain[-1], [self._round_of(fit) for fit in chain]
         alternatives = [tied(step, fit) for step, fit in zip(steps, chain, strict=True)]
         effects = [
@@ -226,13 +228,11 @@ class Decision:
             for i, (step, others) in enumerate(zip(steps, alternatives, strict=True))
         ]
         ties = [item for others in alternatives for item in others]
-        vehicle = self.detection.trials[0].run.vehicle
-        reason = f"{describe_effects(vehicle, last, effects)}: together they explain {explained_share(self.base, last)}"
-        if ties:
-            reason += f", and so {'does' if len(ties) == 1 else 'do'} {sentence([item.last.label for item in ties])}"
+        told = [item.sentence for item in effects]
+        reason = wording.named(told, validation_gain(self.base, last), [self._words(item.last) for item in ties])
         return self._named(chain, ties, effects, reason)
 
-    def _named(self, chain: list[ModelFit], ties: list[ModelFit], effects: list[NamedEffect], reason: str) -> Diagnosis:
+    def _named(self, chain: list[ModelFit], ties: list[ModelFit], effects: list[NamedEffect], reason: str) -> Decided:
         verdict = Verdict(
             "ambiguous" if ties else "named",
             reason,
@@ -242,7 +242,7 @@ class Decision:
             next_experiment=self._apart(chain, ties) if ties else None,
             notes=self._notes(chain[-1]),
         )
-        return Diagnosis(self.detection.trials, self.detection, tuple(self.rounds), tuple(chain), verdict, self.interrupted)
+        return self._decided(verdict, chain)
 
     def _round_of(self, fit: ModelFit) -> SearchRound:
         return next(item for item in self.rounds if any(own.key == fit.key for own in item.fits))
@@ -262,14 +262,16 @@ class Decision:
         """Return the effect `number` of a fit, judged by what it closed in its own round."""
         own = next((item for item in step.fits if item.key == fit.key[: number + 1]), fit)
         candidate = fit.effects[number]
+        parameters = estimate(fit, candidate)
         return NamedEffect(
             candidate.effect.name,
             candidate.place,
-            estimate(fit, candidate),
+            parameters,
             p_value_of(step, own, self.tried),
             validation_gain(step.current, own),
             gain_interval(step.current, own, self.validation_runs),
             tuple(others),
+            self._words(candidate, parameters),
         )
 
     def _notes(self, fit: ModelFit) -> tuple[str, ...]:
@@ -282,16 +284,3 @@ class Decision:
         if left > limit.AGAIN**2 - 1:
             told.append(f"chi {np.sqrt(1 + left):.2f} is left unexplained")
         return tuple(told)
-
-
-def _runs(base: ModelFit, fit: ModelFit, validation_runs: Sequence[Trial]) -> tuple[dict[str, object], ...]:
-    later = {trial.name for trial in validation_runs}
-    return tuple(
-        {
-            "run": item,
-            "untouched": item in later,
-            "before": float(np.sqrt(base.mean_squares[item])),
-            "after": float(np.sqrt(fit.mean_squares.get(item, base.mean_squares[item]))),
-        }
-        for item in base.mean_squares
-    )

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 
 from threadpoolctl import threadpool_limits
 
+from vehgen.diagnose.collecting import collect
 from vehgen.diagnose.decision import Decision
 from vehgen.diagnose.detect.detection import Detection, detect, kind_of_run, split_runs
 from vehgen.diagnose.localise.localisation import localise, shortlist
-from vehgen.diagnose.result import Diagnosis
+from vehgen.diagnose.result import Decided, Diagnosis
 from vehgen.diagnose.select.search import DiagnosisProgress, search_round
 from vehgen.effects import Effect, library
 from vehgen.fit.trial import Trial
@@ -54,7 +55,19 @@ def diagnose(
         say("detect", 0, 1, "")
         detection = detect(sorted(trials, key=kind_of_run), band)  # whatever order they came in
         say("detect", 1, 1, f"chi {detection.chi:.3f}")
-        return Decision(detection, list(effects if effects is not None else library().values()), everywhere, say, workers).decide()
+        found = Decision(detection, list(effects if effects is not None else library().values()), everywhere, say, workers).decide()
+        return with_evidence(found, say)
+
+
+def with_evidence(found: Decided, progress: DiagnosisProgress) -> Diagnosis:
+    """Return the diagnosis with its evidence; Ctrl-C leaves out what takes long."""
+    try:
+        progress("evidence", 0, 1, "")
+        evidence, stopped = collect(found.models), found.stopped
+        progress("evidence", 1, 1, "")
+    except KeyboardInterrupt:
+        evidence, stopped = collect(found.models, quick=True), True
+    return Diagnosis(found.verdict, stopped, evidence, found.models)
 
 
 __all__ = ["Detection", "Diagnosis", "detect", "diagnose", "localise", "search_round", "shortlist", "split_runs"]

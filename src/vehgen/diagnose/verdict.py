@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+from vehgen.files.results import Result, Table
 
 VerdictName = Literal["no_missing_effect", "named", "ambiguous", "not_in_library", "too_weak", "insufficient_data"]
 
@@ -22,17 +25,29 @@ class NamedParameter:
 class NamedEffect:
     """An effect that the data ask for: where it is, how strong, how sure.
 
-    `p_value` holds for the whole library (Bonferroni); `held_out_gain` is the share of the excess on untouched runs that it closes, with
-    its block-bootstrap `gain_interval` (None where those runs show no gap); `alternatives` do as well within the slack.
+    `p_value` holds for the whole library (Bonferroni); `validation_gain` is the share of the excess on validation runs that it closes,
+    with its block-bootstrap `gain_interval` (None where those runs show no gap); `alternatives` do as well within the slack; `sentence`
+    names it in words.
     """
 
     name: str
     place: str
     parameters: dict[str, NamedParameter]
     p_value: float
-    held_out_gain: float | None
+    validation_gain: Annotated[float | None, Field(alias="held_out_gain")]
     gain_interval: tuple[float, float] | None
     alternatives: tuple[str, ...] = ()
+    sentence: str = ""
+
+
+@dataclass(frozen=True)
+class RunChi:
+    """A run's chi before and after the effects were added; `validation` tells that no fit has seen the run."""
+
+    run: str
+    validation: Annotated[bool, Field(alias="untouched")]
+    before: float
+    after: float
 
 
 @dataclass(frozen=True)
@@ -42,62 +57,43 @@ class Gap:
     before: float
     after: float
     noise_floor: float
-    runs: tuple[dict[str, Any], ...] = ()
+    runs: tuple[RunChi, ...] = ()
 
 
 @dataclass(frozen=True)
-class Verdict:
+class PlaceChi:
+    """A place that passes the place test, with the chi that an unknown force there leaves."""
+
+    place: str
+    chi: float
+
+
+@dataclass(frozen=True)
+class Verdict(Result):
     """The verdict of a diagnosis.
 
-    `reason` says why in a sentence; `places` are the places that pass the place test, with their chi; `next_experiment` what would
-    tell more; `notes` what a careful reader should know; `free_form` describes the unknown force where no effect of the library does.
+    `reason` says it in plain sentences; `places` are the places that pass the place test; `next_experiment` what would tell more; `notes`
+    what a careful reader should know; `free_form` describes the unknown force where no effect of the library does.
     """
+
+    KIND: ClassVar[str] = "verdict"
+    DRAWING: ClassVar[str] = "vehgen.report.plots.diagnosis_plots:plot_run_gaps"
 
     verdict: VerdictName
     reason: str
     effects: tuple[NamedEffect, ...]
     gap: Gap
-    places: tuple[tuple[str, float], ...] = ()
+    places: tuple[PlaceChi, ...] = ()
     vehicle_file: str | None = None
     next_experiment: str | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
     free_form: dict[str, Any] | None = None
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
-        return {
-            "verdict": self.verdict,
-            "reason": self.reason,
-            "effects": [
-                {
-                    "name": effect.name,
-                    "place": effect.place,
-                    "parameters": {
-                        name: {"value": item.value, "interval": None if item.interval is None else list(item.interval), "unit": item.unit}
-                        for name, item in effect.parameters.items()
-                    },
-                    "p_value": effect.p_value,
-                    "held_out_gain": effect.held_out_gain,
-                    "gain_interval": None if effect.gain_interval is None else list(effect.gain_interval),
-                    "alternatives": list(effect.alternatives),
-                }
-                for effect in self.effects
-            ],
-            "gap": {
-                "before": self.gap.before,
-                "after": self.gap.after,
-                "noise_floor": self.gap.noise_floor,
-                "runs": list(self.gap.runs),
-            },
-            "places": [{"place": name, "chi": chi} for name, chi in self.places],
-            "vehicle_file": self.vehicle_file,
-            "next_experiment": self.next_experiment,
-            "notes": list(self.notes),
-            "free_form": self.free_form,
-        }
-
-
-def sentence(items: Sequence[str], word: str = "or") -> str:
-    """Return names joined as in a sentence, the last by a word."""
-    listed = list(items)
-    return listed[0] if len(listed) == 1 else f"{', '.join(listed[:-1])} {word} {listed[-1]}" if listed else "nothing"
+    def table(self) -> Table:
+        """Return the named effects' parameters, a row each."""
+        columns = ("effect", "place", "parameter", "value", "unit", "low", "high")
+        return columns, [
+            (effect.name, effect.place, name, item.value, item.unit, *(item.interval or (None, None)))
+            for effect in self.effects
+            for name, item in effect.parameters.items()
+        ]

@@ -30,7 +30,7 @@ def effect_file(fit: ModelFit, base: Problem, verdict: Verdict, folder: Path, na
         "title": f"{vehicle.title or vehicle.name}, with {fit.label}"[:MAX_TEXT],
         "parameters": {key: {"value": quantity(vehicle, key, value)} for key, value in values.items() if key in vehicle.parameters},
     }
-    comments = [f"{verdict.verdict}: {verdict.reason}"]
+    comments = [verdict.reason]
     for candidate in fit.effects:
         if not candidate.effect.changes_vehicle:
             told = ", ".join(f"{key} = {item.value:.5g} {item.unit}".strip() for key, item in estimate(fit, candidate).items())

@@ -16,11 +16,10 @@ from numpy.typing import NDArray
 
 from vehgen.effects.evidence import Origins, PlaceEvidence, Residual, StartingPoint
 from vehgen.effects.locator import EffectLocator, EffectSite
-from vehgen.effects.places import ALL_TYRES, Places, in_words
+from vehgen.effects.places import ALL_TYRES, Places
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.trial import Trial
 from vehgen.simulate import SimulatorPool
-from vehgen.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 Change = dict[str, Any]
@@ -185,12 +184,6 @@ class Effect(ABC):
             The vehicle's parameters [SI].
         """
         return np.zeros(0)
-
-    def describe(self, vehicle: Vehicle, place: str, values: Mapping[str, float]) -> str:
-        """Return it in words with the value of its first parameter: `Dry friction of about 446 N in the rear suspension`."""
-        first = next((item for item in self.parameters if item.name in values), None)
-        size = f" of about {values[first.name]:.3g} {first.unit}".rstrip() if first else ""
-        return f"{self.title.partition(' (')[0]}{size} {in_words(vehicle, self.attaches, place)}"
 
 
 def distinct(*points: StartingPoint) -> list[StartingPoint]:

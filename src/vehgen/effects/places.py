@@ -87,13 +87,3 @@ def channels(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
 def runs(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return all runs as one place, where the vehicle has wheels to run on."""
     return (ALL_RUNS,) if vehicle.axles else ()
-
-
-def in_words(vehicle: Vehicle, attaches: str, place: str) -> str:
-    """Return where an effect is that lives at a suspension, tyre, hinge, body, pair of axles, sensor or run: `in the rear suspension`."""
-    if place in (ALL_TYRES, ALL_RUNS):
-        return f"in {place}"
-    if attaches == "suspension":
-        return f"in the link {place}" if place in vehicle.links else f"in the {place} suspension"
-    phrases = {"tyre": "in the tyres of {}", "hinge": "in the hinge {}", "body": "on the {}"}
-    return phrases.get(attaches, "at {}").format(place.replace("+", " and "))

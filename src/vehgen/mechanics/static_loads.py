@@ -4,29 +4,40 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
+from vehgen.files.result_fields import Array1D, PairKeys
+from vehgen.files.results import Result, Table
 from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
 from vehgen.vehicle.model import GROUND
 
 
-@dataclass(frozen=True)
-class StaticLoads:
+@dataclass(frozen=True, eq=False)
+class StaticLoads(Result):
     """Forces in static equilibrium [N], compression positive.
 
     `axles` is what each wheel presses on the road; `hinges` the vertical force that the first-named body exerts upwards on the
     second; `elements` the force in every suspension, tyre and link by (kind, name); `displacement shape (n_dof,)` [m, rad].
     """
 
+    KIND: ClassVar[str] = "static loads"
+    DRAWING: ClassVar[str] = "vehgen.report.plots.result_plots:plot_static_loads"
+
     axles: dict[str, float]
     hinges: dict[str, float]
-    elements: dict[tuple[str, str], float]
-    displacement: NDArray[np.float64]
+    elements: PairKeys
+    displacement: Array1D
+
+    def table(self) -> Table:
+        """Return all forces, a row each: of axles, hinges, then of springs and links."""
+        rows = [("axle", *item) for item in self.axles.items()] + [("hinge", *item) for item in self.hinges.items()]
+        return ("kind", "name", "force [N]"), [*rows, *((*key, force) for key, force in self.elements.items())]
 
 
 def static_loads(model: EquationsOfMotion, values: Mapping[str, float] | None = None) -> StaticLoads:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import ClassVar, overload
 
 import numpy as np
 import scipy.linalg
@@ -11,6 +12,8 @@ import scipy.optimize
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
+from vehgen.files.result_fields import Array1D
+from vehgen.files.results import Result, Table
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion, NumericModel
 
 Array = NDArray[np.float64]
@@ -30,11 +33,40 @@ class Mode:
     undamped_hz: float
     damped_hz: float
     damping_ratio: float
-    shape: Array
-    energy: Array
+    shape: Array1D
+    energy: Array1D
 
 
-def natural_modes(model: EquationsOfMotion, values: Mapping[str, float] | None = None) -> list[Mode]:
+@dataclass(frozen=True, eq=False)
+class Modes(Result, Sequence[Mode]):
+    """All modes of a vehicle, by ascending undamped frequency: a sequence. `coordinates` name the entries of their shapes."""
+
+    KIND: ClassVar[str] = "modes"
+    DRAWING: ClassVar[str] = "vehgen.report.plots.result_plots:plot_modes"
+
+    coordinates: tuple[str, ...]
+    modes: tuple[Mode, ...]
+
+    def __len__(self) -> int:
+        return len(self.modes)
+
+    @overload
+    def __getitem__(self, index: int) -> Mode: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Mode, ...]: ...
+    def __getitem__(self, index: int | slice) -> Mode | tuple[Mode, ...]:
+        return self.modes[index]
+
+    def __iter__(self) -> Iterator[Mode]:
+        return iter(self.modes)
+
+    def table(self) -> Table:
+        """Return the modes, a row each."""
+        columns = ("mode", "undamped [Hz]", "damped [Hz]", "damping ratio")
+        return columns, [(mode.name, mode.undamped_hz, mode.damped_hz, mode.damping_ratio) for mode in self.modes]
+
+
+def natural_modes(model: EquationsOfMotion, values: Mapping[str, float] | None = None) -> Modes:
     """Return all modes, by ascending undamped frequency.
 
     An overdamped pair of real eigenvalues -a, -b has the frequency sqrt(a b)/2 pi and the damping ratio (a + b)/(2 sqrt(a b)) > 1.
@@ -57,7 +89,7 @@ def natural_modes(model: EquationsOfMotion, values: Mapping[str, float] | None =
     for square, shape, share, name, (radius, ratio) in zip(squares, shapes.T, shares, names, damped, strict=True):
         peak = shape[np.argmax(np.abs(shape))]
         modes.append(Mode(name, float(np.sqrt(max(square, 0.0)) / (2 * np.pi)), radius / (2 * np.pi), ratio, shape / peak, share))
-    return modes
+    return Modes(tuple(item.name for item in model.coordinates), tuple(modes))
 
 
 def _energy(M: Array, shape: Array) -> Array:

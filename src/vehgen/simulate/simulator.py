@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import sympy as sp
@@ -17,7 +18,9 @@ from numpy.typing import NDArray
 from vehgen.codegen import Excitation, Kernel, KernelResult
 from vehgen.errors import InputError, ModelWarning, did_you_mean
 from vehgen.files import write_text
-from vehgen.mechanics import Channel, ElementOutput, EquationsOfMotion, Output, Place, derive, static_loads
+from vehgen.files.result_fields import Array1D, Array3D
+from vehgen.files.results import Cell, Result, Table
+from vehgen.mechanics import ElementOutput, EquationsOfMotion, Output, Place, derive, static_loads
 from vehgen.simulate.budgets import check_population
 from vehgen.simulate.runfile import Run
 from vehgen.simulate.scenario import Scenario, make_scenario
@@ -30,20 +33,41 @@ REMEMBERED = 1000
 
 
 @dataclass(frozen=True)
-class Response:
+class ResponseChannel:
+    """What one column of a response is."""
+
+    name: str
+    quantity: str
+    unit: str
+
+
+@dataclass(frozen=True, eq=False)
+class Response(Result):
     """What came out: `time shape (n_samples,)` [s], `values shape (n_individuals, n_samples, n_channels)` in the channels' units.
 
     `warnings` says what makes the answer doubtful.
     """
 
-    time: Array
-    values: Array
-    channels: tuple[Channel, ...]
+    KIND: ClassVar[str] = "response"
+    DRAWING: ClassVar[str] = "vehgen.report.plots.result_plots:plot_simulation"
+
+    time: Array1D
+    values: Array3D
+    channels: tuple[ResponseChannel, ...]
     warnings: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.values.shape[1:] != (len(self.time), len(self.channels)):
+            raise ValueError("a value for every sample and channel was expected")
 
     def channel(self, name: str) -> Array:
         """Return one channel, `shape (n_individuals, n_samples)`."""
         return np.asarray(self.values[:, :, [item.name for item in self.channels].index(name)])
+
+    def table(self) -> Table:
+        """Return the first individual's response, a row a sample."""
+        rows: list[tuple[Cell, ...]] = [(float(t), *row) for t, row in zip(self.time, self.values[0].tolist(), strict=True)]
+        return ("t", *(channel.name for channel in self.channels)), rows
 
 
 class Simulator:
@@ -222,8 +246,9 @@ def simulate(run: Run) -> Response:
         *spectral_nulls(simulator.model, values, scenario),
         *step_too_coarse(simulator.model, values, scenario),
     ]
+    channels = tuple(ResponseChannel(item.name, item.quantity, item.unit) for item in simulator.model.channels[:n])
     time = np.arange(responses.shape[1], dtype=np.float64) * scenario.dt * scenario.decimation
-    return Response(time, responses[:, :, :n], simulator.model.channels[:n], tuple(messages))
+    return Response(time, responses[:, :, :n], channels, tuple(messages))
 
 
 def write_csv(path: Path, response: Response) -> None:

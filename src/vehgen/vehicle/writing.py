@@ -80,6 +80,11 @@ def base_reference(vehicle: Vehicle, folder: Path) -> str:
     return Path(os.path.relpath(path, folder.resolve())).as_posix()
 
 
+def plain_data(vehicle: Vehicle) -> dict[str, Any]:
+    """Return the plain data of a vehicle's file, with all that it extends; none for a vehicle that was not read from a file or text."""
+    return {} if vehicle._document is None else dict(vehicle._document.plain())
+
+
 def variant_text(
     vehicle: Vehicle,
     folder: Path,

@@ -20,7 +20,7 @@ from vehgen.diagnose.design.discrimination import FittedModel, Separation, at_mo
 from vehgen.diagnose.design.proposal import Proposal, drive, sensor_text
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.search import DiagnosisProgress
-from vehgen.diagnose.verdict import sentence
+from vehgen.diagnose.wording import join_names
 from vehgen.fit.trial import Trial
 from vehgen.measure import RecordedChannel
 
@@ -83,7 +83,7 @@ def propose(detection: Detection, fits: Sequence[ModelFit], progress: DiagnosisP
     if found is None or found.separation.distance < NOTHING:
         return _same(detection, fits, names)
     channel, times = _peak(found)
-    told = f"{drive(found.run, found.added)}: the predictions of {sentence(names, 'and')} "
+    told = f"{drive(found.run, found.added)}: the predictions of {join_names(names, 'and')} "
     told += f"then differ by {times:.2g} times the noise at {channel}"
     told += f", by {math.sqrt(found.separation.distance):.2g} standard deviations in all"
     separates = found.separation.distance >= ENOUGH_CHI2
@@ -200,7 +200,7 @@ def _same(detection: Detection, fits: Sequence[ModelFit], names: tuple[str, ...]
     axles = [name for name in axles if all(rival.trial.run.vehicle.axles[name].suspension is not None for rival in rivals)]
     trials = (*detection.problem.trials, *detection.validation_runs)
     runs = [run for run in list_runs((rivals[0].trial, *trials)) if _feasible(run, trials, rivals)]
-    told = f"{sentence(names, 'and')} predict the same in every hump run looked at, on the bodies"
+    told = f"{join_names(names, 'and')} predict the same in every hump run looked at, on the bodies"
     if axles and runs:
         run = runs[-1]
         travels = [rival.travels(run, axles) for rival in rivals]

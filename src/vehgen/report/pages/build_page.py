@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
-import hashlib
-import platform
 import re
 from collections.abc import Mapping, Sequence
-from importlib import metadata
 from importlib.resources import files
 from pathlib import Path
 
 import sympy as sp
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup, escape
+from matplotlib.figure import Figure
 
-import vehgen
-from vehgen.codegen import KernelSource
-from vehgen.errors import InputError
+from vehgen.codegen import KernelSource, write_kernel
 from vehgen.files import write_text
-from vehgen.files.document import MAX_DOCUMENT_BYTES
-from vehgen.files.reading import read_bytes
-from vehgen.mechanics import GRAVITY, EquationsOfMotion, StaticLoads
+from vehgen.files.results import json_text
+from vehgen.mechanics import GRAVITY, EquationsOfMotion, StaticLoads, derive
 from vehgen.report.drawing.mode_shapes import draw_modes
 from vehgen.report.drawing.vehicle import draw_vehicle
 from vehgen.report.equations import writing as equations
@@ -28,7 +23,9 @@ from vehgen.report.equations.latex import equations_latex
 from vehgen.report.equations.notation import tidy
 from vehgen.report.figure_files import figure_svg, inline_svg
 from vehgen.simulate import Mode
+from vehgen.simulate.build import Build, body_channels, summarise_build
 
+GONE = "no longer there when this page was written"
 _WIDE_EM = 14.0
 """A drawing wider than this is scrolled on the page instead of shrunk [inches]."""
 
@@ -45,39 +42,53 @@ def write_build_folder(
 ) -> list[Path]:
     """Write a vehicle's build folder; returns the files written.
 
-    `kernel.py`, `kernel_legend.txt` (what the numbers in it mean), `equations.txt`, `equations.tex`, `index.html` and, with `plots`,
-    `drawing.svg` and `modes.svg`. Each file appears whole or not at all.
+    `kernel.py`, `kernel_legend.txt` (what the numbers in it mean), `equations.txt`, `equations.tex`, `build.json`, `index.html` and, with
+    `plots`, `drawing.svg` and `modes.svg`. Each file appears whole or not at all.
     """
+    build = summarise_build(model, values, modes, loads, warnings, plots)
+    return _write(folder, build, model, kernel)
+
+
+def build_files(folder: Path, plots: bool = True) -> list[Path]:
+    """Return the files that :func:`write_build_folder` writes."""
+    drawings = ("drawing.svg", "modes.svg") if plots else ()
+    names = ("kernel.py", "kernel_legend.txt", "equations.txt", "equations.tex", *drawings, "build.json", "index.html")
+    return [folder / name for name in names]
+
+
+def redraw_build(build: Build, folder: Path, source: str) -> list[Path]:
+    """Write the build folder of a result again but for the result, its kernel and equations from the vehicle's data.
+
+    `source` is what errors call the result.
+    """
+    vehicle = build.read_vehicle(source)
+    model = derive(vehicle, body_channels(vehicle))
+    return _write(folder, build, model, write_kernel(model), again=True)
+
+
+def draw_built_vehicle(build: Build) -> Figure:
+    """Return the drawing of a built vehicle, to scale."""
+    return draw_vehicle(derive(build.read_vehicle("the build")), build.values)
+
+
+def _write(folder: Path, build: Build, model: EquationsOfMotion, kernel: KernelSource, again: bool = False) -> list[Path]:
     texts = {
         "kernel.py": kernel.text,
         "kernel_legend.txt": kernel.legend,
         "equations.txt": equations.equations_text(model),
         "equations.tex": equations_latex(model),
     }
-    if plots:
-        texts["drawing.svg"] = figure_svg(draw_vehicle(model, values))
-        texts["modes.svg"] = figure_svg(draw_modes(model, modes, values))
-    texts["index.html"] = _page(model, values, modes, loads, warnings, texts)
-    written = build_files(folder, plots)
+    if build.plots:
+        texts["drawing.svg"] = figure_svg(draw_vehicle(model, build.values))
+        texts["modes.svg"] = figure_svg(draw_modes(model, build.modes, build.values))
+    texts |= {"build.json": json_text(build), "index.html": _page(build, model, texts)}
+    written = [path for path in build_files(folder, build.plots) if not (again and path.name == "build.json")]
     for path in written:
         write_text(path, texts[path.name])
     return written
 
 
-def build_files(folder: Path, plots: bool = True) -> list[Path]:
-    """Return the files that :func:`write_build_folder` writes."""
-    drawings = ("drawing.svg", "modes.svg") if plots else ()
-    return [folder / name for name in ("kernel.py", "kernel_legend.txt", "equations.txt", "equations.tex", *drawings, "index.html")]
-
-
-def _page(
-    model: EquationsOfMotion,
-    values: Mapping[str, float],
-    modes: Sequence[Mode],
-    loads: StaticLoads,
-    warnings: Sequence[str],
-    texts: Mapping[str, str],
-) -> str:
+def _page(build: Build, model: EquationsOfMotion, texts: Mapping[str, str]) -> str:
     environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
     environment.filters["grouped"] = grouped
     template = environment.from_string((files("vehgen.report") / "templates" / "page.html.j2").read_text(encoding="utf-8"))
@@ -86,14 +97,14 @@ def _page(
         vehicle=model.vehicle,
         title=model.vehicle.title or model.vehicle.name,
         coordinates=[(i, item, Markup(symbols[i - 1])) for i, item in enumerate(model.coordinates, 1)],
-        parameters=_parameters(model, values),
-        modes=modes,
-        axles=_axles(model, loads),
-        hinges=loads.hinges,
-        total=sum(loads.axles.values()),
-        weight=_weight(model, values),
+        parameters=_parameters(build, model),
+        modes=build.modes,
+        axles=_axles(model, build.loads),
+        hinges=build.loads.hinges,
+        total=sum(build.loads.axles.values()),
+        weight=build.weight,
         gravity=GRAVITY,
-        warnings=warnings,
+        warnings=build.warnings,
         figures=_figures(model, texts),
         long="drawing.svg" in texts and _width(texts["drawing.svg"]) > _WIDE_EM,
         balance=Markup(equations.balance_mathml(model)),
@@ -104,32 +115,31 @@ def _page(
         ],
         laws=_laws(model),
         laws_note=equations.LAWS_NOTE,
-        counts=model.operation_counts(),
+        counts=build.operation_counts,
         kernel=texts["kernel.py"],
         legend=texts["kernel_legend.txt"],
-        versions=_versions(),
-        inputs=_inputs(model),
+        versions=build.versions,
+        inputs=[(name, f"SHA-256 {digest}" if digest else GONE) for name, digest in build.inputs.items()],
     )
 
 
-def _parameters(model: EquationsOfMotion, values: Mapping[str, float]) -> list[dict[str, object]]:
-    vehicle = model.vehicle
-    everything = vehicle.all_values({name: values[name] for name in vehicle.free_parameters})
-    ranges, dimensions = vehicle.ranges(), vehicle.dimensions
+def _parameters(build: Build, model: EquationsOfMotion) -> list[dict[str, object]]:
     definitions = {symbol.name: expression for symbol, expression in model.definitions}
-    return [
-        {
-            "name": name,
-            "symbol": Markup(equations.expression_mathml(model, sp.Symbol(name, real=True))),
-            "value": grouped(everything[name]),
-            "unit": _unit(str(dimensions[name])),
-            "range": " to ".join(map(grouped, ranges[name])) if name in ranges else "",
-            "outside": name in ranges and not ranges[name][0] <= everything[name] <= ranges[name][1],
-            "equals": Markup(equations.expression_mathml(model, tidy(definitions[name]))) if name in definitions else "",
-            "meaning": item.meaning,
-        }
-        for name, item in vehicle.parameters.items()
-    ]
+    rows: list[dict[str, object]] = []
+    for name, item in build.parameters.items():
+        rows.append(
+            {
+                "name": name,
+                "symbol": Markup(equations.expression_mathml(model, sp.Symbol(name, real=True))),
+                "value": grouped(item.value),
+                "unit": _unit(item.unit),
+                "range": " to ".join(map(grouped, item.range)) if item.range else "",
+                "outside": item.range is not None and not item.range[0] <= item.value <= item.range[1],
+                "equals": Markup(equations.expression_mathml(model, tidy(definitions[name]))) if name in definitions else "",
+                "meaning": model.vehicle.parameters[name].meaning,
+            }
+        )
+    return rows
 
 
 def grouped(value: float) -> str:
@@ -146,12 +156,6 @@ def _unit(unit: str) -> str:
 
 def _axles(model: EquationsOfMotion, loads: StaticLoads) -> list[tuple[str, str, float]]:
     return [(name, model.vehicle.axles[name].title, force) for name, force in loads.axles.items()]
-
-
-def _weight(model: EquationsOfMotion, values: Mapping[str, float]) -> float:
-    """Return the weight of all bodies and axles [N]."""
-    masses = {(0, i): term.inertia for i, term in enumerate(model.energies.weights)}
-    return GRAVITY * sum(model.evaluate(masses, values).values())
 
 
 def _figures(model: EquationsOfMotion, texts: Mapping[str, str]) -> dict[str, Markup]:
@@ -183,19 +187,3 @@ def _laws(model: EquationsOfMotion) -> list[tuple[str, Markup, list[tuple[str, s
         )
         for where, travel, laws in equations.law_rows(model)
     ]
-
-
-def _versions() -> dict[str, str]:
-    others = {name: metadata.version(name) for name in ("sympy", "numpy", "numba", "matplotlib")}
-    return {"vehgen": vehgen.__version__, **others, "Python": platform.python_version()}
-
-
-def _inputs(model: EquationsOfMotion) -> list[tuple[str, str]]:
-    """Return name and SHA-256 of each of the vehicle's files."""
-    found = []
-    for path in model.vehicle.files:
-        try:
-            found.append((path.name, f"SHA-256 {hashlib.sha256(read_bytes(path, MAX_DOCUMENT_BYTES)).hexdigest()}"))
-        except InputError:
-            found.append((path.name, "no longer there when this page was written"))
-    return found

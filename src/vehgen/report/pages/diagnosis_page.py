@@ -1,4 +1,4 @@
-"""The report of a diagnosis: one HTML page with its figures inside."""
+"""The report of a diagnosis: one HTML page with its figures inside, of what the result holds."""
 
 from __future__ import annotations
 
@@ -10,185 +10,119 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from vehgen.diagnose.detect.detection import band_gaps, run_gaps
-from vehgen.diagnose.detect.harmonics import distortions
-from vehgen.diagnose.fits.model_fit import ModelFit
-from vehgen.diagnose.localise.free_form import fit_free_form, recover, strongest
-from vehgen.diagnose.pipeline import Diagnosis
-from vehgen.diagnose.select.estimates import estimate, estimates_by_run
-from vehgen.diagnose.select.search import SearchRound
+from vehgen.diagnose.evidence import BaseParameter, Evidence, FittedCandidate, RoundEvidence
+from vehgen.diagnose.result import Diagnosis
 from vehgen.files import write_text
 from vehgen.report.figure_files import figure_svg, inline_svg
-from vehgen.report.plots.comparison import plot_histories, plot_psds
-from vehgen.report.plots.diagnosis_plots import curves, plot_places, plot_waterfall
+from vehgen.report.plots.comparison import QUANTITY_UNITS, plot_histories, plot_psds
+from vehgen.report.plots.diagnosis_plots import plot_places, plot_waterfall
 from vehgen.report.plots.force_plots import plot_force
-
-MAX_ROWS = 12
-"""So many candidates are listed at most."""
 
 
 def write_diagnosis_page(diagnosis: Diagnosis, path: Path) -> None:
     """Write the report of a diagnosis to an HTML file."""
-    from vehgen import __version__
-
     text = resources.files("vehgen.report").joinpath("templates/diagnosis.html.j2").read_text(encoding="utf-8")
     environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
-    figures, force = _figures(diagnosis)
-    floor = diagnosis.detection.floor
-    write_text(
-        path,
-        environment.from_string(text).render(
-            vehicle=diagnosis.trials[0].run.vehicle.title or diagnosis.trials[0].run.vehicle.name,
-            verdict=diagnosis.verdict,
-            stopped=diagnosis.stopped,
-            noise=_noise(diagnosis),
-            parameters=_parameters(diagnosis),
-            conditions=_conditions(diagnosis),
-            untouched=len(diagnosis.detection.validation_runs),
-            slope=max(noise.slope for noise in floor.noises.values()),
-            corrected=list(floor.corrected),
-            figures=figures,
-            force=force,
-            runs=_runs(diagnosis),
-            bands=_bands(diagnosis),
-            distortions=distortions(diagnosis.detection),
-            rounds=[_round(item) for item in diagnosis.rounds],
-            alone=_alone(diagnosis),
-            meanings={fit.last.effect.name: fit.last.effect.meaning for item in diagnosis.rounds for fit in item.fits},
-            version=__version__,
-        ),
+    evidence = diagnosis.evidence
+    page = environment.from_string(text).render(
+        vehicle=evidence.vehicle,
+        verdict=diagnosis.verdict,
+        stopped=diagnosis.stopped,
+        noise=[f"{item.channel} {item.least:.3g} to {item.largest:.3g} {QUANTITY_UNITS.get(item.quantity, '')}" for item in evidence.noise],
+        parameters=[_parameter(item) for item in evidence.parameters],
+        conditions=[
+            (item.run, f"{1e3 * item.delay:+.1f} ms", f"{100 * item.speed:+.2f} %", f"{100 * item.height:+.2f} %")
+            for item in evidence.conditions
+        ],
+        n_validation=sum(run.validation for run in diagnosis.verdict.gap.runs),
+        slope=evidence.noise_slope,
+        corrected=evidence.corrected,
+        figures=_figures(diagnosis),
+        force="" if evidence.force is None else evidence.force.description,
+        runs=_runs(diagnosis),
+        bands=_bands(evidence),
+        distortions=evidence.distortions,
+        rounds=[_round(item) for item in evidence.rounds],
+        alone=_alone(evidence),
+        meanings=evidence.meanings,
+        version=evidence.made_by,
     )
+    write_text(path, page)
 
 
-def _noise(diagnosis: Diagnosis) -> list[str]:
-    """Return the noise of every channel that the fits used, from the quietest run to the loudest."""
-    units = {"acceleration": "m/s²", "pitch_rate": "rad/s", "displacement": "m"}
-    found: dict[str, tuple[str, list[float]]] = {}
-    for trial in diagnosis.trials:
-        for channel, sigma in zip(trial.recording.channels, diagnosis.detection.floor.noises[trial.name].sigma, strict=True):
-            found.setdefault(channel.name, (units.get(channel.quantity, ""), []))[1].append(float(sigma))
-    return [f"{name} {min(values):.3g} to {max(values):.3g} {unit}" for name, (unit, values) in found.items()]
-
-
-def _parameters(diagnosis: Diagnosis) -> list[dict[str, str]]:
-    """Return the base parameters: the file's value, the refit of the base, and that with the effects."""
-    base, last = diagnosis.detection.base.least_squares, _last(diagnosis).least_squares
-    units = {name: str(unit).strip("1") for name, unit in diagnosis.trials[0].run.vehicle.dimensions.items()}
-    space = base.misfit.problem.space
-    later = last.misfit.problem.best_values(last.values)
-    return [
-        {
-            "name": name,
-            "filed": f"{filed:.4g} {units[name]}",
-            "refitted": f"{value:.4g} {units[name]}{' (at its bound)' if name in base.on_bound else ''}",
-            "last": f"{later[name]:.4g} {units[name]}{' (at its bound)' if name in last.on_bound else ''}",
-        }
-        for name, filed, value in zip(space.names, space.start, base.values, strict=True)
-    ]
-
-
-def _conditions(diagnosis: Diagnosis) -> list[tuple[str, str, str, str]]:
-    """Return what the last fit supposes of every run: the recording's delay, the speed's and the road height's error."""
-    fit = _last(diagnosis)
-    found = []
-    for polished in (fit.least_squares, fit.validation_fit):
-        if polished is None:
-            continue
-        _, errors = polished.misfit.split(polished.x)
-        spread = polished.misfit.nuisances
-        for trial, error in zip(polished.misfit.problem.trials, errors, strict=True):
-            known = {name: float(value) * getattr(spread, name) for name, value in zip(spread.names, error, strict=True)}
-            delay, speed, height = (known.get(name, 0.0) for name in ("delay", "speed", "height"))
-            found.append((trial.name, f"{1e3 * delay:+.1f} ms", f"{100 * speed:+.2f} %", f"{100 * height:+.2f} %"))
-    return found
+def _parameter(item: BaseParameter) -> dict[str, str]:
+    return {
+        "name": item.name,
+        "filed": f"{item.filed:.4g} {item.unit}",
+        "refitted": f"{item.refit:.4g} {item.unit}{' (at its bound)' if item.refit_on_bound else ''}",
+        "last": f"{item.final:.4g} {item.unit}{' (at its bound)' if item.final_on_bound else ''}",
+    }
 
 
 def _runs(diagnosis: Diagnosis) -> list[dict[str, str]]:
-    told = {str(run["run"]): run for run in diagnosis.verdict.gap.runs}
+    chis = {run.run: run for run in diagnosis.verdict.gap.runs}
     return [
         {
-            "run": gap.run,
-            "hump": f"{1e3 * gap.height:.0f} mm" if gap.height else "none",
-            "speed": f"{gap.speed:.3g} m/s",
-            "use": "checking only" if told[gap.run]["untouched"] else "fitting",
-            "share": f"{100 * gap.share:.1f} %",
-            "before": f"{float(told[gap.run]['before']):.3f}",
-            "after": f"{float(told[gap.run]['after']):.3f}",
+            "run": size.run,
+            "hump": f"{1e3 * size.hump_height:.0f} mm" if size.hump_height else "none",
+            "speed": f"{size.speed:.3g} m/s",
+            "use": "checking only" if chis[size.run].validation else "fitting",
+            "share": f"{100 * size.share:.1f} %",
+            "before": f"{chis[size.run].before:.3f}",
+            "after": f"{chis[size.run].after:.3f}",
         }
-        for gap in run_gaps(diagnosis.detection)
+        for size in diagnosis.evidence.runs
+        if size.run in chis
     ]
 
 
-def _bands(diagnosis: Diagnosis) -> dict[str, list[tuple[str, str, str]]]:
-    """Return by channel: the band, chi before and chi after, pooled over the untouched runs (over all, where there are none)."""
-    wanted = {trial.name for trial in (diagnosis.detection.validation_runs or diagnosis.trials)}
-    after = {(item.run, item.channel, item.band): item.chi for item in band_gaps(diagnosis.detection, _last(diagnosis))}
-    pooled: dict[tuple[str, tuple[float, float]], list[tuple[float, float]]] = {}
-    for item in band_gaps(diagnosis.detection):
-        if item.run in wanted:
-            pair = item.chi, after.get((item.run, item.channel, item.band), item.chi)
-            pooled.setdefault((item.channel, item.band), []).append(pair)
+def _bands(evidence: Evidence) -> dict[str, list[tuple[str, str, str]]]:
+    """Return by channel: the band, chi before and chi after."""
     found: dict[str, list[tuple[str, str, str]]] = {}
-    for (channel, band), pairs in pooled.items():
-        old, new = np.sqrt(np.mean(np.square(pairs), axis=0))
-        found.setdefault(channel, []).append((f"{band[0]:g} to {band[1]:g} Hz", f"{old:.2f}", f"{new:.2f}"))
+    for item in evidence.bands:
+        band = f"{item.band[0]:g} to {item.band[1]:g} Hz"
+        found.setdefault(item.channel, []).append((band, f"{item.before:.2f}", f"{item.after:.2f}"))
     return found
 
 
-def _last(diagnosis: Diagnosis) -> ModelFit:
-    return diagnosis.chosen[-1] if diagnosis.chosen else diagnosis.detection.base
-
-
-def _round(item: SearchRound) -> dict[str, object]:
+def _round(item: RoundEvidence) -> dict[str, object]:
     """Return one look for one effect: what it was added to, the places that passed and the best candidates."""
     return {
-        "footing": item.current.label,
-        "chi": f"{item.current.chi:.2f}",
-        "places": [f"{place.place.label} (chi {place.chi:.2f})" for place in item.passed[:4]],
-        "fits": [_row(fit) for fit in item.fits[:MAX_ROWS]],
-        "tried": len(item.fits),
+        "beside": item.beside,
+        "chi": f"{item.chi:.2f}",
+        "places": [f"{place.label} (chi {place.chi:.2f})" for place in item.places],
+        "fits": [_row(candidate) for candidate in item.candidates],
+        "tried": item.tried,
     }
 
 
-def _row(fit: ModelFit) -> dict[str, str]:
-    parameters = ", ".join(f"{name} {item.value:.4g} {item.unit}".strip() for name, item in estimate(fit).items())
+def _row(candidate: FittedCandidate) -> dict[str, str]:
     return {
-        "label": fit.last.label,
-        "train": f"{np.sqrt(fit.training):.3f}",
-        "held_out": f"{np.sqrt(fit.validation):.3f}" if np.isfinite(fit.validation) else "",
-        "parameters": parameters,
+        "label": candidate.label,
+        "train": f"{candidate.training:.3f}",
+        "validation": f"{candidate.validation:.3f}" if np.isfinite(candidate.validation) else "",
+        "parameters": ", ".join(f"{name} {item.value:.4g} {item.unit}".strip() for name, item in candidate.parameters.items()),
     }
 
 
-def _alone(diagnosis: Diagnosis) -> list[tuple[str, str, list[str]]]:
+def _alone(evidence: Evidence) -> list[tuple[str, str, list[str]]]:
     """Return by effect and parameter what every run for fitting alone asks for."""
-    if not diagnosis.chosen:
-        return []
-    last = diagnosis.chosen[-1]
-    found = []
-    for candidate in last.effects:
-        estimates = estimates_by_run(last, candidate)
-        for name in dict.fromkeys(item.parameter for item in estimates):
-            told = [f"{item.run} {item.value:.4g} ± {item.half_width:.2g}" for item in estimates if item.parameter == name]
-            found.append((candidate.label, name, told))
-    return found
+    found: dict[tuple[str, str], list[str]] = {}
+    for item in evidence.alone:
+        found.setdefault((item.effect, item.parameter), []).append(f"{item.run} {item.value:.4g} ± {item.half_width:.2g}")
+    return [(*key, told) for key, told in found.items()]
 
 
-def _figures(diagnosis: Diagnosis) -> tuple[dict[str, Markup], str]:
+def _figures(diagnosis: Diagnosis) -> dict[str, Markup]:
+    evidence = diagnosis.evidence
     found: dict[str, Figure | None] = dict.fromkeys(("places", "force", "waterfall", "psd", "histories"))
-    force = ""
-    if diagnosis.places:
-        found["places"] = plot_places(diagnosis.places, diagnosis.passed)
-    shown = strongest(diagnosis.passed)
-    law = diagnosis.law or (None if shown is None else fit_free_form(recover(diagnosis.detection, shown)))
-    if law is not None:
-        found["force"], force = plot_force(law), law.describe()
-    densities, histories = curves(diagnosis)
-    if densities:
+    if evidence.places:
+        found["places"] = plot_places(evidence.places)
+    if evidence.force is not None:
+        found["force"] = plot_force(evidence.force)
+    if evidence.psds:
         found["waterfall"] = plot_waterfall(diagnosis)
         labels = ("residual before", "residual after")
-        found["psd"] = plot_psds(densities, diagnosis.detection.band, labels=labels)
-        found["histories"] = plot_histories(histories, labels)
-    return {
-        name: Markup(inline_svg(figure_svg(figure), name, name)) if figure is not None else Markup("") for name, figure in found.items()
-    }, force
+        found["psd"] = plot_psds(evidence.psds, evidence.band, labels=labels)
+        found["histories"] = plot_histories(evidence.histories, labels)
+    return {name: Markup("" if figure is None else inline_svg(figure_svg(figure), name, name)) for name, figure in found.items()}

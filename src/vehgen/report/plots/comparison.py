@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from vehgen.measure.curves import ChannelCurves
 from vehgen.report.drawing.canvas import INK
 
-Array = NDArray[np.float64]
 MEASURED = "#9aa7b1"
 SIMULATED = "#0b5fa5"
 REFERENCE_COLOUR = "#d55e00"
@@ -24,6 +22,8 @@ QUANTITY_UNITS = {
     "pitch": "rad",
     "pitch_acceleration": "rad/s²",
 }
+HIGHEST_SHOWN_HZ = 25.0
+"""Frequencies shown [Hz]."""
 LABELS = ("measured", "simulated")
 HIGHEST_SHOWN_HZ = 25.0
 """Frequencies shown [Hz]."""
@@ -31,22 +31,10 @@ PSD_DECADES = 5
 """What lies further below the peak of a PSD is cut off."""
 
 
-@dataclass(frozen=True)
-class Curve:
-    """What one panel shows: abscissa `x`, `measured` and `simulated`, all `shape (n,)`, of a run's channel."""
-
-    run: str
-    channel: str
-    quantity: str
-    x: Array
-    measured: Array
-    simulated: Array
-
-
 def plot_psds(
-    curves: Sequence[Curve],
+    curves: Sequence[ChannelCurves],
     band: tuple[float, float],
-    reference: tuple[str, Curve] | None = None,
+    reference: tuple[str, ChannelCurves] | None = None,
     labels: tuple[str, str] = LABELS,
 ) -> Figure:
     """Plot PSDs on a logarithmic scale, measured broad and grey, simulated thin and blue.
@@ -81,21 +69,21 @@ def plot_psds(
     return figure
 
 
-def plot_histories(curves: Sequence[Curve], labels: tuple[str, str] = LABELS) -> Figure:
+def plot_histories(curves: Sequence[ChannelCurves], labels: tuple[str, str] = LABELS) -> Figure:
     """Plot time histories; `x` is time [s]."""
     figure, panels = _grid(len(curves))
     for axes, curve in zip(panels, curves, strict=False):
         axes.plot(curve.x, curve.measured, color=MEASURED, lw=2.2, label=labels[0])
         axes.plot(curve.x, curve.simulated, color=SIMULATED, lw=0.9, label=labels[1])
         axes.set_xlim(*_busy(curve))
-        axes.set_ylabel(f"{curve.quantity.replace('_', ' ')} [{QUANTITY_UNITS.get(curve.quantity, '')}]", color=INK)
+        axes.set_ylabel(f"{curve.quantity.replace('_', ' ')} [{QUANTITY_UNITS.get(curve.quantity, '')}]", color=INK, parse_math=False)
         axes.set_xlabel("time [s]", color=INK)
         _finish(axes, curve)
     _legend(figure, panels)
     return figure
 
 
-def plot_pair(history: Curve, density: Curve, band: tuple[float, float], labels: tuple[str, str] = LABELS) -> Figure:
+def plot_pair(history: ChannelCurves, density: ChannelCurves, band: tuple[float, float], labels: tuple[str, str] = LABELS) -> Figure:
     """Plot one channel's history beside its PSD, each as two curves."""
     figure = Figure(figsize=(9.0, 2.3), layout="constrained")
     left, right = figure.subplots(1, 2)
@@ -119,7 +107,7 @@ def plot_pair(history: Curve, density: Curve, band: tuple[float, float], labels:
     return figure
 
 
-def _busy(curve: Curve) -> tuple[float, float]:
+def _busy(curve: ChannelCurves) -> tuple[float, float]:
     """Return the part of the time in which something happens, a second around it."""
     loud = np.flatnonzero(np.abs(curve.measured) > 0.02 * np.abs(curve.measured).max())
     first, last = (loud[0], loud[-1]) if len(loud) else (0, len(curve.x) - 1)
@@ -136,7 +124,7 @@ def _grid(count: int) -> tuple[Figure, list[Axes]]:
     return figure, panels[:count]
 
 
-def _finish(axes: Axes, curve: Curve) -> None:
+def _finish(axes: Axes, curve: ChannelCurves) -> None:
     axes.set_title(f"{curve.run}: {curve.channel}", fontsize=9.5, loc="left", color=INK, parse_math=False)
     axes.grid(color="#e3e7ea", lw=0.6)
     axes.spines[["top", "right"]].set_visible(False)

@@ -8,44 +8,50 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from vehgen.calibrate.sensitivity import SensitivityIndices
-from vehgen.files.units import DAMPING, LENGTH, MASS, STIFFNESS
+from vehgen.errors import InputError, shown
+from vehgen.files.names import NAME_RULE, is_name
 from vehgen.report.drawing.canvas import INK
 from vehgen.report.figure_files import save_figure
 from vehgen.report.plots.comparison import HIGHEST_SHOWN_HZ
 from vehgen.report.plots.response_plot import COLOURS, STYLES
-from vehgen.vehicle import Vehicle
 
 SENSITIVITY_DECADES = 6
 """What lies further below the largest index of a panel is cut off."""
 
 
-def save_sensitivity_figures(found: SensitivityIndices, vehicle: Vehicle, folder: Path) -> list[Path]:
+def save_sensitivity_figures(found: SensitivityIndices, folder: Path) -> list[Path]:
     """Draw and save one figure a channel; returns their paths."""
     paths = sensitivity_figure_files(found.channels, folder)
-    groups = group_parameters(found.names, vehicle)
     for j, path in enumerate(paths):
-        save_figure(plot_sensitivities(found, j, groups), path)
+        save_figure(plot_sensitivities(found, j), path)
     return paths
 
 
 def sensitivity_figure_files(channels: Iterable[str], folder: Path) -> list[Path]:
-    """Return the files that :func:`save_sensitivity_figures` writes."""
-    return [folder / f"sensitivity_{channel}.png" for channel in channels]
+    """Return the files that :func:`save_sensitivity_figures` writes.
 
-
-def group_parameters(names: tuple[str, ...], vehicle: Vehicle) -> dict[str, list[str]]:
-    """Return the parameters by kind: masses, suspension stiffnesses, tyre stiffnesses, dampings, distances, others."""
-    tyres = {name for axle in vehicle.axles.values() for name in axle.tyre.k.names}
-    kinds = {MASS: "masses", STIFFNESS: "suspension and link stiffnesses", DAMPING: "dampings", LENGTH: "distances"}
-    found: dict[str, list[str]] = {}
+    Raises
+    ------
+    InputError
+        For channels whose names can be no part of a file's, as a result's file from a stranger may have them.
+    """
+    names = list(channels)
     for name in names:
-        kind = "tyre stiffnesses" if name in tyres else kinds.get(vehicle.dimensions[name], "inertias and others")
-        found.setdefault(kind, []).append(name)
-    return found
+        if not is_name(name):
+            raise InputError(f"the channel {shown(name)} cannot name a figure's file: {NAME_RULE}")
+    return [folder / f"sensitivity_{name}.png" for name in names]
 
 
-def plot_sensitivities(found: SensitivityIndices, channel: int, groups: dict[str, list[str]]) -> Figure:
+def plot_first_channel(found: SensitivityIndices) -> Figure:
+    """Plot the first channel's indices."""
+    return plot_sensitivities(found, 0)
+
+
+def plot_sensitivities(found: SensitivityIndices, channel: int) -> Figure:
     """Plot a channel's indices times the squared parameter: the PSD of its change when the parameter doubles, to first order."""
+    groups: dict[str, list[str]] = {}
+    for name, kind in zip(found.names, found.kinds, strict=True):
+        groups.setdefault(kind, []).append(name)
     rows = -(-len(groups) // 2)
     figure = Figure(figsize=(10.4, 0.5 + 2.6 * rows), layout="constrained")
     panels = list(figure.subplots(rows, 2, squeeze=False).ravel())

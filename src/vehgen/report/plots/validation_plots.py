@@ -8,27 +8,17 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from vehgen.calibrate.validation import Validation
-from vehgen.measure import SPECTRA
-from vehgen.measure.astm import NOTE
+from vehgen.measure.curves import ChannelCurves
 from vehgen.report.drawing.canvas import INK
 from vehgen.report.figure_files import save_figure
-from vehgen.report.plots.comparison import HIGHEST_SHOWN_HZ, MEASURED, QUANTITY_UNITS, SIMULATED, Curve, plot_histories, plot_psds
+from vehgen.report.plots.comparison import HIGHEST_SHOWN_HZ, MEASURED, QUANTITY_UNITS, SIMULATED, plot_histories, plot_psds
 
 
-def save_validation_figures(validation: Validation, folder: Path, astm: str | None = None) -> list[Path]:
+def save_validation_figures(validation: Validation, folder: Path) -> list[Path]:
     """Draw and save PSDs, histories and band RMS; returns their paths."""
-    densities = [
-        Curve(item.run, item.channel, item.quantity, item.frequency, item.measured_psd, item.simulated_psd) for item in validation.channels
-    ]
-    histories = [Curve(item.run, item.channel, item.quantity, item.time, item.measured, item.simulated) for item in validation.channels]
-    reference = None
-    if astm is not None:
-        frequency = np.geomspace(1.0, HIGHEST_SHOWN_HZ, 200)
-        spectrum = SPECTRA[astm].at(frequency)
-        reference = (f"{SPECTRA[astm].name} ({NOTE})", Curve("", astm, "acceleration", frequency, spectrum, spectrum))
+    histories = plot_histories([item.histories for item in validation.channels])
     paths = validation_figure_files(folder)
-    figures = (plot_psds(densities, (0.3, HIGHEST_SHOWN_HZ), reference), plot_histories(histories), plot_band_rms(validation))
-    for path, figure in zip(paths, figures, strict=True):
+    for path, figure in zip(paths, (plot_validation(validation), histories, plot_band_rms(validation)), strict=True):
         save_figure(figure, path)
     return paths
 
@@ -36,6 +26,14 @@ def save_validation_figures(validation: Validation, folder: Path, astm: str | No
 def validation_figure_files(folder: Path) -> list[Path]:
     """Return the files that :func:`save_validation_figures` writes."""
     return [folder / f"validation_{what}.png" for what in ("psd", "histories", "bands")]
+
+
+def plot_validation(validation: Validation) -> Figure:
+    """Plot the PSDs of every channel, measured beside simulated, with the reference spectrum where there is one."""
+    reference = None
+    if (known := validation.reference) is not None:
+        reference = known.name, ChannelCurves("", known.name, "acceleration", known.frequency, known.psd, known.psd)
+    return plot_psds([item.psds for item in validation.channels], (0.3, HIGHEST_SHOWN_HZ), reference)
 
 
 def plot_band_rms(validation: Validation) -> Figure:

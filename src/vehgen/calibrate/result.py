@@ -1,0 +1,165 @@
+"""What a calibration tells its user, as a value: parameters, intervals, what cannot be told, how well it fits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any, ClassVar
+
+from pydantic import Field
+
+from vehgen.calibrate.calibration import Calibration
+from vehgen.errors import InputError
+from vehgen.files.result_fields import IN_MEMORY, Array1D, Number
+from vehgen.files.results import Result, Table
+from vehgen.measure.curves import ChannelCurves
+from vehgen.vehicle.writing import variant_text
+
+Interval = tuple[float, float]
+MAX_CURVES = 500
+"""A file with more curves than this is refused: no figure could show them."""
+
+
+@dataclass(frozen=True)
+class ParameterSummary:
+    """One parameter [unit, SI]: its value, and what stands behind it.
+
+    `status` is `identified`, `weak` (its interval spans most of its range), `gauge` (no data of this kind can tell it: see the null
+    directions), `bound` (its range, not the data, set it) or `not assessed`. `interval_given_pivots` is its interval were the pivots known.
+    """
+
+    value: float
+    interval: Interval | None
+    unit: str
+    range: Interval
+    status: str
+    step: str
+    interval_given_pivots: Interval | None = None
+
+
+@dataclass(frozen=True)
+class CombinationSummary:
+    """A quantity with its interval, None where the data cannot tell it."""
+
+    value: float
+    interval: Interval | None
+
+
+@dataclass(frozen=True)
+class ModeSummary:
+    """A natural mode of the calibrated vehicle with its intervals."""
+
+    name: str
+    undamped_hz: float
+    interval: Interval | None
+    damping_ratio: float
+    damping_interval: Interval | None
+
+
+@dataclass(frozen=True)
+class FitSummary:
+    """Where one start of the polish ended: its loss, chi2 (1 is noise alone), and the parameters that ended at a bound."""
+
+    loss: float
+    chi2: float
+    on_bound: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class NoiseSummary:
+    """The noise of a run: `sigma shape (n_channels,)`, and the level of the road's roughness."""
+
+    run: str
+    sigma: Array1D
+    road_level_m3: Array1D
+
+
+@dataclass(frozen=True, eq=False)
+class CalibrationSummary(Result):
+    """Everything a calibration tells.
+
+    Attributes
+    ----------
+    vehicle, method, stopped
+        What was calibrated and how; whether it was interrupted: the values are then the best so far.
+    parameters, modes, combinations, bootstrap
+        By name, with intervals at the level `confidence`; the bootstrap checks those of combinations and frequencies.
+    rank, searched, pivots, null_directions
+        How many combinations of how many parameters the sensors can tell, and along what the others trade.
+    objective, chi2, fits, spread
+        Eq. 5 by channel; the best fit's chi2; all starts; the values among the starts that fit as well as the best.
+    nuisances, noise, tyre_load_minimum
+        What is supposed of the runs; each axle's least tyre load over its static load.
+    history, steps
+        The best objective after each generation, a list a step, and the steps' labels.
+    band, psds, histories
+        Frequencies compared [Hz], and measured beside simulated.
+    provenance
+        Versions, settings, and hashes of the inputs.
+    calibration
+        The calibration itself, None in a summary that was read from a file.
+    """
+
+    KIND: ClassVar[str] = "calibration"
+    DRAWING: ClassVar[str] = "vehgen.report.plots.calibration_plots:plot_calibration"
+
+    vehicle: str
+    method: str
+    stopped: bool
+    parameters: dict[str, ParameterSummary]
+    confidence: float
+    rank: int
+    searched: int
+    pivots: tuple[str, ...]
+    null_directions: tuple[dict[str, float], ...]
+    combinations: dict[str, CombinationSummary]
+    modes: tuple[ModeSummary, ...]
+    bootstrap: dict[str, CombinationSummary]
+    objective: dict[str, float]
+    chi2: float | None
+    fits: tuple[FitSummary, ...]
+    spread: dict[str, Interval]
+    nuisances: dict[str, dict[str, float]]
+    noise: tuple[NoiseSummary, ...]
+    tyre_load_minimum: dict[str, Number]
+    history: Annotated[tuple[tuple[Number, ...], ...], Field(max_length=MAX_CURVES)]
+    steps: tuple[str, ...]
+    band: tuple[float, float]
+    psds: Annotated[tuple[ChannelCurves, ...], Field(max_length=MAX_CURVES)]
+    histories: Annotated[tuple[ChannelCurves, ...], Field(max_length=MAX_CURVES)]
+    provenance: dict[str, Any]
+    calibration: Annotated[Calibration | None, IN_MEMORY] = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        if len(self.steps) != len(self.history):
+            raise ValueError("a label a step was expected")
+
+    def table(self) -> Table:
+        """Return the parameters, a row each."""
+        return ("parameter", "value", "unit", "low", "high", "status"), [
+            (name, item.value, item.unit, *(item.interval or (None, None)), item.status) for name, item in self.parameters.items()
+        ]
+
+    def vehicle_text(self, folder: Path, name: str) -> str:
+        """Return the calibrated vehicle file, which extends the vehicle that was calibrated.
+
+        Raises
+        ------
+        InputError
+            For a summary that was read from a file: it has no vehicle.
+        """
+        calibration = self.calibration
+        if calibration is None:
+            raise InputError("this calibration was read from a file, without its vehicle: calibrate again")
+        vehicle = calibration.problem.trials[0].run.vehicle
+        runs = ", ".join(trial.name for trial in calibration.problem.trials)
+        comments = [
+            f"calibrated by vehgen {self.provenance['vehgen']}: {self.method} from {runs}, seed {self.provenance['seed']}",
+            f"comments give {self.confidence:.0%} intervals; 'gauge' marks what recordings of this kind cannot tell one by one",
+        ]
+        notes = {}
+        for key, item in self.parameters.items():
+            known = "" if item.interval is None else f" {item.interval[0]:.4g} to {item.interval[1]:.4g}"
+            notes[key] = f"{item.status}{known}"
+        title = f"{vehicle.title or vehicle.name}, calibrated"
+        return variant_text(vehicle, folder, name, title, calibration.values, comments, notes)

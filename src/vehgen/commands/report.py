@@ -1,0 +1,29 @@
+"""Draw the page or the figures of a result again, from the JSON file that a command wrote."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from vehgen.commands.results import add_out, folder_named, tell_written
+from vehgen.commands.terminal import add_json, print_json
+
+EXAMPLE = "python -m vehgen report diagnosis/diagnosis.json --out again"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.add_argument("file", metavar="FILE", type=Path, help="a JSON file of diagnose, calibrate, validate, sensitivity or build")
+    add_out(parser, "DIR", "folder for the page or figures (default: beside the file)")
+    add_json(parser)
+
+
+def run(options: argparse.Namespace) -> None:
+    """Read a result and draw it."""
+    from vehgen.report.redraw import redraw
+
+    files = redraw(options.file, folder_named(options.out, options.file.parent))
+    if options.json:
+        print_json({"files": [str(path) for path in files]})
+        return
+    tell_written(files)

@@ -1,0 +1,178 @@
+"""What a diagnosis says, in sentences that an engineer understands at first reading; all verdicts are worded here."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from vehgen.diagnose.fits.candidate import Candidate
+from vehgen.diagnose.verdict import NamedParameter
+from vehgen.effects.places import ALL_RUNS, ALL_TYRES
+from vehgen.vehicle import Vehicle
+
+SHARE_CALLED_ALL = 0.995
+"""A share from which on the text says "all"."""
+UNSEEN_RUNS = "on runs that it was not fitted to"
+_AT = {
+    "suspension": "in the {} suspension",
+    "tyre": "in the {} tyre",
+    "hinge": "in the hinge {}",
+    "body": "on the body {}",
+    "link": "in the link {}",
+}
+"""Where an effect is, by what it lives at."""
+
+
+def join_names(items: Sequence[str], word: str = "or") -> str:
+    """Return names joined as in a sentence, the last by a word."""
+    listed = list(items)
+    return listed[0] if len(listed) == 1 else f"{', '.join(listed[:-1])} {word} {listed[-1]}" if listed else "nothing"
+
+
+def place_words(attaches: str, place: str) -> str:
+    """Return where an effect is, in words: of an effect that lives at `attaches` (suspension, tyre, hinge, body, axles, sensor, run)."""
+    if place == ALL_TYRES:
+        return "in all tyres"
+    if place == ALL_RUNS:
+        return "in all runs"
+    if attaches == "axles":
+        return f"at the axles {join_names(place.split('+'), 'and')}"
+    return _AT.get(attaches, "at {}").format(place)
+
+
+def effect_words(title: str, where: str, parameters: Mapping[str, NamedParameter]) -> str:
+    """Return an effect with its strength and its place: "Dry friction of about 446 N in the rear suspension".
+
+    Parameters
+    ----------
+    title
+        Its title; what stands in brackets is left out.
+    where
+        Its place in words, of :func:`place_words`.
+    parameters
+        Its parameters; more than one are listed by name.
+    """
+    told = [(name, f"{amount(item.value)} {item.unit}".strip()) for name, item in parameters.items()]
+    strength = f" of about {told[0][1]}" if len(told) == 1 else ""
+    listed = f" ({', '.join(f'{name} {value}' for name, value in told)})" if len(told) > 1 else ""
+    return f"{title.partition(' (')[0]}{strength} {where}{listed}"
+
+
+def candidate_words(vehicle: Vehicle, candidate: Candidate, parameters: Mapping[str, NamedParameter] | None = None) -> str:
+    """Return an effect at its place of a vehicle in words, with its strength where its parameters are known."""
+    effect = candidate.effect
+    attaches = "link" if candidate.place in vehicle.links else effect.attaches
+    return effect_words(effect.title, place_words(attaches, candidate.place), parameters or {})
+
+
+def amount(value: float) -> str:
+    """Return a number with three digits that count."""
+    return f"{value:.3g}" if not 999.5 <= abs(value) < 1e6 else f"{float(f'{value:.3g}'):.0f}"
+
+
+def share_words(share: float) -> str:
+    """Return a share of what the model missed: all, or a percentage."""
+    return "all" if share >= SHARE_CALLED_ALL else f"{100 * share:.0f} %"
+
+
+def named(effects: Sequence[str], gain: float | None, ties: Sequence[str] = ()) -> str:
+    """Return the verdict `named`, or `ambiguous` where other effects do as well as one of several.
+
+    Parameters
+    ----------
+    effects
+        What was found, of :func:`effect_words`.
+    gain
+        The share of the excess on validation runs that they close together; None where these show no gap.
+    ties
+        Other effects that do as well as one of them.
+    """
+    several = len(effects) > 1
+    who = "together they explain" if several else "it explains"
+    fitted = UNSEEN_RUNS.replace("it was", "they were") if several else UNSEEN_RUNS
+    what = "what the model missed on the runs for fitting; the other runs show no gap" if gain is None else ""
+    what = what or f"{share_words(gain or 0.0)} of what the model missed {fitted}"
+    more = f"; {join_names([*map(_inner, ties)])} would do as well as one of these" if ties else ""
+    return f"{join_names([effects[0], *map(_inner, effects[1:])], 'and')}: {who} {what}{more}"
+
+
+def ambiguous(effects: Sequence[str]) -> str:
+    """Return the verdict `ambiguous` between effects, of :func:`effect_words`, each of which explains the runs by itself."""
+    return f"{join_names([effects[0], *map(_inner, effects[1:])])}: each explains the runs equally well"
+
+
+def no_missing_effect(chi: float) -> str:
+    """Return the verdict that the recalibrated model leaves no more than noise."""
+    return f"Nothing is missing: what the recalibrated model leaves is noise (chi {chi:.3f}, where 1 is noise alone)"
+
+
+def force_words(kind: str, name: str) -> str:
+    """Return what would explain the gap where the place test passes: an unknown force there, or a channel or sensor left out."""
+    if kind in ("channel", "sensor"):
+        return f"leaving out the {kind} {name}"
+    return f"an unknown force {place_words(kind, name)}"
+
+
+def not_in_library(best: tuple[int, str, float] | None, causes: Sequence[str]) -> str:
+    """Return the verdict that no effect of the library explains the gap.
+
+    Parameters
+    ----------
+    best
+        How many effects were tried, which of them leaves least, and the chi that it leaves; None where none could live there.
+    causes
+        What would explain the gap, of :func:`force_words`.
+    """
+    tried = "none of those tried can live where the model errs"
+    if best is not None:
+        count, label, chi = best
+        tried = f"of {count} tried, {label} comes nearest and leaves chi {chi:.2f}, where 1 is noise alone"
+    where = f"{join_names(causes)} would" if causes else "an unknown force at a single place would not either"
+    return f"No effect of the library explains what the model misses ({tried}); {where}"
+
+
+def not_told_from_chance(chi: float, p_value: float) -> str:
+    """Return the verdict `too_weak` where the best effect may be chance."""
+    gap = f"a gap is there (chi {chi:.3f}, where 1 is noise alone)"
+    return f"Too weak to name: {gap}, but chance could do what the best effect does (p-value {p_value:.2g})"
+
+
+def small_gap(chi: float) -> str:
+    """Return the verdict `too_weak` where no effect closes enough of a small gap."""
+    return f"Too weak to name: a small gap is there (chi {chi:.3f}, where 1 is noise alone), and no effect closes enough of it"
+
+
+def not_seen_again(label: str) -> str:
+    """Return the verdict `too_weak` where the validation runs do not show the best effect."""
+    return f"Too weak to name: {label} suits the runs that it was fitted to, but the other runs do not show it"
+
+
+def like_a_random_law(label: str, own: float, random: float) -> str:
+    """Return the verdict `too_weak` where a random law does as well as the best effect; both are shares of the gap that they close."""
+    return f"Too weak to name: {label} explains {share_words(own)} of what the model missed, a random law there {share_words(random)}"
+
+
+def best_random_law(count: int, share: float) -> str:
+    """Return the note on what the best of many random laws at an effect's place closes of the gap."""
+    return f"the best of {count} random laws at the same place explains {share_words(share)} of what the model missed"
+
+
+def too_few_runs(chi: float, count: int) -> str:
+    """Return the verdict `insufficient_data` where no run is left for validation."""
+    needed = f"at least three runs are needed, one of them for checking ({count} given)"
+    return f"The runs cannot tell: a gap is there (chi {chi:.2f}, where 1 is noise alone), but {needed}"
+
+
+def unusable(reasons: Sequence[str]) -> str:
+    """Return the verdict `insufficient_data` where the inputs are wrong."""
+    return f"The runs cannot tell before this is put right: {'; '.join(reasons)}"
+
+
+def stopped(count: int, best: tuple[str, float] | None) -> str:
+    """Return the verdict of a diagnosis that was stopped by hand: after how many candidates, and which one is best so far, with its chi."""
+    done = f"{count} candidates" if count else "no candidate"
+    return f"No verdict: stopped by hand after {done}" + (f"; the best so far is {best[0]}, chi {best[1]:.2f}" if best else "")
+
+
+def _inner(phrase: str) -> str:
+    """Return a phrase as it stands within a sentence; what begins with two capitals is a name."""
+    return phrase if phrase[1:2].isupper() else phrase[:1].lower() + phrase[1:]

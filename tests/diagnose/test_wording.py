@@ -1,0 +1,63 @@
+"""Verdicts in plain sentences."""
+
+import pytest
+
+from vehgen.diagnose import wording
+from vehgen.diagnose.verdict import NamedParameter
+from vehgen.effects import EFFECTS
+
+
+def found(name, place, **values):
+    effect = EFFECTS[name]
+    units = {item.name: item.unit for item in effect.parameters}
+    parameters = {key: NamedParameter(value, None, units[key]) for key, value in values.items()}
+    return wording.effect_words(effect.title, wording.place_words(effect.attaches, place), parameters)
+
+
+def test_a_named_effect_reads_as_a_sentence():
+    assert wording.named([found("dry_friction", "rear", force=446.2)], 1.0) == (
+        "Dry friction of about 446 N in the rear suspension: it explains all of what the model missed on runs that it was not fitted to"
+    )
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (found("cubic_stiffness", "axle2", k3=1.02e8), "Cubic stiffness of about 1.02e+08 N/m^3 in the axle2 suspension"),
+        (found("dry_friction", "rear", force=12345.0), "Dry friction of about 12300 N in the rear suspension"),
+        (found("tyre_footprint", "all tyres", length=0.12), "Tyre footprint of about 0.12 m in all tyres"),
+        (found("tyre_liftoff", "front"), "Tyre that leaves the road in the front tyre"),
+        (found("hinge_stiffness", "fifth_wheel", k=5e5), "Hinge stiffness of about 500000 N m in the hinge fifth_wheel"),
+        (found("sensor_gain", "F_az", gain=1.2), "Sensor gain of about 1.2 at F_az"),
+        (found("speed_error", "all runs", scale=1.05), "Speed error of about 1.05 in all runs"),
+        (
+            found("walking_beam", "axle4+axle5", share=0.9, split=0.5),
+            "Walking beam at the axles axle4 and axle5 (share 0.9, split 0.5)",
+        ),
+        (
+            found("cargo_module", "body", mass=200.0, frequency=5.0),
+            "Cargo module on the body body (mass 200 kg, frequency 5 Hz)",
+        ),
+    ],
+)
+def test_effects_are_told_with_strength_and_place(words, expected):
+    assert words == expected
+
+
+def test_several_effects_ties_and_doubts_are_told():
+    friction, gain = found("dry_friction", "rear", force=446.0), found("sensor_gain", "F_az", gain=1.2)
+    both = wording.named([friction, gain], 0.973, ["Hysteresis in the rear suspension"])
+    assert both == (
+        "Dry friction of about 446 N in the rear suspension and sensor gain of about 1.2 at F_az: together they explain 97 % of what the "
+        "model missed on runs that they were not fitted to; hysteresis in the rear suspension would do as well as one of these"
+    )
+    assert wording.ambiguous([friction, gain]).endswith("or sensor gain of about 1.2 at F_az: each explains the runs equally well")
+    assert wording.named([friction], None).endswith("on the runs for fitting; the other runs show no gap")
+
+
+def test_what_is_in_no_library_is_told_by_where_it_is():
+    causes = [wording.force_words("suspension", "rear"), wording.force_words("tyre", "rear"), wording.force_words("sensor", "F")]
+    text = wording.not_in_library((12, "dry friction in the front suspension", 3.21), causes)
+    assert "of 12 tried, dry friction in the front suspension comes nearest and leaves chi 3.21" in text
+    assert text.endswith("an unknown force in the rear suspension, an unknown force in the rear tyre or leaving out the sensor F would")
+    assert "would not either" in wording.not_in_library(None, [])
