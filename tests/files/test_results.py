@@ -128,7 +128,7 @@ def test_a_file_without_an_end_is_refused(monkeypatch, tmp_path):
         read_json(path)
     with pytest.raises(InputError, match="no file"):
         read_json(tmp_path / "none.json")
-    with pytest.raises(InputError, match="cannot read"):
+    with pytest.raises(InputError, match="is a folder"):
         read_json(tmp_path)
 
 
