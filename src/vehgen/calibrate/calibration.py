@@ -103,18 +103,15 @@ def calibrate(
 
     Parameters
     ----------
-    problem
-        Trials and parameters.
-    settings
-        Method, search, seed.
-    facts
+    problem, settings
+        Trials and parameters; method, search and seed.
+    prior_data
         What is known from elsewhere; it enters the polish.
     progress
         Told of every generation and every polished start.
-    checkpoint
-        A file that holds the search's state, written every SAVE_EVERY generations and when stopped.
-    resume
-        Go on from the checkpoint, to the same result as if it had not been stopped.
+    checkpoint, resume
+        A file that holds the search's state, written every SAVE_EVERY generations and when stopped; and whether to go on from it, to
+        the same result as if it had not been stopped.
     runner
         Where the polish's starts run (default: here, one after the other).
 
@@ -134,10 +131,11 @@ def calibrate(
         own = problem.of_sensors(step.sensors).searching(step.searched, frozen)
         objective = PsdObjective(own, settings.band)
         state: SearchState | None = None
+        generations = settings.search.generations
         try:
             for state in _search(objective, settings, number, saved[number] if number < len(saved) else None):
-                progress(step.label, state.generation, settings.search.generations, state.elite_objective)
-                if checkpoint is not None and (state.generation % SAVE_EVERY == 0 or state.generation == settings.search.generations):
+                progress(step.label, state.generation, generations, state.elite_objective)
+                if checkpoint is not None and (state.generation % SAVE_EVERY == 0 or state.generation == generations):
                     _save(checkpoint, problem, settings, [*(item.state for item in results), state])
             assert state is not None
             fits = _polish_all(own, state, settings, prior_data, runner or Runner(), progress, step.label) if settings.polish else ()

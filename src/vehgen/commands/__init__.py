@@ -90,7 +90,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return end_of(lambda: _run(words), debug="--debug" in words)
 
 
-def _run(words: list[str]) -> None:
+def _run(words: list[str]) -> int | None:
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # a title in another script must not fail on a plain terminal
     parser = make_parser()
@@ -104,7 +104,9 @@ def _run(words: list[str]) -> None:
     else:
         show_warnings()
         with noting_reads(), guarding_results(getattr(options, "force", False)):
-            options.run(options)
+            code: int | None = options.run(options)
+            return code
+    return None
 
 
 def _summary(command: ModuleType) -> str:

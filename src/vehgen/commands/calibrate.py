@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vehgen.commands.faults import STOPPED
 from vehgen.commands.results import add_out, folder_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table, warn
 from vehgen.errors import InputError
@@ -49,8 +50,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_json(parser)
 
 
-def run(options: argparse.Namespace) -> None:
-    """Calibrate and write the vehicle file, the result and figures."""
+def run(options: argparse.Namespace) -> int | None:
+    """Calibrate and write the vehicle file, the result and figures; returns an exit code where Ctrl-C ended it early."""
     from vehgen.calibrate.calibration import calibrate
     from vehgen.calibrate.summary import summarise
     from vehgen.commands.progress import Bars
@@ -90,8 +91,7 @@ def run(options: argparse.Namespace) -> None:
         print_json({**data, "files": [str(path) for path in files]})
     else:
         _show(outcome, files)
-    if found.stopped:
-        raise KeyboardInterrupt
+    return STOPPED if found.stopped else None
 
 
 def _check_numbers(options: argparse.Namespace) -> None:

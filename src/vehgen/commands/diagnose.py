@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vehgen.commands.faults import STOPPED
 from vehgen.commands.results import add_out, folder_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table, say
 from vehgen.files import check_results, write_text
@@ -27,8 +28,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_json(parser)
 
 
-def run(options: argparse.Namespace) -> None:
-    """Diagnose, write the report and the vehicle file, and print the verdict."""
+def run(options: argparse.Namespace) -> int | None:
+    """Diagnose, write the report and the vehicle file, and print the verdict; returns an exit code where Ctrl-C ended it early."""
     import os
     from dataclasses import replace
 
@@ -69,8 +70,7 @@ def run(options: argparse.Namespace) -> None:
         print_json({**found.verdict.to_dict(), "files": [str(path) for path in files]})
     else:
         _show(found, files)
-    if found.stopped:
-        raise KeyboardInterrupt  # what was found is written; the exit code tells
+    return STOPPED if found.stopped else None
 
 
 def _show(found: Diagnosis, files: list[Path]) -> None:

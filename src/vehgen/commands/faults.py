@@ -21,13 +21,13 @@ UNUSABLE, STOPPED, TERMINATED = 2, 130, 143
 """Exit codes; the last two are those of shells, 128 and the number of the signal."""
 
 
-def end_of(work: Callable[[], None], debug: bool = False) -> int:
+def end_of(work: Callable[[], int | None], debug: bool = False) -> int:
     """Do a command's work, print what ends it in one line on stderr, and return the exit code.
 
     Parameters
     ----------
     work
-        What the command does.
+        What the command does; it may return an exit code.
     debug
         Print where it ended, too.
 
@@ -35,7 +35,7 @@ def end_of(work: Callable[[], None], debug: bool = False) -> int:
     try:
         with _terminable():
             try:
-                work()
+                code = work()
             finally:
                 if sys.stdout is not None:
                     sys.stdout.flush()
@@ -57,7 +57,9 @@ def end_of(work: Callable[[], None], debug: bool = False) -> int:
         if isinstance(error, OSError):
             _silence(sys.stdout)
         return UNUSABLE
-    return 0
+    if code == STOPPED:
+        _say("stopped")
+    return code or 0
 
 
 def fault(error: Exception) -> str:

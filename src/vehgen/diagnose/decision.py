@@ -90,6 +90,8 @@ class Decision:
             self._further()
         else:
             self._pair(first)
+        if self.interrupted:
+            return self._name(self.chain) if self.chain else self._stopped()
         if not self.chain or unfinished(self.chain[-1], self.base):
             wrong = explain_gap(detection)
             if wrong:
@@ -130,15 +132,16 @@ class Decision:
     def _search_round(self, current: ModelFit) -> SearchRound:
         found = search_round(self.detection, current, self._candidates(current), self.everything, self.progress, self.workers)
         self.rounds.append(found)
+        self.interrupted = self.interrupted or found.stopped
         return found
 
     def _further(self) -> None:
         """Look again on what the last fit leaves, until nothing is left or nothing passes."""
         while len(self.chain) < MOST_EFFECTS and unfinished(self.chain[-1], self.base):
             found = self._search_round(self.chain[-1])
-            if found.stopped:
-                raise KeyboardInterrupt
-            if not found.fits or not adds(found, found.fits[0]) or p_value_of(found, found.fits[0], self.tried) > limit.SIGNIFICANT:
+            if found.stopped or not found.fits or not adds(found, found.fits[0]):
+                return
+            if p_value_of(found, found.fits[0], self.tried) > limit.SIGNIFICANT:
                 return
             self.chain.append(found.fits[0])
 
@@ -149,7 +152,7 @@ class Decision:
             known = evaluate_fit(seed.effects, seed.least_squares, self.detection.validation_runs, self.detection.floor.noises)
             found = self._search_round(known)
             if found.stopped:
-                raise KeyboardInterrupt
+                return
             if found.fits and self._both(first, found, found.fits[0]):
                 self.chain = [known, found.fits[0]]
                 self._further()

@@ -30,7 +30,7 @@ LEADING = 3
 
 @dataclass(frozen=True)
 class SearchRound:
-    """One look for one effect: what `footing` leaves, the places tested and passed, and the candidates fitted, best first.
+    """One search for one effect: what the `current` model leaves, the places tested and passed, and the candidates fitted, best first.
 
     `stopped` tells that Ctrl-C ended it before all candidates were fitted.
     """
@@ -84,42 +84,26 @@ def fit_candidates(
 
     The candidates are screened first, unless `everything` is to be tried.
     """
-    footing = CurrentModel.of(base)
-    trial = footing.problem.trials[0]
-    surveyor = EffectLocator(trial.run.vehicle, dict(trial.values))
-    simulators = SimulatorPool()
-    space = footing.problem.space
-    plain = np.zeros(len(detection.problem.trials) * len(NUISANCES.names))
-    fitted: StartingPoint = footing.unit, footing.errors
-    begun = fitted if base.effects else (space.unit(space.start), plain)
-    placed = begun
-    if one_force(passed):
-        unit, errors = base.least_squares.misfit.split(passed[0].x)
-        placed = unit, errors.ravel()
-    origins, residual = Origins(begun, placed, fitted), Residual(base.least_squares.misfit, base.least_squares.x)
+    current = CurrentModel.of(base)
+    trial = current.problem.trials[0]
+    locator, simulators = EffectLocator(trial.run.vehicle, dict(trial.values)), SimulatorPool()
+    origins, residual = _origins(base, current, passed), Residual(base.least_squares.misfit, base.least_squares.x)
+    validation_runs, noises = detection.validation_runs, detection.floor.noises
     fits: list[ModelFit] = []
     try:
         if not everything:
             progress("screen", 0, 1, "")
-            candidates = screen(candidates, base, footing, surveyor, simulators)
+            candidates = screen(candidates, base, current, locator, simulators)
             progress("screen", 1, 1, f"{len(candidates)} candidates")
         if workers > 1:
             progress("compile", 0, 1, "")
-            posed = [build_problem(item, footing.problem, surveyor, simulators) for item in candidates if item.effect.changes_vehicle]
-            compile_all([trial.simulator.kernel for problem in posed for trial in problem.trials], workers)
-            progress("compile", 1, 1, f"{len(posed)} vehicles")
+            problems = [build_problem(item, current.problem, locator, simulators) for item in candidates if item.effect.changes_vehicle]
+            compile_all([trial.simulator.kernel for problem in problems for trial in problem.trials], workers)
+            progress("compile", 1, 1, f"{len(problems)} vehicles")
         for done, candidate in enumerate(candidates, start=1):
-            fit = fit_candidate(
-                candidate,
-                footing,
-                detection.validation_runs,
-                detection.floor.noises,
-                detection.band,
-                surveyor,
-                simulators,
-                candidate.effect.origins(origins),
-                candidate.effect.starts(candidate.place, surveyor, residual),
-            )
+            points = candidate.effect.origins(origins)
+            begin = candidate.effect.starts(candidate.place, locator, residual)
+            fit = fit_candidate(candidate, current, validation_runs, noises, detection.band, locator, simulators, points, begin)
             if fit is not None:
                 fits.append(fit)
             best = min(fits, key=merit, default=base)
@@ -127,10 +111,23 @@ def fit_candidates(
         fits.sort(key=merit)
         for i, fit in enumerate(fits[:LEADING]):
             if np.isfinite(fit.validation):
-                fits[i] = restart(fit, detection.validation_runs, detection.floor.noises)
+                fits[i] = restart(fit, validation_runs, noises)
     except KeyboardInterrupt:
         return sorted(fits, key=merit), True
     return sorted(fits, key=merit), False
+
+
+def _origins(base: ModelFit, current: CurrentModel, passed: Sequence[PlaceResult]) -> Origins:
+    """Return where base parameters and nuisances may begin: at the file's values, where the place test leaves them, where they are."""
+    space = current.problem.space
+    fitted: StartingPoint = current.unit, current.errors
+    nuisances = np.zeros(len(current.problem.trials) * len(NUISANCES.names))
+    begun = fitted if base.effects else (space.unit(space.start), nuisances)
+    placed = begun
+    if one_force(passed):
+        unit, errors = base.least_squares.misfit.split(passed[0].x)
+        placed = unit, errors.ravel()
+    return Origins(begun, placed, fitted)
 
 
 def merit(fit: ModelFit) -> float:
