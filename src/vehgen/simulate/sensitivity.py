@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from vehgen.codegen import Excitation
 from vehgen.errors import InputError, did_you_mean
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
-from vehgen.mechanics.rows import SparseMatrix
 from vehgen.simulate.exact import channel_values, newmark_states
 
 Array = NDArray[np.float64]
@@ -78,25 +77,10 @@ def matrix_derivatives(model: EquationsOfMotion, name: str, values: Mapping[str,
     chain: dict[sp.Symbol, sp.Expr] = {sp.Symbol(name, real=True): sp.S.One}
     for symbol, expression in model.definitions:
         chain[symbol] = _total(expression, chain)
-    n, width = model.n_dof, len(model.inputs)
-    groups: dict[str, tuple[SparseMatrix, tuple[int, int]]] = {
-        "M": (model.mass_entries, (n, n)),
-        "C": (model.damping_entries, (n, n)),
-        "K": (model.stiffness_entries, (n, n)),
-        "P": (model.input_entries, (n, width)),
-        "Q": (model.input_rate_entries, (n, width)),
-        "F": (model.force_entries, (n, len(model.forces))),
-    }
-    for key, columns in (("acceleration", n), ("velocity", n), ("displacement", n), ("input", width), ("input_rate", width)):
-        entries = {(i, j): value for i, channel in enumerate(model.channels) for j, value in getattr(channel, key).items()}
-        groups[key] = (entries, (len(model.channels), columns))
     found = {}
-    for key, (entries, shape) in groups.items():
+    for key, (entries, shape) in {**model.matrix_entries(), **model.output_entries()}.items():
         derived = {place: _total(value, chain) for place, value in entries.items()}
-        array = np.zeros(shape)
-        for place, value in model.evaluate({place: item for place, item in derived.items() if item != 0}, values).items():
-            array[place] = value
-        found[key] = array
+        found[key] = model.evaluate_matrix({place: item for place, item in derived.items() if item != 0}, shape, values)
     return found
 
 

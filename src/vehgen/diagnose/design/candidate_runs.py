@@ -86,21 +86,20 @@ def free_places(trial: Trial) -> list[PointOutput]:
     """Return sensors that could be added: of acceleration at each end of a body that has none there, of pitch rate on one without."""
     vehicle, model = trial.run.vehicle, trial.simulator.model
     layout, channels = model.layout, trial.recording.channels
-    entries = {(0, i): layout.place(vehicle, name) for i, name in enumerate((*vehicle.axles, *vehicle.hinges))}
-    places = {
-        (1, i): item.output.place.locate(vehicle, layout) + layout.bodies[item.output.place.body][0] for i, item in enumerate(channels)
-    }
-    numbers = model.evaluate({**entries, **places}, trial.values)
+    names = (*vehicle.axles, *vehicle.hinges)
+    known = dict(zip(names, model.evaluate_list((layout.place(vehicle, name) for name in names), trial.values), strict=True))
+    own = (item.output.place.locate(vehicle, layout) + layout.bodies[item.output.place.body][0] for item in channels)
+    mounted = list(zip(channels, model.evaluate_list(own, trial.values), strict=True))
     found = []
     for body in vehicle.bodies:
         supports = [name for name, axle in vehicle.axles.items() if axle.body == body]
         supports += [name for name, hinge in vehicle.hinges.items() if body in hinge.points]
-        x = {name: numbers[0, i] for i, name in enumerate((*vehicle.axles, *vehicle.hinges)) if name in supports}
+        x = {name: place for name, place in known.items() if name in supports}
         if not x:
             continue
         ends = dict.fromkeys((max(x, key=lambda name: x[name]), min(x, key=lambda name: x[name])))
         reach = NEAREST_HEIGHT_RATIO * max(max(x.values()) - min(x.values()), 1.0)
-        taken = [numbers[1, i] for i, item in enumerate(channels) if item.output.place.body == body and item.quantity == "acceleration"]
+        taken = [place for item, place in mounted if item.output.place.body == body and item.quantity == "acceleration"]
         free = [end for end in ends if all(abs(x[end] - place) > reach for place in taken)]
         found += [PointOutput(f"{body}_{end}_acceleration", Place(f"{body}_{end}", body, behind=end), "acceleration") for end in free]
         if not any(item.output.place.body == body and item.quantity == "pitch_rate" for item in channels):

@@ -253,8 +253,8 @@ def _element(model: EquationsOfMotion, place: Place, values: dict[str, float]) -
     """Return stiffness and damping of the base model at a place."""
     for item in model.elements:
         if (item.kind, item.name) == (place.kind, place.name):
-            found = model.evaluate({(0, 0): item.k, (0, 1): item.c}, values)
-            return found[0, 0], found[0, 1]
+            stiffness, damping = model.evaluate_list((item.k, item.c), values)
+            return stiffness, damping
     return 0.0, 0.0
 
 

@@ -45,13 +45,8 @@ def mode_movements(model: EquationsOfMotion, modes: Sequence[Mode], values: Mapp
         rows.append(model.motion.hop[name] if name in model.motion.hop else model.motion.rise(axle.body, to_sympy(axle.x)))
     masses = [term.inertia for group in model.energies.fore_aft.values() for term in group]
     entries: SparseMatrix = {(i, j): value for i, row in enumerate(rows) for j, value in row.items()}
-    entries |= {(len(rows), i): mass for i, mass in enumerate(masses)}
-    matrix, weights = np.zeros((len(rows), n)), np.zeros(len(masses))
-    for (i, j), value in model.evaluate(entries, values).items():
-        if i < len(rows):
-            matrix[i, j] = value
-        else:
-            weights[j] = value
+    matrix = model.evaluate_matrix(entries, (len(rows), n), values)
+    weights = np.array(model.evaluate_list(masses, values))
     start = 0
     for group in model.energies.fore_aft.values():
         members = [3 * bodies.index(term.owner) for term in group]

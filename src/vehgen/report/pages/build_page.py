@@ -91,7 +91,7 @@ def _page(
         axles=_axles(model, loads),
         hinges=loads.hinges,
         total=sum(loads.axles.values()),
-        weight=_weight(model, values),
+        weight=model.total_weight(values),
         gravity=GRAVITY,
         warnings=warnings,
         figures=_figures(model, texts),
@@ -146,12 +146,6 @@ def _unit(unit: str) -> str:
 
 def _axles(model: EquationsOfMotion, loads: StaticLoads) -> list[tuple[str, str, float]]:
     return [(name, model.vehicle.axles[name].title, force) for name, force in loads.axles.items()]
-
-
-def _weight(model: EquationsOfMotion, values: Mapping[str, float]) -> float:
-    """Return the weight of all bodies and axles [N]."""
-    masses = {(0, i): term.inertia for i, term in enumerate(model.energies.weights)}
-    return GRAVITY * sum(model.evaluate(masses, values).values())
 
 
 def _figures(model: EquationsOfMotion, texts: Mapping[str, str]) -> dict[str, Markup]:
