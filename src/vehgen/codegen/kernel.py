@@ -199,13 +199,18 @@ class Kernel:
         if self.source.static_travels:
             rest = equilibria(self.model, parameters)
             columns, unheld = np.hstack([parameters, rest.travels[:, self.source.static_travels]]), rest.failures
-        n_individuals, lanes = parameters.shape[0], self.source.lanes
+        responses, residuals = self._advance(columns, excitation, decimation, initial, threads)
+        return KernelResult(responses, {**self._failures(parameters, responses, residuals), **unheld}, residuals)
+
+    def _advance(
+        self, columns: Array, excitation: Excitation, decimation: int, initial: Array | None, threads: int | None
+    ) -> tuple[Array, Array]:
+        """Return the responses and residuals of individuals with these columns, blocks of lanes shared among threads."""
+        n_individuals, lanes, n_dof, number = len(columns), self.source.lanes, self.model.n_dof, self._number
         n_samples, n_channels = excitation.n_steps // decimation + 1, len(self.model.channels)
         responses = np.empty((n_individuals, n_samples, n_channels))
         residuals = np.zeros(n_individuals)
         module = self._module
-        n_dof = self.model.n_dof
-        number = self._number
         arrays = tuple(np.ascontiguousarray(item, dtype=number) for item in (excitation.inputs, excitation.rates, excitation.forces))
 
         def block(first: int) -> None:
@@ -232,7 +237,7 @@ class Kernel:
         else:
             for first in starts:
                 block(first)
-        return KernelResult(responses, {**self._failures(parameters, responses, residuals), **unheld}, residuals)
+        return responses, residuals
 
     def _failures(self, parameters: Array, responses: Array, residuals: Array) -> dict[int, str]:
         failures = find_failures(self.model.parameters, parameters, responses)

@@ -25,8 +25,8 @@ from vehgen.mechanics.rows import Row, SparseMatrix
 class StepProgram:
     """The program of a step: where its leaves are read from, the states (leaf, value after the step), the channels at a sample.
 
-    The first 2 n_dof states are the displacements and velocities; those of force laws follow. `rests` are leaves by the number of an
-    element: its travel from the unloaded position to static equilibrium.
+    The first 2 n_dof states are the displacements and velocities; those of force laws follow. `static_travels` are leaves by the number of
+    an element: its travel from the unloaded position to static equilibrium.
     """
 
     program: Program
@@ -72,23 +72,8 @@ def write_step(model: EquationsOfMotion, sweeps: int | None = None) -> StepProgr
     drives = [program.leaf(name, STEP) for name in names]
     loads = _load_matrix(model, P, Q, F)
 
-    effective: Matrix = {}
-    zero = program.number(0.0)
-    for place in {*M, *C, *K}:
-        parts = [
-            program.multiply(two_h, M.get(place, zero)),
-            C.get(place, zero),
-            program.multiply(half_h, K.get(place, zero)),
-        ]
-        effective[place] = program.total(parts)
-    factor = factorise(program, n, effective, "A")
-    momentum = {place: program.multiply(two_h, node) for place, node in M.items()}
-    right = []
-    for i in range(n):
-        terms = [program.multiply(node, v[j]) for (row, j), node in sorted(momentum.items()) if row == i]
-        terms += [program.negate(program.multiply(node, u[j])) for (row, j), node in sorted(K.items()) if row == i]
-        terms += [program.multiply(node, drives[j]) for (row, j), node in sorted(loads.items()) if row == i]
-        right.append(program.label(program.total(terms), f"r{i}"))
+    factor = factorise(program, n, _effective_matrix(program, (M, C, K), two_h, half_h), "A")
+    right = _right_sides(program, (M, K, loads), (u, v, drives), two_h)
     middle = factor.solve(program, right)
     laws, further = None, []
     if any(element.laws for element in model.elements):
@@ -105,6 +90,34 @@ def write_step(model: EquationsOfMotion, sweeps: int | None = None) -> StepProgr
     channels = _channels(model, program, symbols, memo, (M, C, K, loads), (su, sv, sample_drives), laws)
     states = [*zip(u, next_u, strict=True), *zip(v, next_v, strict=True), *further]
     return StepProgram(program, parameters, laws.static_travels if laws else {}, h, drives, sample_drives, states, channels)
+
+
+def _effective_matrix(program: Program, matrices: tuple[Matrix, Matrix, Matrix], two_h: Node, half_h: Node) -> Matrix:
+    """Return 2/h M + C + h/2 K."""
+    M, C, K = matrices
+    zero = program.number(0.0)
+    return {
+        place: program.total(
+            [program.multiply(two_h, M.get(place, zero)), C.get(place, zero), program.multiply(half_h, K.get(place, zero))]
+        )
+        for place in {*M, *C, *K}
+    }
+
+
+def _right_sides(
+    program: Program, matrices: tuple[Matrix, Matrix, Matrix], state: tuple[list[Node], list[Node], list[Node]], two_h: Node
+) -> list[Node]:
+    """Return 2/h M v - K u + (mean load), one node a degree of freedom."""
+    M, K, loads = matrices
+    u, v, drives = state
+    momentum = {place: program.multiply(two_h, node) for place, node in M.items()}
+    right = []
+    for i in range(len(u)):
+        terms = [program.multiply(node, v[j]) for (row, j), node in sorted(momentum.items()) if row == i]
+        terms += [program.negate(program.multiply(node, u[j])) for (row, j), node in sorted(K.items()) if row == i]
+        terms += [program.multiply(node, drives[j]) for (row, j), node in sorted(loads.items()) if row == i]
+        right.append(program.label(program.total(terms), f"r{i}"))
+    return right
 
 
 def _load_matrix(model: EquationsOfMotion, P: Matrix, Q: Matrix, F: Matrix) -> Matrix:

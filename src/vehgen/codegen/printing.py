@@ -86,8 +86,12 @@ class PythonPrinter:
         """Return a node's name in the source."""
         return self.program.labels.get(node, f"x{node}")
 
-    def statements(self, nodes: list[Node], targets: Iterable[Node], load: Callable[[Node], str | None]) -> list[str]:
-        """Return assignments for the nodes in order; values used once are written where they are used.
+    def statements(
+        self, nodes: list[Node], targets: Iterable[Node], load: Callable[[Node], str | None]
+    ) -> tuple[list[str], dict[Node, str]]:
+        """Return assignments for the nodes in order, and how each node is written after them.
+
+        Values used once are written where they are used.
 
         Parameters
         ----------
@@ -106,7 +110,7 @@ class PythonPrinter:
             uses.update(dict.fromkeys(self.program.arguments[node], 0))
             for argument in self.program.arguments[node]:
                 uses[argument] += 1
-        keep = set(targets)
+        wanted = set(targets)
         texts: dict[Node, tuple[str, int]] = {}
         lines: list[str] = []
 
@@ -129,17 +133,16 @@ class PythonPrinter:
             if self.program.operations[node] in ("leaf", "number"):
                 continue
             text, strength = self._expression(node, [read(argument) for argument in self.program.arguments[node]])
-            inline = uses[node] == 1 and node not in keep and node not in self.program.labels and len(text) < _MAX_INLINE
+            inline = uses[node] == 1 and node not in wanted and node not in self.program.labels and len(text) < _MAX_INLINE
             if inline and node in own:
                 texts[node] = (text, strength)
             else:
                 lines.append(f"{self.name(node)} = {text}")
                 texts[node] = (self.name(node), 9)
-        for node in keep:
+        for node in wanted:
             if node not in texts and self.program.operations[node] in ("leaf", "number"):
                 texts[node] = read(node)
-        self.texts = {node: text for node, (text, _) in texts.items()}
-        return lines
+        return lines, {node: text for node, (text, _) in texts.items()}
 
     def _expression(self, node: Node, arguments: list[tuple[str, int]]) -> tuple[str, int]:
         operation = self.program.operations[node]
