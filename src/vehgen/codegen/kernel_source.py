@@ -16,7 +16,7 @@ from vehgen.codegen.lane_loops import split_loop
 from vehgen.codegen.legend import kernel_legend
 from vehgen.codegen.newmark import StepProgram, write_step
 from vehgen.codegen.printing import PythonPrinter
-from vehgen.codegen.program import SAMPLE, STEP, Node
+from vehgen.codegen.program import SAMPLE_PHASE, STEP_PHASE, Node
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 
 Precision = Literal["double", "single"]
@@ -65,7 +65,7 @@ def write_kernel(
     nonlinear = any(element.laws for element in model.elements)
     lanes = lanes or (NONLINEAR_LANES if nonlinear else LANES)
     printer = PythonPrinter(
-        step.program, {STEP: [node for _, node in step.states], SAMPLE: step.channels}, step.time_step, precision == "single"
+        step.program, {STEP_PHASE: [node for _, node in step.states], SAMPLE_PHASE: step.channels}, step.time_step, precision == "single"
     )
     lines = [_header(model, printer), *_code(model, step, printer, lanes)]
     text = _fold("\n".join(lines) + "\n")
@@ -152,12 +152,12 @@ def _code(model: EquationsOfMotion, step: StepProgram, printer: PythonPrinter, l
     work = _WorkArray(step, printer, lanes)
     constants, states = list(printer.constants), [node for _, node in step.states]
     setup, setup_scratch = work.loops(printer.setup, constants, "CONSTANTS", work.setup_read)
-    advance, advance_scratch = work.loops(printer.needed[STEP], states, "STATE", work.loop_read)
-    sample, sample_scratch = work.loops(printer.needed[SAMPLE], step.channels, "KEPT", work.loop_read)
+    advance, advance_scratch = work.loops(printer.needed[STEP_PHASE], states, "STATE", work.loop_read)
+    sample, sample_scratch = work.loops(printer.needed[SAMPLE_PHASE], step.channels, "KEPT", work.loop_read)
     scratch = max(setup_scratch, advance_scratch, sample_scratch)
     sections = _sections(len(work.parameters), len(constants), len(states), len(step.channels), scratch)
-    means = _drive_reads(printer, step.drives, STEP, f"{printer.number(0.5)}*({{array}}[n, {{i}}] + {{array}}[n + 1, {{i}}])", model)
-    values = _drive_reads(printer, step.sample_drives, SAMPLE, "{array}[n, {i}]", model)
+    means = _drive_reads(printer, step.drives, STEP_PHASE, f"{printer.number(0.5)}*({{array}}[n, {{i}}] + {{array}}[n + 1, {{i}}])", model)
+    values = _drive_reads(printer, step.sample_drives, SAMPLE_PHASE, "{array}[n, {i}]", model)
     setup_functions, setup_calls = _lane_functions("setup", setup, lanes, 1)
     sample_functions, sample_calls = _lane_functions("sample", sample, lanes, 3, _names(values))
     advance_functions, advance_calls = _lane_functions("advance", advance, lanes, 3, _names(means))

@@ -16,7 +16,7 @@ import sympy as sp
 from vehgen.codegen.condensation import Condensation
 from vehgen.codegen.factorisation import Matrix, factorise
 from vehgen.codegen.labels import dependent_label, drive_labels, parameter_label
-from vehgen.codegen.program import SAMPLE, SETUP, STEP, Node, Program
+from vehgen.codegen.program import SAMPLE_PHASE, SETUP_PHASE, STEP_PHASE, Node, Program
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.rows import Row, SparseMatrix
 
@@ -49,7 +49,7 @@ def write_step(model: EquationsOfMotion, sweeps: int | None = None) -> StepProgr
     symbols: dict[sp.Symbol, Node] = {}
     parameters = {}
     for i, name in enumerate(model.parameters):
-        parameters[name] = program.leaf(parameter_label(i), SETUP)
+        parameters[name] = program.leaf(parameter_label(i), SETUP_PHASE)
         symbols[sp.Symbol(name, real=True)] = parameters[name]
     memo: dict[sp.Expr, Node] = {}
     for i, (symbol, expression) in enumerate(model.definitions):
@@ -60,16 +60,16 @@ def write_step(model: EquationsOfMotion, sweeps: int | None = None) -> StepProgr
         converted = {place: program.convert(value, symbols, memo) for place, value in entries.items()}
         return {(i, j): program.label(node, f"{name}{i}_{j}") for (i, j), node in converted.items() if program.value(node) != 0.0}
 
-    h = program.leaf("dt", SETUP)
+    h = program.leaf("dt", SETUP_PHASE)
     two_h, half_h = program.divide(program.number(2.0), h), program.multiply(program.number(0.5), h)
     M, C, K = matrix(model.mass_entries, "M"), matrix(model.damping_entries, "C"), matrix(model.stiffness_entries, "K")
     P, Q = matrix(model.input_entries, "P"), matrix(model.input_rate_entries, "Q")
     F = matrix(model.force_entries, "F")
     n = model.n_dof
-    u = [program.leaf(f"u{i}", STEP) for i in range(n)]
-    v = [program.leaf(f"v{i}", STEP) for i in range(n)]
+    u = [program.leaf(f"u{i}", STEP_PHASE) for i in range(n)]
+    v = [program.leaf(f"v{i}", STEP_PHASE) for i in range(n)]
     names = drive_labels(len(model.inputs), len(model.forces))
-    drives = [program.leaf(name, STEP) for name in names]
+    drives = [program.leaf(name, STEP_PHASE) for name in names]
     loads = _load_matrix(model, P, Q, F)
 
     factor = factorise(program, n, _effective_matrix(program, (M, C, K), two_h, half_h), "A")
@@ -84,9 +84,9 @@ def write_step(model: EquationsOfMotion, sweeps: int | None = None) -> StepProgr
     next_v = [program.subtract(program.add(middle[i], middle[i]), v[i]) for i in range(n)]
     next_u = [program.add(u[i], program.multiply(h, middle[i])) for i in range(n)]
 
-    su = [program.leaf(f"u{i}", SAMPLE) for i in range(n)]
-    sv = [program.leaf(f"v{i}", SAMPLE) for i in range(n)]
-    sample_drives = [program.leaf(name, SAMPLE) for name in names]
+    su = [program.leaf(f"u{i}", SAMPLE_PHASE) for i in range(n)]
+    sv = [program.leaf(f"v{i}", SAMPLE_PHASE) for i in range(n)]
+    sample_drives = [program.leaf(name, SAMPLE_PHASE) for name in names]
     channels = _channels(model, program, symbols, memo, (M, C, K, loads), (su, sv, sample_drives), laws)
     states = [*zip(u, next_u, strict=True), *zip(v, next_v, strict=True), *further]
     return StepProgram(program, parameters, laws.static_travels if laws else {}, h, drives, sample_drives, states, channels)

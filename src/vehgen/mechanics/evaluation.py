@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 
 Array = NDArray[np.float64]
-_FUNCTIONS: dict[str, Callable[..., Any]] = {
+_NUMPY_FUNCTIONS: dict[str, Callable[..., Any]] = {
     "Abs": np.abs,
     "sign": np.sign,
     "Max": lambda *items: reduce(np.maximum, items),
@@ -55,7 +55,7 @@ def _walk(expression: sp.Expr, known: Mapping[sp.Expr, Any], arithmetic: _Arithm
         return arithmetic.multiply(arguments)
     if expression.is_Pow:
         return arithmetic.power(*arguments)
-    return _FUNCTIONS[type(expression).__name__](*arguments)
+    return _NUMPY_FUNCTIONS[type(expression).__name__](*arguments)
 
 
 def evaluate_number(expression: sp.Expr, known: Mapping[sp.Symbol, float]) -> float:

@@ -18,13 +18,13 @@ from vehgen.road import ConstantSpeed, Hump, Track
 from vehgen.simulate import Scenario
 
 HEIGHTS = (0.5, 1.0, 1.5, 2.0)
-HIGHEST, LOWEST = 0.12, 0.01
+MAX_HUMP_HEIGHT_M, MIN_HUMP_HEIGHT_M = 0.12, 0.01
 """Heights of a hump that one lays out [m]."""
-FASTEST, SLOWEST = 8.0, 0.5
+MAX_SPEED_M_S, MIN_SPEED_M_S = 8.0, 0.5
 """Speeds over it, unless the runs were faster or slower [m/s]."""
 USUAL = (0.05, 2.0)
 """Height [m] and speed [m/s] from which to begin where no run has a hump."""
-LEAD, AFTER = 1.5, 3.0
+LEAD_TIME_S, AFTER_LAST_AXLE_S = 1.5, 3.0
 """Seconds recorded before the hump and after it."""
 NEAREST_HEIGHT_RATIO = 0.15
 """A sensor within this share of the body's length of an end is at that end."""
@@ -60,8 +60,13 @@ def list_runs(trials: Sequence[Trial]) -> list[CandidateRun]:
     top = _height(hump)
     speeds = [speed for _, speed in known] or [USUAL[1]]
     slow, fast = min(speeds), max(speeds)
-    heights = sorted({min(max(round(200 * factor * top) / 200, LOWEST), max(HIGHEST, top)) for factor in HEIGHTS})
-    wanted = {max(0.6 * slow, min(SLOWEST, slow)), slow, fast, *(min(factor * fast, max(FASTEST, fast)) for factor in (1.5, 2.0))}
+    heights = sorted({min(max(round(200 * factor * top) / 200, MIN_HUMP_HEIGHT_M), max(MAX_HUMP_HEIGHT_M, top)) for factor in HEIGHTS})
+    wanted = {
+        max(0.6 * slow, min(MIN_SPEED_M_S, slow)),
+        slow,
+        fast,
+        *(min(factor * fast, max(MAX_SPEED_M_S, fast)) for factor in (1.5, 2.0)),
+    }
     return [
         CandidateRun(height, hump.length, speed, _scenario(trials[0], hump, height / top, speed), bool(known))
         for height in heights
@@ -75,10 +80,10 @@ def _height(hump: Hump) -> float:
 
 def _scenario(trial: Trial, hump: Hump, scale: float, speed: float) -> Scenario:
     old = trial.scenario
-    at = LEAD * speed + old.track.footprint
+    at = LEAD_TIME_S * speed + old.track.footprint
     behind = float(trial.simulator.model.wheel_offsets(trial.values).max(initial=0.0))
     track = Track((replace(hump, at=at),), old.track.footprint, scale)
-    duration = (at + hump.length + behind) / speed + AFTER
+    duration = (at + hump.length + behind) / speed + AFTER_LAST_AXLE_S
     return replace(old, track=track, speed=ConstantSpeed(speed), duration=duration, start=0.0)
 
 

@@ -31,7 +31,7 @@ MOVING_SHARE = 0.5
 """The others move where their RMS is at least this share of that of their whole run."""
 COARSE_RESOLUTION = 0.1
 """A channel whose smallest change is more than this share of its RMS is too coarse to be called stuck."""
-SAME = 0.1
+ALIKE_SHARE = 0.1
 """Amplitudes and speeds within this share of one another are one."""
 CLEAR = 0.25
 """A mistake that leaves this share of what it may is not compared with others."""
@@ -111,7 +111,7 @@ def _variety(trials: Sequence[Trial]) -> Iterator[Finding]:
         ("one_amplitude", "height of road", heights, "a run over a higher or lower hump"),
         ("one_speed", "speed", [trial.scenario.top_speed for trial in trials], "a run at another speed"),
     ):
-        if max(found) > 0 and max(found) <= (1 + SAME) * min(found):
+        if max(found) > 0 and max(found) <= (1 + ALIKE_SHARE) * min(found):
             yield Finding(
                 kind,
                 None,
