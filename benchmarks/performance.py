@@ -21,7 +21,7 @@ from benchmarks.peers import cpp_avx, dense_numba, jax_scan, pyyeti_newmark, sci
 from benchmarks.peers.systems import hump_inputs, tractor5_population
 from vehgen.codegen import Excitation, Kernel
 from vehgen.mechanics import derive
-from vehgen.simulate.benchmark import DT, KEEP, benchmark_model, best_time
+from vehgen.simulate.benchmark import DECIMATION, DT, benchmark_model, best_time
 from vehgen.vehicle import load_vehicle, parse_vehicle
 
 N_STEPS = 10_000
@@ -52,10 +52,10 @@ def compare(n_individuals: int = 300, rounds: int = 7) -> list[tuple[str, int, f
         kernel = Kernel(benchmark_model(name))
         kernel.compile()
         parameters, ride = vehgen_parameters(kernel, systems), drive(kernel.model, N_STEPS)
-        works[f"vehgen, {name}"] = partial(kernel.run, parameters, ride, KEEP, None)
+        works[f"vehgen, {name}"] = partial(kernel.run, parameters, ride, DECIMATION, None)
     if cpp_avx.available() is None:
         cpp_avx.prepare()
-        works["C++ by hand (the yardstick)"] = lambda threads: cpp_avx.run(systems, inputs, DT, KEEP, threads)
+        works["C++ by hand (the yardstick)"] = lambda threads: cpp_avx.run(systems, inputs, DT, DECIMATION, threads)
     for threads in sorted({1, os.cpu_count() or 1}):
         times: dict[str, list[float]] = {name: [] for name in works}
         for _ in range(rounds):
@@ -65,16 +65,16 @@ def compare(n_individuals: int = 300, rounds: int = 7) -> list[tuple[str, int, f
                 times[name].append(time.perf_counter() - start)
         rows += [(name, threads, min(values) / n_individuals / N_STEPS * 1e9) for name, values in times.items()]
     if jax_scan.available() is None:
-        jax_scan.run(systems, inputs, DT, KEEP)
+        jax_scan.run(systems, inputs, DT, DECIMATION)
         rows.append(
             (
                 "JAX, vmap and scan, jit",
                 os.cpu_count() or 1,
-                best_time(lambda: jax_scan.run(systems, inputs, DT, KEEP), 2) / n_individuals / N_STEPS * 1e9,
+                best_time(lambda: jax_scan.run(systems, inputs, DT, DECIMATION), 2) / n_individuals / N_STEPS * 1e9,
             )
         )
     few = systems.part(4)
-    dense_numba.run(few, inputs, DT, KEEP)
+    dense_numba.run(few, inputs, DT, DECIMATION)
     for name, peer, count in (
         ("numba, dense loop", dense_numba, 4),
         ("scipy.signal.lsim", scipy_lsim, 2),
@@ -82,7 +82,9 @@ def compare(n_individuals: int = 300, rounds: int = 7) -> list[tuple[str, int, f
     ):
         if peer.available() is None:
             part = systems.part(count)
-            rows.append((name, 1, best_time(lambda peer=peer, part=part: peer.run(part, inputs, DT, KEEP), 2) / count / N_STEPS * 1e9))
+            rows.append(
+                (name, 1, best_time(lambda peer=peer, part=part: peer.run(part, inputs, DT, DECIMATION), 2) / count / N_STEPS * 1e9)
+            )
     return rows
 
 
@@ -105,7 +107,7 @@ def axle_scaling(counts: tuple[int, ...] = (2, 5, 10, 20, 40)) -> list[tuple[int
         rows.append(
             (
                 count,
-                best_time(lambda kernel=kernel, parameters=parameters, ride=ride: kernel.run(parameters, ride, KEEP, threads=1))
+                best_time(lambda kernel=kernel, parameters=parameters, ride=ride: kernel.run(parameters, ride, DECIMATION, threads=1))
                 / 320
                 / 2000
                 / count
@@ -124,7 +126,7 @@ def population_scaling(counts: tuple[int, ...] = (1, 8, 32, 100, 320, 1000, 3200
         parameters, ride = vehgen_parameters(kernel, tractor5_population(count)), drive(kernel.model, 2000)
         for threads in sorted({1, os.cpu_count() or 1}):
             duration = best_time(
-                lambda parameters=parameters, ride=ride, threads=threads: kernel.run(parameters, ride, KEEP, threads=threads), 3
+                lambda parameters=parameters, ride=ride, threads=threads: kernel.run(parameters, ride, DECIMATION, threads=threads), 3
             )
             rows.append((count, threads, duration / count / 2000 * 1e9))
     return rows

@@ -9,7 +9,7 @@ import numpy as np
 from vehgen.codegen import Excitation, Kernel
 from vehgen.mechanics import EquationsOfMotion, Place, PointOutput, derive
 from vehgen.road import ConstantSpeed, Hump, Iso8608Road, Track, wheel_inputs
-from vehgen.simulate.benchmark import BENCHMARKED_LAWS, KEEP, benchmark_model, population
+from vehgen.simulate.benchmark import BENCHMARKED_LAWS, DECIMATION, benchmark_model, population
 from vehgen.vehicle import load_vehicle
 
 N, DT, STEPS = 320, 1e-3, 10_000
@@ -43,14 +43,14 @@ def main(rounds: int = 7) -> None:
         errors = []
         for road in ("hump", "rough"):
             ride = drive(model, road)
-            found = {key: kernel.run(parameters, ride, KEEP).responses for key, kernel in kernels.items()}
+            found = {key: kernel.run(parameters, ride, DECIMATION).responses for key, kernel in kernels.items()}
             gap = np.linalg.norm(found["single"] - found["double"], axis=1) / np.linalg.norm(found["double"], axis=1)
             errors.append(gap.max())
         best = dict.fromkeys(kernels, np.inf)
         for _ in range(rounds):
             for key, kernel in kernels.items():
                 start = time.perf_counter()
-                kernel.run(parameters, ride, KEEP, threads=1)
+                kernel.run(parameters, ride, DECIMATION, threads=1)
                 best[key] = min(best[key], time.perf_counter() - start)
         double, single = (best[key] / N / STEPS * 1e9 for key in ("double", "single"))
         print(f"| {name} | {double:.2f} | {single:.2f} | {double / single:.2f} | {errors[0]:.1e} | {errors[1]:.1e} |", flush=True)

@@ -12,8 +12,8 @@ IGNORED = {"machine", "provenance", "files", "vehicle_file"}
 """Versions, dates, hashes of inputs, settings and paths."""
 PROSE = {"reason", "notes", "warnings", "next_experiment", "title", "source", "meaning", "speed_source", "failed"}
 """Sentences for people: other words are told, but are no change of what was computed; more or fewer sentences are."""
-RENAMED: dict[str, str] = {}
-"""Keys, and words such as a status, of the older record -> what the newer one calls them."""
+RENAMED: dict[str, str] = {"DHCM-1&2": "DHCM-1-2", "DHCM-F&R": "DHCM-F-R"}
+"""Keys, their parts between commas, and words such as a status, of the older record -> what the newer one calls them."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def compare(old: Any, new: Any, place: str = "", key: str = "") -> Iterator[Diff
     if key in IGNORED:
         return
     if isinstance(old, dict) and isinstance(new, dict):
-        renamed = {RENAMED.get(name, name): value for name, value in old.items()}
+        renamed = {renamed_to(name): value for name, value in old.items()}
         for name, value in renamed.items():
             inside = f"{place} / {name}" if place else name
             if name in new:
@@ -67,8 +67,13 @@ def compare(old: Any, new: Any, place: str = "", key: str = "") -> Iterator[Diff
     elif _is_number(old) and _is_number(new):
         if old != new:
             yield Difference(place, old, new, abs(old - new) / max(abs(old), abs(new)))
-    elif old != new and not (isinstance(old, str) and RENAMED.get(old) == new):
+    elif old != new and not (isinstance(old, str) and renamed_to(old) == new):
         yield Difference(place, old, new)
+
+
+def renamed_to(name: str) -> str:
+    """Return what the newer record calls a key or a word of the older one."""
+    return ", ".join(RENAMED.get(part, part) for part in name.split(", "))
 
 
 def _is_number(value: Any) -> bool:

@@ -1,17 +1,19 @@
-"""Write the part of architecture.md that shows which room imports which, from the code as it is.
+"""Write the parts of architecture.md that follow from the code as it is: the map of the rooms, and which room imports which.
 
-Run it after moving walls: `python docs/generate/architecture.py`. A test fails while the page and the code differ.
+A room is a package of vehgen, a box a package inside a room. What it answers and what it holds stand in its own docstring: a question,
+then the rest. Run it after moving walls: `python docs/generate/architecture.py`. A test fails while the page and the code differ.
 """
 
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator
 from pathlib import Path
 
 HERE = Path(__file__).parents[1]
 SOURCE = HERE.parent / "src" / "vehgen"
 PAGE = HERE / "architecture.md"
-START, END = "<!-- imports: start -->", "<!-- imports: end -->"
+MARKS = "<!-- {}: start -->", "<!-- {}: end -->"
 ROOMS = [
     "errors",
     "files",
@@ -65,24 +67,60 @@ def imports() -> dict[str, dict[str, set[str]]]:
     return found
 
 
-def section() -> str:
-    """Return the generated section: a table of rooms, their number of files, and what they import."""
+def described() -> Iterator[tuple[str, tuple[str, str]]]:
+    """Yield every room, and after it its boxes, as `room/box`: its name, and what its docstring says it answers and holds."""
+    for room in ROOMS:
+        folder = SOURCE / room
+        if not folder.is_dir():
+            yield room, question_and_rest(SOURCE / f"{room}.py")
+            continue
+        yield room, question_and_rest(folder / "__init__.py")
+        for box in sorted(path.parent for path in folder.glob("*/__init__.py")):
+            yield f"{room}/{box.name}", question_and_rest(box / "__init__.py")
+
+
+def question_and_rest(path: Path) -> tuple[str, str]:
+    """Return the question at the head of a file's docstring, and the rest of it."""
+    text = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
+    question, mark, holds = " ".join(text.split()).partition("?")
+    return question + mark, holds.strip()
+
+
+def rooms_table() -> list[str]:
+    """Return the map: every room in the order in which they stand on one another, its boxes below it."""
+    lines = ["| room | answers | holds |", "|---|---|---|"]
+    for name, (question, holds) in described():
+        label = f"– {name}" if "/" in name else f"**{name}**"
+        lines.append(f"| {label} | {question} | {holds} |")
+    return lines
+
+
+def imports_table() -> list[str]:
+    """Return the rooms, their number of files, and what they import."""
     edges = imports()
-    lines = [START, "", "| room | files | imports from |", "|---|---|---|"]
+    lines = ["| room | files | imports from |", "|---|---|---|"]
     for room in ROOMS:
         if room not in edges:
             continue
         paths = [SOURCE / f"{room}.py"] if (SOURCE / f"{room}.py").exists() else sorted((SOURCE / room).rglob("*.py"))
         below = ", ".join(other for other in ROOMS if other in edges[room]) or "nothing"
         lines.append(f"| {room} | {len(paths)} | {below} |")
-    return "\n".join([*lines, "", END])
+    return lines
 
 
-def page_with(section_text: str) -> str:
-    """Return the page with its generated section replaced."""
+def sections() -> dict[str, list[str]]:
+    """Return the lines of every generated section by its name."""
+    return {"rooms": rooms_table(), "imports": imports_table()}
+
+
+def page_with(found: dict[str, list[str]]) -> str:
+    """Return the page with its generated sections replaced."""
     text = PAGE.read_text(encoding="utf-8")
-    return text[: text.index(START)] + section_text + text[text.index(END) + len(END) :]
+    for name, lines in found.items():
+        start, end = (mark.format(name) for mark in MARKS)
+        text = text[: text.index(start)] + "\n".join([start, "", *lines, "", end]) + text[text.index(end) + len(end) :]
+    return text
 
 
 if __name__ == "__main__":
-    PAGE.write_text(page_with(section()), encoding="utf-8")
+    PAGE.write_text(page_with(sections()), encoding="utf-8")

@@ -1,6 +1,6 @@
-"""Errors meant for users: one line that says where, what is wrong and what would be right.
+"""What went wrong, and where? The one error that users see: a line that says where, what is wrong, what would be right, and near names.
 
-What they quote of a file is a stranger's text: it is cut to a few words and escaped, so that it can neither fill nor command a terminal.
+What it quotes of a file is a stranger's text: it is cut to a few words and escaped, so that it can neither fill nor command a terminal.
 """
 
 from __future__ import annotations

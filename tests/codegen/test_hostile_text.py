@@ -115,7 +115,7 @@ def check_source(text: str) -> None:
             (decorator,) = statement.decorator_list
             if statement.name != "advance":
                 assert re.fullmatch(r"(setup|sample|advance)_\d+", statement.name)
-                assert ast.unparse(decorator) == "straight"
+                assert ast.unparse(decorator) == "emit_llvm"
                 assert ast.unparse(statement.args) == "work, j, dt, drives"
                 check_function(statement, ARITHMETIC, OWN)
                 continue
@@ -125,7 +125,7 @@ def check_source(text: str) -> None:
             )
             check_function(statement, LOOPS, LOOP_NAMES)
     assert set(seen) <= {
-        "import math", "import numba", "from numba import float32, float64", "from vehgen.codegen.straight import straight",
+        "import math", "import numba", "from numba import float32, float64", "from vehgen.codegen.emit_llvm import emit_llvm",
     }  # fmt: skip
     assert statements[-1].name == "advance"
 

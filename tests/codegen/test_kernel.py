@@ -32,7 +32,7 @@ def tractor():
     return model, Kernel(model)
 
 
-def hump_drive(model, dt, duration=9.0):
+def hump_excitation(model, dt, duration=9.0):
     time = np.arange(round(duration / dt) + 1) * dt
     track = Track((Hump.from_shape("half_sine", 1.003, 0.4, 0.03),))
     wheels = wheel_inputs(track, ConstantSpeed(2.0), model.wheel_offsets(), time)
@@ -45,25 +45,26 @@ def relative(error, reference):
 
 def test_equals_the_numpy_oracle(tractor):
     model, kernel = tractor
-    drive = hump_drive(model, 1e-3)
+    excitation = hump_excitation(model, 1e-3)
     rng = np.random.default_rng(5)
     base = np.array(list(model.values().values()))
     parameters = base * np.where(base != 0, rng.uniform(0.95, 1.05, (37, len(base))), 1.0)
-    result = kernel.run(parameters, drive, 10, threads=2)
+    result = kernel.run(parameters, excitation, 10, threads=2)
     assert not result.failures
     for individual in (0, 17, 31, 32, 36):
         values = dict(zip(model.parameters, parameters[individual], strict=True))
-        oracle = newmark_response(model, drive, 10, values)
+        oracle = newmark_response(model, excitation, 10, values)
         np.testing.assert_allclose(result.responses[individual], oracle, rtol=0, atol=1e-10 * np.abs(oracle).max())
         np.testing.assert_allclose(relative(result.responses[individual] - oracle, oracle), 0, atol=1e-10)
 
 
 def test_second_order_towards_the_exact_solution(tractor):
     model, kernel = tractor
-    exact = exact_response(model, hump_drive(model, 0.125e-3), 80)
+    exact = exact_response(model, hump_excitation(model, 0.125e-3), 80)
     parameters = np.array([list(model.values().values())])
     errors = [
-        relative(kernel.run(parameters, hump_drive(model, dt), round(0.01 / dt)).responses[0] - exact, exact) for dt in (2e-3, 1e-3, 5e-4)
+        relative(kernel.run(parameters, hump_excitation(model, dt), round(0.01 / dt)).responses[0] - exact, exact)
+        for dt in (2e-3, 1e-3, 5e-4)
     ]
     assert errors[1].max() < 1e-3
     order = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
@@ -73,24 +74,24 @@ def test_second_order_towards_the_exact_solution(tractor):
 
 def test_blocks_threads_and_steps_do_not_change_an_individual(tractor):
     model, kernel = tractor
-    drive = hump_drive(model, 1e-3, 4.0)
+    excitation = hump_excitation(model, 1e-3, 4.0)
     parameters = np.repeat([list(model.values().values())], 70, axis=0)
     parameters[:, 0] *= np.linspace(0.9, 1.1, 70)
-    one = kernel.run(parameters, drive, 10, threads=1).responses
-    two = kernel.run(parameters, drive, 10, threads=2).responses
+    one = kernel.run(parameters, excitation, 10, threads=1).responses
+    two = kernel.run(parameters, excitation, 10, threads=2).responses
     np.testing.assert_array_equal(one, two)
-    np.testing.assert_array_equal(kernel.run(parameters[40:41], drive, 10).responses[0], one[40])
-    fine = kernel.run(parameters[:1], drive, 1).responses[0]
+    np.testing.assert_array_equal(kernel.run(parameters[40:41], excitation, 10).responses[0], one[40])
+    fine = kernel.run(parameters[:1], excitation, 1).responses[0]
     np.testing.assert_array_equal(fine[::10], one[0])
 
 
 def test_a_failed_individual_is_named_and_harms_no_other(tractor):
     model, kernel = tractor
-    drive = hump_drive(model, 1e-3, 4.0)
+    excitation = hump_excitation(model, 1e-3, 4.0)
     parameters = np.repeat([list(model.values().values())], 3, axis=0)
-    good = kernel.run(parameters[:1], drive).responses[0]
+    good = kernel.run(parameters[:1], excitation).responses[0]
     parameters[1, model.parameters.index("k1")] = np.nan
-    result = kernel.run(parameters, drive)
+    result = kernel.run(parameters, excitation)
     assert list(result.failures) == [1]
     assert "k1" in result.failures[1]
     np.testing.assert_array_equal(result.responses[0], good)
@@ -99,11 +100,11 @@ def test_a_failed_individual_is_named_and_harms_no_other(tractor):
 
 def test_wrong_shapes_are_refused(tractor):
     model, kernel = tractor
-    drive = hump_drive(model, 1e-3, 1.0)
+    excitation = hump_excitation(model, 1e-3, 1.0)
     with pytest.raises(InputError, match="parameters have shape"):
-        kernel.run(np.zeros((2, 3)), drive)
+        kernel.run(np.zeros((2, 3)), excitation)
     with pytest.raises(InputError, match="inputs"):
-        kernel.run(np.zeros((1, len(model.parameters))), Excitation(1e-3, drive.inputs[:, :2], drive.rates, drive.forces))
+        kernel.run(np.zeros((1, len(model.parameters))), Excitation(1e-3, excitation.inputs[:, :2], excitation.rates, excitation.forces))
 
 
 def test_source_is_the_same_every_time_and_readable(tractor):
@@ -180,31 +181,31 @@ def test_perturbed_lanes_and_direct_differentiation_agree():
     from vehgen.simulate.sensitivity import direct_sensitivities
 
     model = derive(load_vehicle("tractor5"), OUTPUTS)
-    drive = hump_drive(model, 1e-3, 4.0)
+    excitation = hump_excitation(model, 1e-3, 4.0)
     names = ["mS", "IT", "k1", "c4", "kt2", "a1", "b6", "b1", "L1.shift"]
-    response, direct = direct_sensitivities(model, drive, names, 10)
+    response, direct = direct_sensitivities(model, excitation, names, 10)
     parameters = np.array(list(model.values().values()))
     kernel = Kernel(model)
-    np.testing.assert_allclose(response, kernel.run(parameters, drive, 10).responses[0], atol=1e-9 * np.abs(response).max())
+    np.testing.assert_allclose(response, kernel.run(parameters, excitation, 10).responses[0], atol=1e-9 * np.abs(response).max())
     for name, derivative in zip(names, direct, strict=True):
         column = model.parameters.index(name)
         step = 1e-4 * (abs(parameters[column]) or 1.0)
         pair = np.repeat(parameters[None], 2, axis=0)
         pair[0, column] += step
         pair[1, column] -= step
-        above, below = kernel.run(pair, drive, 10).responses
+        above, below = kernel.run(pair, excitation, 10).responses
         difference = (above - below) / (2 * step)
         assert np.linalg.norm(difference - derivative) < 1e-5 * np.linalg.norm(derivative), name
 
 
 def test_a_reduction_keeps_memory_small_and_answers_alike(tractor):
     model, kernel = tractor
-    drive = hump_drive(model, 1e-3, 1.0)
+    excitation = hump_excitation(model, 1e-3, 1.0)
     parameters = np.repeat([list(model.values().values())], 200, axis=0)
     parameters[:, 0] *= np.linspace(0.9, 1.1, 200)
     parameters[150, 0] = np.nan
-    peaks, failures = kernel.reduce(parameters, drive, lambda responses: np.abs(responses).max(axis=1), block=64)
-    whole = kernel.run(parameters, drive)
+    peaks, failures = kernel.reduce(parameters, excitation, lambda responses: np.abs(responses).max(axis=1), block=64)
+    whole = kernel.run(parameters, excitation)
     np.testing.assert_array_equal(peaks, np.abs(whole.responses).max(axis=1))
     assert list(failures) == [150]
 
@@ -218,13 +219,13 @@ def test_a_hundred_thousand_individuals_need_the_memory_of_one_block():
     parameters[:, model.parameters.index("kS")] *= np.linspace(0.8, 1.2, n)
     parameters[70_001, 0] = np.nan
     inputs = 0.01 * np.sin(np.linspace(0, np.pi, 201))[:, None]
-    drive = Excitation(1e-3, inputs, np.gradient(inputs, 1e-3, axis=0), np.zeros((201, 0)))
+    excitation = Excitation(1e-3, inputs, np.gradient(inputs, 1e-3, axis=0), np.zeros((201, 0)))
 
     def peak(responses):
         return np.abs(responses).max(axis=(1, 2))
 
     tracemalloc.start()
-    peaks, failures = kernel.reduce(parameters, drive, peak, decimation=2, block=block)
+    peaks, failures = kernel.reduce(parameters, excitation, peak, decimation=2, block=block)
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     responses = 8 * 101
@@ -232,7 +233,7 @@ def test_a_hundred_thousand_individuals_need_the_memory_of_one_block():
     assert peaks.shape == (n,)
     assert list(failures) == [70_001]
     some = [0, 1023, 1024, 54_321, n - 1]
-    np.testing.assert_array_equal(peaks[some], peak(kernel.run(parameters[some], drive, 2).responses))
+    np.testing.assert_array_equal(peaks[some], peak(kernel.run(parameters[some], excitation, 2).responses))
 
 
 def test_many_kernels_are_compiled_by_several_processes(tmp_path):
@@ -262,9 +263,9 @@ def test_single_precision_errs_below_a_thousandth(name):
     model = derive(vehicle, [PointOutput(kind, Place("s", body), kind) for kind in ("acceleration", "pitch_rate", "displacement")])
     parameters = np.repeat([list(model.values().values())], 35, axis=0)
     parameters[:, 0] *= np.linspace(0.95, 1.05, 35)
-    drive = hump_drive(model, 1e-3, 10.0)
-    double = Kernel(model).run(parameters, drive).responses
-    single = Kernel(model, precision="single").run(parameters, drive)
+    excitation = hump_excitation(model, 1e-3, 10.0)
+    double = Kernel(model).run(parameters, excitation).responses
+    single = Kernel(model, precision="single").run(parameters, excitation)
     assert not single.failures
     assert single.responses.dtype == np.float64
     error = np.linalg.norm(single.responses - double, axis=1) / np.linalg.norm(double, axis=1)

@@ -42,10 +42,10 @@ def hump(model, duration=2.0, height=0.03):
     return Excitation(1e-3, w, dw, np.zeros((len(time), 0)))
 
 
-def run(vehicle, drive=None, outputs=OUTPUTS, initial=None, **changes):
+def run(vehicle, excitation=None, outputs=OUTPUTS, initial=None, **changes):
     model = derive(vehicle, outputs)
     parameters = np.array([list(model.values(overrides=changes).values())])
-    return model, Kernel(model).run(parameters, drive or hump(model), 1, initial=initial)
+    return model, Kernel(model).run(parameters, excitation or hump(model), 1, initial=initial)
 
 
 @pytest.mark.parametrize("name", sorted(LAWS))
@@ -109,8 +109,8 @@ def test_energy_never_grows(laws):
     parameters = np.array([list(model.values().values())])
     states = []
     for steps in range(0, 1501, 25):
-        drive = Excitation(1e-3, rest[: steps + 1], rest[: steps + 1], np.zeros((steps + 1, 0)))
-        states.append(kernel.run(parameters, drive, max(steps, 1), initial=initial[None]).responses[0, -1])
+        excitation = Excitation(1e-3, rest[: steps + 1], rest[: steps + 1], np.zeros((steps + 1, 0)))
+        states.append(kernel.run(parameters, excitation, max(steps, 1), initial=initial[None]).responses[0, -1])
     assert np.isfinite(states).all()
     body = np.array(states)
     kinetic = 0.5 * numeric.M[0, 0] * body[:, 1] ** 2 + 0.5 * numeric.M[1, 1] * body[:, 3] ** 2
@@ -151,7 +151,7 @@ def test_hinge_friction_locks_the_articulation():
         model = derive(vehicle, outputs)
         time = np.arange(4001) * 1e-3
         w = np.where((time[:, None] * 2 - model.wheel_offsets() - 0.5) > 0, 0.02, 0.0)
-        drive = Excitation(1e-3, w, 0 * w, np.zeros((len(time), 0)))
-        pitch = Kernel(model).run(np.array([list(model.values().values())]), drive, 1).responses[0]
+        excitation = Excitation(1e-3, w, 0 * w, np.zeros((len(time), 0)))
+        pitch = Kernel(model).run(np.array([list(model.values().values())]), excitation, 1).responses[0]
         apart.append(np.abs(pitch[:, 0] - pitch[:, 1]).max())
     assert apart[1] < 0.02 * apart[0]

@@ -14,7 +14,7 @@ from vehgen.commands.diagnose import _show
 from vehgen.commands.progress import Bars
 from vehgen.commands.terminal import print_table, warn
 from vehgen.effects import registry
-from vehgen.effects.library.dry_friction import DRY_FRICTION
+from vehgen.effects.library.dry_friction import DRY_FRICTION_EFFECT
 from vehgen.errors import InputError
 
 CODE = r"""vehicle: quarter_car
@@ -99,7 +99,7 @@ def test_a_verdict_on_a_sensor_with_brackets_is_printed(capsys: pytest.CaptureFi
 def test_an_effect_of_another_package_has_a_name_too(name: str, monkeypatch: pytest.MonkeyPatch):
     from dataclasses import replace
 
-    point = SimpleNamespace(name=f"{name}\u202e", load=lambda: replace(DRY_FRICTION, name=name))
+    point = SimpleNamespace(name=f"{name}\u202e", load=lambda: replace(DRY_FRICTION_EFFECT, name=name))
     monkeypatch.setattr(registry, "entry_points", lambda group: [point])
     with pytest.raises(InputError, match="which is no name") as caught:
         registry.library()

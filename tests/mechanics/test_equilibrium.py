@@ -127,8 +127,8 @@ def test_who_has_no_equilibrium_fails_with_the_reason_and_harms_no_other(tmp_pat
     parameters = np.repeat(columns(model), 4, axis=0)
     parameters[1, model.parameters.index("soft")] = 4e6  # the spring's peak, k^2/(4 s), lies below the weight
     parameters[2, model.parameters.index("kS")] = np.nan
-    drive = Excitation(1e-3, np.linspace(0, 0.01, 501)[:, None], np.full((501, 1), 0.02), np.zeros((501, 0)))
-    result = Kernel(model).run(parameters, drive)
+    excitation = Excitation(1e-3, np.linspace(0, 0.01, 501)[:, None], np.full((501, 1), 0.02), np.zeros((501, 0)))
+    result = Kernel(model).run(parameters, excitation)
     assert set(result.failures) == {1, 2}
     assert "no stable static equilibrium" in result.failures[1]
     assert "kS" in result.failures[2]
@@ -172,8 +172,8 @@ def test_tyres_leave_the_road_at_the_load_that_the_laws_leave_them():
     assert max(abs(loads[name] - linear[name]) / linear[name] for name in loads) > 0.02
     time = np.arange(2001) * 1e-3
     w = 0.05 * np.sin(np.pi * np.clip((time[:, None] - 0.2 - 0.2 * np.arange(5)) / 0.15, 0, 1))
-    drive = Excitation(1e-3, w, np.gradient(w, 1e-3, axis=0), np.zeros((2001, 0)))
-    dynamic = Kernel(model).run(columns(model), drive, 1).responses[0]
+    excitation = Excitation(1e-3, w, np.gradient(w, 1e-3, axis=0), np.zeros((2001, 0)))
+    dynamic = Kernel(model).run(columns(model), excitation, 1).responses[0]
     least = (dynamic + list(loads.values())).min(axis=0)
     np.testing.assert_allclose(least, 0, atol=1e-6)
 

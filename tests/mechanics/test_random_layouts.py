@@ -87,23 +87,23 @@ def test_kernel_follows_the_oracle_and_keeps_the_energy_of_free_motion(seed, tmp
     rng = np.random.default_rng(seed)
     initial = np.concatenate([rng.normal(0, 0.01, n), rng.normal(0, 0.1, n)])
     rest = np.zeros((steps + 1, len(model.inputs)))
-    drive = Excitation(1e-3, rest, rest, np.zeros((steps + 1, 0)))
+    excitation = Excitation(1e-3, rest, rest, np.zeros((steps + 1, 0)))
     parameters = np.array([list(model.values().values())])
-    response = Kernel(model, tmp_path).run(parameters, drive, decimation=1, initial=initial[None, :]).responses[0]
-    oracle = newmark_response(model, drive, 1, initial=initial)
+    response = Kernel(model, tmp_path).run(parameters, excitation, decimation=1, initial=initial[None, :]).responses[0]
+    oracle = newmark_response(model, excitation, 1, initial=initial)
     assert (np.abs(response - oracle) <= 1e-10 * np.abs(oracle).max(axis=0)).all()
     numeric = model.numeric()
-    q, v = _states(numeric, drive, initial)
+    q, v = _states(numeric, excitation, initial)
     energy = 0.5 * np.einsum("ti,ij,tj->t", v, numeric.M, v) + 0.5 * np.einsum("ti,ij,tj->t", q, numeric.K, q)
     assert np.ptp(energy) < 1e-9 * energy[0]
 
 
-def _states(numeric, drive, initial):
+def _states(numeric, excitation, initial):
     """Displacements and velocities of the midpoint form, step by step in numpy."""
-    n, h = len(numeric.M), drive.dt
+    n, h = len(numeric.M), excitation.dt
     q, v = [initial[:n]], [initial[n:]]
     A = 2 / h * numeric.M + numeric.C + h / 2 * numeric.K
-    for _ in range(drive.n_steps):
+    for _ in range(excitation.n_steps):
         middle = np.linalg.solve(A, 2 / h * numeric.M @ v[-1] - numeric.K @ q[-1])
         q.append(q[-1] + h * middle)
         v.append(2 * middle - v[-1])

@@ -1,4 +1,4 @@
-"""Humps found and refused, GPS speeds, clipping, noise floors."""
+"""Humps found and refused, GPS speeds, clipping."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from vehgen.errors import InputError
 from vehgen.phones.export import Stream
 from vehgen.phones.gps import crossing_speed
 from vehgen.phones.hump_event import find_hump
-from vehgen.phones.noise import clipped, noise_floor
+from vehgen.phones.importing import clipping_warnings
 
 T = np.arange(0, 25, 0.01)
 
@@ -73,18 +73,5 @@ def test_no_speed_asks_for_one(values, message):
 def test_clipping_is_found_at_the_extreme_only():
     values = np.column_stack([crossing(), crossing(seed=1)])
     values[:, 1] = np.clip(values[:, 1], -5.0, 1.5)
-    found = clipped(Stream(T, values, ("x", "z"), "m/s^2"))
-    assert [(axis, extreme) for axis, extreme, _ in found] == [("z", 1.5)]
-    assert found[0][2] == pytest.approx(8.1, abs=0.2)
-
-
-def test_noise_floor_of_white_noise_and_of_an_engine():
-    noise = np.random.default_rng(2).normal(0, 0.02, 1500)
-    t = np.arange(1500) * 0.01
-    quiet, engine = noise_floor(noise, 0.01, 100.0), noise_floor(noise + 0.1 * np.sin(2 * np.pi * 27 * t), 0.01, 100.0)
-    assert quiet.sigma == pytest.approx(0.02, rel=0.06)
-    assert quiet.band_sigma == pytest.approx(0.02, rel=0.2)
-    assert quiet.band == (47.0, 50.0)
-    assert engine.sigma > 3 * engine.band_sigma
-    assert engine.band_sigma == pytest.approx(0.02, rel=0.2)
-    assert noise_floor(noise, 0.01, 60.0).band == (27.0, 30.0)
+    (found,) = clipping_warnings("phone", Stream(T, values, ("x", "z"), "m/s^2"))
+    assert "acceleration z is clipped at 1.5 m/s^2 from 8." in found

@@ -28,8 +28,7 @@ def texts(figure):
 def positions(m, owner):
     values = m.values()
     places = {"axles": m.layout.axles, "bodies": {name: x for name, (x, _) in m.layout.bodies.items()}}[owner]
-    found = m.evaluate({(0, i): x for i, x in enumerate(places.values())}, values)
-    return {name: found[0, i] for i, name in enumerate(places)}
+    return dict(zip(places, m.evaluate_list(places.values(), values), strict=True))
 
 
 @pytest.mark.parametrize("name", EVERY)

@@ -13,11 +13,20 @@ import sympy as sp
 
 from tests.report.vehicles import EVERY, HOSTILE, model, random_model
 from vehgen.files.expressions import parse
-from vehgen.mechanics import GRAVITY
+from vehgen.mechanics import GRAVITY, derive
 from vehgen.report import equations_latex, equations_mathml, equations_text
 from vehgen.report.equations.latex import unit_latex
 from vehgen.report.equations.notation import Name, gravity_symbol, latex_name, latex_text, number_text, split_name, tidy
-from vehgen.report.equations.writing import balance_mathml, balance_text, coordinate_mathml, expression_mathml, law_rows, matrices
+from vehgen.report.equations.writing import (
+    balance_mathml,
+    balance_text,
+    coordinate_latex,
+    coordinate_mathml,
+    expression_mathml,
+    law_rows,
+    matrices,
+)
+from vehgen.vehicle import parse_vehicle
 
 ENTRY = re.compile(r"^  ([MCKPQFW])\[(\d+)(?:,(\d+))?\] = (.*)$", re.MULTILINE)
 
@@ -67,6 +76,34 @@ def test_the_text_defines_every_symbol_that_it_uses(name):
 def test_the_equation_of_motion_has_the_terms_that_there_are():
     assert balance_text(model("with_laws")) == "M q'' + C q' + K q + L n = P w + Q w' + F f"
     assert balance_text(model("tractor5")) == "M q'' + C q' + K q = P w + F f"
+
+
+LIMBER = """
+name: limber
+parameters: {mF: {value: 9 t}, IF: {value: 20 t m^2}, kF: {value: 800 kN/m}}
+bodies:
+  frame: {mass: mF, pitch_inertia: IF, bending: {length: 6 m, frequency: 9 Hz, damping_ratio: 0.02}}
+links:
+  front: {ground: {}, frame: {x: 2 m}, k: kF, laws: [{dry_friction: {force: 500 N}}]}
+  rear: {ground: {}, frame: {x: -2 m}, k: kF}
+"""
+
+
+def bare_text(fragment):
+    return html.unescape(re.sub("<.*?>", "", fragment))
+
+
+def test_heave_pitch_and_bending_of_one_body_are_written_differently():
+    m = derive(parse_vehicle(LIMBER))
+    text = equations_text(m)
+    assert "q1 = z_frame: rise of the COG" in text
+    assert "q3 = eta_frame: rise of the ends of frame in its bending mode [m]" in text
+    assert coordinate_latex(m) == [r"z_{\mathrm{frame}}", r"\theta_{\mathrm{frame}}", r"\eta_{\mathrm{frame}}"]
+    assert [bare_text(fragment) for fragment in coordinate_mathml(m)] == ["zframe", "θframe", "ηframe"]
+    travel = next(travel for where, travel, _ in law_rows(m) if where == "link front")
+    written = bare_text(expression_mathml(m, travel))
+    assert [written.count(symbol) for symbol in ("zframe", "θframe", "ηframe")] == [1, 1, 1]
+    assert all(rf"{sign}_{{\mathrm{{frame}}}}" in equations_latex(m).split("Force laws")[1] for sign in ("z", r"\theta", r"\eta"))
 
 
 def test_force_laws_are_written_with_their_travel_and_values():

@@ -109,6 +109,13 @@ def test_renamed_keys_and_words_are_followed(monkeypatch):
     assert not report(RECORD, new, 0.0, False)[1]
 
 
+def test_a_renamed_parameter_set_is_followed_in_keys_and_values():
+    old = {"modes": {"sedan2, DHCM-F&R": {"set": "DHCM-F&R", "modes": [1.5]}}}
+    assert report(old, {"modes": {"sedan2, DHCM-F-R": {"set": "DHCM-F-R", "modes": [1.5]}}}, 0.0, False)[1]
+    assert not report(old, {"modes": {"sedan2, DHCM-F-R": {"set": "DHCM-F-R", "modes": [1.6]}}}, 0.0, False)[1]
+    assert not report(old, {"modes": {"sedan2, DHCM": {"set": "DHCM-F-R", "modes": [1.5]}}}, 0.0, False)[1]
+
+
 def test_failed_commands_are_named():
     assert failures({"a": {"b": {"failed": "error: no"}}, "c": {"d": 1.0}}) == ["a / b: error: no"]
 

@@ -80,13 +80,12 @@ def near_parameters(problem: Problem, sensor: str) -> tuple[str, ...]:
     trial = problem.trials[0]
     vehicle, place = trial.run.vehicle, trial.run.file.sensors[sensor].place(sensor)
     model = trial.simulator.model
-    entries = {(0, 0): place.locate(vehicle, model.layout) + model.layout.bodies[place.body][0]}
     axles = [name for name, axle in vehicle.axles.items() if axle.body == place.body]
-    entries |= {(1, i): model.layout.axles[name] for i, name in enumerate(axles)}
-    found = model.evaluate(entries, trial.values)
     if not axles:
         return ()
-    nearest = axles[min(range(len(axles)), key=lambda i: abs(found[1, i] - found[0, 0]))]
+    own = place.locate(vehicle, model.layout) + model.layout.bodies[place.body][0]
+    x, *theirs = model.evaluate_list([own, *(model.layout.axles[name] for name in axles)], trial.values)
+    nearest = axles[min(range(len(axles)), key=lambda i: abs(theirs[i] - x))]
     axle = vehicle.axles[nearest]
     expressions = [axle.mass, vehicle.bodies[place.body].pitch_inertia, axle.tyre.k, axle.tyre.c]
     if axle.suspension is not None:

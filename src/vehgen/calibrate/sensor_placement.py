@@ -110,8 +110,8 @@ def advise_sensors(run: Run, count: int = 3, names: Sequence[str] | None = None)
     model = derive(vehicle, outputs)
     values = model.values(overrides=run.values())
     scenario = make_scenario(run, model, values)
-    drive = scenario.drive(model.wheel_offsets(values))
-    response, derived = direct_sensitivities(model, drive, chosen, scenario.decimation, values)
+    excitation = scenario.excitation(model.wheel_offsets(values))
+    response, derived = direct_sensitivities(model, excitation, chosen, scenario.decimation, values)
     response, derived = response @ mixing, derived @ mixing * np.abs([values[name] for name in chosen])[:, None, None]
     floor = np.tile(list(SIGMA.values()), len(places))
     white = derived / np.hypot(floor, SHARE * np.sqrt(np.mean(response**2, axis=0)))
@@ -170,14 +170,10 @@ def candidates(run: Run) -> tuple[SensorCandidate, ...]:
     vehicle = run.vehicle
     found: list[SensorCandidate] = []
     for body in vehicle.bodies:
-        marks: dict[str, float] = {}
-        entries = {}
         anchors = [name for name, axle in vehicle.axles.items() if axle.body == body]
         anchors += [name for name, hinge in vehicle.hinges.items() if body in hinge.points]
-        for i, name in enumerate(anchors):
-            entries[0, i] = model.layout.place(vehicle, name) - model.layout.bodies[body][0]
-        for (_, i), x in model.evaluate(entries, values).items():
-            marks[anchors[i]] = x
+        distances = [model.layout.place(vehicle, name) - model.layout.bodies[body][0] for name in anchors]
+        marks = dict(zip(anchors, model.evaluate_list(distances, values), strict=True))
         if len(marks) < 2 or "pitch" not in vehicle.bodies[body].motions:
             found.append(SensorCandidate(body, body, 0.0, 0.0))
             continue

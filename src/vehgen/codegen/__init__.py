@@ -1,4 +1,7 @@
-"""How does it run? From a EquationsOfMotion to a compiled kernel that advances whole populations."""
+"""How does it run? From EquationsOfMotion to a compiled kernel that advances whole populations.
+
+A straight-line program of the model, its sparse factorisation, the condensation of force laws, kernel source, machine code, the cache.
+"""
 
 from vehgen.codegen.cache import cache_folder, write_text
 from vehgen.codegen.kernel import Excitation, Kernel, KernelResult

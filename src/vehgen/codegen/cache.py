@@ -24,8 +24,8 @@ import numba
 import numpy as np
 
 from vehgen.codegen.cache_pruning import prune
+from vehgen.codegen.emit_llvm import compiles
 from vehgen.codegen.kernel_store import PARTS, private_folder, read_parts, refuse_open_folder, writable_folder, write_parts
-from vehgen.codegen.straight import compiles
 from vehgen.errors import CacheWarning, InputError
 
 
@@ -45,7 +45,7 @@ def cache_folder() -> Path:
     return base / "vehgen"
 
 
-_WRITER = (Path(__file__).parent / "straight.py").read_text(encoding="utf-8")
+_WRITER = (Path(__file__).parent / "emit_llvm.py").read_text(encoding="utf-8")
 """What turns a kernel's text into instructions: numba does not see when it changes."""
 
 

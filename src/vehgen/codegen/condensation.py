@@ -18,11 +18,10 @@ from dataclasses import dataclass
 import sympy as sp
 
 from vehgen.codegen.factorisation import Factor, Matrix, factorise
-from vehgen.codegen.program import SAMPLE, SETUP, STEP, Node, Program
+from vehgen.codegen.program import SAMPLE_PHASE, SETUP_PHASE, STEP_PHASE, Node, Program
 from vehgen.mechanics.energies import Element
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
-from vehgen.mechanics.law_terms import RATE, REST, STATIC, TRAVEL
-from vehgen.mechanics.law_terms import STEP as TIME_STEP
+from vehgen.mechanics.law_terms import RATE, REST, STATIC, TIME_STEP, TRAVEL
 from vehgen.mechanics.laws import LawStep
 
 
@@ -116,7 +115,7 @@ class Condensation:
             steps.append(term.step(element.k, element.c, own))
         force = rest = None
         if self.model.is_preloaded and any(term.origin == "unloaded" or term.asks_static for term in element.laws):
-            self.static_travels[index] = rest = program.leaf(f"rest{number}", SETUP)
+            self.static_travels[index] = rest = program.leaf(f"rest{number}", SETUP_PHASE)
             carried = element.k * REST + sp.Add(*(term.preload() for term in element.laws))
             force = program.label(program.convert(carried, {**self.symbols, REST: rest}), f"static{number}")
         elif static is not None:
@@ -176,7 +175,7 @@ class Condensation:
             stop = program.subtract(program.multiply(program.number(0.5), self._times(joint.row, v)), ground[-1])
             stops.append(stop)
             pulls.append(program.multiply(self.inverse[joint.number], program.subtract(free_rates[-1], stop)))
-        forces = [program.leaf(f"f{joint.number}", STEP) for joint in self.joints]
+        forces = [program.leaf(f"f{joint.number}", STEP_PHASE) for joint in self.joints]
         stuck: list[Node] = [zero] * len(self.joints)
         before = forces
         for _ in range(self.sweeps):
@@ -198,11 +197,11 @@ class Condensation:
             program.total([free[i], *(program.negate(program.multiply(self.reach[j][i], forces[j])) for j in range(len(self.joints)))])
             for i in range(self.model.n_dof)
         ]
-        states = [(program.leaf(f"f{joint.number}", STEP), forces[joint.number]) for joint in self.joints]
+        states = [(program.leaf(f"f{joint.number}", STEP_PHASE), forces[joint.number]) for joint in self.joints]
         for joint in self.joints:
             if joint.friction:
-                last = program.leaf(f"g{joint.number}", STEP)
-                states += [(program.leaf(f"h{joint.number}", STEP), last), (last, stuck[joint.number])]
+                last = program.leaf(f"g{joint.number}", STEP_PHASE)
+                states += [(program.leaf(f"h{joint.number}", STEP_PHASE), last), (last, stuck[joint.number])]
         for joint in self.joints:
             rate = self._times(joint.row, middle)
             d = program.add(starts[joint.number], program.multiply(self.half_h, rate))
@@ -212,8 +211,11 @@ class Condensation:
                 for place, step in enumerate(joint.steps)
                 for name, end in step.states.items()
             }
-            states += [(program.leaf(name, STEP), self._read(joint, ends[symbol], d, moved, STEP)) for symbol, name in joint.states.items()]
-        states.append((program.leaf("residual", STEP), self._residual(before, forces)))
+            states += [
+                (program.leaf(name, STEP_PHASE), self._read(joint, ends[symbol], d, moved, STEP_PHASE))
+                for symbol, name in joint.states.items()
+            ]
+        states.append((program.leaf("residual", STEP_PHASE), self._residual(before, forces)))
         return NonlinearStep(middle, states)
 
     def _smooth(self, joint: NonlinearElement, rate: Node, start: Node, ground: Node) -> tuple[Node, Node]:
@@ -228,7 +230,7 @@ class Condensation:
         for step in joint.steps:
             if step.slope is None:
                 slope += sp.diff(step.force, TRAVEL) * TIME_STEP / 2 + sp.diff(step.force, RATE)
-        return self._read(joint, smooth, d, moved, STEP), self._read(joint, slope, d, moved, STEP)
+        return self._read(joint, smooth, d, moved, STEP_PHASE), self._read(joint, slope, d, moved, STEP_PHASE)
 
     def _relaxation(self, joint: NonlinearElement, slope: Node) -> Node:
         """Return G s/(1 + G s), the share of the last force that a step along a line of slope s keeps."""
@@ -246,11 +248,11 @@ class Condensation:
     def _clip(self, joint: NonlinearElement, force: Node) -> Node:
         """Clip a friction force to its bound."""
         program, zero = self.program, self.program.number(0.0)
-        bound = self._read(joint, sp.Add(*(step.friction for step in joint.steps)), zero, zero, STEP)
+        bound = self._read(joint, sp.Add(*(step.friction for step in joint.steps)), zero, zero, STEP_PHASE)
         return program.apply("min", program.apply("max", force, program.negate(bound)), bound)
 
     def _residual(self, before: list[Node], after: list[Node]) -> Node:
-        worst = self.program.leaf("residual", STEP)
+        worst = self.program.leaf("residual", STEP_PHASE)
         for old, new in zip(before, after, strict=True):
             worst = self.program.apply("max", worst, self.program.apply("abs", self.program.subtract(new, old)))
         return worst
@@ -265,9 +267,9 @@ class Condensation:
         for joint in self.joints:
             d = program.add(self._times(joint.row, u), self._times(joint.input_row, drives[:width]))
             rate = program.add(self._times(joint.row, v), self._times(joint.input_row, drives[width:]))
-            force = self._read(joint, sp.Add(*(step.now for step in joint.steps)), d, rate, SAMPLE)
+            force = self._read(joint, sp.Add(*(step.now for step in joint.steps)), d, rate, SAMPLE_PHASE)
             if joint.friction:
-                last, before = (program.leaf(f"{name}{joint.number}", SAMPLE) for name in "gh")
+                last, before = (program.leaf(f"{name}{joint.number}", SAMPLE_PHASE) for name in "gh")
                 half = program.multiply(program.number(0.5), program.subtract(last, before))
                 force = program.add(force, self._clip(joint, program.add(last, half)))
             found.append(force)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from vehgen.codegen.cache import cache_folder, import_kernel, is_compiled, kernel_name
 from vehgen.codegen.kernel_source import KernelSource, Precision, write_kernel
 from vehgen.errors import InputError, did_you_mean
-from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
 
 Array = NDArray[np.float64]
@@ -139,7 +139,7 @@ class Kernel:
     def reduce(
         self,
         parameters: Array,
-        drive: Excitation,
+        excitation: Excitation,
         reduction: Callable[[Array], Array],
         decimation: int = 10,
         block: int = 1024,
@@ -149,7 +149,7 @@ class Kernel:
 
         Parameters
         ----------
-        parameters, drive, keep, threads
+        parameters, excitation, decimation, threads
             As in :meth:`run`.
         reduction
             Maps responses `shape (n, n_samples, n_channels)` to an array whose first axis is n.
@@ -163,13 +163,13 @@ class Kernel:
         parts: list[Array] = []
         failures: dict[int, str] = {}
         for first in range(0, len(parameters), block):
-            result = self.run(parameters[first : first + block], drive, decimation, threads=threads)
+            result = self.run(parameters[first : first + block], excitation, decimation, threads=threads)
             failures.update({first + i: reason for i, reason in result.failures.items()})
             parts.append(np.asarray(reduction(result.responses)))
         return np.concatenate(parts), failures
 
     def run(
-        self, parameters: Array, drive: Excitation, decimation: int = 10, initial: Array | None = None, threads: int | None = None
+        self, parameters: Array, excitation: Excitation, decimation: int = 10, initial: Array | None = None, threads: int | None = None
     ) -> KernelResult:
         """Simulate a population.
 
@@ -177,9 +177,9 @@ class Kernel:
         ----------
         parameters
             `shape (n_individuals, n_parameters)` in the order of `model.parameters`, SI units.
-        drive
+        excitation
             Inputs and step, the same for all individuals.
-        keep
+        decimation
             Every how many steps a sample is kept.
         initial
             `shape (n_individuals, 2 n_dof)`: displacements then velocities at the start (default: at rest in equilibrium).
@@ -194,19 +194,24 @@ class Kernel:
         fails.
         """
         parameters = np.ascontiguousarray(np.atleast_2d(parameters), dtype=np.float64)
-        self._check(parameters, drive, decimation)
+        self._check(parameters, excitation, decimation)
         columns, unheld = parameters, {}
         if self.source.static_travels:
             rest = equilibria(self.model, parameters)
             columns, unheld = np.hstack([parameters, rest.travels[:, self.source.static_travels]]), rest.failures
-        n_individuals, lanes = parameters.shape[0], self.source.lanes
-        n_samples, n_channels = drive.n_steps // decimation + 1, len(self.model.channels)
+        responses, residuals = self._advance(columns, excitation, decimation, initial, threads)
+        return KernelResult(responses, {**self._failures(parameters, responses, residuals), **unheld}, residuals)
+
+    def _advance(
+        self, columns: Array, excitation: Excitation, decimation: int, initial: Array | None, threads: int | None
+    ) -> tuple[Array, Array]:
+        """Return the responses and residuals of individuals with these columns, blocks of lanes shared among threads."""
+        n_individuals, lanes, n_dof, number = len(columns), self.source.lanes, self.model.n_dof, self._number
+        n_samples, n_channels = excitation.n_steps // decimation + 1, len(self.model.channels)
         responses = np.empty((n_individuals, n_samples, n_channels))
         residuals = np.zeros(n_individuals)
         module = self._module
-        n_dof = self.model.n_dof
-        number = self._number
-        arrays = tuple(np.ascontiguousarray(item, dtype=number) for item in (drive.inputs, drive.rates, drive.forces))
+        arrays = tuple(np.ascontiguousarray(item, dtype=number) for item in (excitation.inputs, excitation.rates, excitation.forces))
 
         def block(first: int) -> None:
             last = min(first + lanes, n_individuals)
@@ -218,7 +223,7 @@ class Kernel:
                 state[: 2 * n_dof * lanes] = np.ascontiguousarray(initial[rows].T).ravel()
             direct = last - first == lanes and number is np.float64
             target = responses[first:last] if direct else np.empty((lanes, n_samples, n_channels), dtype=number)
-            module.advance(work, *arrays, drive.dt, decimation, target)
+            module.advance(work, *arrays, excitation.dt, decimation, target)
             if not direct:
                 responses[first:last] = target[: last - first]
             if self.source.nonlinear:
@@ -232,7 +237,7 @@ class Kernel:
         else:
             for first in starts:
                 block(first)
-        return KernelResult(responses, {**self._failures(parameters, responses, residuals), **unheld}, residuals)
+        return responses, residuals
 
     def _failures(self, parameters: Array, responses: Array, residuals: Array) -> dict[int, str]:
         failures = find_failures(self.model.parameters, parameters, responses)
@@ -245,10 +250,9 @@ class Kernel:
 
     @cached_property
     def _weight(self) -> float:
-        numbers = self.model.evaluate({(0, i): term.inertia for i, term in enumerate(self.model.energies.weights)}, self.model.values())
-        return GRAVITY * sum(numbers.values())
+        return self.model.total_weight()
 
-    def _check(self, parameters: Array, drive: Excitation, decimation: int) -> None:
+    def _check(self, parameters: Array, excitation: Excitation, decimation: int) -> None:
         expected = len(self.model.parameters)
         if parameters.ndim != 2 or parameters.shape[1] != expected:
             raise InputError(
@@ -256,8 +260,10 @@ class Kernel:
             )
         shapes = {"inputs": len(self.model.inputs), "rates": len(self.model.inputs), "forces": len(self.model.forces)}
         for key, width in shapes.items():
-            found = getattr(drive, key).shape
-            if found != (drive.n_steps + 1, width):
-                raise InputError(f"the drive's {key} have shape {found}; ({drive.n_steps + 1}, {width}) was expected")
-        if not (drive.dt > 0 and decimation >= 1):
-            raise InputError(f"the step must be positive and keep at least 1, found dt = {drive.dt} and keep = {decimation}")
+            found = getattr(excitation, key).shape
+            if found != (excitation.n_steps + 1, width):
+                raise InputError(f"the excitation's {key} have shape {found}; ({excitation.n_steps + 1}, {width}) was expected")
+        if not (excitation.dt > 0 and decimation >= 1):
+            raise InputError(
+                f"the step must be positive and the decimation at least 1, found dt = {excitation.dt} and decimation = {decimation}"
+            )

@@ -8,7 +8,7 @@ the cache, as long as their names sort alike (the order of a sum follows its nam
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -16,7 +16,7 @@ from vehgen.codegen.lane_loops import split_loop
 from vehgen.codegen.legend import kernel_legend
 from vehgen.codegen.newmark import StepProgram, write_step
 from vehgen.codegen.printing import PythonPrinter
-from vehgen.codegen.program import SAMPLE, STEP, Node
+from vehgen.codegen.program import SAMPLE_PHASE, STEP_PHASE, Node
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 
 Precision = Literal["double", "single"]
@@ -30,7 +30,7 @@ NONLINEAR_LANES = 16
 class KernelSource:
     """A kernel's text with what it costs: operations in setup, per step and per sample.
 
-    `legend` says to people what the numbered names in the text stand for; it is never imported. `rests` are the elements
+    `legend` says to people what the numbered names in the text stand for; it is never imported. `static_travels` are the elements
     whose travel from the unloaded position to static equilibrium [m] follows the parameters as further columns.
     """
 
@@ -64,11 +64,10 @@ def write_kernel(
     step = write_step(model, sweeps)
     nonlinear = any(element.laws for element in model.elements)
     lanes = lanes or (NONLINEAR_LANES if nonlinear else LANES)
-    state = [leaf for leaf, _ in step.states]
     printer = PythonPrinter(
-        step.program, {STEP: [node for _, node in step.states], SAMPLE: step.channels}, step.time_step, precision == "single"
+        step.program, {STEP_PHASE: [node for _, node in step.states], SAMPLE_PHASE: step.channels}, step.time_step, precision == "single"
     )
-    lines = [_header(model, printer), *_function(model, step, printer, state, lanes)]
+    lines = [_header(model, printer), *_code(model, step, printer, lanes)]
     text = _fold("\n".join(lines) + "\n")
     return KernelSource(
         text,
@@ -76,7 +75,7 @@ def write_kernel(
         lanes,
         printer.operation_counts,
         len(printer.constants),
-        len(state),
+        len(step.states),
         nonlinear,
         tuple(step.static_travels),
     )
@@ -96,98 +95,116 @@ import math
 
 import numba
 {"from numba import float32, float64" if printer.single else ""}
-from vehgen.codegen.straight import straight'''
+from vehgen.codegen.emit_llvm import emit_llvm'''
 
 
-def _function(model: EquationsOfMotion, step: StepProgram, printer: PythonPrinter, state: list[Node], lanes: int) -> list[str]:
-    program = step.program
-    parameter_place = {node: i for i, node in enumerate([*step.parameters.values(), *step.static_travels.values()])}
-    state_place = {program.labels[node]: i for i, node in enumerate(state)}
-    n_channels = len(step.channels)
+class _WorkArray:
+    """Where the values of a kernel stand in its one array: parameters, constants, states, kept channels, scratch, in rows of lanes."""
 
-    def load_setup(node: Node) -> str | None:
-        if node in parameter_place:
-            return wide.format(f"work[PARAMETERS + {parameter_place[node] * lanes} + j]")
+    def __init__(self, step: StepProgram, printer: PythonPrinter, lanes: int) -> None:
+        self.step, self.printer, self.lanes = step, printer, lanes
+        self.parameters = {node: i for i, node in enumerate([*step.parameters.values(), *step.static_travels.values()])}
+        self.states = {step.program.labels[leaf]: i for i, (leaf, _) in enumerate(step.states)}
+
+    def place(self, section: str, row: int) -> str:
+        """Return a row of a section, as it is read and written."""
+        return f"work[{section} + {row * self.lanes} + j]"
+
+    def setup_read(self, node: Node) -> str | None:
+        """Return how a leaf is read before the first step; None for what is already a variable."""
+        if node not in self.parameters:
+            return None
+        text = self.place("PARAMETERS", self.parameters[node])
+        return f"float64({text})" if self.printer.single else text
+
+    def loop_read(self, node: Node) -> str | None:
+        """Return how a leaf or a constant is read in a step or at a sample; None for what is already a variable."""
+        if node in self.printer.constants:
+            return self.place("CONSTANTS", self.printer.constants[node])
+        name = self.step.program.labels.get(node, "")
+        if self.step.program.operations[node] == "leaf" and name in self.states:
+            return self.place("STATE", self.states[name])
         return None
 
-    def load_loop(node: Node) -> str | None:
-        if node in printer.constants:
-            return f"work[CONSTANTS + {printer.constants[node] * lanes} + j]"
-        name = program.labels.get(node, "")
-        if program.operations[node] == "leaf" and name in state_place:
-            return f"work[STATE + {state_place[name] * lanes} + j]"
-        return None
+    def loops(
+        self, nodes: list[Node], results: list[Node], section: str, read: Callable[[Node], str | None]
+    ) -> tuple[list[list[str]], int]:
+        """Return the bodies of the loops that compute nodes and store results in a section, and how many scratch rows they need."""
+        lines, texts = self.printer.statements(nodes, results, read)
+        stores = [f"{self.place(section, row)} = {texts[node]}" for row, node in enumerate(results)]
+        return split_loop(lines, stores, self.lanes)
 
-    wide = "float64({})" if printer.single else "{}"
-    constants = list(printer.constants)
-    setup = printer.statements(printer.setup, constants, load_setup)
-    stores = [
-        f"work[CONSTANTS + {place * lanes} + j] = {printer.texts.get(node, printer.name(node))}"
-        for node, place in printer.constants.items()
-    ]
-    setup_bodies, setup_scratch = split_loop(setup, stores, lanes)
-    results = [node for _, node in step.states]
-    advance = printer.statements(printer.needed[STEP], results, load_loop)
-    stores = [f"work[STATE + {i * lanes} + j] = {printer.texts[node]}" for i, node in enumerate(results)]
-    advance_bodies, advance_scratch = split_loop(advance, stores, lanes)
-    sample = printer.statements(printer.needed[SAMPLE], step.channels, load_loop)
-    stores = [f"work[KEPT + {i * lanes} + j] = {printer.texts[node]}" for i, node in enumerate(step.channels)]
-    sample_bodies, sample_scratch = split_loop(sample, stores, lanes)
-    means = _drive_reads(printer, step.drives, STEP, f"{printer.number(0.5)}*({{array}}[n, {{i}}] + {{array}}[n + 1, {{i}}])", model)
-    values = _drive_reads(printer, step.sample_drives, SAMPLE, "{array}[n, {i}]", model)
 
-    sections = _sections(len(parameter_place), len(constants), len(state), n_channels, max(setup_scratch, advance_scratch, sample_scratch))
+def _lane_functions(name: str, bodies: list[list[str]], lanes: int, indent: int, shared: Sequence[str] = ()) -> tuple[list[str], list[str]]:
+    """Return functions of one lane with these bodies, and the loops over lanes that call them with the `shared` variables."""
+    together = f"({', '.join(shared)}{',' if len(shared) == 1 else ''})"
+    first = [f"    {together} = drives"] if shared else []
+    blank = "    " * indent
+    functions, calls = [], []
+    for i, body in enumerate(body for body in bodies if body):
+        functions += ["", "", "@emit_llvm", f"def {name}_{i}(work, j, dt, drives):", *first, *(f"    {line}" for line in body)]
+        calls += [f"{blank}for j in range({lanes}):", f"{blank}    {name}_{i}(work, j, dt, {together})"]
+    return functions, calls
 
-    functions: list[str] = []
 
-    def loops(name: str, bodies: list[list[str]], indent: int, drives: Sequence[str] = ()) -> list[str]:
-        """Add the bodies to `functions`, and return the loops over lanes that call them."""
-        shared = f"({', '.join(drives)}{',' if len(drives) == 1 else ''})"
-        first = [f"    {shared} = drives"] if drives else []
-        blank = "    " * indent
-        lines = []
-        for i, body in enumerate(body for body in bodies if body):
-            functions.extend(["", "", "@straight", f"def {name}_{i}(work, j, dt, drives):", *first, *(f"    {line}" for line in body)])
-            lines += [f"{blank}for j in range({lanes}):", f"{blank}    {name}_{i}(work, j, dt, {shared})"]
-        return lines
-
-    def names(reads: list[str]) -> list[str]:
-        return [line.partition(" = ")[0] for line in reads]
-
-    setup_loops = loops("setup", setup_bodies, 1)
-    sample_loops = loops("sample", sample_bodies, 3, names(values))
-    advance_loops = loops("advance", advance_bodies, 3, names(means))
+def _code(model: EquationsOfMotion, step: StepProgram, printer: PythonPrinter, lanes: int) -> list[str]:
+    """Return the lines of a kernel after its imports: sections of the work array, functions of one lane, the loop over steps."""
+    work = _WorkArray(step, printer, lanes)
+    constants, states = list(printer.constants), [node for _, node in step.states]
+    setup, setup_scratch = work.loops(printer.setup, constants, "CONSTANTS", work.setup_read)
+    advance, advance_scratch = work.loops(printer.needed[STEP_PHASE], states, "STATE", work.loop_read)
+    sample, sample_scratch = work.loops(printer.needed[SAMPLE_PHASE], step.channels, "KEPT", work.loop_read)
+    scratch = max(setup_scratch, advance_scratch, sample_scratch)
+    sections = _sections(len(work.parameters), len(constants), len(states), len(step.channels), scratch)
+    means = _drive_reads(printer, step.drives, STEP_PHASE, f"{printer.number(0.5)}*({{array}}[n, {{i}}] + {{array}}[n + 1, {{i}}])", model)
+    values = _drive_reads(printer, step.sample_drives, SAMPLE_PHASE, "{array}[n, {i}]", model)
+    setup_functions, setup_calls = _lane_functions("setup", setup, lanes, 1)
+    sample_functions, sample_calls = _lane_functions("sample", sample, lanes, 3, _names(values))
+    advance_functions, advance_calls = _lane_functions("advance", advance, lanes, 3, _names(means))
     return [
         "",
         "LANES = " + str(lanes),
         *(f"{name} = {start * lanes}" for name, start in sections.items()),
-        *functions,
+        *setup_functions,
+        *sample_functions,
+        *advance_functions,
+        *_signature(len(step.channels), lanes, printer.single),
+        *setup_calls,
+        "    for n in range(n_steps + 1):",
+        "        if n % keep == 0:",
+        "            sample = n // keep",
+        *(f"            {line}" for line in values),
+        *sample_calls,
+        f"            for channel in range({len(step.channels)}):",
+        f"                for j in range({lanes}):",
+        f"                    responses[j, sample, channel] = work[KEPT + channel*{lanes} + j]",
+        "        if n < n_steps:",
+        *(f"            {line}" for line in means),
+        *advance_calls,
+    ]
+
+
+def _signature(n_channels: int, lanes: int, single: bool) -> list[str]:
+    """Return the head of the function that advances all lanes."""
+    return [
         "",
         "",
         "@numba.njit(",
-        '    "void(f8[::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], f8, i8, f8[:, :, ::1])",'.replace("f8", "f4" if printer.single else "f8"),
+        '    "void(f8[::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], f8, i8, f8[:, :, ::1])",'.replace("f8", "f4" if single else "f8"),
         '    nogil=True, cache=True, fastmath={"contract", "nsz"}, error_model="numpy",',
         ")",
         "def advance(work, inputs, rates, forces, dt, keep, responses):",
         f'    """Advance {lanes} individuals over all steps; responses has shape ({lanes}, samples, {n_channels})."""',
         "    n_steps = inputs.shape[0] - 1",
-        *setup_loops,
-        "    for n in range(n_steps + 1):",
-        "        if n % keep == 0:",
-        "            sample = n // keep",
-        *(f"            {line}" for line in values),
-        *sample_loops,
-        f"            for channel in range({n_channels}):",
-        f"                for j in range({lanes}):",
-        f"                    responses[j, sample, channel] = work[KEPT + channel*{lanes} + j]",
-        "        if n < n_steps:",
-        *(f"            {line}" for line in means),
-        *advance_loops,
     ]
 
 
+def _names(assignments: list[str]) -> list[str]:
+    return [line.partition(" = ")[0] for line in assignments]
+
+
 def _fold(text: str) -> str:
-    """Write `work[STATE + 96 + j]` as `work[1248 + j]`, the one form of it that :func:`vehgen.codegen.straight.straight` reads."""
+    """Write `work[STATE + 96 + j]` as `work[1248 + j]`, the one form of it that :func:`vehgen.codegen.emit_llvm.emit_llvm` reads."""
     starts = {name: int(value) for name, value in re.findall(r"^(PARAMETERS|CONSTANTS|STATE|KEPT|SCRATCH) = (\d+)$", text, re.M)}
     return re.sub(r"work\[([A-Z]+) \+ (\d+) \+ j\]", lambda match: f"work[{starts[match[1]] + int(match[2])} + j]", text)
 

@@ -16,7 +16,7 @@ import sympy as sp
 from vehgen.codegen.condensation import Condensation
 from vehgen.codegen.factorisation import Matrix, factorise
 from vehgen.codegen.labels import dependent_label, drive_labels, parameter_label
-from vehgen.codegen.program import SAMPLE, SETUP, STEP, Node, Program
+from vehgen.codegen.program import SAMPLE_PHASE, SETUP_PHASE, STEP_PHASE, Node, Program
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.rows import Row, SparseMatrix
 
@@ -25,8 +25,8 @@ from vehgen.mechanics.rows import Row, SparseMatrix
 class StepProgram:
     """The program of a step: where its leaves are read from, the states (leaf, value after the step), the channels at a sample.
 
-    The first 2 n_dof states are the displacements and velocities; those of force laws follow. `rests` are leaves by the number of an
-    element: its travel from the unloaded position to static equilibrium.
+    The first 2 n_dof states are the displacements and velocities; those of force laws follow. `static_travels` are leaves by the number of
+    an element: its travel from the unloaded position to static equilibrium.
     """
 
     program: Program
@@ -49,7 +49,7 @@ def write_step(model: EquationsOfMotion, sweeps: int | None = None) -> StepProgr
     symbols: dict[sp.Symbol, Node] = {}
     parameters = {}
     for i, name in enumerate(model.parameters):
-        parameters[name] = program.leaf(parameter_label(i), SETUP)
+        parameters[name] = program.leaf(parameter_label(i), SETUP_PHASE)
         symbols[sp.Symbol(name, real=True)] = parameters[name]
     memo: dict[sp.Expr, Node] = {}
     for i, (symbol, expression) in enumerate(model.definitions):
@@ -60,35 +60,20 @@ def write_step(model: EquationsOfMotion, sweeps: int | None = None) -> StepProgr
         converted = {place: program.convert(value, symbols, memo) for place, value in entries.items()}
         return {(i, j): program.label(node, f"{name}{i}_{j}") for (i, j), node in converted.items() if program.value(node) != 0.0}
 
-    h = program.leaf("dt", SETUP)
+    h = program.leaf("dt", SETUP_PHASE)
     two_h, half_h = program.divide(program.number(2.0), h), program.multiply(program.number(0.5), h)
     M, C, K = matrix(model.mass_entries, "M"), matrix(model.damping_entries, "C"), matrix(model.stiffness_entries, "K")
     P, Q = matrix(model.input_entries, "P"), matrix(model.input_rate_entries, "Q")
     F = matrix(model.force_entries, "F")
     n = model.n_dof
-    u = [program.leaf(f"u{i}", STEP) for i in range(n)]
-    v = [program.leaf(f"v{i}", STEP) for i in range(n)]
+    u = [program.leaf(f"u{i}", STEP_PHASE) for i in range(n)]
+    v = [program.leaf(f"v{i}", STEP_PHASE) for i in range(n)]
     names = drive_labels(len(model.inputs), len(model.forces))
-    drives = [program.leaf(name, STEP) for name in names]
+    drives = [program.leaf(name, STEP_PHASE) for name in names]
     loads = _load_matrix(model, P, Q, F)
 
-    effective: Matrix = {}
-    zero = program.number(0.0)
-    for place in {*M, *C, *K}:
-        parts = [
-            program.multiply(two_h, M.get(place, zero)),
-            C.get(place, zero),
-            program.multiply(half_h, K.get(place, zero)),
-        ]
-        effective[place] = program.total(parts)
-    factor = factorise(program, n, effective, "A")
-    momentum = {place: program.multiply(two_h, node) for place, node in M.items()}
-    right = []
-    for i in range(n):
-        terms = [program.multiply(node, v[j]) for (row, j), node in sorted(momentum.items()) if row == i]
-        terms += [program.negate(program.multiply(node, u[j])) for (row, j), node in sorted(K.items()) if row == i]
-        terms += [program.multiply(node, drives[j]) for (row, j), node in sorted(loads.items()) if row == i]
-        right.append(program.label(program.total(terms), f"r{i}"))
+    factor = factorise(program, n, _effective_matrix(program, (M, C, K), two_h, half_h), "A")
+    right = _right_sides(program, (M, K, loads), (u, v, drives), two_h)
     middle = factor.solve(program, right)
     laws, further = None, []
     if any(element.laws for element in model.elements):
@@ -99,12 +84,40 @@ def write_step(model: EquationsOfMotion, sweeps: int | None = None) -> StepProgr
     next_v = [program.subtract(program.add(middle[i], middle[i]), v[i]) for i in range(n)]
     next_u = [program.add(u[i], program.multiply(h, middle[i])) for i in range(n)]
 
-    su = [program.leaf(f"u{i}", SAMPLE) for i in range(n)]
-    sv = [program.leaf(f"v{i}", SAMPLE) for i in range(n)]
-    sample_drives = [program.leaf(name, SAMPLE) for name in names]
+    su = [program.leaf(f"u{i}", SAMPLE_PHASE) for i in range(n)]
+    sv = [program.leaf(f"v{i}", SAMPLE_PHASE) for i in range(n)]
+    sample_drives = [program.leaf(name, SAMPLE_PHASE) for name in names]
     channels = _channels(model, program, symbols, memo, (M, C, K, loads), (su, sv, sample_drives), laws)
     states = [*zip(u, next_u, strict=True), *zip(v, next_v, strict=True), *further]
     return StepProgram(program, parameters, laws.static_travels if laws else {}, h, drives, sample_drives, states, channels)
+
+
+def _effective_matrix(program: Program, matrices: tuple[Matrix, Matrix, Matrix], two_h: Node, half_h: Node) -> Matrix:
+    """Return 2/h M + C + h/2 K."""
+    M, C, K = matrices
+    zero = program.number(0.0)
+    return {
+        place: program.total(
+            [program.multiply(two_h, M.get(place, zero)), C.get(place, zero), program.multiply(half_h, K.get(place, zero))]
+        )
+        for place in {*M, *C, *K}
+    }
+
+
+def _right_sides(
+    program: Program, matrices: tuple[Matrix, Matrix, Matrix], state: tuple[list[Node], list[Node], list[Node]], two_h: Node
+) -> list[Node]:
+    """Return 2/h M v - K u + (mean load), one node a degree of freedom."""
+    M, K, loads = matrices
+    u, v, drives = state
+    momentum = {place: program.multiply(two_h, node) for place, node in M.items()}
+    right = []
+    for i in range(len(u)):
+        terms = [program.multiply(node, v[j]) for (row, j), node in sorted(momentum.items()) if row == i]
+        terms += [program.negate(program.multiply(node, u[j])) for (row, j), node in sorted(K.items()) if row == i]
+        terms += [program.multiply(node, drives[j]) for (row, j), node in sorted(loads.items()) if row == i]
+        right.append(program.label(program.total(terms), f"r{i}"))
+    return right
 
 
 def _load_matrix(model: EquationsOfMotion, P: Matrix, Q: Matrix, F: Matrix) -> Matrix:

@@ -6,7 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable
 
-from vehgen.codegen.program import SAMPLE, SETUP, STEP, Node, Program
+from vehgen.codegen.program import SAMPLE_PHASE, SETUP_PHASE, STEP_PHASE, Node, Program
 from vehgen.errors import InputError
 
 _BINARY = {"+": 1, "-": 1, "*": 2, "/": 2, "**": 3}
@@ -22,11 +22,11 @@ class PythonPrinter:
     program
         The graph.
     results
-        The nodes wanted, by phase (STEP: the new state; SAMPLE: the channels).
+        The nodes wanted, by phase (STEP_PHASE: the new state; SAMPLE_PHASE: the channels).
     scalar
         A leaf that is the same for all lanes and stays a plain variable: the time step.
     single
-        Whether the loops' numbers are of single precision (a plain one would make its expression double); SETUP stays double.
+        Whether the loops' numbers are of single precision (a plain one would make its expression double); SETUP_PHASE stays double.
 
     """
 
@@ -34,13 +34,13 @@ class PythonPrinter:
         self.scalar, self.single = scalar, single
         self.program = program
         self.results = results
-        self.needed = {phase: self._reach(phase) for phase in (STEP, SAMPLE)}
+        self.needed = {phase: self._reach(phase) for phase in (STEP_PHASE, SAMPLE_PHASE)}
         self.constants = self._constants()
         self.setup = self._reach_setup()
         self.operation_counts = {
             "setup": self._count(self.setup),
-            "step": self._count(self.needed[STEP]),
-            "sample": self._count(self.needed[SAMPLE]),
+            "step": self._count(self.needed[STEP_PHASE]),
+            "sample": self._count(self.needed[SAMPLE_PHASE]),
         }
 
     def _reach(self, phase: int) -> list[Node]:
@@ -49,7 +49,7 @@ class PythonPrinter:
         stack = list(self.results.get(phase, ()))
         while stack:
             node = stack.pop()
-            if node in found or self.program.phases[node] == SETUP:
+            if node in found or self.program.phases[node] == SETUP_PHASE:
                 continue
             found.add(node)
             stack.extend(self.program.arguments[node])
@@ -58,10 +58,10 @@ class PythonPrinter:
     def _constants(self) -> dict[Node, int]:
         """SETUP nodes that the loops use, with their place in the array of constants."""
         used: set[Node] = set()
-        for phase in (STEP, SAMPLE):
+        for phase in (STEP_PHASE, SAMPLE_PHASE):
             for node in (*self.needed[phase], *self.results.get(phase, ())):
                 for item in (*self.program.arguments[node], node):
-                    if self.program.phases[item] == SETUP and self.program.operations[item] != "number" and item != self.scalar:
+                    if self.program.phases[item] == SETUP_PHASE and self.program.operations[item] != "number" and item != self.scalar:
                         used.add(item)
         return {node: place for place, node in enumerate(sorted(used))}
 
@@ -86,8 +86,12 @@ class PythonPrinter:
         """Return a node's name in the source."""
         return self.program.labels.get(node, f"x{node}")
 
-    def statements(self, nodes: list[Node], targets: Iterable[Node], load: Callable[[Node], str | None]) -> list[str]:
-        """Return assignments for the nodes in order; values used once are written where they are used.
+    def statements(
+        self, nodes: list[Node], targets: Iterable[Node], load: Callable[[Node], str | None]
+    ) -> tuple[list[str], dict[Node, str]]:
+        """Return assignments for the nodes in order, and how each node is written after them.
+
+        Values used once are written where they are used.
 
         Parameters
         ----------
@@ -96,17 +100,17 @@ class PythonPrinter:
         targets
             Nodes that must end up in a variable.
         load
-            How a leaf (or a constant from SETUP) is read; None for what is already a variable.
+            How a leaf (or a constant from SETUP_PHASE) is read; None for what is already a variable.
 
         """
         own = set(nodes)
-        in_loop = any(self.program.phases[node] != SETUP for node in nodes)
+        in_loop = any(self.program.phases[node] != SETUP_PHASE for node in nodes)
         uses: Counter[Node] = Counter()
         for node in nodes:
             uses.update(dict.fromkeys(self.program.arguments[node], 0))
             for argument in self.program.arguments[node]:
                 uses[argument] += 1
-        keep = set(targets)
+        wanted = set(targets)
         texts: dict[Node, tuple[str, int]] = {}
         lines: list[str] = []
 
@@ -129,17 +133,16 @@ class PythonPrinter:
             if self.program.operations[node] in ("leaf", "number"):
                 continue
             text, strength = self._expression(node, [read(argument) for argument in self.program.arguments[node]])
-            inline = uses[node] == 1 and node not in keep and node not in self.program.labels and len(text) < _MAX_INLINE
+            inline = uses[node] == 1 and node not in wanted and node not in self.program.labels and len(text) < _MAX_INLINE
             if inline and node in own:
                 texts[node] = (text, strength)
             else:
                 lines.append(f"{self.name(node)} = {text}")
                 texts[node] = (self.name(node), 9)
-        for node in keep:
+        for node in wanted:
             if node not in texts and self.program.operations[node] in ("leaf", "number"):
                 texts[node] = read(node)
-        self.texts = {node: text for node, (text, _) in texts.items()}
-        return lines
+        return lines, {node: text for node, (text, _) in texts.items()}
 
     def _expression(self, node: Node, arguments: list[tuple[str, int]]) -> tuple[str, int]:
         operation = self.program.operations[node]

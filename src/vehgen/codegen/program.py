@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
-SETUP, STEP, SAMPLE = 0, 1, 2
+SETUP_PHASE, STEP_PHASE, SAMPLE_PHASE = 0, 1, 2
 
 Node = int
 """A node of a program: its number."""
@@ -46,7 +46,7 @@ class Program:
 
     def number(self, value: float) -> Node:
         """Return a constant."""
-        node = self._node("number", (), SETUP, float(value))
+        node = self._node("number", (), SETUP_PHASE, float(value))
         self._values[node] = float(value)
         return node
 

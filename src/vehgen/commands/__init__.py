@@ -1,4 +1,4 @@
-"""The command line: one file a subcommand, each a few lines over the API."""
+"""How is it called? The command line: one file a subcommand, each a few lines over the API."""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from vehgen.commands.results import add_out, file_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table, say, warn
@@ -12,6 +12,7 @@ from vehgen.files import check_results, note_read
 
 if TYPE_CHECKING:
     from vehgen.phones.importing import Imported
+    from vehgen.phones.options import Plan
     from vehgen.report.plots.import_plot import ImportPanel
 
 NAME = "import"
@@ -53,14 +54,36 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Import phone exports."""
+    from vehgen.phones.importing import import_phones
+    from vehgen.phones.run_text import import_files, write_import
+    from vehgen.report import save_figure
+    from vehgen.report.plots.import_plot import plot_import
+
+    plan = _plan(options)
+    out = file_named(options.out)
+    written = [*import_files(out), out.with_suffix(".png")]
+    for export in options.exports:
+        note_read(export)
+    check_results(written)
+    imported = import_phones(options.exports, plan)
+    write_import(imported, options.vehicle, out)
+    arrival = imported.phones[0].arrival - imported.phones[0].zero
+    title = f"{plan.vehicle.title or plan.vehicle.name}, {imported.speed:.3g} m/s"
+    save_figure(plot_import(_panels(imported), arrival if imported.at is not None else None, _crossings(imported), title), written[-1])
+    if options.json:
+        print_json({**_summary(imported), "files": [str(path) for path in written]})
+        return
+    _tell(imported, title)
+    tell_written(written)
+
+
+def _plan(options: argparse.Namespace) -> Plan:
+    """Read the plan of an import from the command line."""
     from vehgen.files.limits import FOOTPRINT, ROAD_POSITION, SPEED_LIMIT
     from vehgen.files.units import SPEED
     from vehgen.phones.csv_table import read_column_map
-    from vehgen.phones.importing import import_phones, with_forward
+    from vehgen.phones.importing import with_forward
     from vehgen.phones.options import Plan, quantity, read_hump, read_profile, read_sensor
-    from vehgen.phones.run_text import import_files, phone_notes, write_import
-    from vehgen.report import save_figure
-    from vehgen.report.plots.import_plot import plot_import
     from vehgen.vehicle import load_vehicle
 
     by_axles = options.speed == "axles"
@@ -74,7 +97,7 @@ def run(options: argparse.Namespace) -> None:
             raise InputError(f"--{name} must be a positive number, found {value}")
         limit.check(value or 0.0, f"--{name}")
     vehicle = load_vehicle(options.vehicle)
-    plan = Plan(
+    return Plan(
         vehicle,
         read_hump(options.hump) if options.hump else read_profile(options.profile),
         with_forward([read_sensor(text, vehicle) for text in options.sensor], options.forward),
@@ -87,43 +110,40 @@ def run(options: argparse.Namespace) -> None:
         footprint=options.footprint,
         columns=read_column_map(options.columns) if options.columns else None,
     )
-    out = file_named(options.out)
-    written = [*import_files(out), out.with_suffix(".png")]
-    for export in options.exports:
-        note_read(export)
-    check_results(written)
-    imported = import_phones(options.exports, plan)
-    write_import(imported, options.vehicle, out)
-    arrival = imported.phones[0].arrival - imported.phones[0].zero
-    title = f"{vehicle.title or vehicle.name}, {imported.speed:.3g} m/s"
-    save_figure(plot_import(_panels(imported), arrival if imported.at is not None else None, _crossings(imported), title), written[-1])
-    if options.json:
-        print_json(
+
+
+def _summary(imported: Imported) -> dict[str, Any]:
+    """Return an import as JSON holds it."""
+    from vehgen.phones.run_text import phone_notes
+
+    return {
+        "speed": imported.speed,
+        "speed_source": imported.speed_source,
+        "fitted_speed": imported.fitted_speed,
+        "at": imported.at,
+        "duration": float(imported.time[-1]),
+        "phones": [
             {
-                "speed": imported.speed,
-                "speed_source": imported.speed_source,
-                "fitted_speed": imported.fitted_speed,
-                "at": imported.at,
-                "duration": float(imported.time[-1]),
-                "phones": [
-                    {
-                        "export": item.phone.name,
-                        "app": item.phone.export.app,
-                        "sensor": item.phone.sensor.name,
-                        "rates": list(item.phone.rates),
-                        "tilt": item.orientation.tilt if item.orientation else None,
-                        "zero": item.zero,
-                        "correlation": item.match.correlation,
-                        "noise": {name: {"sigma": floor.sigma, "band_sigma": floor.band_sigma} for name, floor in item.noise},
-                        "notes": phone_notes(imported, item),
-                    }
-                    for item in imported.phones
-                ],
-                "warnings": list(imported.warnings),
-                "files": [str(path) for path in written],
+                "export": item.phone.name,
+                "app": item.phone.export.app,
+                "sensor": item.phone.sensor.name,
+                "rates": list(item.phone.rates),
+                "tilt": item.orientation.tilt if item.orientation else None,
+                "zero": item.zero,
+                "correlation": item.match.correlation,
+                "noise": {name: {"sigma": floor.sigma, "band_sigma": floor.band_sigma} for name, floor in item.noise},
+                "notes": phone_notes(imported, item),
             }
-        )
-        return
+            for item in imported.phones
+        ],
+        "warnings": list(imported.warnings),
+    }
+
+
+def _tell(imported: Imported, title: str) -> None:
+    """Print an import for people."""
+    from vehgen.phones.run_text import phone_notes
+
     peaks = abs(imported.values).max(axis=0)
     floors = {name: floor for item in imported.phones for name, floor in item.noise}
     print_table(
@@ -140,7 +160,6 @@ def run(options: argparse.Namespace) -> None:
         for note in phone_notes(imported, item):
             say(note)
     warn(imported.warnings)
-    tell_written(written)
 
 
 def _panels(imported: Imported) -> list[ImportPanel]:

@@ -1,1 +1,5 @@
-"""What is missing? Detect, localise, name, add, verify."""
+"""What is missing? The way from recordings to a verdict.
+
+Inputs are checked, the gap is detected, localised, named and verified, the next experiment proposed; the result, and the thresholds that
+decide.
+"""

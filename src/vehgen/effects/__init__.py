@@ -1,4 +1,7 @@
-"""What could be missing? One file an effect."""
+"""What could be missing? Effects of the vehicle, of runs and sensors, and of spectral lines.
+
+Each tells where it attaches, what it changes and how many numbers it costs; other packages and files may add more.
+"""
 
 from vehgen.effects.base import Change, Effect, EffectParameter
 from vehgen.effects.entry import extended_library, load_effects

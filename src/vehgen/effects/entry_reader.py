@@ -10,14 +10,14 @@ from typing import Any
 from vehgen.effects.base import Change, Effect, EffectParameter
 from vehgen.effects.entry_model import SIZES, EffectEntry, LawPlace, LineEntry, ParameterEntry, RunQuantity
 from vehgen.effects.kinds import LineEffect, RunEffect, VehicleEffect
-from vehgen.effects.library.engine_harmonic import ENGINE_HARMONIC
+from vehgen.effects.library.engine_harmonic import ENGINE_HARMONIC_EFFECT
 from vehgen.effects.library.law_effect import Given, law_edit
-from vehgen.effects.library.sensor_delay import SENSOR_DELAY
-from vehgen.effects.library.sensor_gain import SENSOR_GAIN
-from vehgen.effects.library.sensor_position import SENSOR_POSITION
-from vehgen.effects.library.sensor_tilt import SENSOR_TILT
-from vehgen.effects.library.speed_error import SPEED_ERROR
-from vehgen.effects.library.tyre_footprint import TYRE_FOOTPRINT
+from vehgen.effects.library.sensor_delay import SENSOR_DELAY_EFFECT
+from vehgen.effects.library.sensor_gain import SENSOR_GAIN_EFFECT
+from vehgen.effects.library.sensor_position import SENSOR_POSITION_EFFECT
+from vehgen.effects.library.sensor_tilt import SENSOR_TILT_EFFECT
+from vehgen.effects.library.speed_error import SPEED_ERROR_EFFECT
+from vehgen.effects.library.tyre_footprint import TYRE_FOOTPRINT_EFFECT
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import Places, axles, hinges, suspensions, tyres
 from vehgen.errors import InputError, did_you_mean, shown
@@ -28,12 +28,12 @@ from vehgen.mechanics.laws import LAWS
 
 PLACES: dict[LawPlace, Places] = {"suspension": suspensions, "tyre": axles, "hinge": hinges}
 ADJUSTS: dict[RunQuantity, RunEffect] = {
-    "speed": SPEED_ERROR,
-    "footprint": TYRE_FOOTPRINT,
-    "gain": SENSOR_GAIN,
-    "delay": SENSOR_DELAY,
-    "tilt": SENSOR_TILT,
-    "position": SENSOR_POSITION,
+    "speed": SPEED_ERROR_EFFECT,
+    "footprint": TYRE_FOOTPRINT_EFFECT,
+    "gain": SENSOR_GAIN_EFFECT,
+    "delay": SENSOR_DELAY_EFFECT,
+    "tilt": SENSOR_TILT_EFFECT,
+    "position": SENSOR_POSITION_EFFECT,
 }
 """The effects of the library whose number an entry may take."""
 
@@ -108,7 +108,7 @@ class EntryReader:
             raise self.wrong(f"{entry.adjusts} is {kind}, found {item.unit or 'no unit'}", *where, key=not item.unit)
         if entry.adjusts in ("speed", "footprint") and item.low <= 0:
             raise self.wrong(f"{entry.adjusts} is above 0, found {item.low:g}", "parameters", name, "low")
-        return replace(known, parameters=(parameter,), **self.told(known))
+        return replace(known, parameters=(parameter,), **self.own_words(known))
 
     def line_effect(self, line: LineEntry) -> LineEffect:
         """Return the line, looked for between its two frequencies."""
@@ -120,16 +120,18 @@ class EntryReader:
         low, high = self.frequency(line.low, "low"), self.frequency(line.high, "high")
         if not 0 < low < high:
             raise self.wrong(f"`low` must be above 0 and below `high`, found {low:g} and {high:g} Hz", "line", "low")
-        frequency, *others = ENGINE_HARMONIC.parameters
+        frequency, *others = ENGINE_HARMONIC_EFFECT.parameters
         searched = replace(frequency, low=low, high=high, starts=((low + high) / 2,), meaning="frequency of the line at the start of a run")
-        return replace(ENGINE_HARMONIC, parameters=(searched, *others), looked_for=(low, high), **self.told(ENGINE_HARMONIC))
+        return replace(
+            ENGINE_HARMONIC_EFFECT, parameters=(searched, *others), looked_for=(low, high), **self.own_words(ENGINE_HARMONIC_EFFECT)
+        )
 
     def frequency(self, given: Expression, key: str) -> float:
         """Return a frequency [Hz]."""
         self.expect(given, FREQUENCY, {}, "line", key, names={})
         return given.evaluate({})
 
-    def told(self, known: Effect) -> dict[str, Any]:
+    def own_words(self, known: Effect) -> dict[str, Any]:
         """Return what an entry says of itself, where it adapts an effect of the library."""
         entry = self.entry
         is_global = known.is_global if entry.global_ is None else entry.global_

@@ -52,7 +52,7 @@ class Residual:
         self._misfit, self._x = misfit, x
         self._lines: dict[tuple[float, float], list[tuple[float, float]]] = {}
 
-    def lines(self, lowest: float, highest: float) -> list[tuple[float, float]]:
+    def spectral_lines(self, lowest: float, highest: float) -> list[tuple[float, float]]:
         """Return frequency [Hz] and drift of the strongest lines between two frequencies [Hz]; looked for once."""
         if (lowest, highest) not in self._lines:
             self._lines[lowest, highest] = find_line(self._misfit, self._x, lowest=lowest, highest=highest)

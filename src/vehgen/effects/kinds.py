@@ -180,7 +180,7 @@ class LineEffect(Effect):
 
     def starts(self, place: str, locator: EffectLocator, residual: Residual | None = None) -> list[tuple[float, ...]]:
         """Return the strongest lines of what the fit leaves; without it as other effects."""
-        return super().starts(place, locator) if residual is None else list(residual.lines(*self.looked_for))
+        return super().starts(place, locator) if residual is None else list(residual.spectral_lines(*self.looked_for))
 
     def origins(self, origins: Origins) -> list[StartingPoint]:
         """Return where the last fit ended: the base parameters cannot have absorbed a line."""

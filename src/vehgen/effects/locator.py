@@ -9,7 +9,7 @@ import sympy as sp
 
 from vehgen.effects.places import ALL_TYRES
 from vehgen.files.expressions import Expression
-from vehgen.mechanics import EquationsOfMotion, derive, static_loads
+from vehgen.mechanics import GRAVITY, EquationsOfMotion, derive, static_loads
 from vehgen.mechanics.energies import pitch_inertia
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.model import Spring
@@ -87,8 +87,7 @@ class EffectLocator:
         self._inertias = self._evaluate({name: pitch_inertia(body) for name, body in vehicle.bodies.items()}, known)
 
     def _evaluate(self, expressions: Mapping[str, sp.Expr], values: Mapping[str, float]) -> dict[str, float]:
-        found = self._model.evaluate({(0, i): item for i, item in enumerate(expressions.values())}, values)
-        return {name: found[0, i] for i, name in enumerate(expressions)}
+        return dict(zip(expressions, self._model.evaluate_list(expressions.values(), values), strict=True))
 
     def site(self, place: str) -> EffectSite:
         """Return the site of an axle, link, hinge, body, group of axles joined by `+`, or of all tyres, sized as their mean."""
@@ -121,7 +120,7 @@ class EffectLocator:
         marks += [joint.points[body].x.evaluate(known) for joint in vehicle.hinges.values() if body in joint.points]
         length = max(marks) - min(marks) if len(marks) > 1 else 1.0
         if names[0] in vehicle.bodies:
-            load = mass * 9.81
+            load = mass * GRAVITY
         if place == ALL_TYRES:
             load, k, c, kt = (size / len(names) for size in (load, k, c, kt))
         return EffectSite(vehicle, place, load, k, c, kt, mass, self._inertias[body], length)

@@ -5,29 +5,29 @@ from __future__ import annotations
 from importlib.metadata import entry_points
 
 from vehgen.effects.base import Effect
-from vehgen.effects.library.asymmetric_damping import ASYMMETRIC_DAMPING
-from vehgen.effects.library.bump_stop import BUMP_STOP
-from vehgen.effects.library.cargo_module import CARGO_MODULE
-from vehgen.effects.library.cubic_stiffness import CUBIC_STIFFNESS
-from vehgen.effects.library.dry_friction import DRY_FRICTION
-from vehgen.effects.library.engine_harmonic import ENGINE_HARMONIC
-from vehgen.effects.library.frame_bending import FRAME_BENDING
-from vehgen.effects.library.hinge_friction import HINGE_FRICTION
-from vehgen.effects.library.hinge_stiffness import HINGE_STIFFNESS
-from vehgen.effects.library.hysteresis import HYSTERESIS
-from vehgen.effects.library.progressive_stiffness import PROGRESSIVE_STIFFNESS
-from vehgen.effects.library.quadratic_damping import QUADRATIC_DAMPING
-from vehgen.effects.library.relaxation import RELAXATION
-from vehgen.effects.library.sensor_delay import SENSOR_DELAY
-from vehgen.effects.library.sensor_gain import SENSOR_GAIN
-from vehgen.effects.library.sensor_position import SENSOR_POSITION
-from vehgen.effects.library.sensor_tilt import SENSOR_TILT
-from vehgen.effects.library.speed_error import SPEED_ERROR
-from vehgen.effects.library.suspended_cab import SUSPENDED_CAB
-from vehgen.effects.library.tyre_damping import TYRE_DAMPING
-from vehgen.effects.library.tyre_footprint import TYRE_FOOTPRINT
-from vehgen.effects.library.tyre_liftoff import TYRE_LIFTOFF
-from vehgen.effects.library.walking_beam import WALKING_BEAM
+from vehgen.effects.library.asymmetric_damping import ASYMMETRIC_DAMPING_EFFECT
+from vehgen.effects.library.bump_stop import BUMP_STOP_EFFECT
+from vehgen.effects.library.cargo_module import CARGO_MODULE_EFFECT
+from vehgen.effects.library.cubic_stiffness import CUBIC_STIFFNESS_EFFECT
+from vehgen.effects.library.dry_friction import DRY_FRICTION_EFFECT
+from vehgen.effects.library.engine_harmonic import ENGINE_HARMONIC_EFFECT
+from vehgen.effects.library.frame_bending import FRAME_BENDING_EFFECT
+from vehgen.effects.library.hinge_friction import HINGE_FRICTION_EFFECT
+from vehgen.effects.library.hinge_stiffness import HINGE_STIFFNESS_EFFECT
+from vehgen.effects.library.hysteresis import HYSTERESIS_EFFECT
+from vehgen.effects.library.progressive_stiffness import PROGRESSIVE_STIFFNESS_EFFECT
+from vehgen.effects.library.quadratic_damping import QUADRATIC_DAMPING_EFFECT
+from vehgen.effects.library.relaxation import RELAXATION_EFFECT
+from vehgen.effects.library.sensor_delay import SENSOR_DELAY_EFFECT
+from vehgen.effects.library.sensor_gain import SENSOR_GAIN_EFFECT
+from vehgen.effects.library.sensor_position import SENSOR_POSITION_EFFECT
+from vehgen.effects.library.sensor_tilt import SENSOR_TILT_EFFECT
+from vehgen.effects.library.speed_error import SPEED_ERROR_EFFECT
+from vehgen.effects.library.suspended_cab import SUSPENDED_CAB_EFFECT
+from vehgen.effects.library.tyre_damping import TYRE_DAMPING_EFFECT
+from vehgen.effects.library.tyre_footprint import TYRE_FOOTPRINT_EFFECT
+from vehgen.effects.library.tyre_liftoff import TYRE_LIFTOFF_EFFECT
+from vehgen.effects.library.walking_beam import WALKING_BEAM_EFFECT
 from vehgen.errors import InputError, shown
 from vehgen.files.names import is_identifier
 
@@ -37,29 +37,29 @@ GROUP = "vehgen.effects"
 EFFECTS: dict[str, Effect] = {
     effect.name: effect
     for effect in (
-        DRY_FRICTION,
-        CUBIC_STIFFNESS,
-        PROGRESSIVE_STIFFNESS,
-        BUMP_STOP,
-        ASYMMETRIC_DAMPING,
-        QUADRATIC_DAMPING,
-        HYSTERESIS,
-        RELAXATION,
-        TYRE_LIFTOFF,
-        TYRE_DAMPING,
-        TYRE_FOOTPRINT,
-        HINGE_FRICTION,
-        HINGE_STIFFNESS,
-        SUSPENDED_CAB,
-        FRAME_BENDING,
-        WALKING_BEAM,
-        CARGO_MODULE,
-        ENGINE_HARMONIC,
-        SENSOR_GAIN,
-        SENSOR_POSITION,
-        SENSOR_TILT,
-        SENSOR_DELAY,
-        SPEED_ERROR,
+        DRY_FRICTION_EFFECT,
+        CUBIC_STIFFNESS_EFFECT,
+        PROGRESSIVE_STIFFNESS_EFFECT,
+        BUMP_STOP_EFFECT,
+        ASYMMETRIC_DAMPING_EFFECT,
+        QUADRATIC_DAMPING_EFFECT,
+        HYSTERESIS_EFFECT,
+        RELAXATION_EFFECT,
+        TYRE_LIFTOFF_EFFECT,
+        TYRE_DAMPING_EFFECT,
+        TYRE_FOOTPRINT_EFFECT,
+        HINGE_FRICTION_EFFECT,
+        HINGE_STIFFNESS_EFFECT,
+        SUSPENDED_CAB_EFFECT,
+        FRAME_BENDING_EFFECT,
+        WALKING_BEAM_EFFECT,
+        CARGO_MODULE_EFFECT,
+        ENGINE_HARMONIC_EFFECT,
+        SENSOR_GAIN_EFFECT,
+        SENSOR_POSITION_EFFECT,
+        SENSOR_TILT_EFFECT,
+        SENSOR_DELAY_EFFECT,
+        SPEED_ERROR_EFFECT,
     )
 }
 """The effects of vehgen, by name."""

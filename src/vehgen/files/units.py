@@ -99,6 +99,8 @@ UNITS: dict[str, tuple[float, Dimension]] = {
 }
 """Unit name -> (factor to SI, dimension)."""
 
+STANDARD_GRAVITY = 9.80665
+"""Standard acceleration of free fall [m/s^2], the unit g of accelerometers and of spectra; what pulls on a vehicle is mechanics.GRAVITY."""
 MAX_EXPONENT = 9
 _ATOM = re.compile(r"([A-Za-z]+)(?:(?:\^|\*\*)(-?[0-9]+))?")
 _JOIN = re.compile(r"\s*([/*·])\s*|\s+")

@@ -13,10 +13,10 @@ import scipy.integrate
 from numpy.typing import NDArray
 
 from vehgen.fit.trial import Trial
+from vehgen.mechanics import GRAVITY
 from vehgen.simulate import Scenario
 
 Array = NDArray[np.float64]
-GRAVITY = 9.81
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from vehgen.mechanics.rows import Row
 from vehgen.simulate.frequency import force_response
 
 Array = NDArray[np.float64]
-LOWEST, HIGHEST = 5.0, 40.0
+MIN_LINE_FREQUENCY_HZ, MAX_LINE_FREQUENCY_HZ = 5.0, 40.0
 """Frequencies at which lines are looked for [Hz]."""
 DRIFTS = np.linspace(-0.03, 0.03, 61)
 """Drifts at which lines are looked for."""
@@ -86,7 +86,9 @@ def _phase(time: Array, frequency: float, drift: float) -> Array:
     return np.asarray(2 * np.pi * frequency * (time + drift * time**2 / (2 * duration)))
 
 
-def find_line(misfit: Misfit, x: Array, most: int = 2, lowest: float = LOWEST, highest: float = HIGHEST) -> list[tuple[float, float]]:
+def find_line(
+    misfit: Misfit, x: Array, most: int = 2, lowest: float = MIN_LINE_FREQUENCY_HZ, highest: float = MAX_LINE_FREQUENCY_HZ
+) -> list[tuple[float, float]]:
     """Return the frequencies [Hz] and drifts of the `most` strongest lines, between two frequencies [Hz], in what a fit leaves.
 
     Peaks of the whitened power of all runs, averaged over SMOOTH; about each, the frequency and drift that collect most of it.
@@ -122,7 +124,9 @@ def _refine(misfit: Misfit, x: Array, about: float) -> tuple[float, float]:
     return float(frequencies[frequency]), float(DRIFTS[drift])
 
 
-def harmonic_adjustments(body: str, noises: Mapping[str, Array], low: float = LOWEST, high: float = HIGHEST + 5.0) -> Sequence[Adjustment]:
+def harmonic_adjustments(
+    body: str, noises: Mapping[str, Array], low: float = MIN_LINE_FREQUENCY_HZ, high: float = MAX_LINE_FREQUENCY_HZ + 5.0
+) -> Sequence[Adjustment]:
     """Return the two adjustments of a line at a body: its frequency, `low` to `high` [Hz], weighed by the `noises`, and its drift."""
     line = Harmonic(body, 0.05, 25.0, low, high, dict(noises))
     return line, Adjustment(f"{body} drift", 0.002, 0.0, -0.05, 0.05)

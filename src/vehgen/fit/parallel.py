@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from vehgen.errors import InputError
 
-T = TypeVar("T")
+Input = TypeVar("Input")
 R = TypeVar("R")
 RETRIES = 3
 """How often a cluster tries a piece of work again whose worker was lost."""
@@ -29,7 +29,7 @@ class Runner:
 
     executor: Executor | None = None
 
-    def map(self, function: Callable[[T], R], inputs: Iterable[T]) -> Iterator[R]:
+    def map(self, function: Callable[[Input], R], inputs: Iterable[Input]) -> Iterator[R]:
         """Yield the function's values, in the order of the inputs."""
         yield from map(function, inputs) if self.executor is None else self.executor.map(function, inputs)
 
@@ -40,7 +40,7 @@ class DaskRunner(Runner):
 
     client: Any = None
 
-    def map(self, function: Callable[[T], R], inputs: Iterable[T]) -> Iterator[R]:
+    def map(self, function: Callable[[Input], R], inputs: Iterable[Input]) -> Iterator[R]:
         """Yield the function's values, in the order of the inputs."""
         for future in self.client.map(function, list(inputs), retries=RETRIES, pure=False):
             yield future.result()

@@ -97,14 +97,14 @@ def make_trial(run: Run, name: str, simulators: SimulatorPool | None = None) -> 
     """
     measurement = read_recording(run)
     dt = measurement.dt
-    keep = samples_kept(run, dt)
-    step = dt / keep
+    decimation = samples_kept(run, dt)
+    step = dt / decimation
     length = float(measurement.time[-1] - measurement.time[0])
     simulator = _simulator(run, measurement, simulators or SimulatorPool())
     values = simulator.model.values(overrides=run.values())
     timed = replace(run, file=run.file.model_copy(update={"duration": float(measurement.time[-1])}))
     scenario = replace(
-        make_scenario(timed, simulator.model, values), duration=length, dt=step, decimation=keep, start=float(measurement.time[0])
+        make_scenario(timed, simulator.model, values), duration=length, dt=step, decimation=decimation, start=float(measurement.time[0])
     )
     _check_length(run, scenario, simulator, values, name)
     return Trial(name, run, measurement, simulator, scenario, values, tuple(run.file.parameters))

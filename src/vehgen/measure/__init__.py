@@ -1,4 +1,4 @@
-"""What was recorded? Recordings of runs, spectra in one convention, band RMS, standard spectra."""
+"""What was recorded? Recordings of runs and how good they are, spectra in one convention, band RMS, standard spectra."""
 
 from vehgen.measure.astm import SPECTRA, Spectrum
 from vehgen.measure.bands import ARTICULATED_BANDS, TWO_AXLE_BANDS, band_rms, relative_errors

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.files.units import STANDARD_GRAVITY
+
 Array = NDArray[np.float64]
-G = 9.80665
-"""Standard acceleration of free fall [m/s^2]."""
 NOTE = "breakpoints recalled, checked through their rms only"
 
 
@@ -30,7 +30,7 @@ class Spectrum:
         """Return the density [(m/s^2)^2/Hz] at frequencies [Hz]; NaN outside the breakpoints."""
         with np.errstate(divide="ignore"):
             logs = np.interp(np.log(frequency), np.log(self.frequency), np.log(self.density), left=np.nan, right=np.nan)
-        return np.asarray(np.exp(logs) * G**2)
+        return np.asarray(np.exp(logs) * STANDARD_GRAVITY**2)
 
     @property
     def rms(self) -> float:

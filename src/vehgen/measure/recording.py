@@ -12,6 +12,7 @@ from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.quantities import read_quantity
 from vehgen.files.tables import read_columns
 from vehgen.files.units import UNITS, read_unit
+from vehgen.measure.quality import find_clipping
 from vehgen.mechanics.outputs import POINT_QUANTITIES, PointOutput
 from vehgen.simulate import Run
 from vehgen.simulate.runfile import ChannelEntry, SensorEntry
@@ -19,8 +20,8 @@ from vehgen.simulate.runfile import ChannelEntry, SensorEntry
 Array = NDArray[np.float64]
 LOWEST_RATE = 50.0
 """Below this sampling rate [Hz] a recording cannot show the axles' hop."""
-CLIPPED_SAMPLES = 5
-"""So many equal samples in a row at a channel's extreme count as clipping."""
+REFUSED_IN_A_ROW = 5
+"""So many equal samples in a row at a channel's extreme are refused as clipped: nothing but clipping does that at any resolution in use."""
 
 
 @dataclass(frozen=True)
@@ -149,14 +150,8 @@ def _check_clock(time: Array, name: str) -> None:
 def _check_samples(time: Array, values: Array, channel: RecordedChannel, name: str) -> None:
     if np.ptp(values) == 0:
         raise InputError(f"{name}: {channel.name} is constant; the sensor recorded nothing")
-    for extreme in (values.max(), values.min()):
-        if extreme == 0:
-            continue
-        at = np.flatnonzero(values == extreme)
-        runs = np.split(at, np.flatnonzero(np.diff(at) != 1) + 1)
-        longest = max(runs, key=len)
-        if len(longest) >= CLIPPED_SAMPLES:
-            raise InputError(
-                f"{name}: {channel.name} is clipped at {extreme:.4g} from t = {time[longest[0]]:.4g} s: use a sensor with a larger range, "
-                "a lower speed or a lower hump"
-            )
+    for item in find_clipping(values, REFUSED_IN_A_ROW):
+        raise InputError(
+            f"{name}: {channel.name} is clipped at {item.level:.4g} from t = {time[item.first]:.4g} s: use a sensor with a larger range, "
+            "a lower speed or a lower hump"
+        )

@@ -1,4 +1,7 @@
-"""Why does it move? Kinematics, energies and Lagrange's equations; from a Vehicle to its EquationsOfMotion."""
+"""Why does it move? From a Vehicle to its EquationsOfMotion.
+
+Layout, kinematics, energies, Lagrange's equations, sensor rows, static loads and equilibria, and the one evaluator of expressions.
+"""
 
 from vehgen.mechanics.derivation import derive
 from vehgen.mechanics.equations_of_motion import GRAVITY, Channel, EquationsOfMotion, NumericModel

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -11,6 +11,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from vehgen.mechanics.energies import Element, Energies
+from vehgen.mechanics.evaluation import evaluate_number
 from vehgen.mechanics.kinematics import Coordinate, Kinematics
 from vehgen.mechanics.layout import Layout
 from vehgen.mechanics.rows import Row, SparseMatrix, to_matrix
@@ -132,21 +133,34 @@ class EquationsOfMotion:
 
     def operation_counts(self) -> dict[str, int]:
         """Return the additions, multiplications and divisions of all matrix entries, written out and after common subexpressions."""
-        entries = [value for group in self._groups().values() for value in group.values()]
-        entries += [expression for _, expression in self.definitions]
+        entries = [value for group, _ in self.matrix_entries().values() for value in group.values()]
+        entries += [*self.weight_entries.values(), *(expression for _, expression in self.definitions)]
         replacements, reduced = sp.cse(entries, order="none")
         shared = sum(sp.count_ops(expression) for _, expression in replacements) + sum(sp.count_ops(item) for item in reduced)
         return {"written_out": int(sum(sp.count_ops(item) for item in entries)), "after_cse": int(shared)}
 
-    def _groups(self) -> dict[str, SparseMatrix]:
+    def matrix_entries(self) -> dict[str, tuple[SparseMatrix, tuple[int, int]]]:
+        """Return the entries and the shape of M, C, K, P, Q, F."""
+        n, width = self.n_dof, len(self.inputs)
         return {
-            "M": self.mass_entries,
-            "C": self.damping_entries,
-            "K": self.stiffness_entries,
-            "P": self.input_entries,
-            "Q": self.input_rate_entries,
-            "F": self.force_entries,
-            "weight": {(i, 0): value for i, value in self.weight_entries.items()},
+            "M": (self.mass_entries, (n, n)),
+            "C": (self.damping_entries, (n, n)),
+            "K": (self.stiffness_entries, (n, n)),
+            "P": (self.input_entries, (n, width)),
+            "Q": (self.input_rate_entries, (n, width)),
+            "F": (self.force_entries, (n, len(self.forces))),
+        }
+
+    def output_entries(self) -> dict[str, tuple[SparseMatrix, tuple[int, int]]]:
+        """Return the entries and the shape of the channels' coefficients, one row per channel."""
+        n, width = self.n_dof, len(self.inputs)
+        columns = {"acceleration": n, "velocity": n, "displacement": n, "input": width, "input_rate": width}
+        return {
+            key: (
+                {(i, j): value for i, channel in enumerate(self.channels) for j, value in getattr(channel, key).items()},
+                (len(self.channels), count),
+            )
+            for key, count in columns.items()
         }
 
     def values(self, parameter_set: str | None = None, overrides: Mapping[str, float] | None = None) -> dict[str, float]:
@@ -165,74 +179,44 @@ class EquationsOfMotion:
 
         """
         values = values or self.values()
-        n, n_in = self.n_dof, len(self.inputs)
-        shapes = {
-            "M": (n, n),
-            "C": (n, n),
-            "K": (n, n),
-            "P": (n, n_in),
-            "Q": (n, n_in),
-            "F": (n, len(self.forces)),
-            "weight": (n, 1),
-        }
-        arrays = {key: np.zeros(shape) for key, shape in shapes.items()}
-        for key, entries in self._groups().items():
-            for place, value in self.evaluate(entries, values).items():
-                arrays[key][place] = value
-        outputs = self._outputs(values)
-        return NumericModel(**{**arrays, "weight": arrays["weight"][:, 0]}, outputs=outputs)
-
-    def _outputs(self, values: Mapping[str, float]) -> dict[str, NDArray[np.float64]]:
-        widths = {
-            "acceleration": self.n_dof,
-            "velocity": self.n_dof,
-            "displacement": self.n_dof,
-            "input": len(self.inputs),
-            "input_rate": len(self.inputs),
-        }
-        groups = {
-            key: {(i, j): value for i, channel in enumerate(self.channels) for j, value in getattr(channel, key).items()} for key in widths
-        }
-        arrays = {key: np.zeros((len(self.channels), width)) for key, width in widths.items()}
-        for key, entries in groups.items():
-            for place, value in self.evaluate(entries, values).items():
-                arrays[key][place] = value
-        return arrays
+        arrays = {key: self.evaluate_matrix(entries, shape, values) for key, (entries, shape) in self.matrix_entries().items()}
+        weight = self.evaluate_list([self.weight_entries.get(i, sp.S.Zero) for i in range(self.n_dof)], values)
+        outputs = {key: self.evaluate_matrix(entries, shape, values) for key, (entries, shape) in self.output_entries().items()}
+        return NumericModel(**arrays, weight=np.array(weight), outputs=outputs)
 
     @cached_property
     def _symbols(self) -> tuple[tuple[str, sp.Symbol], ...]:
         """The symbol of every parameter by its name."""
         return tuple((name, sp.Symbol(name, real=True)) for name in self.parameters)
 
-    def evaluate(self, entries: SparseMatrix, values: Mapping[str, float]) -> dict[tuple[int, int], float]:
-        """Evaluate sympy expressions of the vehicle's parameters at the values of `parameters` [SI]."""
+    def evaluate_list(self, expressions: Iterable[sp.Expr], values: Mapping[str, float]) -> list[float]:
+        """Return the values of sympy expressions of the vehicle's parameters, in their order.
+
+        Parameters
+        ----------
+        expressions
+            Of symbols of `parameters` and of those that follow from them.
+        values
+            The value of every one of `parameters` [SI].
+
+        """
         known: dict[sp.Symbol, float] = {symbol: float(values[name]) for name, symbol in self._symbols}
         for symbol, expression in self.definitions:
-            known[symbol] = _number(expression, known)
-        return {place: _number(value, known) for place, value in entries.items()}
+            known[symbol] = evaluate_number(expression, known)
+        return [evaluate_number(expression, known) for expression in expressions]
+
+    def evaluate_matrix(self, entries: SparseMatrix, shape: tuple[int, int], values: Mapping[str, float]) -> NDArray[np.float64]:
+        """Return a matrix of sympy expressions in numbers, zero where it has no entry; see :meth:`evaluate_list`."""
+        found = np.zeros(shape)
+        for place, value in zip(entries, self.evaluate_list(entries.values(), values), strict=True):
+            found[place] = value
+        return found
+
+    def total_weight(self, values: Mapping[str, float] | None = None) -> float:
+        """Return the weight of all bodies and axles [N]."""
+        return GRAVITY * sum(self.evaluate_list((term.inertia for term in self.energies.weights), values or self.values()))
 
     def wheel_offsets(self, values: Mapping[str, float] | None = None) -> NDArray[np.float64]:
         """Return how far each axle runs behind the first to arrive, `shape (n_axles,)` [m]."""
-        entries: SparseMatrix = {(0, i): x for i, x in enumerate(self.layout.axles.values())}
-        found = self.evaluate(entries, values or self.values())
-        x = np.array([found[0, i] for i in range(len(entries))])
+        x = np.array(self.evaluate_list(self.layout.axles.values(), values or self.values()))
         return x.max(initial=-np.inf) - x if x.size else x
-
-
-def _number(expression: sp.Expr, known: Mapping[sp.Symbol, float]) -> float:
-    """Evaluate with floats, node by node: much faster than subs, and no code is generated."""
-    if expression in known:
-        return known[expression]
-    if expression.is_Number:
-        return float(expression)
-    arguments = [_number(argument, known) for argument in expression.args]
-    if expression.is_Add:
-        return sum(arguments)
-    if expression.is_Mul:
-        product = 1.0
-        for argument in arguments:
-            product *= argument
-        return product
-    if expression.is_Pow:
-        return float(arguments[0] ** arguments[1])
-    return float(expression.func(*arguments))

@@ -33,7 +33,12 @@ class Coordinate:
     @property
     def symbol(self) -> sp.Symbol:
         """Its symbol in equations."""
-        return sp.Symbol({"pitch": "theta_", "bending": "eta_"}.get(self.motion, "z_") + self.owner, real=True)
+        return sp.Symbol(f"{self.letter}_{self.owner}", real=True)
+
+    @property
+    def letter(self) -> str:
+        """What its symbol begins with: `z` of a rise, `theta` of a pitch, `eta` of a bending, so that no two of one body are alike."""
+        return {"heave": "z", "pitch": "theta", "bending": "eta", "hop": "z"}[self.motion]
 
     @property
     def unit(self) -> str:

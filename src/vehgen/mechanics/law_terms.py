@@ -17,7 +17,7 @@ from vehgen.vehicle.model import LawEntry, Spring, Vehicle
 
 TravelOrigin = Literal["static", "unloaded"]
 """Where a law's travel counts from: static equilibrium, or the position in which the spring carries nothing."""
-TRAVEL, RATE, STEP, STATIC, REST = (sp.Symbol(name, real=True) for name in ("_d", "_v", "_h", "_static", "_rest"))
+TRAVEL, RATE, TIME_STEP, STATIC, REST = (sp.Symbol(name, real=True) for name in ("_d", "_v", "_h", "_static", "_rest"))
 """Travel from equilibrium and its rate, the time step, the element's static force, its travel from unloaded to static equilibrium."""
 
 
@@ -30,7 +30,7 @@ class LawTerm:
     origin: TravelOrigin = "static"
 
     def step(self, k: sp.Expr = sp.S.Zero, c: sp.Expr = sp.S.Zero, states: Mapping[str, sp.Symbol] | None = None) -> LawStep:
-        """Return the law over a step as expressions of TRAVEL, RATE, STEP, STATIC, REST and its states.
+        """Return the law over a step as expressions of TRAVEL, RATE, TIME_STEP, STATIC, REST and its states.
 
         A law whose travel counts from the unloaded position adds to the static force: f(REST + TRAVEL) - f(REST).
 
@@ -44,15 +44,15 @@ class LawTerm:
         """
         states = states if states is not None else {name: sp.Symbol(f"_{name}", real=True) for name in self.law.states}
         if self.origin == "static":
-            return self.law.write(LawState(TRAVEL, RATE, STEP, k, c, STATIC, states), self.parameters)
-        written = self.law.write(LawState(REST + TRAVEL, RATE, STEP, k, c, STATIC, states), self.parameters)
+            return self.law.write(LawState(TRAVEL, RATE, TIME_STEP, k, c, STATIC, states), self.parameters)
+        written = self.law.write(LawState(REST + TRAVEL, RATE, TIME_STEP, k, c, STATIC, states), self.parameters)
         return replace(written, force=written.force - self.preload(), now=written.now - self.preload())
 
     def preload(self) -> sp.Expr:
         """Return what the law carries in static equilibrium, an expression of REST [N]: nothing if it counts from there."""
         if self.origin == "static":
             return sp.S.Zero
-        return self.law.write(LawState(REST, sp.S.Zero, STEP, sp.S.Zero, sp.S.Zero, STATIC), self.parameters).now
+        return self.law.write(LawState(REST, sp.S.Zero, TIME_STEP, sp.S.Zero, sp.S.Zero, STATIC), self.parameters).now
 
     @property
     def asks_static(self) -> bool:

@@ -71,12 +71,8 @@ def static_loads(model: EquationsOfMotion, values: Mapping[str, float] | None = 
 def element_rows(model: EquationsOfMotion, values: Mapping[str, float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the travel rows `shape (n_elements, n_dof)` and stiffnesses `shape (n_elements,)` of all springs."""
     entries = {(i, j): value for i, element in enumerate(model.elements) for j, value in element.row.items()}
-    stiffness = {(i, 0): element.k for i, element in enumerate(model.elements)}
-    rows = np.zeros((len(model.elements), model.n_dof))
-    for place, value in model.evaluate(entries, values).items():
-        rows[place] = value
-    found = model.evaluate(stiffness, values)
-    return rows, np.array([found[i, 0] for i in range(len(model.elements))])
+    rows = model.evaluate_matrix(entries, (len(model.elements), model.n_dof), values)
+    return rows, np.array(model.evaluate_list((element.k for element in model.elements), values))
 
 
 def _solve(model: EquationsOfMotion, K: NDArray[np.float64], weight: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
+from vehgen.files.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
 
@@ -25,9 +26,6 @@ VERTICAL_ACCELERATION_STREAM = "vertical_acceleration"
 """Stream: acceleration upwards [m/s^2], already in the vehicle's axes."""
 PITCH_RATE_STREAM = "pitch_rate"
 """Stream: pitch rate, nose-down positive [rad/s], already in the vehicle's axes."""
-
-STANDARD_GRAVITY = 9.80665
-"""Standard acceleration of free fall [m/s^2]."""
 
 
 @dataclass(frozen=True)

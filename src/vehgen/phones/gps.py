@@ -9,7 +9,7 @@ import numpy as np
 from vehgen.errors import InputError
 from vehgen.phones.export import Stream
 
-SLOWEST = 0.3
+MIN_MEDIAN_SPEED_M_S = 0.3
 """A GPS cannot tell slower speeds from standing still [m/s]."""
 
 
@@ -42,6 +42,6 @@ def crossing_speed(stream: Stream | None, start: float, end: float, name: str) -
     if not len(part):
         raise InputError(f"{name} has no valid GPS speed from {start:.1f} to {end:.1f} s; {hint}, e.g. --speed 2.0")
     median = float(np.median(part))
-    if not SLOWEST <= median <= 60.0:
+    if not MIN_MEDIAN_SPEED_M_S <= median <= 60.0:
         raise InputError(f"{name}: the GPS speed over the crossing is {median:.2f} m/s, which cannot be; {hint}, e.g. --speed 2.0")
     return CrossingSpeed(median, float(part.min()), float(part.max()), len(part))

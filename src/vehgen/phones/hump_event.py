@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 from vehgen.errors import InputError
 
 Array = NDArray[np.float64]
-WINDOW = 0.3
+ENERGY_WINDOW_S = 0.3
 """Length of the running RMS [s]."""
 QUIET_NEEDED = 1.0
 """Least quiet before the hump [s]."""
 SMALLEST_CONTRAST = 4.0
 """Least ratio of the burst's running RMS to that of the quiet before."""
-BEFORE, AFTER, UNSETTLED = 3.0, 3.0, 0.6
+BEFORE_HUMP_S, AFTER_HUMP_S, UNSETTLED_SHARE = 3.0, 3.0, 0.6
 """Seconds searched before a crossing, seconds after it by which the vehicle has settled, share of the burst left if it has not."""
 
 
@@ -51,7 +51,7 @@ def find_hump(time: Array, upward: Array, crossing: float, name: str) -> HumpEve
         Where there is no hump to be seen, or no quiet before it.
     """
     step = float(time[1] - time[0])
-    width = max(round(WINDOW / step), 3)
+    width = max(round(ENERGY_WINDOW_S / step), 3)
     if len(time) < 4 * width:
         raise InputError(f"{name} lasts {time[-1] - time[0]:.2f} s, too short for a crossing")
     level = upward - np.median(upward)
@@ -60,7 +60,7 @@ def find_hump(time: Array, upward: Array, crossing: float, name: str) -> HumpEve
     peak = float(running[loudest])
     if peak < max(SMALLEST_CONTRAST * float(np.percentile(running, 25)), 1e-3):
         raise _no_hump(name, time[loudest], "hardly louder than the rest")
-    first = max(0, loudest - round((crossing + BEFORE) / step))
+    first = max(0, loudest - round((crossing + BEFORE_HUMP_S) / step))
     split = first + _split(level[first : loudest + 1])
     onset = float(time[split])
     quiet = level[max(first, split - round(5.0 / step)) : max(split - round(0.1 / step), first + 1)]
@@ -72,8 +72,8 @@ def find_hump(time: Array, upward: Array, crossing: float, name: str) -> HumpEve
     contrast = peak / max(float(np.sqrt(np.mean(quiet**2))), 1e-12)
     if contrast < SMALLEST_CONTRAST:
         raise _no_hump(name, time[loudest], f"only {contrast:.1f} times as loud as the driving before")
-    late = running[min(split + round((crossing + AFTER) / step), len(running) - 1) : -width]
-    if len(late) and float(np.median(late)) > UNSETTLED * peak:
+    late = running[min(split + round((crossing + AFTER_HUMP_S) / step), len(running) - 1) : -width]
+    if len(late) and float(np.median(late)) > UNSETTLED_SHARE * peak:
         raise _no_hump(name, time[loudest], "followed by no rest")
     return HumpEvent(onset, float(time[loudest]), contrast)
 
@@ -84,7 +84,7 @@ def _no_hump(name: str, moment: float, why: str) -> InputError:
 
 def expected_onset(upward: Array, step: float, contrast: float) -> float:
     """Return when the energy of a predicted crossing sets in [s], seen as :func:`find_hump` would in noise of such a contrast."""
-    width = max(round(WINDOW / step), 3)
+    width = max(round(ENERGY_WINDOW_S / step), 3)
     running = np.sqrt(np.convolve(upward**2, np.ones(width) / width, mode="same"))
     loudest = int(np.argmax(running))
     return step * _split(upward[: loudest + 1], float(running[loudest]) / contrast)

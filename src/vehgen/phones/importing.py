@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
+from vehgen.measure.quality import NoiseFloor, find_clipping, noise_floor
 from vehgen.phones.clocks import TRUSTED, Match, epoch_disagreement
 from vehgen.phones.detect import read_export
 from vehgen.phones.export import Stream
 from vehgen.phones.hump_event import HumpEvent
 from vehgen.phones.locating import CLOCK_DOUBT, find_speed, locate
-from vehgen.phones.noise import NoiseFloor, clipped, noise_floor
 from vehgen.phones.options import PhoneSensor, Plan
 from vehgen.phones.orientation import Orientation
 from vehgen.phones.phone import MARGIN, QUIET, Phone, make_phone
@@ -29,6 +29,10 @@ LEAD_TIME = 3.0
 """Seconds before the hump with which a run begins, where there are so many."""
 LEAST_LEAD = 0.5
 """Seconds that there must be."""
+CLIPPED_IN_A_ROW = 3
+"""Equal raw samples in a row at an axis's extreme that count as clipping: at a phone's rate an honest peak holds for one or two ..."""
+CLIPPED_DEVIATION = 4.0
+"""... where the extreme is so many standard deviations from the median, so that a coarse axis at rest is not taken for a clipped one."""
 SPEED_DOUBT = 0.01
 """Relative difference of speeds that deserves a warning."""
 
@@ -152,11 +156,7 @@ def _assemble(
         noise = _noise(phone, (upward, pitch), names, quiet, plan.rate) if quiet[1] < arrival else ()
         notes = [*phone.notes, *phone.short_gaps(zero, zero + float(time[-1])), *(orientation.notes if orientation else ())]
         used = phone.acceleration.between(zero, zero + float(time[-1]))
-        for axis, extreme, moment in clipped(used):
-            warnings.append(
-                f"{phone.name}: acceleration {axis} is clipped at {extreme:.4g} m/s^2 from {moment:.2f} s: take a phone of larger range, "
-                "a lower speed or a lower hump"
-            )
+        warnings += clipping_warnings(phone.name, used)
         if is_hump and item.correlation < TRUSTED:
             warnings.append(
                 f"{phone.name}: the vehicle's answer fits badly (correlation {item.correlation:.2f}), so its clock is set by {found_by}: "
@@ -174,6 +174,16 @@ def _assemble(
     warnings += _clock_warnings(done)
     at = lead if is_hump else None
     return Imported(plan, tuple(done), time, np.column_stack(columns), tuple(channels), speed, source, fitted, at, wheels, tuple(warnings))
+
+
+def clipping_warnings(name: str, acceleration: Stream) -> list[str]:
+    """Say which axes of a phone's acceleration are clipped."""
+    return [
+        f"{name}: acceleration {axis} is clipped at {item.level:.4g} m/s^2 from {acceleration.time[item.first]:.2f} s: "
+        "take a phone of larger range, a lower speed or a lower hump"
+        for axis, values in zip(acceleration.columns, acceleration.values.T, strict=True)
+        for item in find_clipping(values, CLIPPED_IN_A_ROW, min_deviation=CLIPPED_DEVIATION, rest=None)
+    ]
 
 
 def _lead(phones: list[Phone], plan: Plan, speed: float, arrivals: list[float]) -> float:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError, did_you_mean
-from vehgen.phones.export import STANDARD_GRAVITY
+from vehgen.files.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
 AXES = {

@@ -26,7 +26,7 @@ from vehgen.phones.resampling import check_rate, clean, gaps, resample, sampling
 Array = NDArray[np.float64]
 LONGEST_GAP = 0.1
 """Longer holes within the time that is used [s] are refused."""
-SHORTEST, LONGEST = 2.0, 3600.0
+SHORTEST_RECORDING_S, LONGEST_RECORDING_S = 2.0, 3600.0
 """How long a recording may be [s]."""
 QUIET, MARGIN = 5.0, 0.25
 """The quiet stretch: so long at most, ending so long before the hump [s]."""
@@ -181,10 +181,10 @@ def make_phone(export: PhoneExport, sensor: PhoneSensor, name: str, top: float) 
     else:
         check_rate(rotation.time, top, f"{name}: rotation")
     phone = Phone(name, sensor, export, acceleration, rotation, gravity, tuple(notes))
-    if not SHORTEST <= phone.end - phone.begin <= LONGEST:
+    if not SHORTEST_RECORDING_S <= phone.end - phone.begin <= LONGEST_RECORDING_S:
         raise InputError(
-            f"{name}: its sensors recorded together from {phone.begin:.6g} to {phone.end:.6g} s; a pass takes {SHORTEST:g} s to an hour: "
-            "is it the time column? A longer recording is cut with from= and to="
+            f"{name}: its sensors recorded together from {phone.begin:.6g} to {phone.end:.6g} s; "
+            f"a pass takes {SHORTEST_RECORDING_S:g} s to an hour: is it the time column? A longer recording is cut with from= and to="
         )
     return phone
 

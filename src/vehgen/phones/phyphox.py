@@ -25,7 +25,7 @@ from vehgen.phones.export import (
 
 _COLUMN_HEAD = re.compile(r"(?P<words>.*?)\s*\((?P<unit>[^()]*)\)\s*\Z")
 _AXIS = re.compile(r"(?:.*\s)?([xyz])\Z", re.IGNORECASE)
-_UNITS = {"m/s^2": "m/s^2", "m/s²": "m/s^2", "rad/s": "rad/s", "m/s": "m/s", "s": "s", "°": "deg"}
+_PHYPHOX_UNITS = {"m/s^2": "m/s^2", "m/s²": "m/s^2", "rad/s": "rad/s", "m/s": "m/s", "s": "s", "°": "deg"}
 _EVENTS = ("event", "experiment time", "system time")
 
 
@@ -81,7 +81,7 @@ def _read_clock(table: Table, notes: list[str]) -> EpochMap | None:
 
 def _read_sensors(table: Table) -> list[tuple[str, Stream]]:
     heads = [_COLUMN_HEAD.match(item) for item in table.header]
-    units = [_UNITS.get(head["unit"], "") if head else "" for head in heads]
+    units = [_PHYPHOX_UNITS.get(head["unit"], "") if head else "" for head in heads]
     found = []
     for unit in ("m/s^2", "rad/s"):
         axes: dict[str, int] = {}

@@ -32,7 +32,7 @@ NUGGET = 1e-9
 """Share of the power added to the diagonal, for samples that nearly coincide."""
 LONGEST_CLOCK_S = 20_000.0
 """No recording is longer [s]: five and a half hours."""
-FASTEST = 20_000.0
+MAX_SENSOR_RATE_HZ = 20_000.0
 """No phone records faster [Hz]."""
 MAX_DISORDER = 0.01
 """Share of samples that may be out of order or repeated."""
@@ -73,9 +73,10 @@ def clean(stream: Stream, name: str) -> tuple[Stream, tuple[str, ...]]:
     if fresh.sum() < 2:
         raise InputError(f"{name}: all samples have one time")
     span, rate = float(time[-1] - time[0]), sampling_rate(time[fresh])
-    if span > LONGEST_CLOCK_S or rate > FASTEST:
+    if span > LONGEST_CLOCK_S or rate > MAX_SENSOR_RATE_HZ:
         raise InputError(
-            f"{name} spans {span:.4g} s at {rate:.4g} Hz; at most {LONGEST_CLOCK_S:g} s at {FASTEST:g} Hz were expected: is time in s?"
+            f"{name} spans {span:.4g} s at {rate:.4g} Hz; at most {LONGEST_CLOCK_S:g} s at {MAX_SENSOR_RATE_HZ:g} Hz were expected: "
+            "is time in s?"
         )
     return replace(stream, time=time[fresh], values=values[fresh]), tuple(notes)
 

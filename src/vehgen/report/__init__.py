@@ -1,4 +1,4 @@
-"""Show me: drawings, figures, equations for reading, and the page."""
+"""How is it shown? Drawings, figures, equations for reading, and pages."""
 
 from vehgen.report.drawing.mode_shapes import draw_modes
 from vehgen.report.drawing.vehicle import draw_vehicle

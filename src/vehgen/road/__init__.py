@@ -1,4 +1,4 @@
-"""What excites it? Humps, random and measured roads, the tyre's footprint, and what every wheel sees at a speed."""
+"""What excites it? Humps, random roads of ISO 8608, measured profiles, the tyre's footprint, speeds, and what every wheel sees of them."""
 
 from vehgen.road.humps import Hump
 from vehgen.road.iso8608 import CLASSES, Iso8608Road, check_length, displacement_psd

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from vehgen.errors import InputError
 
 Array = NDArray[np.float64]
-_WINDOW = 5000.0
+_PIECE_LENGTH_M = 5000.0
 """Longer stretches are integrated piece by piece [m]: a piece has ten million points."""
 _GRID = 5e-4
 """Spacing of the grid on which the road is integrated [m]."""
@@ -76,10 +76,10 @@ class Track:
         s = np.asarray(s, dtype=np.float64)
         if self.footprint <= 0:
             return self._raw(s)
-        if np.ptp(s) <= _WINDOW:
+        if np.ptp(s) <= _PIECE_LENGTH_M:
             return self._averaged(s)
         flat = s.ravel()
-        window = np.floor((flat - flat.min()) / _WINDOW).astype(np.int64)
+        window = np.floor((flat - flat.min()) / _PIECE_LENGTH_M).astype(np.int64)
         order = np.argsort(window, kind="stable")
         found = np.empty_like(flat)
         for members in np.split(order, np.flatnonzero(np.diff(window[order])) + 1):

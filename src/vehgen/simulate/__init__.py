@@ -1,4 +1,7 @@
-"""What does it do? Modes, and responses of one vehicle or a population over a run."""
+"""What does it do? Modes, and responses of one vehicle or a population over a run.
+
+Run files, scenarios, the simulator, frequency responses, exact references, and what makes an answer doubtful.
+"""
 
 from vehgen.simulate.exact import exact_response, newmark_response
 from vehgen.simulate.lint import lint

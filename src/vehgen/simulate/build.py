@@ -11,7 +11,7 @@ from vehgen.errors import InputError
 from vehgen.files.document import MAX_DOCUMENT_BYTES
 from vehgen.files.provenance import file_hashes, versions
 from vehgen.files.results import Result, Table
-from vehgen.mechanics import GRAVITY, EquationsOfMotion, Place, PointOutput, StaticLoads
+from vehgen.mechanics import EquationsOfMotion, Place, PointOutput, StaticLoads
 from vehgen.simulate.modes import Mode, Modes
 from vehgen.vehicle import Vehicle, parse_vehicle
 from vehgen.vehicle.writing import plain_data
@@ -96,7 +96,6 @@ def summarise_build(
     vehicle = model.vehicle
     free = {name: float(values[name]) for name in vehicle.free_parameters}
     everything, ranges, dimensions = vehicle.all_values(free), vehicle.ranges(), vehicle.dimensions
-    masses = {(0, i): term.inertia for i, term in enumerate(model.energies.weights)}
     known = versions(PAGE_PACKAGES)
     hashes = file_hashes(vehicle.files)
     return Build(
@@ -105,7 +104,7 @@ def summarise_build(
         parameters={name: BuiltParameter(float(everything[name]), str(dimensions[name]), ranges.get(name)) for name in vehicle.parameters},
         modes=Modes(tuple(item.name for item in model.coordinates), tuple(modes)),
         loads=loads,
-        weight=float(GRAVITY * sum(model.evaluate(masses, values).values())),
+        weight=model.total_weight(values),
         warnings=tuple(warnings),
         operation_counts=model.operation_counts(),
         versions={**{name: text for name, text in known.items() if name != "python"}, "Python": known["python"]},

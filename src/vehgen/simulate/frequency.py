@@ -44,9 +44,7 @@ def force_response(model: EquationsOfMotion, values: Mapping[str, float], rows: 
     omega = 2 * np.pi * frequency
     numeric = model.numeric(values)
     entries = {(i, j): value for j, row in enumerate(rows) for i, value in row.items()}
-    loads = np.zeros((model.n_dof, len(rows)))
-    for place, value in model.evaluate(entries, values).items():
-        loads[place] = value
+    loads = model.evaluate_matrix(entries, (model.n_dof, len(rows)), values)
     states = np.linalg.solve(dynamic_stiffness(numeric, omega), np.repeat(loads[None].astype(np.complex128), len(omega), axis=0))
     return np.asarray(output_rows(numeric.outputs, omega)[0] @ states)
 

@@ -46,16 +46,11 @@ def _gyration(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator
         places += [to_sympy(joint.points[name].x) for joint in (*vehicle.hinges.values(), *vehicle.links.values()) if name in joint.points]
         if "pitch" not in body.motions or len(places) < 2:
             continue
-        entries = {(0, i): place for i, place in enumerate(places)} | {
-            (1, 0): to_sympy(body.mass),
-            (1, 1): pitch_inertia(body),
-        }
-        found = model.evaluate(entries, values)
-        x = [found[0, i] for i in range(len(places))]
+        mass, inertia, *x = model.evaluate_list([to_sympy(body.mass), pitch_inertia(body), *places], values)
         span = max(x) - min(x)
-        if span <= 0 or found[1, 0] <= 0:
+        if span <= 0 or mass <= 0:
             continue
-        radius = float(np.sqrt(found[1, 1] / found[1, 0]))
+        radius = float(np.sqrt(inertia / mass))
         if not GYRATION[0] <= radius / span <= GYRATION[1]:
             yield (
                 f"radius of gyration of {name} out of scale: {radius:.2f} m for a body whose joints and axles span {span:.2f} m "

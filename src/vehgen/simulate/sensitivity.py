@@ -16,14 +16,13 @@ from numpy.typing import NDArray
 from vehgen.codegen import Excitation
 from vehgen.errors import InputError, did_you_mean
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
-from vehgen.mechanics.rows import SparseMatrix
 from vehgen.simulate.exact import channel_values, newmark_states
 
 Array = NDArray[np.float64]
 
 
 def direct_sensitivities(
-    model: EquationsOfMotion, drive: Excitation, names: Sequence[str], decimation: int = 10, values: Mapping[str, float] | None = None
+    model: EquationsOfMotion, excitation: Excitation, names: Sequence[str], decimation: int = 10, values: Mapping[str, float] | None = None
 ) -> tuple[Array, Array]:
     """Return a response and its derivatives by parameters, exact for the Newmark solution.
 
@@ -31,11 +30,11 @@ def direct_sensitivities(
     ----------
     model
         A linear model (no force laws).
-    drive
+    excitation
         Inputs; parameters that move axles along the road change it, and that part is not included.
     names
         Parameters of `model.parameters`.
-    keep
+    decimation
         Every how many steps a sample is kept.
     values
         SI values by parameter name (default: the file's).
@@ -51,21 +50,21 @@ def direct_sensitivities(
             raise InputError(f"no parameter {name!r}; {did_you_mean(name, model.parameters)}")
     values = values or model.values()
     numeric = model.numeric(values)
-    forces = drive.inputs @ numeric.P.T + drive.rates @ numeric.Q.T + drive.forces @ numeric.F.T
-    q, v, a = newmark_states(numeric, forces, drive.dt)
-    response = channel_values(numeric, a, v, q, drive.inputs, drive.rates)[::decimation]
+    forces = excitation.inputs @ numeric.P.T + excitation.rates @ numeric.Q.T + excitation.forces @ numeric.F.T
+    q, v, a = newmark_states(numeric, forces, excitation.dt)
+    response = channel_values(numeric, a, v, q, excitation.inputs, excitation.rates)[::decimation]
     loads = np.zeros((*q.shape, len(names)))
     derived = [matrix_derivatives(model, name, values) for name in names]
     for i, d in enumerate(derived):
-        load = drive.inputs @ d["P"].T + drive.rates @ d["Q"].T + drive.forces @ d["F"].T
+        load = excitation.inputs @ d["P"].T + excitation.rates @ d["Q"].T + excitation.forces @ d["F"].T
         loads[:, :, i] = load - a @ d["M"].T - v @ d["C"].T - q @ d["K"].T
-    sq, sv, sa = newmark_states(numeric, loads, drive.dt)
+    sq, sv, sa = newmark_states(numeric, loads, excitation.dt)
     rows = numeric.outputs
     sensitivities = np.empty((len(names), *response.shape))
     for i, d in enumerate(derived):
         own = sa[:, :, i] @ rows["acceleration"].T + sv[:, :, i] @ rows["velocity"].T + sq[:, :, i] @ rows["displacement"].T
         moved = a @ d["acceleration"].T + v @ d["velocity"].T + q @ d["displacement"].T
-        moved += drive.inputs @ d["input"].T + drive.rates @ d["input_rate"].T
+        moved += excitation.inputs @ d["input"].T + excitation.rates @ d["input_rate"].T
         sensitivities[i] = (own + moved)[::decimation]
     return response, sensitivities
 
@@ -78,25 +77,10 @@ def matrix_derivatives(model: EquationsOfMotion, name: str, values: Mapping[str,
     chain: dict[sp.Symbol, sp.Expr] = {sp.Symbol(name, real=True): sp.S.One}
     for symbol, expression in model.definitions:
         chain[symbol] = _total(expression, chain)
-    n, width = model.n_dof, len(model.inputs)
-    groups: dict[str, tuple[SparseMatrix, tuple[int, int]]] = {
-        "M": (model.mass_entries, (n, n)),
-        "C": (model.damping_entries, (n, n)),
-        "K": (model.stiffness_entries, (n, n)),
-        "P": (model.input_entries, (n, width)),
-        "Q": (model.input_rate_entries, (n, width)),
-        "F": (model.force_entries, (n, len(model.forces))),
-    }
-    for key, columns in (("acceleration", n), ("velocity", n), ("displacement", n), ("input", width), ("input_rate", width)):
-        entries = {(i, j): value for i, channel in enumerate(model.channels) for j, value in getattr(channel, key).items()}
-        groups[key] = (entries, (len(model.channels), columns))
     found = {}
-    for key, (entries, shape) in groups.items():
+    for key, (entries, shape) in {**model.matrix_entries(), **model.output_entries()}.items():
         derived = {place: _total(value, chain) for place, value in entries.items()}
-        array = np.zeros(shape)
-        for place, value in model.evaluate({place: item for place, item in derived.items() if item != 0}, values).items():
-            array[place] = value
-        found[key] = array
+        found[key] = model.evaluate_matrix({place: item for place, item in derived.items() if item != 0}, shape, values)
     return found
 
 

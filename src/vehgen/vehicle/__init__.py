@@ -1,4 +1,7 @@
-"""What is it? The typed vehicle, read and checked from its file."""
+"""What is it? The typed vehicle, read and checked from its file.
+
+Bodies, hinges, axles, links and parameters, `extends`, parameter sets, bundled models; all checks of names, units and values.
+"""
 
 from vehgen.vehicle.loading import bundled_models, find_vehicle_file, load_vehicle, parse_vehicle
 from vehgen.vehicle.model import Axle, Body, Hinge, Link, Parameter, Point, Spring, Vehicle

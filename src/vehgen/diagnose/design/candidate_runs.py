@@ -18,13 +18,13 @@ from vehgen.road import ConstantSpeed, Hump, Track
 from vehgen.simulate import Scenario
 
 HEIGHTS = (0.5, 1.0, 1.5, 2.0)
-HIGHEST, LOWEST = 0.12, 0.01
+MAX_HUMP_HEIGHT_M, MIN_HUMP_HEIGHT_M = 0.12, 0.01
 """Heights of a hump that one lays out [m]."""
-FASTEST, SLOWEST = 8.0, 0.5
+MAX_SPEED_M_S, MIN_SPEED_M_S = 8.0, 0.5
 """Speeds over it, unless the runs were faster or slower [m/s]."""
 USUAL = (0.05, 2.0)
 """Height [m] and speed [m/s] from which to begin where no run has a hump."""
-LEAD, AFTER = 1.5, 3.0
+LEAD_TIME_S, AFTER_LAST_AXLE_S = 1.5, 3.0
 """Seconds recorded before the hump and after it."""
 NEAREST_HEIGHT_RATIO = 0.15
 """A sensor within this share of the body's length of an end is at that end."""
@@ -60,8 +60,13 @@ def list_runs(trials: Sequence[Trial]) -> list[CandidateRun]:
     top = _height(hump)
     speeds = [speed for _, speed in known] or [USUAL[1]]
     slow, fast = min(speeds), max(speeds)
-    heights = sorted({min(max(round(200 * factor * top) / 200, LOWEST), max(HIGHEST, top)) for factor in HEIGHTS})
-    wanted = {max(0.6 * slow, min(SLOWEST, slow)), slow, fast, *(min(factor * fast, max(FASTEST, fast)) for factor in (1.5, 2.0))}
+    heights = sorted({min(max(round(200 * factor * top) / 200, MIN_HUMP_HEIGHT_M), max(MAX_HUMP_HEIGHT_M, top)) for factor in HEIGHTS})
+    wanted = {
+        max(0.6 * slow, min(MIN_SPEED_M_S, slow)),
+        slow,
+        fast,
+        *(min(factor * fast, max(MAX_SPEED_M_S, fast)) for factor in (1.5, 2.0)),
+    }
     return [
         CandidateRun(height, hump.length, speed, _scenario(trials[0], hump, height / top, speed), bool(known))
         for height in heights
@@ -75,10 +80,10 @@ def _height(hump: Hump) -> float:
 
 def _scenario(trial: Trial, hump: Hump, scale: float, speed: float) -> Scenario:
     old = trial.scenario
-    at = LEAD * speed + old.track.footprint
+    at = LEAD_TIME_S * speed + old.track.footprint
     behind = float(trial.simulator.model.wheel_offsets(trial.values).max(initial=0.0))
     track = Track((replace(hump, at=at),), old.track.footprint, scale)
-    duration = (at + hump.length + behind) / speed + AFTER
+    duration = (at + hump.length + behind) / speed + AFTER_LAST_AXLE_S
     return replace(old, track=track, speed=ConstantSpeed(speed), duration=duration, start=0.0)
 
 
@@ -86,21 +91,20 @@ def free_places(trial: Trial) -> list[PointOutput]:
     """Return sensors that could be added: of acceleration at each end of a body that has none there, of pitch rate on one without."""
     vehicle, model = trial.run.vehicle, trial.simulator.model
     layout, channels = model.layout, trial.recording.channels
-    entries = {(0, i): layout.place(vehicle, name) for i, name in enumerate((*vehicle.axles, *vehicle.hinges))}
-    places = {
-        (1, i): item.output.place.locate(vehicle, layout) + layout.bodies[item.output.place.body][0] for i, item in enumerate(channels)
-    }
-    numbers = model.evaluate({**entries, **places}, trial.values)
+    names = (*vehicle.axles, *vehicle.hinges)
+    known = dict(zip(names, model.evaluate_list((layout.place(vehicle, name) for name in names), trial.values), strict=True))
+    own = (item.output.place.locate(vehicle, layout) + layout.bodies[item.output.place.body][0] for item in channels)
+    mounted = list(zip(channels, model.evaluate_list(own, trial.values), strict=True))
     found = []
     for body in vehicle.bodies:
         supports = [name for name, axle in vehicle.axles.items() if axle.body == body]
         supports += [name for name, hinge in vehicle.hinges.items() if body in hinge.points]
-        x = {name: numbers[0, i] for i, name in enumerate((*vehicle.axles, *vehicle.hinges)) if name in supports}
+        x = {name: place for name, place in known.items() if name in supports}
         if not x:
             continue
         ends = dict.fromkeys((max(x, key=lambda name: x[name]), min(x, key=lambda name: x[name])))
         reach = NEAREST_HEIGHT_RATIO * max(max(x.values()) - min(x.values()), 1.0)
-        taken = [numbers[1, i] for i, item in enumerate(channels) if item.output.place.body == body and item.quantity == "acceleration"]
+        taken = [place for item, place in mounted if item.output.place.body == body and item.quantity == "acceleration"]
         free = [end for end in ends if all(abs(x[end] - place) > reach for place in taken)]
         found += [PointOutput(f"{body}_{end}_acceleration", Place(f"{body}_{end}", body, behind=end), "acceleration") for end in free]
         if not any(item.output.place.body == body and item.quantity == "pitch_rate" for item in channels):

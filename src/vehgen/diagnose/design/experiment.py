@@ -39,7 +39,7 @@ WORTH = 2.0
 """A sensor is worth adding where it gains so many times the distance."""
 REPEATS = 20
 """Nobody drives more repeats."""
-TRAVEL = 1e-3
+LEAST_TRAVEL_M = 1e-3
 """Difference of travel [m] that a displacement sensor across a suspension shows."""
 Array = NDArray[np.float64]
 
@@ -206,12 +206,12 @@ def _same(detection: Detection, fits: Sequence[ModelFit], names: tuple[str, ...]
         travels = [rival.travels(run, axles) for rival in rivals]
         apart = np.min([np.abs(one - other).max(axis=0) for one, other in combinations(travels, 2)], axis=0)
         best = int(np.argmax(apart))
-        if apart[best] >= TRAVEL:
+        if apart[best] >= LEAST_TRAVEL_M:
             sensor = f"the travel of the suspension of {axles[best]}"
             told += (
                 f"; measure {sensor}: over a hump {run.height:.3g} m high at {run.speed:.3g} m/s they differ by {1e3 * apart[best]:.2g} mm"
             )
-            return Proposal(names, run.height, run.length, run.speed, 0.0, sensor, float(apart[best] / TRAVEL), sensor, True, told)
+            return Proposal(names, run.height, run.length, run.speed, 0.0, sensor, float(apart[best] / LEAST_TRAVEL_M), sensor, True, told)
         told += " and across the suspensions"
     return Proposal(names, None, None, None, 0.0, "", 0.0, None, False, told + ": nothing that can be measured tells them apart")
 

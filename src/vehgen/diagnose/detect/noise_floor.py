@@ -23,7 +23,7 @@ from vehgen.measure import record_psd
 from vehgen.road import Hump
 
 Array = NDArray[np.float64]
-SHORTEST = 0.8
+SHORTEST_QUIET_S = 0.8
 """A lead-in shorter than this [s] tells nothing."""
 LEAD_IN_MARGIN_S = 0.1
 """How long before the hump the lead-in ends [s]."""
@@ -146,7 +146,7 @@ def lead_in(trial: Trial) -> Trial | None:
     time = trial.recording.time
     quiet = trial.scenario.speed.distance(time + LEAD_IN_MARGIN_S) < first
     count = int(quiet.sum())
-    if count * trial.recording.dt < SHORTEST or np.any(np.ptp(trial.recording.values[:count], axis=0) == 0.0):
+    if count * trial.recording.dt < SHORTEST_QUIET_S or np.any(np.ptp(trial.recording.values[:count], axis=0) == 0.0):
         return None
     measurement = replace(trial.recording, time=time[:count], values=trial.recording.values[:count])
     return replace(trial, recording=measurement)

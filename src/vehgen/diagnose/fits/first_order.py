@@ -20,6 +20,7 @@ from vehgen.fit.problem import Problem
 from vehgen.mechanics import EquationsOfMotion, static_loads
 from vehgen.mechanics.energies import Element
 from vehgen.mechanics.equations_of_motion import Channel
+from vehgen.mechanics.evaluation import evaluate_array
 from vehgen.mechanics.law_terms import RATE, REST, STATIC, TRAVEL
 from vehgen.simulate.frequency import force_response
 
@@ -54,7 +55,7 @@ class ProbeMotion:
             for item, value in zip(misfit.shared, numbers, strict=True):
                 scenario = item.scenario(scenario, float(value))
             population = np.array([[known[name] for name in probe.parameters]])
-            run = kernel.run(population, scenario.drive(probe.wheel_offsets(known)), scenario.decimation)
+            run = kernel.run(population, scenario.excitation(probe.wheel_offsets(known)), scenario.decimation)
             self.motions.append(np.asarray(run.responses[0].T.reshape(len(model.elements), 2, -1)))
 
     def moved(self, problem: Problem, values: Array) -> Array | None:
@@ -100,13 +101,12 @@ class ProbeMotion:
             if force == 0:
                 continue
             symbols = sorted(force.free_symbols - {TRAVEL, RATE, STATIC}, key=str)
-            numbers = model.evaluate({(i, 0): symbol for i, symbol in enumerate(symbols)}, values)
-            known: dict[sp.Symbol, Array] = {symbol: np.array(numbers[i, 0]) for i, symbol in enumerate(symbols)}
+            known = {symbol: np.array(value) for symbol, value in zip(symbols, model.evaluate_list(symbols, values), strict=True)}
             travel, rate = self.motions[t][number]
             known |= {TRAVEL: travel, RATE: rate}
             if STATIC in force.free_symbols:
                 known[STATIC] = np.array(static_loads(model, values).elements[new.kind, new.name])
-            found[number] = np.broadcast_to(_evaluate(force, known), travel.shape)
+            found[number] = np.broadcast_to(evaluate_array(force, known), travel.shape)
         return found
 
     def _response(self, t: int, number: int) -> Complex:
@@ -131,22 +131,3 @@ def _extends(new: Element, old: Element) -> bool:
     """Whether an element is another with laws added, or another stiffness or damping."""
     same = (new.kind, new.name, new.row, new.input_row) == (old.kind, old.name, old.row, old.input_row)
     return same and new.laws[: len(old.laws)] == old.laws and all(REST not in term.step().now.free_symbols for term in new.laws)
-
-
-def _evaluate(expression: sp.Expr, known: Mapping[sp.Symbol, Array]) -> Array:
-    """Evaluate an expression of arrays, node by node."""
-    if expression in known:
-        return known[expression]
-    if expression.is_Number:
-        return np.array(float(expression))
-    arguments = [_evaluate(argument, known) for argument in expression.args]
-    if expression.is_Pow:
-        return np.asarray(arguments[0] ** arguments[1])
-    if isinstance(expression, sp.Heaviside):
-        return np.asarray((arguments[0] > 0).astype(np.float64))
-    functions = {"Add": np.add, "Mul": np.multiply, "Abs": np.abs, "sign": np.sign, "Min": np.minimum, "Max": np.maximum}
-    function = functions[type(expression).__name__]
-    found = arguments[0] if len(arguments) > 1 else function(arguments[0])
-    for argument in arguments[1:]:
-        found = function(found, argument)
-    return np.asarray(found)

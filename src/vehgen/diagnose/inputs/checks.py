@@ -16,20 +16,22 @@ from numpy.typing import NDArray
 from vehgen.diagnose.inputs.finding import Finding
 from vehgen.diagnose.inputs.mistakes import Suspicion, suspect, unrelated_recording
 from vehgen.fit.trial import Trial
+from vehgen.measure.quality import find_clipping
 
 if TYPE_CHECKING:
     from vehgen.diagnose.detect.detection import Detection
 
 Array = NDArray[np.float64]
-CLIPPED_SAMPLES_AT_EXTREME = 4
-"""So many samples at an extreme, and so many times as many as at the next value, count as clipping."""
+CLIPPED_PILE_UP = 4
+"""So many times as many samples at an extreme as at the next value, two of them in a row, count as clipping: recordings come filtered and
+resampled here, and a clipped one that a file of other origin holds may keep few samples in a row."""
 STUCK = 0.3
 """A channel that does not change for this long [s] while the others move is stuck."""
 MOVING_SHARE = 0.5
 """The others move where their RMS is at least this share of that of their whole run."""
 COARSE_RESOLUTION = 0.1
 """A channel whose smallest change is more than this share of its RMS is too coarse to be called stuck."""
-SAME = 0.1
+ALIKE_SHARE = 0.1
 """Amplitudes and speeds within this share of one another are one."""
 CLEAR = 0.25
 """A mistake that leaves this share of what it may is not compared with others."""
@@ -59,19 +61,9 @@ def explain_gap(detection: Detection) -> tuple[Finding, ...]:
 
 def _clipped(trial: Trial) -> Iterator[Finding]:
     for name, values in zip(trial.channels, trial.recording.values.T, strict=True):
-        levels, count = [], 0
-        for extreme, side in ((values.max(), values), (values.min(), -values)):
-            at = side == side.max()
-            inner = side[~at]
-            touching = bool((at[1:] & at[:-1]).any())
-            if (
-                extreme != 0
-                and touching
-                and at.sum() >= CLIPPED_SAMPLES_AT_EXTREME * max(1, int((inner == inner.max(initial=-np.inf)).sum()))
-            ):
-                levels.append(f"{extreme:.4g}")
-                count += int(at.sum())
-        if levels:
+        found = find_clipping(values, 2, min_pile_up=CLIPPED_PILE_UP)
+        if found:
+            levels, count = [f"{item.level:.4g}" for item in found], sum(item.n_samples for item in found)
             yield Finding(
                 "clipped",
                 trial.name,
@@ -114,12 +106,12 @@ def _variety(trials: Sequence[Trial]) -> Iterator[Finding]:
     heights = []
     for trial in trials:
         offsets = trial.simulator.model.wheel_offsets(trial.values)
-        heights.append(float(np.ptp(trial.scenario.drive(offsets).inputs[:, : len(offsets)])))
+        heights.append(float(np.ptp(trial.scenario.excitation(offsets).inputs[:, : len(offsets)])))
     for kind, word, found, advice in (
         ("one_amplitude", "height of road", heights, "a run over a higher or lower hump"),
         ("one_speed", "speed", [trial.scenario.top_speed for trial in trials], "a run at another speed"),
     ):
-        if max(found) > 0 and max(found) <= (1 + SAME) * min(found):
+        if max(found) > 0 and max(found) <= (1 + ALIKE_SHARE) * min(found):
             yield Finding(
                 kind,
                 None,

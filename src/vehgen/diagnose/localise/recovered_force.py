@@ -211,7 +211,7 @@ def _raw(misfit: Misfit, place: Place, component: int, x: Array, kernels: dict[i
         probe, kernel = kernels[id(model)]
         scenario = misfit.nuisances.adjust(trial.scenario, errors[t])
         population = np.array([[values[name] for name in probe.parameters]])
-        motion = kernel.run(population, scenario.drive(probe.wheel_offsets(values)), scenario.decimation).responses[0]
+        motion = kernel.run(population, scenario.excitation(probe.wheel_offsets(values)), scenario.decimation).responses[0]
         frequency = np.asarray(np.fft.rfftfreq(len(motion), trial.recording.dt), dtype=np.float64)
         found.append(
             _Raw(
@@ -253,8 +253,8 @@ def _element(model: EquationsOfMotion, place: Place, values: dict[str, float]) -
     """Return stiffness and damping of the base model at a place."""
     for item in model.elements:
         if (item.kind, item.name) == (place.kind, place.name):
-            found = model.evaluate({(0, 0): item.k, (0, 1): item.c}, values)
-            return found[0, 0], found[0, 1]
+            stiffness, damping = model.evaluate_list((item.k, item.c), values)
+            return stiffness, damping
     return 0.0, 0.0
 
 

@@ -1,1 +1,1 @@
-"""The effects that vehgen knows, one file each."""
+"""Which effects does vehgen know? One file an effect."""

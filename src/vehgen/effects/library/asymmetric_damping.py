@@ -17,7 +17,7 @@ def _edit(site: EffectSite, symbols: Given) -> Change:
     return on_spring(site, {"c": bump, "laws": [*site.laws(site.kind, site.place), law]})
 
 
-ASYMMETRIC_DAMPING = VehicleEffect(
+ASYMMETRIC_DAMPING_EFFECT = VehicleEffect(
     name="asymmetric_damping",
     title=LAWS["asymmetric_damping"].title,
     equation="f = 2 c ratio/(1 + ratio)*v in bump, 2 c/(1 + ratio)*v in rebound",

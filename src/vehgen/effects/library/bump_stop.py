@@ -5,7 +5,7 @@ from __future__ import annotations
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 
-BUMP_STOP = suspension_law(
+BUMP_STOP_EFFECT = suspension_law(
     name="bump_stop",
     law="bump_stop",
     signature="sharp peaks of acceleration when travel passes a threshold; nothing below it",

@@ -6,7 +6,7 @@ from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.library.mounted_mass import mass_edit, mass_parameters
 from vehgen.effects.places import loading_bodies
 
-CARGO_MODULE = VehicleEffect(
+CARGO_MODULE_EFFECT = VehicleEffect(
     name="cargo_module",
     title="Cargo module",
     equation="m z'' = k*(z_body - z) + c*(z_body' - z')",

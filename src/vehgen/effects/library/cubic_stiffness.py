@@ -5,7 +5,7 @@ from __future__ import annotations
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 
-CUBIC_STIFFNESS = suspension_law(
+CUBIC_STIFFNESS_EFFECT = suspension_law(
     name="cubic_stiffness",
     law="cubic_stiffness",
     signature="frequencies rise with amplitude; odd harmonics; bump and rebound alike",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 
-DRY_FRICTION = suspension_law(
+DRY_FRICTION_EFFECT = suspension_law(
     name="dry_friction",
     law="dry_friction",
     signature=(

@@ -6,7 +6,7 @@ from vehgen.effects.base import EffectParameter
 from vehgen.effects.kinds import LineEffect
 from vehgen.effects.places import pitching_bodies
 
-ENGINE_HARMONIC = LineEffect(
+ENGINE_HARMONIC_EFFECT = LineEffect(
     name="engine_harmonic",
     title="Engine harmonic",
     equation="F(t) = amplitude*sin(2 pi frequency (t + drift t^2/(2 T)) + phase)",

@@ -19,7 +19,7 @@ def _edit(site: EffectSite, symbols: Given) -> Change:
     }
 
 
-FRAME_BENDING = VehicleEffect(
+FRAME_BENDING_EFFECT = VehicleEffect(
     name="frame_bending",
     title="Frame bending",
     equation="(m/5)*(eta'' + 2 zeta omega eta' + omega^2 eta) = force along (3 s^2 - 1)/2",

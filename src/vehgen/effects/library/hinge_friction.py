@@ -5,7 +5,7 @@ from __future__ import annotations
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import hinge_law
 
-HINGE_FRICTION = hinge_law(
+HINGE_FRICTION_EFFECT = hinge_law(
     name="hinge_friction",
     law="dry_friction",
     title="Hinge friction (Coulomb)",

@@ -13,7 +13,7 @@ def _edit(site: EffectSite, symbols: Given) -> Change:
     return {"hinges": {site.place: {"k": symbols["k"]}}}
 
 
-HINGE_STIFFNESS = VehicleEffect(
+HINGE_STIFFNESS_EFFECT = VehicleEffect(
     name="hinge_stiffness",
     title="Hinge stiffness",
     equation="M = k*(pitch of the second body - pitch of the first)",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 
-HYSTERESIS = suspension_law(
+HYSTERESIS_EFFECT = suspension_law(
     name="hysteresis",
     law="hysteresis",
     signature="a loop of force over travel that does not depend on the rate; rounded corners tell it from dry friction",

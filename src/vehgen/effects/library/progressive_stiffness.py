@@ -5,7 +5,7 @@ from __future__ import annotations
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 
-PROGRESSIVE_STIFFNESS = suspension_law(
+PROGRESSIVE_STIFFNESS_EFFECT = suspension_law(
     name="progressive_stiffness",
     law="progressive_stiffness",
     signature="stiffer in bump than in rebound: even harmonics and a shifted mean over rough roads",

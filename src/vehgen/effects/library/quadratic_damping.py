@@ -5,7 +5,7 @@ from __future__ import annotations
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 
-QUADRATIC_DAMPING = suspension_law(
+QUADRATIC_DAMPING_EFFECT = suspension_law(
     name="quadratic_damping",
     law="quadratic_damping",
     signature="damping grows with amplitude and speed; odd harmonics",

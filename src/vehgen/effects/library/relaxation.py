@@ -5,7 +5,7 @@ from __future__ import annotations
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 
-RELAXATION = suspension_law(
+RELAXATION_EFFECT = suspension_law(
     name="relaxation",
     law="relaxation",
     signature="stiffness and damping change with frequency, not with amplitude: low and high frequencies want different k and c",

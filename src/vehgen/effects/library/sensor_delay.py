@@ -7,7 +7,7 @@ from vehgen.effects.kinds import RunEffect
 from vehgen.effects.places import sensors
 from vehgen.fit.adjustments import SensorDelay
 
-SENSOR_DELAY = RunEffect(
+SENSOR_DELAY_EFFECT = RunEffect(
     name="sensor_delay",
     title="Sensor delay",
     equation="y(t) = y_true(t - delay)",

@@ -7,7 +7,7 @@ from vehgen.effects.kinds import RunEffect
 from vehgen.effects.places import channels
 from vehgen.fit.adjustments import Gain
 
-SENSOR_GAIN = RunEffect(
+SENSOR_GAIN_EFFECT = RunEffect(
     name="sensor_gain",
     title="Sensor gain",
     equation="y = gain*y_true",

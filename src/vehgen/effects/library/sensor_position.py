@@ -6,7 +6,7 @@ from vehgen.effects.base import EffectParameter
 from vehgen.effects.kinds import RunEffect
 from vehgen.effects.places import sensors_on_bodies
 
-SENSOR_POSITION = RunEffect(
+SENSOR_POSITION_EFFECT = RunEffect(
     name="sensor_position",
     title="Sensor position",
     equation="x = x_nominal + shift",

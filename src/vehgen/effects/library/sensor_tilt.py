@@ -7,7 +7,7 @@ from vehgen.effects.kinds import RunEffect
 from vehgen.effects.places import sensors
 from vehgen.fit.adjustments import Tilt
 
-SENSOR_TILT = RunEffect(
+SENSOR_TILT_EFFECT = RunEffect(
     name="sensor_tilt",
     title="Sensor tilt",
     equation="a_z = a_true - g*sin(tilt)*pitch",

@@ -7,7 +7,7 @@ from vehgen.effects.kinds import RunEffect
 from vehgen.effects.places import runs
 from vehgen.fit.adjustments import SpeedScale
 
-SPEED_ERROR = RunEffect(
+SPEED_ERROR_EFFECT = RunEffect(
     name="speed_error",
     title="Speed error",
     equation="v = scale*v_nominal",

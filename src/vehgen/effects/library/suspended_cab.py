@@ -6,7 +6,7 @@ from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.library.mounted_mass import mass_edit, mass_parameters
 from vehgen.effects.places import front_body
 
-SUSPENDED_CAB = VehicleEffect(
+SUSPENDED_CAB_EFFECT = VehicleEffect(
     name="suspended_cab",
     title="Suspended cab",
     equation="m z'' = k*(z_body - z) + c*(z_body' - z')",

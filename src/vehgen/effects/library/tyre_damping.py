@@ -18,7 +18,7 @@ def _edit(site: EffectSite, symbols: Given) -> Change:
     return {"axles": change}
 
 
-TYRE_DAMPING = VehicleEffect(
+TYRE_DAMPING_EFFECT = VehicleEffect(
     name="tyre_damping",
     title="Tyre damping",
     equation="f = 2*ratio*sqrt(k_t*m)*v",

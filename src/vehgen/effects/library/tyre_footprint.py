@@ -7,7 +7,7 @@ from vehgen.effects.kinds import RunEffect
 from vehgen.effects.places import all_tyres
 from vehgen.fit.adjustments import Footprint
 
-TYRE_FOOTPRINT = RunEffect(
+TYRE_FOOTPRINT_EFFECT = RunEffect(
     name="tyre_footprint",
     title="Tyre footprint",
     equation="w(s) = mean of the road over s - length/2 to s + length/2",

@@ -16,7 +16,7 @@ def _edit(site: EffectSite, symbols: Given) -> Change:
     return _ADD(site, {"share": "1"})
 
 
-TYRE_LIFTOFF = VehicleEffect(
+TYRE_LIFTOFF_EFFECT = VehicleEffect(
     name="tyre_liftoff",
     title=LAWS["tyre_liftoff"].title,
     equation=LAWS["tyre_liftoff"].equation,

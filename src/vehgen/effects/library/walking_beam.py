@@ -56,7 +56,7 @@ def _edit(site: EffectSite, symbols: Given) -> Change:
     }
 
 
-WALKING_BEAM = VehicleEffect(
+WALKING_BEAM_EFFECT = VehicleEffect(
     name="walking_beam",
     title="Walking beam (load-sharing tandem)",
     equation="the share of k and c of both axles acts at the pivot of a beam that joins them, the rest at the axles",

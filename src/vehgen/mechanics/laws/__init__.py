@@ -1,4 +1,4 @@
-"""The library of force laws, one file each."""
+"""Which forces are not linear? The library of force laws, one file each, and laws that a file writes itself."""
 
 from vehgen.mechanics.laws.asymmetric_damping import ASYMMETRIC_DAMPING
 from vehgen.mechanics.laws.base import Kind, Law, LawParameter, LawState, LawStep

@@ -1,1 +1,1 @@
-"""The vehicle, its mode shapes and its modules, drawn to scale."""
+"""What does it look like? The vehicle, its mode shapes and its modules, drawn to scale."""

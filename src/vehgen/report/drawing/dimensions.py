@@ -10,7 +10,7 @@ from vehgen.mechanics import EquationsOfMotion
 from vehgen.report.drawing.canvas import ACCENT, FAINT, Canvas, Spot, text_size
 from vehgen.report.drawing.sketch import Sketch
 
-_SAME = 0.005
+_SAME_PLACE_M = 0.005
 """Marks nearer than this are one [m]."""
 
 
@@ -26,7 +26,7 @@ class Chain:
         """Return the points from rear to front, of those above each other the lowest."""
         found: list[tuple[float, float]] = []
         for x, z in sorted(self.points):
-            if not found or x - found[-1][0] > _SAME:
+            if not found or x - found[-1][0] > _SAME_PLACE_M:
                 found.append((x, z))
         return found
 

@@ -18,7 +18,7 @@ from vehgen.report.drawing.sketch import Sketch, make_sketch
 from vehgen.simulate import Mode
 
 Array = NDArray[np.float64]
-_GAP, _LINE = 14.0, 11.5
+_TITLE_GAP, _LINE_HEIGHT = 14.0, 11.5
 """Space around a panel and height of a line of text, in points."""
 _BREAK = (np.nan, np.nan)
 
@@ -45,13 +45,8 @@ def mode_movements(model: EquationsOfMotion, modes: Sequence[Mode], values: Mapp
         rows.append(model.motion.hop[name] if name in model.motion.hop else model.motion.rise(axle.body, to_sympy(axle.x)))
     masses = [term.inertia for group in model.energies.fore_aft.values() for term in group]
     entries: SparseMatrix = {(i, j): value for i, row in enumerate(rows) for j, value in row.items()}
-    entries |= {(len(rows), i): mass for i, mass in enumerate(masses)}
-    matrix, weights = np.zeros((len(rows), n)), np.zeros(len(masses))
-    for (i, j), value in model.evaluate(entries, values).items():
-        if i < len(rows):
-            matrix[i, j] = value
-        else:
-            weights[j] = value
+    matrix = model.evaluate_matrix(entries, (len(rows), n), values)
+    weights = np.array(model.evaluate_list(masses, values))
     start = 0
     for group in model.energies.fore_aft.values():
         members = [3 * bodies.index(term.owner) for term in group]
@@ -105,20 +100,20 @@ def draw_modes(model: EquationsOfMotion, modes: Sequence[Mode], values: Mapping[
     columns = min(2 if length > 9 else 3 if length > 3 else 4, max(len(modes), 1))
     rows = max(-(-len(modes) // columns), 1)
     wide = 11.4 / columns if columns > 2 else 5.7
-    scale = min((wide - 2 * _GAP / 72) / length, 0.9)
+    scale = min((wide - 2 * _TITLE_GAP / 72) / length, 0.9)
     point = 1 / (72 * scale)
-    width = max(wide / scale, length + 2 * _GAP * point)
-    titles = [_titles(i, mode, width / point - 2 * _GAP) for i, mode in enumerate(modes, 1)]
-    head = max((_LINE * len(lines) for lines in titles), default=0.0) * point
-    height = sketch.top + 2 * swing + head + 2 * _GAP * point
+    width = max(wide / scale, length + 2 * _TITLE_GAP * point)
+    titles = [_titles(i, mode, width / point - 2 * _TITLE_GAP) for i, mode in enumerate(modes, 1)]
+    head = max((_LINE_HEIGHT * len(lines) for lines in titles), default=0.0) * point
+    height = sketch.top + 2 * swing + head + 2 * _TITLE_GAP * point
     canvas, strokes = Canvas((0.0, 0.0, columns * width, rows * height), scale), _Strokes()
     for place, movement in enumerate(mode_movements(model, modes, values)):
         left, top = place % columns * width, (rows - place // columns) * height
         for line, text in enumerate(titles[place]):
             last = line == len(titles[place]) - 1
-            spot = (left + _GAP * point, top - (0.6 * _GAP + _LINE * line) * point, "left", "top")
+            spot = (left + _TITLE_GAP * point, top - (0.6 * _TITLE_GAP + _LINE_HEIGHT * line) * point, "left", "top")
             canvas.write(text, spot, 8.0 if last else 9.0, INK, bold=not last)
-        origin = (left + _GAP * point - sketch.left, top - height + swing + 0.5 * _GAP * point)
+        origin = (left + _TITLE_GAP * point - sketch.left, top - height + swing + 0.5 * _TITLE_GAP * point)
         _draw_mode(canvas, strokes, sketch, model, movement, swing, origin, place + 1)
     strokes.draw(canvas, sketch.wheel_radius)
     return canvas.figure

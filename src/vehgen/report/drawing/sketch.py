@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import sympy as sp
 
 from vehgen.mechanics import EquationsOfMotion
 from vehgen.vehicle.model import GROUND
@@ -82,18 +83,22 @@ class Sketch:
         return max([box.top for box in self.boxes.values()] + [z for _, z in self.hinges.values()])
 
 
+def _places(
+    model: EquationsOfMotion, points: Mapping[str, tuple[sp.Expr, sp.Expr | None]], values: Mapping[str, float]
+) -> dict[str, tuple[float, float | None]]:
+    """Return points in numbers: ahead, and above where that is known [m]."""
+    x = model.evaluate_list((x for x, _ in points.values()), values)
+    heights = {name: z for name, (_, z) in points.items() if z is not None}
+    z = dict(zip(heights, model.evaluate_list(heights.values(), values), strict=True))
+    return {name: (place, z.get(name)) for name, place in zip(points, x, strict=True)}
+
+
 def make_sketch(model: EquationsOfMotion, values: Mapping[str, float]) -> Sketch:
     """Place every part of a vehicle for drawing."""
     vehicle, layout = model.vehicle, model.layout
-    entries = {(0, i): x for i, (x, _) in enumerate(layout.bodies.values())}
-    entries |= {(1, i): z for i, (_, z) in enumerate(layout.bodies.values()) if z is not None}
-    entries |= {(2, i): x for i, x in enumerate(layout.axles.values())}
-    entries |= {(3, i): x for i, (x, _) in enumerate(layout.hinges.values())}
-    entries |= {(4, i): z for i, (_, z) in enumerate(layout.hinges.values()) if z is not None}
-    found = model.evaluate(entries, values)
-    bodies = {name: (found[0, i], found.get((1, i))) for i, name in enumerate(layout.bodies)}
-    axles = {name: found[2, i] for i, name in enumerate(layout.axles)}
-    pins = {name: (found[3, i], found.get((4, i))) for i, name in enumerate(layout.hinges)}
+    bodies = _places(model, layout.bodies, values)
+    pins = _places(model, layout.hinges, values)
+    axles = dict(zip(layout.axles, model.evaluate_list(layout.axles.values(), values), strict=True))
     everything = vehicle.all_values({name: values[name] for name in vehicle.free_parameters})
     links: dict[str, tuple[float, str, str]] = {}
     for name, link in vehicle.links.items():

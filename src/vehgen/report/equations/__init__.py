@@ -1,1 +1,1 @@
-"""The equations of motion for reading: text, LaTeX and MathML."""
+"""What are its equations? The equations of motion for reading: text, LaTeX and MathML."""

@@ -24,7 +24,7 @@ from vehgen.report.equations.writing import (
     vectors,
 )  # fmt: skip
 
-_LINE = 66
+_MAX_LINE_SIGNS = 66
 """A sum is broken into lines of about this many signs."""
 
 _DOCUMENT_HEAD = r"""\documentclass[10pt]{article}
@@ -123,7 +123,7 @@ def _left(matrix: Matrix, place: tuple[int, int]) -> str:
 
 def _broken(expression: sp.Expr, printer: Latex) -> str:
     """Write an expression, a long sum over several lines."""
-    return " \\\\\n&\\quad ".join(_pieces(expression, printer, _LINE))
+    return " \\\\\n&\\quad ".join(_pieces(expression, printer, _MAX_LINE_SIGNS))
 
 
 def _pieces(expression: sp.Expr, printer: Latex, limit: int) -> list[str]:

@@ -14,7 +14,7 @@ from sympy.printing.latex import LatexPrinter
 from sympy.printing.mathml import MathMLPresentationPrinter
 from sympy.printing.str import StrPrinter
 
-from vehgen.mechanics import EquationsOfMotion
+from vehgen.mechanics import Coordinate, EquationsOfMotion
 from vehgen.mechanics.symbols import number
 
 _GREEK = {
@@ -59,9 +59,9 @@ def symbol_names(model: EquationsOfMotion) -> dict[sp.Symbol, Name]:
     return {**names, sp.Symbol("g", real=True): Name("g")}
 
 
-def coordinate_name(motion: str, owner: str) -> Name:
+def coordinate_name(coordinate: Coordinate) -> Name:
     """Return how a coordinate is written."""
-    return Name("θ" if motion == "pitch" else "z", owner)
+    return Name(_GREEK.get(coordinate.letter, coordinate.letter), coordinate.owner)
 
 
 def tidy(expression: sp.Expr) -> sp.Expr:

@@ -220,12 +220,12 @@ def balance_mathml(model: EquationsOfMotion) -> str:
 def coordinate_mathml(model: EquationsOfMotion) -> list[str]:
     """Return the symbols of the coordinates as MathML."""
     printer = MathMl({})
-    return [math(printer.name(coordinate_name(item.motion, item.owner)).toxml()) for item in model.coordinates]
+    return [math(printer.name(coordinate_name(item)).toxml()) for item in model.coordinates]
 
 
 def expression_mathml(model: EquationsOfMotion, expression: sp.Expr) -> str:
     """Return an expression of parameters and coordinates as MathML."""
-    names = {item.symbol: coordinate_name(item.motion, item.owner) for item in model.coordinates}
+    names = {item.symbol: coordinate_name(item) for item in model.coordinates}
     return math(MathMl({**names, **symbol_names(model), **_input_names(model)}).doprint(expression))
 
 
@@ -235,10 +235,10 @@ def _input_names(model: EquationsOfMotion) -> dict[sp.Symbol, Name]:
 
 def latex_printer(model: EquationsOfMotion) -> Latex:
     """Return a printer that knows a model's parameters and coordinates."""
-    names = {item.symbol: coordinate_name(item.motion, item.owner) for item in model.coordinates}
+    names = {item.symbol: coordinate_name(item) for item in model.coordinates}
     return Latex({**names, **symbol_names(model), **_input_names(model)})
 
 
 def coordinate_latex(model: EquationsOfMotion) -> list[str]:
     """Return the symbols of the coordinates in LaTeX."""
-    return [latex_name(coordinate_name(item.motion, item.owner)) for item in model.coordinates]
+    return [latex_name(coordinate_name(item)) for item in model.coordinates]

@@ -1,1 +1,1 @@
-"""Figures of responses, calibrations, validations and diagnoses."""
+"""Which figure shows it? Figures of responses, imports, calibrations, validations and diagnoses."""

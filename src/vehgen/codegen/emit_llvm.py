@@ -1,7 +1,7 @@
 """Straight-line functions of generated kernels, turned into machine code without numba's front end.
 
 A kernel's loops hold hundreds of assignments. numba would trace, type and lower every one of them, which takes most of a compilation. A
-function decorated with :func:`straight` is read by Python's own parser instead, and its instructions are written where it is called. It
+function decorated with :func:`emit_llvm` is read by Python's own parser instead, and its instructions are written where it is called. It
 may hold nothing but
 
     a, b = drives                       the numbers that are the same for all lanes
@@ -43,7 +43,7 @@ def compiles() -> bool:
     return not getattr(numba.config, "DISABLE_JIT", 0)
 
 
-def straight(function: Callable[..., None]) -> Any:
+def emit_llvm(function: Callable[..., None]) -> Any:
     """Return a function `(work, j, dt, drives)` of a kernel as something that numba's code can call; see the head of this file.
 
     Where numba is told not to compile (NUMBA_DISABLE_JIT), it stays a function of plain Python.

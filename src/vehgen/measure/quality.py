@@ -1,0 +1,93 @@
+"""How good is a recorded channel? Its noise floor where nothing happens, and where its sensor's range clipped it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.signal
+from numpy.typing import NDArray
+
+from vehgen.measure.spectra import welch_psd
+
+Array = NDArray[np.float64]
+NOISE_BAND_WIDTH_HZ = 3.0
+"""Width of the band at the top of the spectrum, where a vehicle does nothing [Hz]."""
+NOISE_BAND_TOP_HZ = 50.0
+"""Top of that band [Hz], where the sensor is fast enough."""
+
+
+@dataclass(frozen=True)
+class NoiseFloor:
+    """Standard deviation `sigma` of a channel's quiet stretch, and `band_sigma`, that of white noise as strong as its `band` [Hz]."""
+
+    sigma: float
+    band_sigma: float
+    band: tuple[float, float]
+
+
+def noise_floor(values: Array, step: float, sensor_rate: float) -> NoiseFloor:
+    """Return the noise floor of a channel's quiet stretch.
+
+    Parameters
+    ----------
+    values
+        Evenly spaced samples `shape (n,)`.
+    step
+        Their spacing [s].
+    sensor_rate
+        Rate at which the sensor sampled [Hz]; above half of it there is nothing.
+    """
+    level = scipy.signal.detrend(values)
+    top = min(NOISE_BAND_TOP_HZ, 0.5 / step, 0.5 * sensor_rate)
+    frequency, density = welch_psd(values, step, segment=1.0)
+    inside = (frequency >= top - NOISE_BAND_WIDTH_HZ - 1e-9) & (frequency <= top + 1e-9)
+    band_sigma = float(np.sqrt(density[inside].mean() * 0.5 / step))
+    return NoiseFloor(float(level.std()), band_sigma, (top - NOISE_BAND_WIDTH_HZ, top))
+
+
+@dataclass(frozen=True)
+class Clipping:
+    """A flat top: the extreme `level` of a channel, how many samples have it, and the number of the first of those in a row."""
+
+    level: float
+    n_samples: int
+    first: int
+
+
+def find_clipping(
+    values: Array, in_a_row: int, *, min_deviation: float = 0.0, min_pile_up: float = 0.0, rest: float | None = 0.0
+) -> tuple[Clipping, ...]:
+    """Return the flat tops at a channel's largest and smallest value; a channel that never changes has none.
+
+    Parameters
+    ----------
+    values
+        Samples `shape (n,)` as the sensor gave them, neither filtered nor resampled.
+    in_a_row
+        So many equal samples in a row at the extreme are a flat top.
+    min_deviation
+        The extreme must be more than so many standard deviations from the median: rules out a channel that is merely coarse.
+    min_pile_up
+        So many times as many samples must be at the extreme as at the next value inwards: rules out a quantised channel, whose
+        extremes are rarer than what lies inside them.
+    rest
+        The level of rest, which is no clipping (None: no level is).
+
+    Returns
+    -------
+    The flat top at the largest value, then that at the smallest, where there is one.
+    """
+    spread = float(np.std(values))
+    if np.ptp(values) == 0:
+        return ()
+    found = []
+    for extreme, upwards in ((float(values.max()), values), (float(values.min()), -values)):
+        at = values == extreme
+        rows = np.flatnonzero(np.convolve(at, np.ones(in_a_row), mode="valid") > in_a_row - 0.5)
+        inner = upwards[~at]
+        at_next = int((inner == inner.max()).sum())
+        far = not min_deviation or abs(extreme - float(np.median(values))) > min_deviation * spread
+        if rows.size and extreme != rest and far and at.sum() >= min_pile_up * at_next:
+            found.append(Clipping(extreme, int(at.sum()), int(rows[0])))
+    return tuple(found)

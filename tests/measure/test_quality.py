@@ -1,0 +1,48 @@
+"""Noise floors and flat tops of channels."""
+
+import numpy as np
+import pytest
+
+from vehgen.measure.quality import Clipping, find_clipping, noise_floor
+
+
+def test_noise_floor_of_white_noise_and_of_an_engine():
+    noise = np.random.default_rng(2).normal(0, 0.02, 1500)
+    t = np.arange(1500) * 0.01
+    quiet, engine = noise_floor(noise, 0.01, 100.0), noise_floor(noise + 0.1 * np.sin(2 * np.pi * 27 * t), 0.01, 100.0)
+    assert quiet.sigma == pytest.approx(0.02, rel=0.06)
+    assert quiet.band_sigma == pytest.approx(0.02, rel=0.2)
+    assert quiet.band == (47.0, 50.0)
+    assert engine.sigma > 3 * engine.band_sigma
+    assert engine.band_sigma == pytest.approx(0.02, rel=0.2)
+    assert noise_floor(noise, 0.01, 60.0).band == (27.0, 30.0)
+
+
+def ringing(n=2000):
+    t = np.arange(n) * 0.01
+    return np.sin(2 * np.pi * 1.3 * t) * np.exp(-((t - 10) ** 2)) + np.random.default_rng(4).normal(0, 1e-3, n)
+
+
+def test_a_clipped_channel_has_a_flat_top_on_the_side_that_was_clipped():
+    values = ringing()
+    assert find_clipping(values, 3) == ()
+    clipped = np.minimum(values, 0.5)
+    (found,) = find_clipping(clipped, 3)
+    assert found == Clipping(0.5, int((values >= 0.5).sum()), int(np.argmax((values >= 0.5)[:-2] & (values >= 0.5)[1:-1])))
+    assert [item.level for item in find_clipping(np.clip(values, -0.4, 0.5), 3)] == [0.5, -0.4]
+
+
+def test_rest_and_a_constant_are_no_clipping():
+    assert find_clipping(np.full(50, 3.0), 3) == ()
+    still = np.where(np.arange(200) < 100, 0.0, -np.abs(np.random.default_rng(1).normal(1, 0.2, 200)))
+    assert find_clipping(still, 3) == ()
+    assert [item.level for item in find_clipping(still, 3, rest=None)] == [0.0]
+
+
+def test_what_rules_out_a_coarse_and_a_quantised_channel():
+    square = np.tile([1.0, 1.0, 1.0, -1.0, -1.0, -1.0], 20)
+    assert len(find_clipping(square, 3)) == 2
+    assert find_clipping(square, 3, min_deviation=4.0) == ()
+    coarse = np.round(ringing() / 0.25) * 0.25
+    assert find_clipping(coarse, 2)
+    assert find_clipping(coarse, 2, min_pile_up=4) == ()
