@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from vehgen.calibrate.calibration import Settings
     from vehgen.calibrate.summary import CalibrationSummary
 
-EXAMPLE = "python -m vehgen calibrate tractor5.yaml hump_2ms.yaml hump_3ms.yaml --method joint --out calibrated"
+EXAMPLE = "vehgen calibrate tractor5.yaml hump_2ms.yaml hump_3ms.yaml --method joint --out calibrated"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
