@@ -33,7 +33,7 @@ def main() -> None:
     text = PAGE.read_text(encoding="utf-8")
     head, rest = text.split(START)[0], text.split(END)[1]
     body = [START, "", table(score(records)), "", "![Which effect was hidden, and what was said](images/hidden-effects.svg)", ""]
-    body += ["| case | hidden | said | chi before | chi after | untouched | s | |", "|---|---|---|---|---|---|---|---|"]
+    body += ["| case | hidden | said | chi before | chi after | validation | s | |", "|---|---|---|---|---|---|---|---|"]
     body += [_row(item) for item in records]
     PAGE.write_text(head + "\n".join([*body, "", END]) + rest, encoding="utf-8")
     save_figure(_matrix(records), IMAGE)

@@ -94,7 +94,7 @@ def score(records: Sequence[Record]) -> dict[str, Any]:
         "two effects: at least one named": (len(one), len(kinds["two"])),
         "intervals that hold the truth": (sum(hits), len(hits)),
         "median chi before, where named right": _median([item["gap"]["before"] for item in named]),
-        "median chi after, on untouched runs": _median([untouched(item) for item in named]),
+        "median chi after, on validation runs": _median([untouched(item) for item in named]),
     }
     for name, seconds in times.items():
         found[f"median seconds, {name}"] = _median(seconds)
@@ -103,7 +103,7 @@ def score(records: Sequence[Record]) -> dict[str, Any]:
 
 
 def untouched(record: Record) -> float:
-    """Return the chi after on the untouched runs, the root of the mean of their squares."""
+    """Return the chi after on the validation runs, the root of the mean of their squares."""
     squares = [run["after"] ** 2 for run in record["gap"]["runs"] if run["untouched"]]
     return (sum(squares) / len(squares)) ** 0.5 if squares else float("nan")
 

@@ -83,7 +83,7 @@ An entry is one of three kinds:
 suspension's `k` and `c`, its tyre's `kt`, its body's `mass`, `inertia` and `length`, and a typical `travel` (of all tyres: their mean).
 Runs and sensors have no sizes. `signature`, `source` and `global` may be left out. `global: true` says that no single place explains the
 effect: it is tried wherever a force at one place does not suffice. Units are checked when the file is read.
-`python -m vehgen schema --effects` prints the JSON Schema.
+`vehgen schema --effects` prints the JSON Schema.
 
 What needs more (a new body, say) is an object in any installed package that names it under the entry point group `vehgen.effects`:
 
@@ -124,7 +124,7 @@ def page() -> str:
         "",
         "Made by `python docs/generate/effects_page.py` from the library.",
         "",
-        "What `python -m vehgen diagnose` can name. Ranges are what it searches, as multiples of the place's own size where it has one",
+        "What `vehgen diagnose` can name. Ranges are what it searches, as multiples of the place's own size where it has one",
         "(static load, stiffness, typical travel). Every picture shows tractor5 over a hump of 50 mm at 2.5 m/s, without the",
         "effect (grey) and with it (blue), at the strength at which a search begins.",
         "",

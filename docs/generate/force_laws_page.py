@@ -48,8 +48,11 @@ it. An individual without a stable equilibrium fails with that reason. Modes and
 individuals of one population and share one compiled kernel:
 
 ```python
+from vehgen import Place, PointOutput, Simulator, load_vehicle
 from vehgen.mechanics.superset import add_laws
 
+vehicle = load_vehicle("tractor5.yaml")
+outputs = [PointOutput("cab", Place("over axle 1", "tractor"), "acceleration")]
 superset = add_laws(vehicle, [("axle1", "suspension", "dry_friction"), ("axle1", "tyre", "tyre_liftoff")])
 simulator = Simulator(superset.vehicle, outputs)
 population = simulator.parameters([{superset.strength(candidate): 2e3} for candidate in superset.names])

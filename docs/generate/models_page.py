@@ -17,7 +17,7 @@ def main() -> None:
     lines = [
         "# The bundled vehicles",
         "",
-        "Made by `python docs/generate/models_page.py`. `python -m vehgen build NAME` shows one in full.",
+        "Made by `python docs/generate/models_page.py`. `vehgen build NAME` shows one in full.",
         "",
     ]
     for name, path in bundled_models().items():

@@ -1,4 +1,4 @@
-"""`python -m vehgen`."""
+"""`python -m vehgen`, and the script `vehgen`."""
 
 from __future__ import annotations
 

@@ -120,7 +120,7 @@ def test_wrong_arguments(arguments: list[str], capsys: pytest.CaptureFixture[str
     assert left.value.code == 2
     captured = capsys.readouterr()
     assert captured.out == ""
-    assert captured.err.startswith("usage: python -m vehgen")
+    assert captured.err.startswith("usage: vehgen")
 
 
 def raising(error: BaseException) -> Callable[..., None]:

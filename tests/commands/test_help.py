@@ -22,16 +22,16 @@ def test_every_command_has_help_with_an_example_that_can_be_typed(name: str, cap
         main([name, "--help"])
     assert left.value.code == 0
     text = capsys.readouterr().out
-    example = re.search(r"^example: (python -m vehgen .*)$", text, re.MULTILINE)
+    example = re.search(r"^example: (vehgen .*)$", text, re.MULTILINE)
     assert example is not None
-    words = shlex.split(example.group(1).partition(">")[0])[3:]
+    words = shlex.split(example.group(1).partition(">")[0])[1:]
     assert words[0] == name
     assert make_parser().parse_args(words).command == name
 
 
 def test_examples_on_bundled_models_work(capsys: pytest.CaptureFixture[str]):
     for command in COMMANDS:
-        words = shlex.split(command.EXAMPLE.partition(">")[0])[3:]
+        words = shlex.split(command.EXAMPLE.partition(">")[0])[1:]
         if words[0] in ("modes", "static", "effects", "models", "schema", "bench"):  # the others write files or read recordings
             assert main(words) == 0
             assert capsys.readouterr().out

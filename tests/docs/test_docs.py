@@ -2,16 +2,13 @@
 
 import importlib.util
 import re
-from pathlib import Path
 
 import pytest
 
+from tests.docs.pages import PAGES, ROOT
 from vehgen.mechanics import derive
 from vehgen.simulate import load_run, simulate
 from vehgen.vehicle import bundled_models, load_vehicle
-
-ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda path: path.name)
@@ -19,6 +16,14 @@ def test_links_lead_somewhere(page):
     for target in re.findall(r"\]\(([^)#]+)\)", page.read_text(encoding="utf-8")):
         if not target.startswith("http"):
             assert (page.parent / target).exists(), target
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.name)
+def test_links_within_pages_lead_to_a_heading(page):
+    for target, anchor in re.findall(r"\]\(([^)#:]*)#([^)]+)\)", page.read_text(encoding="utf-8")):
+        text = (page.parent / target if target else page).read_text(encoding="utf-8")
+        headings = [re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in re.findall(r"^#+ (.*)$", text, re.MULTILINE)]
+        assert anchor in headings, (target, anchor)
 
 
 def test_every_bundled_vehicle_is_drawn():

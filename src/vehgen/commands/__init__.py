@@ -55,11 +55,11 @@ COMMANDS = (
 
 
 def make_parser() -> argparse.ArgumentParser:
-    """Return the parser of `python -m vehgen`."""
+    """Return the parser of `vehgen`."""
     parser = argparse.ArgumentParser(
-        prog="python -m vehgen",
+        prog="vehgen",
         description="Declare a road vehicle in YAML; derive, compile and simulate its pitch-plane dynamics.",
-        epilog="example: python -m vehgen build tractor5.yaml",
+        epilog="example: vehgen build tractor5.yaml",
     )
     parser.add_argument("--version", action="store_true", help="print the version and leave")
     _add_debug(parser)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from vehgen.mechanics import EquationsOfMotion, StaticLoads
     from vehgen.simulate import Mode
 
-EXAMPLE = "python -m vehgen build tractor5.yaml --out build/tractor5"
+EXAMPLE = "vehgen build tractor5.yaml --out build/tractor5"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

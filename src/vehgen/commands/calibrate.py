@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from vehgen.calibrate.calibration import Settings
     from vehgen.calibrate.result import CalibrationSummary
 
-EXAMPLE = "python -m vehgen calibrate tractor5.yaml hump_2ms.yaml hump_3ms.yaml --method joint --out calibrated"
+EXAMPLE = "vehgen calibrate tractor5.yaml hump_2ms.yaml hump_3ms.yaml --method joint --out calibrated"
 
 
 CALIBRATION_CURVES = ("psds", "histories", "steps", "band")

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 NAME = "import"
 EXAMPLE = (
-    "python -m vehgen import phone1.zip phone2.zip --vehicle tractor5.yaml --sensor L1:body=tractor,behind=axle1,distance=-0.29 "
+    "vehgen import phone1.zip phone2.zip --vehicle tractor5.yaml --sensor L1:body=tractor,behind=axle1,distance=-0.29 "
     "--sensor L2:body=semitrailer,behind=fifth_wheel,distance=9.115 --hump half_sine,length=0.5,height=0.03 --forward y --out run.yaml"
 )
 

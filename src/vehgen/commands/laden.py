@@ -14,7 +14,7 @@ from vehgen.files.atomic import temporary_file
 if TYPE_CHECKING:
     from vehgen.vehicle import Vehicle
 
-EXAMPLE = "python -m vehgen laden tractor5.yaml bananas.yaml --out laden.yaml"
+EXAMPLE = "vehgen laden tractor5.yaml bananas.yaml --out laden.yaml"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -6,7 +6,7 @@ import argparse
 
 from vehgen.commands.terminal import add_json, print_json, print_table
 
-EXAMPLE = "python -m vehgen models"
+EXAMPLE = "vehgen models"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

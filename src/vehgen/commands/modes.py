@@ -6,7 +6,7 @@ import argparse
 
 from vehgen.commands.terminal import add_vehicle, load, print_json, print_table
 
-EXAMPLE = "python -m vehgen modes tractor5.yaml --set SHCM-1"
+EXAMPLE = "vehgen modes tractor5.yaml --set SHCM-1"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -13,7 +13,7 @@ from vehgen.files import check_results, write_text
 if TYPE_CHECKING:
     from vehgen.cargo.module_model import ModuleModel
 
-EXAMPLE = "python -m vehgen module steel_module.yaml --out module_cargo.yaml --plot module.png"
+EXAMPLE = "vehgen module steel_module.yaml --out module_cargo.yaml --plot module.png"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

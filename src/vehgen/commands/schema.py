@@ -6,7 +6,7 @@ import argparse
 
 from vehgen.commands.terminal import print_json
 
-EXAMPLE = "python -m vehgen schema > vehicle.schema.json"
+EXAMPLE = "vehgen schema > vehicle.schema.json"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -9,7 +9,7 @@ from vehgen.commands.results import add_out, folder_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table
 from vehgen.files import check_results, write_text
 
-EXAMPLE = "python -m vehgen sensitivity tractor5.yaml hump_2ms.yaml --out sensitivity"
+EXAMPLE = "vehgen sensitivity tractor5.yaml hump_2ms.yaml --out sensitivity"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -6,7 +6,7 @@ import argparse
 
 from vehgen.commands.terminal import add_json, print_json, print_table
 
-EXAMPLE = "python -m vehgen sensors tractor5.yaml hump_2ms.yaml --count 3"
+EXAMPLE = "vehgen sensors tractor5.yaml hump_2ms.yaml --count 3"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -9,7 +9,7 @@ from vehgen.commands.results import add_out, file_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table, warn
 from vehgen.files import check_results
 
-EXAMPLE = "python -m vehgen simulate run.yaml --out response.csv --plot"
+EXAMPLE = "vehgen simulate run.yaml --out response.csv --plot"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

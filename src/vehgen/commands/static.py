@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from vehgen.commands.terminal import add_vehicle, load, print_json, print_table, warn
 
-EXAMPLE = "python -m vehgen static tractor5.yaml"
+EXAMPLE = "vehgen static tractor5.yaml"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -10,7 +10,7 @@ from vehgen.commands.results import add_out, folder_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table
 from vehgen.files import check_results, write_text
 
-EXAMPLE = "python -m vehgen validate calibrated/tractor5_calibrated.yaml road_b.yaml --out validation"
+EXAMPLE = "vehgen validate calibrated/tractor5_calibrated.yaml road_b.yaml --out validation"
 
 
 VALIDATION_CURVES = ("frequency", "measured_psd", "simulated_psd", "time", "measured", "simulated")

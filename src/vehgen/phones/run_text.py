@@ -70,7 +70,7 @@ def recording_text(imported: Imported) -> str:
 def run_text(imported: Imported, vehicle: str, out: Path) -> str:
     """Return the run file of an import."""
     plan, folder = imported.plan, out.parent
-    lines = ["# Made by `python -m vehgen import`; what was found and assumed stands beside what it led to."]
+    lines = ["# Made by `vehgen import`; what was found and assumed stands beside what it led to."]
     lines += [f"# warning: {_plain(text)}" for text in imported.warnings]
     lines.append(f"vehicle: {_scalar(_vehicle(vehicle, folder))}")
     if plan.parameter_set is not None:
