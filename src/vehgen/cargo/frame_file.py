@@ -14,10 +14,9 @@ from vehgen.cargo.panels import Layer, equivalent_layer
 from vehgen.cargo.quantities import DampingRatio, Density, Distance, Frequency, Modulus, Poisson, PositiveLength
 from vehgen.cargo.sections import SectionEntry
 from vehgen.errors import InputError, did_you_mean, shown
-from vehgen.files.document import Located, read_document
+from vehgen.files.document import Located
+from vehgen.files.entry import FileModel, read_entries
 from vehgen.files.names import FreeText, Identifier, Name
-from vehgen.vehicle.loading import validate
-from vehgen.vehicle.model import FileModel
 
 MIN_SIDE, MAX_SIDE = 0.1, 100.0
 
@@ -170,10 +169,8 @@ def load_frame(path: str | Path) -> FrameModule:
 
     """
     path = Path(path)
-    document = read_document(path)
-    if not isinstance(document.value, dict):
-        raise InputError("a file of `key: value` lines was expected", document.position)
-    frame = FrameModule(validate(FrameFile, document.plain(), document), path, document)
+    file, document = read_entries(FrameFile, path)
+    frame = FrameModule(file, path, document)
     _check(frame)
     return frame
 

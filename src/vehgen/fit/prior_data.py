@@ -21,15 +21,14 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from vehgen.errors import InputError, did_you_mean, shown
-from vehgen.files.document import read_document
+from vehgen.files.entry import FileModel, read_entries
 from vehgen.files.expressions import Expression, ExpressionError
 from vehgen.files.names import Name
 from vehgen.files.quantities import Force
 from vehgen.fit.problem import Problem
 from vehgen.mechanics import EquationsOfMotion, derive, static_loads
 from vehgen.vehicle import Vehicle
-from vehgen.vehicle.loading import validate
-from vehgen.vehicle.model import GROUND, FileModel
+from vehgen.vehicle.model import GROUND
 
 Array = NDArray[np.float64]
 _JACOBIAN_STEP = 1e-6
@@ -98,8 +97,7 @@ def load_prior_data(path: str | Path, problem: Problem) -> PriorData:
     InputError
         With its place, for a name the vehicle lacks, a wrong unit, or an uncertainty that is not positive.
     """
-    document = read_document(Path(path))
-    file = validate(FactsFile, document.plain(), document)
+    file, document = read_entries(FactsFile, path)
     vehicle = problem.trials[0].run.vehicle
     facts: list[Fact] = []
     for name, known in file.parameters.items():

@@ -13,7 +13,8 @@ from pydantic_core import PydanticCustomError
 
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files import note_read
-from vehgen.files.document import Located, read_document
+from vehgen.files.document import Located
+from vehgen.files.entry import FileModel, read_entries
 from vehgen.files.expressions import Expression, ExpressionError
 from vehgen.files.limits import LARGEST_SEED, MOST_CHANNELS, MOST_ROADS, VEHICLE_LENGTH
 from vehgen.files.names import Column, FreeText, Name, is_name
@@ -38,8 +39,8 @@ from vehgen.files.quantities import (
 from vehgen.files.units import LENGTH
 from vehgen.mechanics.outputs import AXLE_QUANTITIES, LINK_QUANTITIES, POINT_QUANTITIES, ElementOutput, Output, Place, PointOutput
 from vehgen.vehicle.checks import check_values
-from vehgen.vehicle.loading import load_vehicle, validate
-from vehgen.vehicle.model import FileModel, Vehicle
+from vehgen.vehicle.loading import load_vehicle
+from vehgen.vehicle.model import Vehicle
 
 DEFAULT_STEP = 1e-3
 DEFAULT_DECIMATION = 10
@@ -288,10 +289,7 @@ def load_run(path: str | Path, vehicle: Vehicle | None = None) -> Run:
 
     """
     path = Path(path)
-    document = read_document(path)
-    if not isinstance(document.value, dict):
-        raise InputError("a file of `key: value` lines was expected", document.position)
-    file = validate(RunFile, document.plain(), document)
+    file, document = read_entries(RunFile, path)
     try:
         vehicle = vehicle or load_vehicle(file.vehicle, path.parent)
     except InputError as error:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
 from vehgen.errors import InputError, Position, did_you_mean, shortened, shown
 from vehgen.files.document import Located
+from vehgen.files.entry import FileModel
 from vehgen.files.expressions import Expression, ExpressionError, parse
 from vehgen.files.names import FreeText, Name
 from vehgen.files.units import DAMPING, FREQUENCY, INERTIA, LENGTH, MASS, MOMENT, NONE, PITCH_DAMPING, STIFFNESS, Dimension
@@ -20,12 +21,6 @@ BodyMotion = Literal["heave", "pitch"]
 ZERO = parse("0")
 LawEntry = dict[Name, Expression | dict[Name, Expression]]
 """Parameters of a force law; of an own `law`, its `force` and its `parameters`."""
-
-
-class FileModel(BaseModel):
-    """What the nouns share: unknown keys are refused, values do not change."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class Parameter(FileModel):
@@ -102,6 +97,7 @@ class Spring(FileModel):
 class Joint(Spring):
     """What joins two bodies: the keys that are not its own are the bodies' names."""
 
+    gathered: ClassVar[tuple[str, ...]] = ("points",)
     points: dict[Name, Point] = Field(default_factory=dict)
     title: FreeText = ""
 
@@ -164,6 +160,7 @@ class Vehicle(FileModel):
     Made by :func:`vehgen.vehicle.load_vehicle`, which has checked names, units, connections and values.
     """
 
+    other_keys: ClassVar[tuple[str, ...]] = ("extends",)
     name: Name
     title: FreeText = ""
     source: FreeText = ""
