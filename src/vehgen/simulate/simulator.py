@@ -19,7 +19,7 @@ from vehgen.errors import InputError, ModelWarning, did_you_mean
 from vehgen.files import write_text
 from vehgen.mechanics import Channel, ElementOutput, EquationsOfMotion, Output, Place, derive, static_loads
 from vehgen.simulate.budgets import check_population
-from vehgen.simulate.runfile import Run
+from vehgen.simulate.run_file import Run
 from vehgen.simulate.scenario import Scenario, make_scenario
 from vehgen.simulate.warnings import lift_off, spectral_nulls, step_too_coarse
 from vehgen.vehicle import Vehicle
