@@ -50,7 +50,7 @@ def check_dimension(
     *path: str | int,
     what: str | None = None,
 ) -> None:
-    """Refuse the expression at a path where its dimension is another one; a plain 0 has all dimensions.
+    """Refuse the expression at a path where its dimension is another one, or a plain one without value; a plain 0 has all dimensions.
 
     Parameters
     ----------
@@ -64,8 +64,9 @@ def check_dimension(
         What errors call it (default: the last part of the path).
     """
     found = dimension_of(expression, dimensions, document, *path)
-    is_zero = not expression.names and value_of(expression, {}, document, *path) == 0.0
-    if found == expected or is_zero:
+    if found == expected and not expression.names:
+        value_of(expression, {}, document, *path)
+    if found == expected or _is_zero(expression):
         return
     message = f"{path[-1] if what is None else what} must be in {expected}, found {found} in {shown(expression.text)}"
     if found == NONE:
@@ -73,6 +74,13 @@ def check_dimension(
         where = f"; give {unitless[0]!r} its unit" if unitless else f"; write e.g. '{shortened(expression.text)} {expected}'"
         message = f"missing unit: {message}{where}"
     raise InputError(message, document.find(path))
+
+
+def _is_zero(expression: Expression) -> bool:
+    try:
+        return not expression.names and expression.evaluate({}) == 0.0
+    except ExpressionError:
+        return False
 
 
 def plain_quantity(expression: Expression, expected: Dimension, document: Located, *path: str | int, what: str | None = None) -> float:

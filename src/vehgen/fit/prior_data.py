@@ -30,7 +30,7 @@ from vehgen.files.quantities import Force
 from vehgen.fit.problem import Problem
 from vehgen.mechanics import EquationsOfMotion, derive, static_loads
 from vehgen.vehicle import Vehicle
-from vehgen.vehicle.model import GROUND
+from vehgen.vehicle.parts import GROUND
 
 Array = NDArray[np.float64]
 _JACOBIAN_STEP = 1e-6

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vehgen.errors import InputError
 from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
-from vehgen.vehicle.model import GROUND
+from vehgen.vehicle.parts import GROUND
 
 
 @dataclass(frozen=True)

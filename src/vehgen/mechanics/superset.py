@@ -14,7 +14,8 @@ from vehgen.errors import InputError, did_you_mean
 from vehgen.files.expressions import Expression, Name, parse
 from vehgen.files.units import NONE
 from vehgen.mechanics.laws import LAWS, Kind, Law, LawParameter
-from vehgen.vehicle.model import Parameter, Spring, Vehicle
+from vehgen.vehicle.model import Vehicle
+from vehgen.vehicle.parts import Parameter, Spring
 
 CandidateLaw = tuple[str, Kind, str]
 """Where and which: the axle's, link's or hinge's name, `suspension`, `tyre`, `link` or `hinge`, the law's name in LAWS."""

@@ -1,7 +1,8 @@
 """What is it? The typed vehicle, read and checked from its file."""
 
 from vehgen.vehicle.loading import bundled_models, find_vehicle_file, load_vehicle, parse_vehicle
-from vehgen.vehicle.model import Axle, Body, Hinge, Link, Parameter, Point, Spring, Vehicle
+from vehgen.vehicle.model import Vehicle
+from vehgen.vehicle.parts import Axle, Body, Hinge, Link, Parameter, Point, Spring
 
 __all__ = [
     "Axle",

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehgen.mechanics import EquationsOfMotion
-from vehgen.vehicle.model import GROUND
+from vehgen.vehicle.parts import GROUND
 
 CLEARANCE = 0.12
 """The lowest body's outline stands this far above the wheels [m]."""

@@ -12,7 +12,7 @@ from vehgen.files.units import LENGTH
 from vehgen.mechanics.outputs import AXLE_QUANTITIES, LINK_QUANTITIES, POINT_QUANTITIES
 from vehgen.simulate.run_file.entries import OutputEntry, PlaceEntry
 from vehgen.vehicle.checks import check_values
-from vehgen.vehicle.model import GROUND
+from vehgen.vehicle.parts import GROUND
 
 if TYPE_CHECKING:
     from vehgen.simulate.run_file.loading import Run
