@@ -177,10 +177,10 @@ def test_facts_enter_the_fit(problem, tmp_path):
     ("text", "said"),
     [
         ("parameters: {mq: {value: 95 kg, uncertainty: 1 g}}", "no parameter 'mq'"),
-        ("parameters: {mf: {value: 95 m, uncertainty: 1 g}}", "mf is in kg"),
+        ("parameters: {mf: {value: 95 m, uncertainty: 1 g}}", "mf must be in kg"),
         ("parameters: {mf: {value: 95 kg, uncertainty: 0 kg}}", "above 0"),
-        ("axle_weights: {middle: {value: 9 kN, uncertainty: 1 kN}}", "no axle 'middle'"),
-        ("uncoupled: {boddy: {front: {value: 9 kN, uncertainty: 1 kN}}}", "no body 'boddy'"),
+        ("axle_weights: {middle: {value: 9 kN, uncertainty: 1 kN}}", "has no axle 'middle'"),
+        ("uncoupled: {boddy: {front: {value: 9 kN, uncertainty: 1 kN}}}", "has no body 'boddy'"),
         ("{}", "no fact"),
     ],
 )

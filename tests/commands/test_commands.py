@@ -11,7 +11,7 @@ import pytest
 
 from tests.commands.calls import python, run_json
 from vehgen.commands import main
-from vehgen.simulate.runfile import RunFile
+from vehgen.simulate.run_file import RunFile
 from vehgen.vehicle import bundled_models
 from vehgen.vehicle.schema import vehicle_schema
 

@@ -9,7 +9,8 @@ import time
 import pytest
 
 from vehgen.errors import InputError
-from vehgen.files.expressions import MAX_LENGTH, ExpressionError, parse
+from vehgen.files.expression_parser import MAX_LENGTH
+from vehgen.files.expressions import ExpressionError, parse
 from vehgen.vehicle import parse_vehicle
 
 CHARACTERS = "only numbers, units, parameter names, + - * / ** and sqrt, abs, sign, min, max may stand in an expression, found "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from vehgen.simulate.runfile import Run, load_run
+from vehgen.simulate.run_file import Run, load_run
 
 GOOD = """\
 vehicle: rig.yaml

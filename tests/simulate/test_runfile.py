@@ -9,7 +9,7 @@ import pytest
 
 from tests.simulate.run_files import GOOD, SHORT, load
 from vehgen.mechanics import ElementOutput, Place, PointOutput
-from vehgen.simulate.runfile import load_run
+from vehgen.simulate.run_file import load_run
 from vehgen.vehicle import bundled_models
 
 

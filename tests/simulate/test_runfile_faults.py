@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from tests.simulate.run_files import GOOD, RIG, SHORT, load, write
 from vehgen.errors import InputError
-from vehgen.simulate.runfile import MAX_STEPS, load_run
+from vehgen.simulate.run_file import load_run
+from vehgen.simulate.run_file.checks import MAX_STEPS
 
 CASES = [
     (
@@ -29,7 +30,7 @@ CASES = [
     ("unknown parameter", "{kF: 1.2 MN/m}", "{@kFF: 1.2 MN/m}", "rig has no parameter with a value 'kFF'; did you mean 'kF'?"),
     ("parameter that follows", "{kF: 1.2 MN/m}", "{@b2: 1 m}", "rig has no parameter with a value 'b2'; known: b1, kF, mB"),
     ("wrong unit of a parameter", "{kF: 1.2 MN/m}", "{kF: @1.2 MN}", "kF must be in N/m, found N"),
-    ("no unit of a parameter", "{kF: 1.2 MN/m}", "{kF: @1.2}", "kF must be in N/m, found no unit"),
+    ("no unit of a parameter", "{kF: 1.2 MN/m}", "{kF: @1.2}", "missing unit: kF must be in N/m, found no unit"),
     ("symbol in a parameter", "{kF: 1.2 MN/m}", "{kF: @2*kF}", "expected a plain quantity in N/m, found a symbol in '2*kF'"),
     ("parameter by zero", "{kF: 1.2 MN/m}", "{kF: @1 N/m/0}", "'1 N/m/0' has no value: float division by zero"),
     ("unit of a parameter", "{kF: 1.2 MN/m}", "{kF: 1.2 @MNm}", "'MNm' after 1.2 is not a unit; did you mean 'MN'"),
@@ -144,7 +145,7 @@ CASES = [
     ),
     ("sensor's x", "x: b1 - 1 m", "x: b1 - @b3", "unknown symbol 'b3'; known: b1, b2, kF, mB"),
     ("sensor's x in kilograms", "x: b1 - 1 m", "x: @mB", "x must be in m, found kg"),
-    ("sensor's x without a unit", "x: b1 - 1 m", "x: @2", "x must be in m, found no unit"),
+    ("sensor's x without a unit", "x: b1 - 1 m", "x: @2", "missing unit: x must be in m, found no unit"),
     ("sensor's x by zero", "x: b1 - 1 m", "x: @1 m/(b1/b1 - 1)", "'1 m/(b1/b1 - 1)' has no value"),
     ("channel's key", "{column: v2", "{@colum: v2", "unknown key 'colum'; did you mean 'column'?"),
     ("channel's sign", "sign: -1", "sign: @-2", "input should be 1 or -1, found -2"),

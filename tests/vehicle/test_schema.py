@@ -4,7 +4,7 @@ import jsonschema
 import pytest
 
 from vehgen.files.document import read_document
-from vehgen.simulate.runfile import RunFile
+from vehgen.simulate.run_file import RunFile
 from vehgen.vehicle import bundled_models
 from vehgen.vehicle.schema import vehicle_schema
 

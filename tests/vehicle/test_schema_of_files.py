@@ -11,7 +11,7 @@ import jsonschema
 import pytest
 
 from vehgen.files.document import read_document, read_text
-from vehgen.simulate.runfile import RunFile
+from vehgen.simulate.run_file import RunFile
 from vehgen.vehicle import bundled_models
 from vehgen.vehicle.schema import vehicle_schema
 

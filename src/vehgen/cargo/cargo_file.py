@@ -20,11 +20,9 @@ from vehgen.cargo.quantities import (
     PositiveLength,
     Stiffness,
 )
-from vehgen.errors import InputError
-from vehgen.files.document import Located, read_document
+from vehgen.files.document import Located
+from vehgen.files.entry import FileModel, read_entries
 from vehgen.files.names import FreeText, Identifier
-from vehgen.vehicle.loading import validate
-from vehgen.vehicle.model import FileModel
 
 
 class RigidCargo(FileModel):
@@ -100,6 +98,12 @@ class CargoFile(FileModel):
     rigid: RigidCargo | None = None
     module: ModuleCargo | None = None
 
+    @model_validator(mode="after")
+    def _one_load(self) -> CargoFile:
+        if (self.rigid is None) == (self.module is None):
+            raise PydanticCustomError("joint", "a cargo is either `rigid` or a `module`")
+        return self
+
 
 @dataclass(frozen=True)
 class Cargo:
@@ -127,10 +131,5 @@ def load_cargo(path: str | Path) -> Cargo:
 
     """
     path = Path(path)
-    document = read_document(path)
-    if not isinstance(document.value, dict):
-        raise InputError("a file of `key: value` lines was expected", document.position)
-    file = validate(CargoFile, document.plain(), document)
-    if (file.rigid is None) == (file.module is None):
-        raise InputError("a cargo is either `rigid` or a `module`", document.position)
+    file, document = read_entries(CargoFile, path)
     return Cargo(file, path, document)

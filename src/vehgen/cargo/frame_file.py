@@ -13,11 +13,11 @@ from pydantic import Field
 from vehgen.cargo.panels import Layer, equivalent_layer
 from vehgen.cargo.quantities import DampingRatio, Density, Distance, Frequency, Modulus, Poisson, PositiveLength
 from vehgen.cargo.sections import SectionEntry
-from vehgen.errors import InputError, did_you_mean, shown
-from vehgen.files.document import Located, read_document
+from vehgen.errors import InputError
+from vehgen.files.checks import check_known
+from vehgen.files.document import Located
+from vehgen.files.entry import FileModel, read_entries
 from vehgen.files.names import FreeText, Identifier, Name
-from vehgen.vehicle.loading import validate
-from vehgen.vehicle.model import FileModel
 
 MIN_SIDE, MAX_SIDE = 0.1, 100.0
 
@@ -170,20 +170,14 @@ def load_frame(path: str | Path) -> FrameModule:
 
     """
     path = Path(path)
-    document = read_document(path)
-    if not isinstance(document.value, dict):
-        raise InputError("a file of `key: value` lines was expected", document.position)
-    frame = FrameModule(validate(FrameFile, document.plain(), document), path, document)
+    file, document = read_entries(FrameFile, path)
+    frame = FrameModule(file, path, document)
     _check(frame)
     return frame
 
 
 def _check(frame: FrameModule) -> None:
     file, document = frame.file, frame.document
-
-    def known(kind: str, name: str, allowed: dict[str, Material] | dict[str, SectionEntry], *place: str | int) -> None:
-        if name not in allowed:
-            raise InputError(f"no {kind} {shown(name)}; {did_you_mean(name, allowed)}", document.find(place))
 
     first, second = file.damping
     place = document.find(("damping",))
@@ -193,15 +187,15 @@ def _check(frame: FrameModule) -> None:
         reason = "mass or stiffness damping would be negative; choose ratios nearer to each other"
         raise InputError(f"no Rayleigh damping has these two ratios: {reason}", place)
     for name, member in file.frame.members():
-        known("material", member.material, file.materials, "frame", name, "material")
-        known("section", member.section, file.sections, "frame", name, "section")
+        check_known(member.material, file.materials, "no material", document, "frame", name, "material")
+        check_known(member.section, file.sections, "no section", document, "frame", name, "section")
         if file.materials[member.material].E == 0:
             raise InputError(
                 f"a frame member needs a material with E above 0; {member.material!r} has none", document.find(("frame", name))
             )
     for _, key, panel in file.panels.faces():
         for index, layer in enumerate(panel.layers):
-            known("material", layer.material, file.materials, "panels", key, "layers", index, "material")
+            check_known(layer.material, file.materials, "no material", document, "panels", key, "layers", index, "material")
         if not any(file.materials[layer.material].E > 0 for layer in panel.layers):
             raise InputError("a panel needs a layer with E above 0", document.find(("panels", key)))
     if not any(True for _ in file.panels.faces()) and not any(True for _ in file.frame.members()):

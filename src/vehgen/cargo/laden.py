@@ -11,6 +11,7 @@ from pathlib import Path
 
 from vehgen.cargo.cargo_file import Cargo, ModuleCargo, RigidCargo
 from vehgen.errors import InputError, did_you_mean, shown
+from vehgen.files.checks import check_known
 from vehgen.files.names import MAX_NAME, is_identifier
 from vehgen.vehicle.model import Vehicle
 from vehgen.vehicle.writing import base_reference, yaml_text, yaml_title
@@ -64,8 +65,7 @@ def laden_text(vehicle: Vehicle, cargo: Cargo, folder: Path, name: str) -> str:
 def _reference(vehicle: Vehicle, cargo: Cargo) -> tuple[str, str]:
     """Return what the cargo's distances start from, as expressions: x ahead of and z above the carrier's COG."""
     on, behind = cargo.file.on, cargo.file.behind
-    if on not in vehicle.bodies:
-        raise InputError(f"{vehicle.name} has no body {shown(on)}; {did_you_mean(on, vehicle.bodies)}", cargo.document.find(("on",)))
+    check_known(on, vehicle.bodies, f"{vehicle.name} has no body", cargo.document, "on")
     hinges = {name: hinge.points[on] for name, hinge in vehicle.hinges.items() if on in hinge.points}
     axles = {name: axle for name, axle in vehicle.axles.items() if axle.body == on}
     if behind in hinges:

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from vehgen.cargo.quantities import Area, PositiveLength, SecondMoment
-from vehgen.vehicle.model import FileModel
+from vehgen.files.entry import FileModel
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> None:
     """Print the schema."""
     if options.run_file:
-        from vehgen.simulate.runfile import RunFile
+        from vehgen.simulate.run_file import RunFile
 
         print_json({"$schema": "https://json-schema.org/draft/2020-12/schema", **RunFile.model_json_schema()})
         return

@@ -11,8 +11,7 @@ from vehgen.effects.entry_model import EffectsFile
 from vehgen.effects.entry_reader import EntryReader
 from vehgen.effects.registry import library
 from vehgen.errors import InputError
-from vehgen.files.document import read_document
-from vehgen.vehicle.loading import validate
+from vehgen.files.entry import read_entries
 
 
 def effects_schema() -> dict[str, Any]:
@@ -49,10 +48,7 @@ def load_effects(path: str | Path, taken: Mapping[str, Effect] | None = None) ->
     InputError
         With file, line and column, what is wrong and what would be right.
     """
-    document = read_document(Path(path))
-    if not isinstance(document.value, dict):
-        raise InputError("a file of `key: value` lines was expected", document.position)
-    file = validate(EffectsFile, document.plain(), document)
+    file, document = read_entries(EffectsFile, path)
     known = library() if taken is None else taken
     found = {}
     for name, entry in file.effects.items():

@@ -6,10 +6,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from vehgen.files.entry import FileModel
 from vehgen.files.expressions import Expression
 from vehgen.files.names import FreeText, Identifier, Name
 from vehgen.files.units import DAMPING, FORCE, INERTIA, LENGTH, MASS, STIFFNESS, Dimension
-from vehgen.vehicle.model import FileModel
 
 LawPlace = Literal["suspension", "tyre", "hinge"]
 RunQuantity = Literal["speed", "footprint", "gain", "delay", "tilt", "position"]

@@ -20,7 +20,8 @@ from vehgen.effects.library.speed_error import SPEED_ERROR_EFFECT
 from vehgen.effects.library.tyre_footprint import TYRE_FOOTPRINT_EFFECT
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import Places, axles, hinges, suspensions, tyres
-from vehgen.errors import InputError, did_you_mean, shown
+from vehgen.errors import InputError, did_you_mean
+from vehgen.files.checks import check_dimension
 from vehgen.files.document import Located
 from vehgen.files.expressions import Expression, ExpressionError
 from vehgen.files.units import FORCE, FREQUENCY, LENGTH, MOMENT, NONE, TIME, Dimension, parse_unit
@@ -212,13 +213,8 @@ class EntryReader:
         names: Mapping[str, Dimension] | None = None,
     ) -> None:
         """Refuse an expression of unknown names or of another dimension."""
-        try:
-            found = expression.dimension({**(self.own if names is None else names), **more})
-            plain = None if expression.names else expression.evaluate({})
-        except ExpressionError as error:
-            raise self.wrong(str(error), *path, offset=error.offset) from error
-        if found != dimension and plain != 0.0:
-            raise self.wrong(f"{path[-1]} must be in {dimension}, found {found} in {shown(expression.text)}", *path)
+        known = {**(self.own if names is None else names), **more}
+        check_dimension(expression, dimension, known, self.document, "effects", self.name, *path)
 
 
 def _size(times: Expression, site: EffectSite) -> float:

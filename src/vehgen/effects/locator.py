@@ -12,7 +12,7 @@ from vehgen.files.expressions import Expression
 from vehgen.mechanics import GRAVITY, EquationsOfMotion, derive, static_loads
 from vehgen.mechanics.energies import pitch_inertia
 from vehgen.vehicle import Vehicle
-from vehgen.vehicle.model import Spring
+from vehgen.vehicle.parts import Spring
 
 
 @dataclass(frozen=True)

@@ -1,74 +1,31 @@
 """Expressions of vehicle and run files: parsed safely, never executed.
 
-A text such as `3.46 m - b1` becomes a small tree of numbers, names and arithmetic. Nothing from a file reaches Python's
-compiler as code: the text is tokenised here, quantities are replaced by placeholders, and Python's `ast` module only supplies
-operator precedence. Every node outside the short list below is refused.
+A text such as `3.46 m - b1` becomes a small tree of numbers, names and arithmetic. Expressions are made of others by arithmetic:
+`2*stiffness*(mass + 3.0)` of two expressions is the expression of that text.
 """
 
 from __future__ import annotations
 
-import ast
 import math
-import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any, TypeVar
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from vehgen.errors import InputError, did_you_mean, shortened, shown
-from vehgen.files.units import NONE, Dimension, nearest_unit, read_unit
+from vehgen.errors import InputError, shown
+from vehgen.files.expression_parser import read_tree
+from vehgen.files.expression_tree import ExpressionError, Name, Number, Operation, SyntaxNode, apply_float, dimension_of_node, symbols_of
+from vehgen.files.units import NONE, Dimension
 
-MAX_LENGTH = 1000
-MAX_EXPRESSION_DEPTH = 100
-_NUMBER_TOKEN = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
-_SYMBOL = re.compile(r"[A-Za-z_]\w*", re.ASCII)
-_SIGN_CHARACTERS = "+-*/^(),"
-_OPERATORS: dict[type[ast.operator], str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
-FUNCTIONS = ("sqrt", "abs", "sign", "min", "max")
-_ALLOWED = f"only numbers, units, parameter names, + - * / ** and {', '.join(FUNCTIONS)} may stand in an expression"
+__all__ = ["Expression", "ExpressionError", "parse"]
 
 T = TypeVar("T")
-
-
-class ExpressionError(ValueError):
-    """An expression that cannot be read, or whose dimensions do not fit; `offset` counts characters into its text."""
-
-    def __init__(self, message: str, offset: int = 0) -> None:
-        super().__init__(message)
-        self.offset = offset
-
-
-@dataclass(frozen=True)
-class Number:
-    """A number in SI units with its dimension."""
-
-    value: float
-    dimension: Dimension
-    offset: int = 0
-
-
-@dataclass(frozen=True)
-class Name:
-    """A parameter's name."""
-
-    name: str
-    offset: int = 0
-
-
-@dataclass(frozen=True)
-class Operation:
-    """`+ - * / **`, `neg`, or a function's name, applied to its arguments."""
-
-    operator: str
-    arguments: tuple[SyntaxNode, ...]
-    offset: int = 0
-
-
-SyntaxNode = Number | Name | Operation
+_SUM, _QUANTITY, _PRODUCT, _NEGATIVE, _POWER, _ATOM = range(6)
+"""What binds tighter than what. A number with a unit takes parentheses in a product: no sign may be read as part of its unit."""
+_BINDING = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT, "neg": _NEGATIVE, "**": _POWER}
 
 
 @dataclass(frozen=True)
@@ -86,7 +43,7 @@ class Expression:
     @property
     def symbols(self) -> tuple[Name, ...]:
         """Each use of a parameter's name, from left to right."""
-        return tuple(_symbols(self.root))
+        return tuple(symbols_of(self.root))
 
     def evaluate(self, values: Mapping[str, float]) -> float:
         """Return its value in SI units; raises ExpressionError where it is undefined."""
@@ -97,7 +54,7 @@ class Expression:
 
     def dimension(self, dimensions: Mapping[str, Dimension]) -> Dimension:
         """Return its dimension; raises ExpressionError where units do not fit together."""
-        return _dimension(self.root, dimensions)
+        return dimension_of_node(self.root, dimensions)
 
     def fold(
         self,
@@ -118,6 +75,58 @@ class Expression:
 
     def __str__(self) -> str:
         return self.text
+
+    @classmethod
+    def symbol(cls, name: str) -> Expression:
+        """Return the expression that is a parameter's name."""
+        return _composed(name)
+
+    @classmethod
+    def quantity(cls, value: float, unit: str = "") -> Expression:
+        """Return a number in a unit; it reads back exactly."""
+        return _composed(f"{_number_text(value)} {unit}".rstrip())
+
+    def substituted(self, expressions: Mapping[str, Expression]) -> Expression:
+        """Return it with expressions in the place of all its names."""
+        text = self.text
+        for symbol in reversed(self.symbols):
+            end = symbol.offset + len(symbol.name)
+            text = f"{text[: symbol.offset]}{_operand(expressions[symbol.name], _ATOM)}{text[end:]}"
+        return _composed(text)
+
+    def sqrt(self) -> Expression:
+        """Return its square root."""
+        return _composed(f"sqrt({self.text})")
+
+    def __neg__(self) -> Expression:
+        return _composed(f"-{_operand(self, _POWER)}")
+
+    def __add__(self, other: Operand) -> Expression:
+        return _joined(self, " + ", other)
+
+    def __radd__(self, other: float) -> Expression:
+        return _joined(other, " + ", self)
+
+    def __sub__(self, other: Operand) -> Expression:
+        return _joined(self, " - ", other)
+
+    def __rsub__(self, other: float) -> Expression:
+        return _joined(other, " - ", self)
+
+    def __mul__(self, other: Operand) -> Expression:
+        return _joined(self, "*", other)
+
+    def __rmul__(self, other: float) -> Expression:
+        return _joined(other, "*", self)
+
+    def __truediv__(self, other: Operand) -> Expression:
+        return _joined(self, "/", other)
+
+    def __rtruediv__(self, other: float) -> Expression:
+        return _joined(other, "/", self)
+
+    def __pow__(self, exponent: float) -> Expression:
+        return _composed(f"{_operand(self, _ATOM)}**{_operand(exponent, _ATOM)}")
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -144,201 +153,41 @@ def _validate(value: Any) -> Expression:
         raise PydanticCustomError("expression", "{reason}", {"reason": str(error), "offset": error.offset}) from error
 
 
-def parse(text: str, extra_functions: tuple[str, ...] = ()) -> Expression:
-    """Parse a text into an Expression.
+def parse(text: str) -> Expression:
+    """Parse a text into an Expression; raises ExpressionError as :func:`vehgen.files.expression_parser.read_tree`."""
+    return Expression(text, read_tree(text))
 
-    Raises
-    ------
-    ExpressionError
-        For calls other than `sqrt`, `abs`, `sign`, `min`, `max`, attributes, subscripts, comparisons, unknown units and the like.
 
-    """
-    if len(text) > MAX_LENGTH:
-        raise ExpressionError(f"an expression of {len(text)} characters is too long (at most {MAX_LENGTH})")
-    if not text.strip():
-        raise ExpressionError("an expression is empty")
-    source, quantities, offsets = _replace_quantities(text)
+Operand = Expression | float
+"""What expressions are added to, multiplied with ...: an expression, or a plain number."""
+
+
+def _joined(left: Operand, sign: str, right: Operand) -> Expression:
+    """Return two operands joined by a sign, in parentheses where it would not bind them as a whole."""
+    binding = _BINDING[sign.strip()]
+    return _composed(f"{_operand(left, binding)}{sign}{_operand(right, binding + 1, leads=False)}")
+
+
+def _operand(item: Operand, binding: int, *, leads: bool = True) -> str:
+    """Return the text of an operand, in parentheses where it binds less tightly than `binding` or is negative behind a sign."""
+    expression = item if isinstance(item, Expression) else _composed(_number_text(item))
+    text, root = expression.text.strip(), expression.root
+    own = _ATOM
+    if isinstance(root, Operation):
+        own = _BINDING.get(root.operator, _ATOM)
+    elif isinstance(root, Number) and root.dimension != NONE:
+        own = _QUANTITY
+    return text if own >= binding and (leads or own != _NEGATIVE) else f"({text})"
+
+
+def _number_text(value: float) -> str:
+    if not math.isfinite(value):
+        raise InputError(f"{value} cannot stand in an expression; a finite number was expected")
+    return repr(value) if isinstance(value, int) else repr(float(value))
+
+
+def _composed(text: str) -> Expression:
     try:
-        tree = ast.parse(source, mode="eval")
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        column = getattr(error, "offset", None) or 1
-        offset = offsets[min(max(column - 1, 0), len(offsets) - 1)]
-        raise ExpressionError(f"cannot read {shown(text)} as an expression", offset) from error
-    try:
-        return Expression(text, _convert(tree.body, quantities, offsets))
-    except RecursionError as error:
-        raise ExpressionError(f"{shown(text)} is nested too deeply") from error
-
-
-def _replace_quantities(text: str) -> tuple[str, list[tuple[float, Dimension]], list[int]]:
-    """Swap each number (with its unit) for `_q0`, `_q1`, ...; keep, for each output character, its place in `text`."""
-    pieces: list[str] = []
-    offsets: list[int] = []
-    quantities: list[tuple[float, Dimension]] = []
-    position = 0
-    while position < len(text):
-        name = _SYMBOL.match(text, position)
-        number = _NUMBER_TOKEN.match(text, position)
-        if name:
-            if name.group().startswith("_"):
-                raise ExpressionError(f"a name may not start with an underscore: {shown(name.group())}", position)
-            piece, end = name.group(), name.end()
-        elif number:
-            piece, end = f" _q{len(quantities)} ", number.end()
-            value, dimension = float(number.group()), NONE
-            if math.isinf(value):
-                raise ExpressionError(f"{number.group()[:40]} is too large a number", position)
-            blank = end
-            while blank < len(text) and text[blank] == " ":
-                blank += 1
-            try:
-                unit = read_unit(text, blank)
-            except InputError as error:
-                raise ExpressionError(error.message, blank) from error
-            if unit is not None:
-                value, dimension, end = value * unit[0], unit[1], unit[2]
-            elif _SYMBOL.match(text, blank):
-                word = _SYMBOL.match(text, blank)
-                assert word is not None
-                raise ExpressionError(
-                    f"{shown(word.group())} after {shortened(number.group())} is not a unit; {nearest_unit(word.group())} "
-                    f"(to multiply, write {shortened(number.group())} * {shortened(word.group())})",
-                    blank,
-                )
-            quantities.append((value, dimension))
-        elif text[position].isspace():
-            piece, end = " ", position + 1
-        elif text[position] in _SIGN_CHARACTERS:
-            piece, end = ("**" if text[position] == "^" else text[position]), position + 1
-        else:
-            raise ExpressionError(f"{_ALLOWED}, found {text[position]!r}", position)
-        pieces.append(piece)
-        offsets.extend([position] * len(piece))
-        position = end
-    source = "".join(pieces)
-    lead = len(source) - len(source.lstrip())
-    return source.strip(), quantities, (offsets[lead:] or [0]) + [len(text)]
-
-
-def _convert(node: ast.expr, quantities: list[tuple[float, Dimension]], offsets: list[int], depth: int = 0) -> SyntaxNode:
-    offset = offsets[min(node.col_offset, len(offsets) - 1)]
-    if depth > MAX_EXPRESSION_DEPTH:
-        raise ExpressionError(f"an expression is nested more than {MAX_EXPRESSION_DEPTH} deep", offset)
-
-    def inside(child: ast.expr) -> SyntaxNode:
-        return _convert(child, quantities, offsets, depth + 1)
-
-    match node:
-        case ast.Name(id=name) if name.startswith("_q"):
-            value, dimension = quantities[int(name[2:])]
-            return Number(value, dimension, offset)
-        case ast.Name(id=name):
-            return Name(name, offset)
-        case ast.UnaryOp(op=ast.USub(), operand=operand):
-            return Operation("neg", (inside(operand),), offset)
-        case ast.UnaryOp(op=ast.UAdd(), operand=operand):
-            return inside(operand)
-        case ast.BinOp(op=operator, left=left, right=right) if type(operator) in _OPERATORS:
-            symbol = _OPERATORS[type(operator)]
-            arguments = (inside(left), inside(right))
-            if symbol == "**":
-                _check_exponent(arguments[1], offset)
-            return Operation(symbol, arguments, offset)
-        case ast.Call(func=ast.Name(id=function), args=arguments_, keywords=[]) if function in FUNCTIONS:
-            count = 2 if function in ("min", "max") else 1
-            if len(arguments_) != count:
-                raise ExpressionError(f"{function} takes {count} argument{'s' if count > 1 else ''}", offset)
-            return Operation(function, tuple(inside(argument) for argument in arguments_), offset)
-        case ast.Call():
-            raise ExpressionError(f"only {', '.join(FUNCTIONS)} may be called in an expression", offset)
-    raise ExpressionError(_ALLOWED, offset)
-
-
-def _check_exponent(node: SyntaxNode, offset: int) -> None:
-    value = _constant(node)
-    if value is None or not abs(value) <= 10:
-        raise ExpressionError("an exponent must be a plain number between -10 and 10", offset)
-
-
-def _constant(node: SyntaxNode) -> float | None:
-    if isinstance(node, Number) and node.dimension == NONE:
-        return node.value
-    if isinstance(node, Operation) and node.operator == "neg":
-        inner = _constant(node.arguments[0])
-        return None if inner is None else -inner
-    if isinstance(node, Operation) and node.operator == "/":
-        top, bottom = (_constant(argument) for argument in node.arguments)
-        return top / bottom if top is not None and bottom else None
-    return None
-
-
-def _symbols(node: SyntaxNode) -> Iterator[Name]:
-    if isinstance(node, Name):
-        yield node
-    elif isinstance(node, Operation):
-        for argument in node.arguments:
-            yield from _symbols(argument)
-
-
-def apply_float(operator: str, arguments: list[float]) -> float:
-    """Apply one operator of the expression language to floats."""
-    first = arguments[0]
-    match operator:
-        case "neg":
-            return -first
-        case "+":
-            return first + arguments[1]
-        case "-":
-            return first - arguments[1]
-        case "*":
-            return first * arguments[1]
-        case "/":
-            return first / arguments[1]
-        case "**":
-            result = first ** arguments[1]
-            if isinstance(result, complex):
-                raise ValueError("a negative number has no real root")
-            return float(result)
-        case "sqrt":
-            return math.sqrt(first)
-        case "abs":
-            return abs(first)
-        case "sign":
-            return math.copysign(1.0, first) if first else 0.0
-        case "min":
-            return min(arguments)
-        case _:
-            return max(arguments)
-
-
-def _dimension(node: SyntaxNode, dimensions: Mapping[str, Dimension]) -> Dimension:
-    if isinstance(node, Number):
-        return node.dimension
-    if isinstance(node, Name):
-        if node.name not in dimensions:
-            raise ExpressionError(f"unknown symbol {shown(node.name)}; {did_you_mean(node.name, dimensions)}", node.offset)
-        return dimensions[node.name]
-    parts = [_dimension(argument, dimensions) for argument in node.arguments]
-    match node.operator:
-        case "neg" | "abs":
-            return parts[0]
-        case "sign":
-            return NONE
-        case "*":
-            return parts[0] * parts[1]
-        case "/":
-            return parts[0] / parts[1]
-        case "sqrt":
-            return parts[0].power(Fraction(1, 2))
-        case "**":
-            exponent = _constant(node.arguments[1]) or 0.0
-            return parts[0].power(Fraction(exponent).limit_denominator(12))
-        case _:
-            left, right = parts
-            for zero, other in ((node.arguments[0], right), (node.arguments[1], left)):
-                if isinstance(zero, Number) and zero.value == 0.0:
-                    return other
-            if left != right:
-                word = {"+": "add", "-": "subtract"}.get(node.operator, "compare")
-                raise ExpressionError(f"cannot {word} {left} and {right}", node.offset)
-            return left
+        return parse(text)
+    except ExpressionError as error:
+        raise InputError(f"cannot make the expression {shown(text)}: {error}") from error

@@ -20,16 +20,17 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from vehgen.errors import InputError, did_you_mean, shown
-from vehgen.files.document import read_document
-from vehgen.files.expressions import Expression, ExpressionError
+from vehgen.errors import InputError
+from vehgen.files.checks import check_known, plain_quantity
+from vehgen.files.document import Located
+from vehgen.files.entry import FileModel, read_entries
+from vehgen.files.expressions import Expression
 from vehgen.files.names import Name
 from vehgen.files.quantities import Force
 from vehgen.fit.problem import Problem
 from vehgen.mechanics import EquationsOfMotion, derive, static_loads
 from vehgen.vehicle import Vehicle
-from vehgen.vehicle.loading import validate
-from vehgen.vehicle.model import GROUND, FileModel
+from vehgen.vehicle.parts import GROUND
 
 Array = NDArray[np.float64]
 _JACOBIAN_STEP = 1e-6
@@ -98,48 +99,33 @@ def load_prior_data(path: str | Path, problem: Problem) -> PriorData:
     InputError
         With its place, for a name the vehicle lacks, a wrong unit, or an uncertainty that is not positive.
     """
-    document = read_document(Path(path))
-    file = validate(FactsFile, document.plain(), document)
+    file, document = read_entries(FactsFile, path)
     vehicle = problem.trials[0].run.vehicle
-    facts: list[Fact] = []
-    for name, known in file.parameters.items():
-        if name not in vehicle.parameters:
-            raise InputError(
-                f"{vehicle.name} has no parameter {shown(name)}; {did_you_mean(name, vehicle.parameters)}",
-                document.find(("parameters", name), key=True),
-            )
-        for key, expression in (("value", known.value), ("uncertainty", known.uncertainty)):
-            place = document.find(("parameters", name, key))
-            try:
-                found = expression.dimension({})
-            except ExpressionError as error:
-                raise InputError(str(error), place) from error
-            if found != vehicle.dimensions[name]:
-                raise InputError(f"{name} is in {vehicle.dimensions[name]}, found {found}", place)
-        uncertainty = known.uncertainty.evaluate({})
-        if not uncertainty > 0:
-            raise InputError("an uncertainty above 0 was expected", document.find(("parameters", name, "uncertainty")))
-        facts.append(Fact(name, _parameter(vehicle, name), known.value.evaluate({}), uncertainty))
+    facts = [_parameter_fact(vehicle, name, known, document) for name, known in file.parameters.items()]
     groups: list[tuple[tuple[str, ...], Vehicle, str, dict[str, Weight]]] = [(("axle_weights",), vehicle, "", file.axle_weights)]
     for body, weights in file.uncoupled.items():
-        if body not in vehicle.bodies:
-            raise InputError(
-                f"{vehicle.name} has no body {shown(body)}; {did_you_mean(body, vehicle.bodies)}",
-                document.find(("uncoupled", body), key=True),
-            )
+        check_known(body, vehicle.bodies, f"{vehicle.name} has no body", document, "uncoupled", body, key=True)
         groups.append((("uncoupled", body), uncouple(vehicle, body), f" of {body} alone", weights))
     for place_of, part, suffix, weights in groups:
         model = derive(part) if weights else None
         for axle, weight in weights.items():
-            if axle not in part.axles:
-                raise InputError(
-                    f"no axle {shown(axle)}{suffix}; {did_you_mean(axle, part.axles)}", document.find((*place_of, axle), key=True)
-                )
+            check_known(axle, part.axles, f"{part.name} has no axle", document, *place_of, axle, key=True)
             assert model is not None
             facts.append(Fact(f"load of {axle}{suffix}", _axle_load(model, axle), weight.value, weight.uncertainty))
     if not facts:
         raise InputError("no fact was found: parameters, axle_weights or uncoupled were expected", document.position)
     return PriorData(problem, tuple(facts))
+
+
+def _parameter_fact(vehicle: Vehicle, name: str, known: Known, document: Located) -> Fact:
+    """Return the fact of a parameter; raises InputError at an unknown name, a wrong unit or an uncertainty that is not above 0."""
+    check_known(name, vehicle.parameters, f"{vehicle.name} has no parameter", document, "parameters", name, key=True)
+    dimension, path = vehicle.dimensions[name], ("parameters", name)
+    value = plain_quantity(known.value, dimension, document, *path, "value", what=name)
+    uncertainty = plain_quantity(known.uncertainty, dimension, document, *path, "uncertainty", what=f"the uncertainty of {name}")
+    if not uncertainty > 0:
+        raise InputError("an uncertainty above 0 was expected", document.find((*path, "uncertainty")))
+    return Fact(name, _parameter(vehicle, name), value, uncertainty)
 
 
 def uncouple(vehicle: Vehicle, body: str) -> Vehicle:

@@ -15,7 +15,7 @@ from vehgen.files.units import UNITS, read_unit
 from vehgen.measure.quality import find_clipping
 from vehgen.mechanics.outputs import POINT_QUANTITIES, PointOutput
 from vehgen.simulate import Run
-from vehgen.simulate.runfile import ChannelEntry, SensorEntry
+from vehgen.simulate.run_file.entries import ChannelEntry, SensorEntry
 
 Array = NDArray[np.float64]
 LOWEST_RATE = 50.0

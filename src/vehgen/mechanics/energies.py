@@ -13,7 +13,8 @@ from vehgen.mechanics.law_terms import LawTerm, read_laws
 from vehgen.mechanics.laws import Kind
 from vehgen.mechanics.rows import Row, combine
 from vehgen.mechanics.symbols import to_sympy
-from vehgen.vehicle.model import GROUND, Body, Vehicle
+from vehgen.vehicle.model import Vehicle
+from vehgen.vehicle.parts import GROUND, Body
 
 
 @dataclass(frozen=True)

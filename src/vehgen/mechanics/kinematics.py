@@ -15,7 +15,8 @@ import sympy as sp
 
 from vehgen.mechanics.rows import Row, combine, unit
 from vehgen.mechanics.symbols import to_sympy
-from vehgen.vehicle.model import GROUND, Point, Vehicle
+from vehgen.vehicle.model import Vehicle
+from vehgen.vehicle.parts import GROUND, Point
 
 
 @dataclass(frozen=True)

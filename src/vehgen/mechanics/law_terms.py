@@ -9,11 +9,13 @@ from typing import Literal, get_args
 import sympy as sp
 
 from vehgen.errors import InputError, did_you_mean, shortened, shown
-from vehgen.files.expressions import Expression, ExpressionError
-from vehgen.files.units import FORCE, LENGTH, MOMENT, NONE, TIME, Dimension
+from vehgen.files.checks import check_dimension, dimension_of
+from vehgen.files.expressions import Expression
+from vehgen.files.units import FORCE, LENGTH, MOMENT, NONE, TIME
 from vehgen.mechanics.laws import LAWS, Kind, Law, LawState, LawStep, custom_law
 from vehgen.mechanics.symbols import number, to_sympy
-from vehgen.vehicle.model import LawEntry, Spring, Vehicle
+from vehgen.vehicle.model import Vehicle
+from vehgen.vehicle.parts import LawEntry, Spring
 
 TravelOrigin = Literal["static", "unloaded"]
 """Where a law's travel counts from: static equilibrium, or the position in which the spring carries nothing."""
@@ -111,7 +113,7 @@ def _read(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], name: str, 
             continue
         if not isinstance(expression, Expression):
             raise InputError(f"{key} is a quantity, not a mapping", vehicle.position(*path, key))
-        _expect(vehicle, expression, parameter.dimension(kind), vehicle.dimensions, *path, key)
+        check_dimension(expression, parameter.dimension(kind), vehicle.dimensions, vehicle.document, *path, key)
         values[key] = to_sympy(expression)
     return _with_origin(vehicle, path, given, LawTerm(law, values))
 
@@ -153,29 +155,9 @@ def _read_custom(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], give
             raise InputError(
                 f"{key!r} is the law's travel or rate and cannot be a parameter", vehicle.position(*path, "parameters", key, key=True)
             )
-        dimensions[key] = _dimension(vehicle, expression, vehicle.dimensions, *path, "parameters", key)
+        dimensions[key] = dimension_of(expression, vehicle.dimensions, vehicle.document, *path, "parameters", key)
     travel, moment = (NONE, MOMENT) if kind == "hinge" else (LENGTH, FORCE)
     dimensions |= {"d": travel, "v": travel / TIME}
-    _expect(vehicle, force, moment, dimensions, *path, "force")
+    check_dimension(force, moment, dimensions, vehicle.document, *path, "force")
     law = custom_law(to_sympy(force), {key: to_sympy(value) for key, value in own.items()})
     return _with_origin(vehicle, path, given, LawTerm(law, {}))
-
-
-def _expect(vehicle: Vehicle, expression: Expression, expected: Dimension, dimensions: Mapping[str, Dimension], *path: str | int) -> None:
-    found = _dimension(vehicle, expression, dimensions, *path)
-    if found != expected and (expression.names or _value(vehicle, expression, *path) != 0.0):
-        raise InputError(f"{path[-1]} must be in {expected}, found {found} in {shown(expression.text)}", vehicle.position(*path))
-
-
-def _value(vehicle: Vehicle, expression: Expression, *path: str | int) -> float:
-    try:
-        return expression.evaluate({})
-    except ExpressionError as error:
-        raise InputError(str(error), vehicle.position(*path)) from error
-
-
-def _dimension(vehicle: Vehicle, expression: Expression, dimensions: Mapping[str, Dimension], *path: str | int) -> Dimension:
-    try:
-        return expression.dimension(dimensions)
-    except ExpressionError as error:
-        raise InputError(str(error), vehicle.position(*path)) from error

@@ -8,7 +8,8 @@ import sympy as sp
 
 from vehgen.errors import InputError
 from vehgen.mechanics.symbols import to_sympy
-from vehgen.vehicle.model import GROUND, Vehicle
+from vehgen.vehicle.model import Vehicle
+from vehgen.vehicle.parts import GROUND
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from vehgen.files.result_fields import Array1D, PairKeys
 from vehgen.files.results import Result, Table
 from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
-from vehgen.vehicle.model import GROUND
+from vehgen.vehicle.parts import GROUND
 
 
 @dataclass(frozen=True, eq=False)

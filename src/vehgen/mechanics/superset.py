@@ -11,10 +11,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from vehgen.errors import InputError, did_you_mean
-from vehgen.files.expressions import Expression, Name, parse
+from vehgen.files.expressions import Expression
 from vehgen.files.units import NONE
 from vehgen.mechanics.laws import LAWS, Kind, Law, LawParameter
-from vehgen.vehicle.model import Parameter, Spring, Vehicle
+from vehgen.vehicle.model import Vehicle
+from vehgen.vehicle.parts import Parameter, Spring
 
 CandidateLaw = tuple[str, Kind, str]
 """Where and which: the axle's, link's or hinge's name, `suspension`, `tyre`, `link` or `hinge`, the law's name in LAWS."""
@@ -64,7 +65,7 @@ def add_laws(vehicle: Vehicle, candidates: Iterable[CandidateLaw]) -> Superset:
         for item in law.parameters:
             own[item.name] = _free_name(f"{owner}_{kind}_{law_name}_{item.name}", parameters)
             parameters[own[item.name]] = _parameter(law, item, kind, owner)
-        entry = {law_name: {key: Expression(name, Name(name)) for key, name in own.items()}}
+        entry = {law_name: {key: Expression.symbol(name) for key, name in own.items()}}
         group = groups["axles" if kind in ("suspension", "tyre") else f"{kind}s"]
         if owner not in group:
             raise InputError(f"{vehicle.name} has no {kind} {owner!r}; {did_you_mean(owner, group)}")
@@ -106,10 +107,10 @@ def _parameter(law: Law, item: LawParameter, kind: Kind, owner: str) -> Paramete
     else:
         value = math.sqrt(item.low * item.high) if item.low > 0 else (item.low + item.high) / 2
     dimension = item.dimension(kind)
-    unit = "" if dimension == NONE else f" {dimension}"
+    unit = "" if dimension == NONE else str(dimension)
     inside = item.low <= value <= item.high
     return Parameter(
-        value=parse(f"{value!r}{unit}"),
-        range=(parse(f"{item.low!r}{unit}"), parse(f"{item.high!r}{unit}")) if inside else None,
+        value=Expression.quantity(value, unit),
+        range=(Expression.quantity(item.low, unit), Expression.quantity(item.high, unit)) if inside else None,
         meaning=f"{law.title} on the {kind} of {owner}: {item.meaning}",
     )

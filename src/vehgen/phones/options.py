@@ -20,7 +20,7 @@ from vehgen.files.units import LENGTH, NONE, TIME, Dimension
 from vehgen.mechanics import Place, PointOutput
 from vehgen.phones.csv_table import ColumnMap, split_pairs
 from vehgen.road import Hump, MeasuredProfile, Profile
-from vehgen.simulate.runfile import HumpEntry
+from vehgen.simulate.run_file.entries import HumpEntry
 from vehgen.vehicle import Vehicle
 
 _SENSOR_KEYS = ("body", "x", "behind", "distance", "forward", "up", "acceleration_sign", "from", "to")

@@ -7,7 +7,7 @@ from vehgen.simulate.exact import exact_response, newmark_response
 from vehgen.simulate.lint import lint
 from vehgen.simulate.modes import Mode, natural_modes
 from vehgen.simulate.pool import SimulatorPool
-from vehgen.simulate.runfile import Run, load_run
+from vehgen.simulate.run_file import Run, load_run
 from vehgen.simulate.scenario import Scenario, Signal, make_scenario
 from vehgen.simulate.simulator import Response, Simulator, simulate, write_csv
 

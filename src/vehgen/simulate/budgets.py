@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from vehgen.errors import InputError
-from vehgen.simulate.runfile import MAX_STEPS, Run
+from vehgen.simulate.run_file import Run
+from vehgen.simulate.run_file.checks import MAX_STEPS
 
 MAX_RESPONSE_NUMBERS = 25_000_000
 """So many numbers may describe what excites one vehicle and what it answers: 200 MB."""

@@ -30,7 +30,8 @@ from vehgen.road import (
 )
 from vehgen.simulate.budgets import check_run, placed
 from vehgen.simulate.excitation_cache import ExcitationCache
-from vehgen.simulate.runfile import DisplacementHarmonic, ForceHarmonic, HumpEntry, Run
+from vehgen.simulate.run_file import Run
+from vehgen.simulate.run_file.entries import DisplacementHarmonic, ForceHarmonic, HumpEntry
 
 Array = NDArray[np.float64]
 AFTER_LAST_HUMP = 3.0

@@ -4,7 +4,8 @@ Bodies, hinges, axles, links and parameters, `extends`, parameter sets, bundled 
 """
 
 from vehgen.vehicle.loading import bundled_models, find_vehicle_file, load_vehicle, parse_vehicle
-from vehgen.vehicle.model import Axle, Body, Hinge, Link, Parameter, Point, Spring, Vehicle
+from vehgen.vehicle.model import Vehicle
+from vehgen.vehicle.parts import Axle, Body, Hinge, Link, Parameter, Point, Spring
 
 __all__ = [
     "Axle",

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
-from typing import Any, TypeVar, get_args
-
-from pydantic import BaseModel, ValidationError
+from typing import Any
 
 from vehgen.errors import InputError, Position, did_you_mean, shown
 from vehgen.files.document import Located, read_document, read_text
+from vehgen.files.entry import NO_MAPPING, validate
 from vehgen.files.names import as_name
 from vehgen.files.reading import short_path
 from vehgen.vehicle.checks import check_vehicle
-from vehgen.vehicle.model import Joint, Vehicle
+from vehgen.vehicle.model import Vehicle
 
-Model = TypeVar("Model", bound=BaseModel)
 MAX_EXTENDS = 20
 MAX_PATH = 300
 """So many characters of a path that a file names are quoted."""
@@ -136,7 +134,7 @@ def _read_extended(path: Path, seen: tuple[Path, ...], at: Position | None = Non
 
 def _extend(document: Located, path: Path | None, seen: tuple[Path, ...]) -> tuple[Located, tuple[Path, ...]]:
     if not isinstance(document.value, dict):
-        raise InputError("a file of `key: value` lines was expected", document.position)
+        raise InputError(NO_MAPPING, document.position)
     files = (path,) if path else ()
     base_name = document.value.get("extends")
     if base_name is None:
@@ -172,76 +170,3 @@ def merge(base: Located, change: Located) -> Located:
         else:
             kept[key] = merge(kept[key], item) if key in kept else item
     return Located(kept, change.position, change.key_position)
-
-
-def validate(model: type[Model], data: Any, document: Located) -> Model:
-    """Build a pydantic model from plain data; the first error becomes an InputError at its place in the file."""
-    try:
-        return model.model_validate(data)
-    except ValidationError as error:
-        raise _translate(error, model, document) from error
-
-
-def _translate(error: ValidationError, model: type[BaseModel], document: Located) -> InputError:
-    errors = error.errors()
-    names = (item for item in errors if item["type"] == "extra_forbidden" or item["loc"][-1] == "[key]")
-    first = next(names, errors[0])
-    if isinstance(first["input"], dict) and first["type"] in ("quantity", "string_type"):  # the entry is one of two kinds: not this one
-        beside = first["loc"][:-1]
-        first = next((item for item in errors if item["loc"][: len(beside)] == beside and item["type"] != first["type"]), first)
-    path = (*_in_file(first["loc"][:-1], document), first["loc"][-1])
-    if first["type"] == "extra_forbidden":
-        key = str(path[-1])
-        known = sorted({*_fields_beside(model, first["loc"]), *(["extends"] if model is Vehicle and len(path) == 1 else [])})
-        return InputError(f"unknown key {shown(key)}; {did_you_mean(key, known)}", document.find(path, key=True))
-    if first["type"] in ("missing", "too_long", "tuple_type") and "range" in path[-2:]:
-        return InputError("a range has two ends: [low, high]", document.find(path))
-    if first["type"] == "missing":
-        place = ".".join(str(part) for part in path[:-1]) or "the file"
-        return InputError(f"{place} lacks the key {str(path[-1])!r}", document.find(path[:-1], key=True))
-    if path[-1] == "[key]":
-        return InputError(first["msg"], document.find(path[:-1], key=True))
-    offset = (first.get("ctx") or {}).get("offset")
-    position = document.find(path, offset=offset if isinstance(offset, int) else None)
-    message = first["msg"]
-    if first["type"] in ("model_type", "dict_type"):
-        message = "expected `key: value` entries"
-    elif first["type"] in ("tuple_type", "list_type"):
-        message = f"expected a list: [first, second], or lines that begin with `- ` (found {shown(str(first['input']))})"
-    elif first["type"] == "literal_error":
-        message = f"{message[0].lower()}{message[1:]}, found {shown(first['input'])}"
-    elif first["type"] not in ("expression", "joint", "parameter", "axle", "quantity", "name"):
-        message = f"{message[0].lower()}{message[1:]} (found {shown(str(first['input']))})"
-    return InputError(message, position)
-
-
-def _in_file(path: tuple[int | str, ...], document: Located) -> tuple[int | str, ...]:
-    """Leave out what pydantic adds to a path: the names of fields and of kinds that the file does not show."""
-    node = document
-    kept: list[int | str] = []
-    for part in path:
-        child = node.child(part)
-        if child is not None:
-            node = child
-            kept.append(part)
-    return tuple(kept)
-
-
-def _fields_beside(model: type[BaseModel], path: tuple[int | str, ...]) -> Iterator[str]:
-    """Yield the keys allowed where the unknown key at pydantic's `path` stands."""
-    current: Any = model
-    for part in path[:-1]:
-        if _is_model(current):
-            current = next((field.annotation for name, field in current.model_fields.items() if part in (name, field.alias)), None)
-        else:  # dict[str, X], list[X], or a union whose chosen member `part` names
-            current = get_args(current)[-1] if get_args(current) else None
-        if type(None) in get_args(current):
-            current = get_args(current)[0]
-    if _is_model(current):
-        for name, field in current.model_fields.items():
-            if not (issubclass(current, Joint) and name == "points"):
-                yield field.alias or name
-
-
-def _is_model(item: Any) -> bool:
-    return isinstance(item, type) and issubclass(item, BaseModel)

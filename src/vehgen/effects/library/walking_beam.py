@@ -8,7 +8,7 @@ from vehgen.effects.library.law_effect import Given
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import tandems
 from vehgen.files.names import joined_name
-from vehgen.vehicle.model import Spring
+from vehgen.vehicle.parts import Spring
 
 
 def _spring(suspension: Spring) -> tuple[str, str]:

@@ -10,7 +10,7 @@ import numpy as np
 import sympy as sp
 
 from vehgen.mechanics import EquationsOfMotion
-from vehgen.vehicle.model import GROUND
+from vehgen.vehicle.parts import GROUND
 
 CLEARANCE = 0.12
 """The lowest body's outline stands this far above the wheels [m]."""

@@ -16,7 +16,7 @@ from vehgen.mechanics.symbols import to_sympy
 from vehgen.report.drawing.canvas import ACCENT, FAINT, FILLS, INK, Canvas, Spot, text_size, within, wrap
 from vehgen.report.drawing.dimensions import Chain, draw_chains, draw_hinge_heights
 from vehgen.report.drawing.sketch import Sketch, make_sketch
-from vehgen.vehicle.model import Axle, Spring
+from vehgen.vehicle.parts import Axle, Spring
 
 _TEXT = 8.5
 _ROW, _TILT = 25.0, 35.0

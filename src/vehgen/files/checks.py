@@ -1,0 +1,92 @@
+"""Checks that all file formats share: names that must be known, and the dimensions and values of expressions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from vehgen.errors import InputError, did_you_mean, shortened, shown
+from vehgen.files.document import Located
+from vehgen.files.expressions import Expression, ExpressionError
+from vehgen.files.units import NONE, Dimension
+
+
+def check_known(name: str, allowed: Iterable[str], lacking: str, document: Located, *path: str | int, key: bool = False) -> None:
+    """Refuse a name that is not one of `allowed`, with the nearest ones.
+
+    Parameters
+    ----------
+    name, allowed
+        What a file says, and what it may say.
+    lacking
+        How the error begins, e.g. `tractor5 has no body`.
+    document, path, key
+        Where the name stands: as a value, or as a key.
+    """
+    if name not in (known := list(allowed)):
+        raise InputError(f"{lacking} {shown(name)}; {did_you_mean(name, known)}", document.find(path, key=key))
+
+
+def dimension_of(expression: Expression, dimensions: Mapping[str, Dimension], document: Located, *path: str | int) -> Dimension:
+    """Return the dimension of the expression at a path; raises InputError for unknown names and units that do not fit together."""
+    try:
+        return expression.dimension(dimensions)
+    except ExpressionError as error:
+        raise InputError(str(error), document.find(path, offset=error.offset)) from error
+
+
+def value_of(expression: Expression, values: Mapping[str, float], document: Located, *path: str | int) -> float:
+    """Return the value of the expression at a path [SI]; raises InputError where it is undefined, as 1/0."""
+    try:
+        return expression.evaluate(values)
+    except ExpressionError as error:
+        raise InputError(str(error), document.find(path)) from error
+
+
+def check_dimension(
+    expression: Expression,
+    expected: Dimension,
+    dimensions: Mapping[str, Dimension],
+    document: Located,
+    *path: str | int,
+    what: str | None = None,
+) -> None:
+    """Refuse the expression at a path where its dimension is another one, or a plain one without value; a plain 0 has all dimensions.
+
+    Parameters
+    ----------
+    expression, expected
+        The expression and the dimension that it must have.
+    dimensions
+        The dimensions of the names that it may use.
+    document, path
+        Where it stands.
+    what
+        What errors call it (default: the last part of the path).
+    """
+    found = dimension_of(expression, dimensions, document, *path)
+    if found == expected and not expression.names:
+        value_of(expression, {}, document, *path)
+    if found == expected or _is_zero(expression):
+        return
+    message = f"{path[-1] if what is None else what} must be in {expected}, found {found} in {shown(expression.text)}"
+    if found == NONE:
+        unitless = [name for name in sorted(expression.names) if dimensions[name] == NONE]
+        where = f"; give {unitless[0]!r} its unit" if unitless else f"; write e.g. '{shortened(expression.text)} {expected}'"
+        message = f"missing unit: {message}{where}"
+    raise InputError(message, document.find(path))
+
+
+def _is_zero(expression: Expression) -> bool:
+    try:
+        return not expression.names and expression.evaluate({}) == 0.0
+    except ExpressionError:
+        return False
+
+
+def plain_quantity(expression: Expression, expected: Dimension, document: Located, *path: str | int, what: str | None = None) -> float:
+    """Return the value [SI] of the expression at a path, which may use no names and must have a dimension."""
+    if expression.names:
+        message = f"expected a plain quantity in {expected}, found a symbol in {shown(expression.text)}"
+        raise InputError(message, document.find(path, offset=0))
+    check_dimension(expression, expected, {}, document, *path, what=what)
+    return value_of(expression, {}, document, *path)

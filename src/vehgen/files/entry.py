@@ -1,0 +1,131 @@
+"""The form of an entry of a file, and its validation: the first fault found stands at its place in the file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, ClassVar, TypeVar, get_args
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic_core import ErrorDetails
+
+from vehgen.errors import InputError, did_you_mean, shown
+from vehgen.files.document import Located, read_document
+
+NO_MAPPING = "a file of `key: value` lines was expected"
+_OWN_WORDS = ("expression", "joint", "parameter", "axle", "quantity", "name")
+"""Types of the errors that vehgen's own validators raise: their messages are whole sentences."""
+
+
+class FileModel(BaseModel):
+    """What the entries of all files share: unknown keys are refused, values do not change.
+
+    Attributes
+    ----------
+    other_keys
+        Keys that stand beside the fields in a file and are dealt with before it is validated.
+    gathered
+        Fields that are gathered from other keys, so that no file names them.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+    other_keys: ClassVar[tuple[str, ...]] = ()
+    gathered: ClassVar[tuple[str, ...]] = ()
+
+
+Model = TypeVar("Model", bound=FileModel)
+
+
+def read_entries(model: type[Model], path: str | Path) -> tuple[Model, Located]:
+    """Read and validate a YAML file.
+
+    Returns
+    -------
+    The validated model, and the document with the places of its values.
+
+    Raises
+    ------
+    InputError
+        As :func:`vehgen.files.document.read_document` and :func:`validate`.
+
+    """
+    document = read_document(Path(path))
+    return validate(model, document.plain(), document), document
+
+
+def validate(model: type[Model], data: Any, document: Located) -> Model:
+    """Build a pydantic model from plain data; the first error becomes an InputError at its place in the document."""
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        raise _first_fault(error, model, document) from error
+
+
+def _first_fault(error: ValidationError, model: type[FileModel], document: Located) -> InputError:
+    """Return the first error of a validation, unknown keys and faulty names before all others, at its place."""
+    errors = error.errors()
+    names = (item for item in errors if item["type"] == "extra_forbidden" or "[key]" in item["loc"][-1:])
+    first = next(names, errors[0])
+    if not first["loc"]:
+        return InputError(NO_MAPPING if first["type"] == "model_type" else first["msg"], document.position)
+    if isinstance(first["input"], dict) and first["type"] in ("quantity", "string_type"):  # the entry is one of two kinds: not this one
+        beside = first["loc"][:-1]
+        first = next((item for item in errors if item["loc"][: len(beside)] == beside and item["type"] != first["type"]), first)
+    path = (*_in_file(first["loc"][:-1], document), first["loc"][-1])
+    if first["type"] == "extra_forbidden":
+        key = str(path[-1])
+        known = sorted({*_fields_beside(model, first["loc"]), *(model.other_keys if len(path) == 1 else ())})
+        return InputError(f"unknown key {shown(key)}; {did_you_mean(key, known)}", document.find(path, key=True))
+    if first["type"] in ("missing", "too_long", "tuple_type") and "range" in path[-2:]:
+        return InputError("a range has two ends: [low, high]", document.find(path))
+    if first["type"] == "missing":
+        place = ".".join(str(part) for part in path[:-1]) or "the file"
+        return InputError(f"{place} lacks the key {str(path[-1])!r}", document.find(path[:-1], key=True))
+    if path[-1] == "[key]":
+        return InputError(first["msg"], document.find(path[:-1], key=True))
+    offset = (first.get("ctx") or {}).get("offset")
+    return InputError(_message(first), document.find(path, offset=offset if isinstance(offset, int) else None))
+
+
+def _message(fault: ErrorDetails) -> str:
+    """Return in words what is wrong with a value."""
+    message = fault["msg"]
+    if fault["type"] in _OWN_WORDS:
+        return message
+    if fault["type"] in ("model_type", "dict_type"):
+        return "expected `key: value` entries"
+    if fault["type"] in ("tuple_type", "list_type"):
+        return f"expected a list: [first, second], or lines that begin with `- ` (found {shown(str(fault['input']))})"
+    if fault["type"] == "literal_error":
+        return f"{message[0].lower()}{message[1:]}, found {shown(fault['input'])}"
+    return f"{message[0].lower()}{message[1:]} (found {shown(str(fault['input']))})"
+
+
+def _in_file(path: tuple[int | str, ...], document: Located) -> tuple[int | str, ...]:
+    """Leave out what pydantic adds to a path: the names of fields and of kinds that the file does not show."""
+    node = document
+    kept: list[int | str] = []
+    for part in path:
+        child = node.child(part)
+        if child is not None:
+            node = child
+            kept.append(part)
+    return tuple(kept)
+
+
+def _fields_beside(model: type[FileModel], path: tuple[int | str, ...]) -> Iterator[str]:
+    """Yield the keys allowed where the unknown key at pydantic's `path` stands."""
+    current: Any = model
+    for part in path[:-1]:
+        if _is_model(current):
+            current = next((field.annotation for name, field in current.model_fields.items() if part in (name, field.alias)), None)
+        else:  # dict[str, X], list[X], or a union whose chosen member `part` names
+            current = get_args(current)[-1] if get_args(current) else None
+        if type(None) in get_args(current):
+            current = get_args(current)[0]
+    if _is_model(current):
+        yield from (field.alias or name for name, field in current.model_fields.items() if name not in current.gathered)
+
+
+def _is_model(item: Any) -> bool:
+    return isinstance(item, type) and issubclass(item, FileModel)

@@ -1,0 +1,137 @@
+"""The tree of an expression: numbers, names and operations, their dimensions and values."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from vehgen.errors import did_you_mean, shown
+from vehgen.files.units import NONE, Dimension
+
+FUNCTIONS = ("sqrt", "abs", "sign", "min", "max")
+
+
+class ExpressionError(ValueError):
+    """An expression that cannot be read, or whose dimensions do not fit; `offset` counts characters into its text."""
+
+    def __init__(self, message: str, offset: int = 0) -> None:
+        super().__init__(message)
+        self.offset = offset
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number in SI units with its dimension."""
+
+    value: float
+    dimension: Dimension
+    offset: int = 0
+
+
+@dataclass(frozen=True)
+class Name:
+    """A parameter's name."""
+
+    name: str
+    offset: int = 0
+
+
+@dataclass(frozen=True)
+class Operation:
+    """`+ - * / **`, `neg`, or a function's name, applied to its arguments."""
+
+    operator: str
+    arguments: tuple[SyntaxNode, ...]
+    offset: int = 0
+
+
+SyntaxNode = Number | Name | Operation
+
+
+def symbols_of(node: SyntaxNode) -> Iterator[Name]:
+    """Yield each use of a name, from left to right."""
+    if isinstance(node, Name):
+        yield node
+    elif isinstance(node, Operation):
+        for argument in node.arguments:
+            yield from symbols_of(argument)
+
+
+def constant(node: SyntaxNode) -> float | None:
+    """Return the value of a plain number, a quotient of such, or its negative; None for all else."""
+    if isinstance(node, Number) and node.dimension == NONE:
+        return node.value
+    if isinstance(node, Operation) and node.operator == "neg":
+        inner = constant(node.arguments[0])
+        return None if inner is None else -inner
+    if isinstance(node, Operation) and node.operator == "/":
+        top, bottom = (constant(argument) for argument in node.arguments)
+        return top / bottom if top is not None and bottom else None
+    return None
+
+
+def apply_float(operator: str, arguments: list[float]) -> float:
+    """Apply one operator of the expression language to floats."""
+    first = arguments[0]
+    match operator:
+        case "neg":
+            return -first
+        case "+":
+            return first + arguments[1]
+        case "-":
+            return first - arguments[1]
+        case "*":
+            return first * arguments[1]
+        case "/":
+            return first / arguments[1]
+        case "**":
+            result = first ** arguments[1]
+            if isinstance(result, complex):
+                raise ValueError("a negative number has no real root")
+            return float(result)
+        case "sqrt":
+            return math.sqrt(first)
+        case "abs":
+            return abs(first)
+        case "sign":
+            return math.copysign(1.0, first) if first else 0.0
+        case "min":
+            return min(arguments)
+        case _:
+            return max(arguments)
+
+
+def dimension_of_node(node: SyntaxNode, dimensions: Mapping[str, Dimension]) -> Dimension:
+    """Return the dimension of a tree; raises ExpressionError where units do not fit together."""
+    if isinstance(node, Number):
+        return node.dimension
+    if isinstance(node, Name):
+        if node.name not in dimensions:
+            raise ExpressionError(f"unknown symbol {shown(node.name)}; {did_you_mean(node.name, dimensions)}", node.offset)
+        return dimensions[node.name]
+    parts = [dimension_of_node(argument, dimensions) for argument in node.arguments]
+    match node.operator:
+        case "neg" | "abs":
+            return parts[0]
+        case "sign":
+            return NONE
+        case "*":
+            return parts[0] * parts[1]
+        case "/":
+            return parts[0] / parts[1]
+        case "sqrt":
+            return parts[0].power(Fraction(1, 2))
+        case "**":
+            exponent = constant(node.arguments[1]) or 0.0
+            return parts[0].power(Fraction(exponent).limit_denominator(12))
+        case _:
+            left, right = parts
+            for zero, other in ((node.arguments[0], right), (node.arguments[1], left)):
+                if isinstance(zero, Number) and zero.value == 0.0:
+                    return other
+            if left != right:
+                word = {"+": "add", "-": "subtract"}.get(node.operator, "compare")
+                raise ExpressionError(f"cannot {word} {left} and {right}", node.offset)
+            return left

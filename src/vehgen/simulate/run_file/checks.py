@@ -1,0 +1,146 @@
+"""What must hold for a run and its vehicle together; each failure names its place and what would be right."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from vehgen.errors import InputError, did_you_mean, shown
+from vehgen.files.checks import check_dimension, check_known, plain_quantity, value_of
+from vehgen.files.limits import MOST_CHANNELS, VEHICLE_LENGTH
+from vehgen.files.units import LENGTH
+from vehgen.mechanics.outputs import AXLE_QUANTITIES, LINK_QUANTITIES, POINT_QUANTITIES
+from vehgen.simulate.run_file.entries import OutputEntry, PlaceEntry
+from vehgen.vehicle.checks import check_values
+from vehgen.vehicle.parts import GROUND
+
+if TYPE_CHECKING:
+    from vehgen.simulate.run_file.loading import Run
+
+MAX_STEPS = 10_000_000
+TIME_COLUMN = "t"
+"""The heading of the time in recordings and responses."""
+
+
+def check_run(run: Run) -> None:
+    """Check a run's settings, parameters, places, channels and steps against its vehicle; raises InputError at the first fault."""
+    _check_settings(run)
+    _check_parameters(run)
+    _check_vehicle(run)
+    for kind, entries in (("forces", run.file.forces), ("sensors", run.file.sensors)):
+        for name, entry in entries.items():
+            _check_place(run, entry, kind, name)
+    _check_displacements(run)
+    _check_sensors(run)
+    for name, output in run.file.outputs.items():
+        _check_output(run, name, output)
+    _check_channel_names(run)
+    _check_steps(run)
+
+
+def _check_settings(run: Run) -> None:
+    """Check the speed, the band and the parameter set."""
+    file, vehicle, document = run.file, run.vehicle, run.document
+    if vehicle.axles and "speed" not in file.model_fields_set:
+        raise InputError(f"the file lacks the key 'speed': {vehicle.name} has wheels", document.position)
+    if file.band is not None and not file.band[0] < file.band[1]:
+        raise InputError("`band` is [lowest, highest] frequency compared; the first must be the lower one", document.find(("band",)))
+    if file.set is not None:
+        check_known(file.set, vehicle.sets, f"{vehicle.name} has no parameter set", document, "set")
+
+
+def _check_parameters(run: Run) -> None:
+    """Check that the run's own parameters are free ones of the vehicle, in their units."""
+    vehicle, document = run.vehicle, run.document
+    dimensions = vehicle.dimensions
+    for name, expression in run.file.parameters.items():
+        path = ("parameters", name)
+        check_known(name, vehicle.free_parameters, f"{vehicle.name} has no parameter with a value", document, *path, key=True)
+        plain_quantity(expression, dimensions[name], document, *path)
+
+
+def _check_vehicle(run: Run) -> None:
+    """Check that the vehicle is physical with the run's parameters."""
+    file, document = run.file, run.document
+    try:
+        check_values(run.vehicle, run.values(), " in this run")
+    except InputError as error:
+        place = document.find(("parameters" if file.parameters else "set" if file.set else "vehicle",), key=True)
+        raise InputError(f"{error.message} ({error.position})" if error.position else error.message, place) from error
+
+
+def _check_place(run: Run, entry: PlaceEntry, *path: str) -> None:
+    """Check that a place is on a body of the vehicle, behind a part of it, or at a length."""
+    vehicle, document = run.vehicle, run.document
+    check_known(entry.body, vehicle.bodies, f"{vehicle.name} has no body", document, *path, "body")
+    if entry.behind is not None:
+        parts = (*vehicle.axles, *vehicle.hinges, *vehicle.bodies)
+        check_known(entry.behind, parts, f"{vehicle.name} has no axle, hinge or body", document, *path, "behind")
+    if entry.x is not None:
+        check_dimension(entry.x, LENGTH, vehicle.dimensions, document, *path, "x")
+        number = value_of(entry.x, vehicle.all_values(run.values()), document, *path, "x")
+        if (reason := VEHICLE_LENGTH.refusal(number)) is not None:
+            raise InputError(reason, document.find((*path, "x")))
+
+
+def _check_displacements(run: Run) -> None:
+    """Check that displacements move links to the ground."""
+    vehicle = run.vehicle
+    grounded = [name for name, link in vehicle.links.items() if GROUND in link.points]
+    for name in run.file.displacements:
+        check_known(name, grounded, f"{vehicle.name} has no link to the ground", run.document, "displacements", name, key=True)
+
+
+def _check_sensors(run: Run) -> None:
+    """Check that sensors record quantities of points."""
+    for name, sensor in run.file.sensors.items():
+        for quantity in sensor.channels:
+            if quantity not in POINT_QUANTITIES:
+                raise InputError(
+                    f"unknown quantity {shown(quantity)} of a sensor; {did_you_mean(quantity, POINT_QUANTITIES)}",
+                    run.document.find(("sensors", name, "channels", quantity), key=True),
+                )
+
+
+def _check_output(run: Run, name: str, output: OutputEntry) -> None:
+    """Check that an output is a quantity of an axle or link of the vehicle."""
+    vehicle, document = run.vehicle, run.document
+    if output.axle:
+        check_known(output.axle, vehicle.axles, f"{vehicle.name} has no axle", document, "outputs", name, "axle")
+    else:
+        check_known(output.link or "", vehicle.links, f"{vehicle.name} has no link", document, "outputs", name, "link")
+    owner, quantities = ("an axle", AXLE_QUANTITIES) if output.axle else ("a link", LINK_QUANTITIES)
+    if output.quantity not in quantities:
+        raise InputError(
+            f"unknown quantity {shown(output.quantity)} of {owner}; {did_you_mean(output.quantity, quantities)}",
+            document.find(("outputs", name, "quantity")),
+        )
+
+
+def _check_channel_names(run: Run) -> None:
+    """Check that no two channels share a name, nor one with the time."""
+    document = run.document
+    names = Counter(output.name for output in run.outputs())
+    if names.total() > MOST_CHANNELS:
+        raise InputError(f"{names.total()} channels; a run has at most {MOST_CHANNELS}", document.find(("sensors",), key=True))
+    for name, count in names.items():
+        where = document.find(("outputs", name) if name in run.file.outputs else ("sensors",), key=True)
+        if name == TIME_COLUMN:
+            raise InputError(f"a channel cannot be named {name!r}, as the column of the time is; choose another name", where)
+        if count > 1:
+            raise InputError(f"two channels are named {shown(name)}; each column needs a name of its own", where)
+
+
+def _check_steps(run: Run) -> None:
+    """Check the number of steps and that samples are whole numbers of them."""
+    file, document = run.file, run.document
+    if file.duration is not None and file.duration > MAX_STEPS * file.step:
+        raise InputError(
+            f"a run has at most {MAX_STEPS} steps; {file.duration:g} s in steps of {file.step:g} s are more",
+            document.find(("duration",)),
+        )
+    if file.sample is not None and (run.decimation < 1 or abs(run.decimation * file.step - file.sample) > 1e-9 * file.sample):
+        raise InputError(
+            f"`sample` must be a whole number of steps of {file.step:g} s, found {file.sample:g} s",
+            document.find(("sample",)),
+        )

@@ -1,0 +1,78 @@
+"""From a run file to a checked run: the file, the vehicle it names and the channels it asks for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from vehgen.errors import InputError
+from vehgen.files import note_read
+from vehgen.files.document import Located
+from vehgen.files.entry import read_entries
+from vehgen.mechanics.outputs import ElementOutput, Output, Place, PointOutput
+from vehgen.simulate.run_file.checks import check_run
+from vehgen.simulate.run_file.entries import RunFile
+from vehgen.vehicle.loading import load_vehicle
+from vehgen.vehicle.model import Vehicle
+
+DEFAULT_DECIMATION = 10
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run file with the vehicle it names and the folder its own files are relative to."""
+
+    file: RunFile
+    vehicle: Vehicle
+    folder: Path
+    document: Located
+
+    @property
+    def decimation(self) -> int:
+        """Every how many steps a sample is kept."""
+        return DEFAULT_DECIMATION if self.file.sample is None else round(self.file.sample / self.file.step)
+
+    def values(self) -> dict[str, float]:
+        """Return the vehicle's free parameters in this run [SI]: file, then set, then the run's own."""
+        own = {name: expression.evaluate({}) for name, expression in self.file.parameters.items()}
+        return self.vehicle.values(self.file.set, own)
+
+    def outputs(self) -> tuple[Output, ...]:
+        """Return every channel the run asks for; with no sensor and no output, the acceleration of every body's COG."""
+        found: list[Output] = []
+        for name, sensor in self.file.sensors.items():
+            place = sensor.place(name)
+            found += [PointOutput(sensor.channel(name, quantity), place, quantity) for quantity in sensor.channels]
+        for name, output in self.file.outputs.items():
+            found.append(ElementOutput(name, output.axle or output.link or "", output.quantity))
+        if not found:
+            found = [PointOutput(f"{name}_acceleration", Place(name, name), "acceleration") for name in self.vehicle.bodies]
+        return tuple(found)
+
+    def forces(self) -> tuple[Place, ...]:
+        """Return the places of the applied forces."""
+        return tuple(entry.place(name) for name, entry in self.file.forces.items())
+
+
+def load_run(path: str | Path, vehicle: Vehicle | None = None) -> Run:
+    """Read a run file and the vehicle it names, or take another vehicle in its place.
+
+    Raises
+    ------
+    InputError
+        With file, line and column, what is wrong and what would be right.
+
+    """
+    path = Path(path)
+    file, document = read_entries(RunFile, path)
+    try:
+        vehicle = vehicle or load_vehicle(file.vehicle, path.parent)
+    except InputError as error:
+        if error.position is None:
+            raise InputError(error.message, document.find(("vehicle",))) from error
+        raise
+    if file.recording is not None:
+        note_read(path.parent / file.recording)  # no result may replace it, even where only its name is read
+    run = Run(file, vehicle, path.parent, document)
+    check_run(run)
+    return run
