@@ -31,10 +31,11 @@ sensors:
 """
 
 
-@pytest.fixture
-def truck(tmp_path):
-    (tmp_path / "run.yaml").write_text(TRUCK, encoding="utf-8")
-    return load_run(tmp_path / "run.yaml")
+@pytest.fixture(scope="module")
+def truck(tmp_path_factory):
+    path = tmp_path_factory.mktemp("truck") / "run.yaml"
+    path.write_text(TRUCK, encoding="utf-8")
+    return load_run(path)
 
 
 def test_sensitivities_are_those_of_finite_differences(tmp_path):
@@ -88,36 +89,41 @@ def test_a_vehicle_is_valid_on_its_own_recording_and_another_is_not(tmp_path):
     assert {item.channel for item in found.channels} == {"F_az", "F_q", "R_az", "R_q"}
 
 
-@pytest.fixture
-def calibration(tmp_path):
-    problem = make_problem(load_trials([write_run(tmp_path, "hump", sedan_truth())]))
+@pytest.fixture(scope="module")
+def calibration(tmp_path_factory):
+    problem = make_problem(load_trials([write_run(tmp_path_factory.mktemp("run"), "hump", sedan_truth())]))
     return calibrate(problem, Settings(search=GeneticSearch(1, 10, 2), starts=2))
 
 
-def same(calibration, runner):
-    here = summarise(calibration, replicates=3)
+@pytest.fixture(scope="module")
+def here(calibration):
+    """The summary whose bootstrap runs in this process, one replicate after the other."""
+    return summarise(calibration, replicates=3)
+
+
+def check_same(calibration, here, runner):
     there = summarise(calibration, replicates=3, runner=runner)
     assert here.bootstrap
     assert here.bootstrap == there.bootstrap
 
 
-def test_a_bootstrap_is_the_same_on_threads(calibration):
+def test_a_bootstrap_is_the_same_on_threads(calibration, here):
     with ThreadPoolExecutor(2) as pool:
-        same(calibration, Runner(pool))
+        check_same(calibration, here, Runner(pool))
 
 
-def test_a_bootstrap_is_the_same_in_other_processes(calibration):
+def test_a_bootstrap_is_the_same_in_other_processes(calibration, here):
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
-        same(calibration, Runner(pool))
+        check_same(calibration, here, Runner(pool))
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_a_bootstrap_is_the_same_on_a_dask_cluster_that_loses_a_worker(calibration):
+def test_a_bootstrap_is_the_same_on_a_dask_cluster_that_loses_a_worker(calibration, here):
     distributed = pytest.importorskip("distributed")
     with (
         distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True) as cluster,
         runner_at(cluster.scheduler_address) as runner,
     ):
-        same(calibration, runner)
+        check_same(calibration, here, runner)
         next(iter(cluster.workers.values())).kill()
-        same(calibration, runner)
+        check_same(calibration, here, runner)

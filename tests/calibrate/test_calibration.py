@@ -13,7 +13,6 @@ from vehgen.calibrate.objective import PsdObjective
 from vehgen.calibrate.summary import summarise
 from vehgen.errors import InputError
 from vehgen.fit.least_squares import fit_least_squares
-from vehgen.fit.prior_data import load_prior_data
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
 
@@ -121,21 +120,6 @@ def test_a_stopped_search_is_resumed_bit_for_bit(problem, tmp_path):
         calibrate(problem, small(), checkpoint=path, resume=True)
 
 
-def test_a_wrong_clock_and_speed_are_found_along_the_way(tmp_path):
-    path = write_run(tmp_path, "late", TRUTH, 2.5)
-    rows = np.loadtxt(tmp_path / "late.csv", delimiter=",", skiprows=1)
-    rows[:, 0] += 0.13
-    np.savetxt(tmp_path / "late.csv", rows, delimiter=",", header="t,F_az,F_q,R_az,R_q", comments="")
-    path.write_text(path.read_text(encoding="utf-8").replace("speed: 2.5", "speed: 2.53"), encoding="utf-8")
-    problem = make_problem(load_trials([path]))
-    fit = fit_least_squares(problem, problem.space.unit(truth_of(problem) * 1.05))
-    delay, speed = fit.misfit.split(fit.x)[1][0] * (0.2, 0.01)
-    # the hump lies 4 m ahead at the file's speed
-    assert delay + 4 / 2.53 / (1 + speed) == pytest.approx(0.13 + 4 / 2.5, abs=2e-3)
-    assert 2.53 * (1 + speed) == pytest.approx(2.5, rel=2e-3)
-    assert fit.values == pytest.approx(truth_of(problem), rel=0.05)
-
-
 def test_fisher_intervals_agree_with_a_bootstrap(problem):
     found = calibrate(problem, Settings(search=GeneticSearch(1, 10, 0), starts=2))
     outcome = summarise(found, replicates=60)
@@ -163,45 +147,3 @@ def test_the_vehicle_file_that_comes_out_is_read_back_exactly(problem, tmp_path)
     values = load_vehicle(path).values()
     assert {name: values[name] for name in outcome.calibration.values} == outcome.calibration.values
     assert load_vehicle(path).ranges() == problem.trials[0].run.vehicle.ranges()
-
-
-def test_facts_enter_the_fit(problem, tmp_path):
-    path = tmp_path / "facts.yaml"
-    path.write_text("parameters: {mf: {value: 95 kg, uncertainty: 1 mg}}\n".replace("1 mg", "1 g"), encoding="utf-8")
-    facts = load_prior_data(path, problem)
-    fit = fit_least_squares(problem, problem.space.unit(problem.space.start), prior_data=facts)
-    assert fit.values[problem.space.names.index("mf")] == pytest.approx(95.0, abs=0.05)
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("parameters: {mq: {value: 95 kg, uncertainty: 1 g}}", "no parameter 'mq'"),
-        ("parameters: {mf: {value: 95 m, uncertainty: 1 g}}", "mf must be in kg"),
-        ("parameters: {mf: {value: 95 kg, uncertainty: 0 kg}}", "above 0"),
-        ("axle_weights: {middle: {value: 9 kN, uncertainty: 1 kN}}", "has no axle 'middle'"),
-        ("uncoupled: {boddy: {front: {value: 9 kN, uncertainty: 1 kN}}}", "has no body 'boddy'"),
-        ("{}", "no fact"),
-    ],
-)
-def test_facts_that_do_not_fit_are_refused(problem, tmp_path, text, said):
-    path = tmp_path / "facts.yaml"
-    path.write_text(text, encoding="utf-8")
-    with pytest.raises(InputError, match=said):
-        load_prior_data(path, problem)
-
-
-def test_axle_weights_are_those_of_a_lever(problem, tmp_path):
-    path = tmp_path / "facts.yaml"
-    path.write_text("axle_weights: {front: {value: 1 kN, uncertainty: 1 kN}}", encoding="utf-8")
-    residual = load_prior_data(path, problem).residuals(problem.space.start)[0]
-    start = dict(zip(problem.space.names, problem.space.start, strict=True))
-    load = 9.81 * (1500.0 * (2.8 - start["Lf"]) / 2.8 + start["mf"])
-    assert residual == pytest.approx(load / 1000 - 1, rel=1e-9)
-
-
-def test_a_recording_that_ends_before_the_hump_is_refused(tmp_path):
-    path = write_run(tmp_path, "short", TRUTH, 2.5)
-    path.write_text(path.read_text(encoding="utf-8").replace("at: 4 m", "at: 30 m"), encoding="utf-8")
-    with pytest.raises(InputError, match=r"ends after .* before the last axle"):
-        load_trials([path])

@@ -18,8 +18,9 @@ SENSORS = {
 }
 
 
-@pytest.fixture
-def truck(tmp_path, request):
+@pytest.fixture(scope="module")
+def truck(tmp_path_factory, request):
+    tmp_path = tmp_path_factory.mktemp("truck")
     t = np.arange(1400) * 0.01
     values = np.random.default_rng(0).standard_normal((1400, 4))
     np.savetxt(tmp_path / "run.csv", np.column_stack([t, values]), delimiter=",", header="t,az,q,bz,r", comments="")

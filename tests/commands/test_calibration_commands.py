@@ -17,9 +17,9 @@ from vehgen.fit.trial import load_trials
 SMALL = ["--generations", "5", "--size", "20", "--starts", "1"]
 
 
-@pytest.fixture
-def run(tmp_path):
-    return str(write_run(tmp_path, "hump", sedan_truth()))
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    return str(write_run(tmp_path_factory.mktemp("run"), "hump", sedan_truth()))
 
 
 def test_calibrate_writes_vehicle_result_and_figures(run, tmp_path, capsys):

@@ -56,16 +56,26 @@ def test_help_lists_every_command_and_no_command_prints_it(capsys: pytest.Captur
         "import vehgen.commands",
         "import runpy, sys; sys.argv = ['vehgen', '--help']; runpy.run_module('vehgen', run_name='__main__')",
         "import runpy, sys; sys.argv = ['vehgen', '--version']; runpy.run_module('vehgen', run_name='__main__')",
-        *(
-            f"import runpy, sys; sys.argv = ['vehgen', '{name}', '--help']; runpy.run_module('vehgen', run_name='__main__')"
-            for name in NAMES
-        ),
     ],
 )
 def test_help_and_import_stay_light(code: str):
     watch = f"import atexit, sys\natexit.register(lambda: print('loaded', sorted({HEAVY!r} & set(sys.modules)), file=sys.stderr))\n"
     found = python("-c", watch + code)
     assert found.stderr == "loaded []\n"
+
+
+def test_no_commands_help_loads_a_heavy_package():
+    """In one process: what any of them loaded would still be there at the end."""
+    code = f"""
+import contextlib, io, sys
+from vehgen.commands import main
+for name in {NAMES}:
+    with contextlib.redirect_stdout(io.StringIO()) as printed, contextlib.suppress(SystemExit):
+        main([name, "--help"])
+    print(name, "usage:" in printed.getvalue(), sorted({HEAVY} & set(sys.modules)))
+"""
+    found = python("-c", code)
+    assert found.stdout.splitlines() == [f"{name} True []" for name in NAMES]
 
 
 def test_reading_a_bad_file_needs_no_heavy_package(work: Path):

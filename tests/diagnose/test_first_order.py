@@ -3,19 +3,17 @@
 import numpy as np
 import pytest
 
-from vehgen.diagnose.detect.detection import detect
 from vehgen.diagnose.fits.candidate import build_problem, list_candidates
 from vehgen.diagnose.fits.first_order import ProbeMotion
 from vehgen.diagnose.fits.model_fit import NUISANCES, CurrentModel
 from vehgen.effects import EffectLocator, library
 from vehgen.fit.misfit import Misfit, flatten
-from vehgen.fit.trial import load_trials
 from vehgen.simulate import SimulatorPool
 
 
 @pytest.fixture(scope="module")
-def detection(record):
-    return detect(load_trials(record()))
+def detection(detection_of):
+    return detection_of()
 
 
 @pytest.mark.parametrize("name", ["cubic_stiffness", "quadratic_damping", "tyre_damping", "progressive_stiffness"])

@@ -5,12 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchmarks.hidden_effects.generator import Case, Effect, Hump, RunSpec, nominal, perturbed, write_case
+from benchmarks.hidden_effects.generator import Effect, Hump, RunSpec, nominal, perturbed
 
 from vehgen.diagnose.inputs.checks import check_inputs, explain_gap
 from vehgen.diagnose.inputs.labels import correlate
-from vehgen.diagnose.pipeline import detect
-from vehgen.fit.trial import load_trials
+from vehgen.diagnose.pipeline import detect, split_runs
 
 RUNS = (
     RunSpec((Hump(0.5, 0.03, 4.0),), 2.0, 5.0, "low"),
@@ -20,20 +19,12 @@ RUNS = (
 NAMES = ("F_az", "F_q", "R_az", "R_q")
 
 
-def record(tmp_path_factory, *effects, parameters=None, runs=RUNS):
-    folder = tmp_path_factory.mktemp("runs")
-    write_case(Case("sedan2", parameters, effects, runs, seed=3), folder, tmp_path_factory.mktemp("truth"))
-    return load_trials(sorted(folder.glob("*.yaml")))
+FRICTION = Effect("dry_friction", "front", {"force": 1100.0})
 
 
 @pytest.fixture(scope="module")
-def plain(tmp_path_factory):
-    return record(tmp_path_factory)
-
-
-@pytest.fixture(scope="module")
-def friction(tmp_path_factory):
-    return record(tmp_path_factory, Effect("dry_friction", "front", {"force": 1100.0}))
+def plain(trials_of):
+    return trials_of(runs=RUNS)
 
 
 def edited(trials, change, only=None):
@@ -116,31 +107,31 @@ def test_exchanged_phones_are_named(plain):
 
 
 def test_phones_exchanged_in_an_untouched_run_only_are_named_with_the_run(plain):
-    untouched = detect(plain).validation_runs[0].name
+    untouched = split_runs(plain)[1][0].name
     (finding,) = explain_gap(detect(edited(plain, exchange, only=untouched)))
     assert (finding.kind, finding.run) == ("exchanged", untouched)
 
 
-def test_a_turned_axis_is_named_though_friction_hides_too(friction):
-    (finding,) = explain_gap(detect(edited(friction, turn("F_az"))))
+def test_a_turned_axis_is_named_though_friction_hides_too(trials_of):
+    (finding,) = explain_gap(detect(edited(trials_of(FRICTION, runs=RUNS), turn("F_az"))))
     assert (finding.kind, finding.run, finding.channel, finding.fatal) == ("turned", None, "F_az", True)
     assert "sign: -1" in finding.message
 
 
-def test_a_wrong_wheelbase_is_measured_by_the_arrival_of_the_rear_axle(tmp_path_factory):
+def test_a_wrong_wheelbase_is_measured_by_the_arrival_of_the_rear_axle(detection_of):
     parameters = perturbed("sedan2", 3)
     parameters["wheelbase"] *= 1.15
-    (finding,) = explain_gap(detect(record(tmp_path_factory, parameters=parameters)))
+    (finding,) = explain_gap(detection_of(parameters=parameters, runs=RUNS))
     assert (finding.kind, finding.fatal) == ("axle_position", True)
     words = re.search(r"rear seems to run (\S+) m further behind front", finding.message)
     assert float(words[1]) == pytest.approx(0.15 * nominal("sedan2")["wheelbase"], abs=0.02)
 
 
-def test_another_vehicle_is_told_by_its_parameters(tmp_path_factory):
+def test_another_vehicle_is_told_by_its_parameters(detection_of):
     parameters = perturbed("sedan2", 3)
     for name in ("kf", "kr"):
         parameters[name] = 2 * nominal("sedan2")[name]
-    (finding,) = explain_gap(detect(record(tmp_path_factory, parameters=parameters)))
+    (finding,) = explain_gap(detection_of(parameters=parameters, runs=RUNS))
     assert (finding.kind, finding.fatal) == ("other_parameters", True)
     ratios = dict(re.findall(r"(\w+) (\S+) times", finding.message))
     assert {name: float(ratio) for name, ratio in ratios.items()} == pytest.approx({"kf": 2.0, "kr": 2.0}, rel=0.02)
@@ -154,12 +145,8 @@ def test_recordings_that_have_nothing_to_do_with_the_vehicle_are_refused(plain):
     assert finding.kind == "stranger"
 
 
-def test_friction_is_no_mistake(friction):
-    assert check_inputs(friction) == ()
-    assert explain_gap(detect(friction)) == ()
-
-
-def test_a_late_phone_is_no_mistake(tmp_path_factory):
-    trials = record(tmp_path_factory, Effect("sensor_delay", "R", {"time": 0.03}))
-    assert check_inputs(trials) == ()
-    assert explain_gap(detect(trials)) == ()
+@pytest.mark.parametrize("effect", [FRICTION, Effect("sensor_delay", "R", {"time": 0.03})], ids=lambda effect: effect.name)
+def test_an_effect_is_no_mistake(detection_of, effect):
+    detection = detection_of(effect, runs=RUNS)
+    assert check_inputs(detection.trials) == ()
+    assert explain_gap(detection) == ()

@@ -8,7 +8,6 @@ from benchmarks.hidden_effects.generator import Case, Effect
 from benchmarks.hidden_effects.generator.simulate import true_parameters
 
 from tests.diagnose.conftest import RUNS
-from vehgen.diagnose.detect.detection import detect
 from vehgen.diagnose.localise.unknown_force import list_places
 from vehgen.diagnose.localise.unknown_force import score_locations as place_test
 from vehgen.diagnose.pipeline import diagnose
@@ -16,19 +15,13 @@ from vehgen.diagnose.select.estimates import RunEstimate, disagreement
 from vehgen.effects import EFFECTS
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.resolution import resolve
-from vehgen.fit.trial import load_trials
 
 FRICTION = Effect("dry_friction", "front", {"force": 600.0})
 
 
 @pytest.fixture(scope="module")
-def runs(record):
-    return record(FRICTION)
-
-
-@pytest.fixture(scope="module")
-def found(runs):
-    return diagnose(load_trials(runs), [EFFECTS["dry_friction"]])
+def found(trials_of):
+    return diagnose(trials_of(FRICTION), [EFFECTS["dry_friction"]])
 
 
 def test_friction_gets_shorter_steps_where_it_jumps_and_smooth_models_none(found):
@@ -64,8 +57,8 @@ def test_several_minima_are_tried_and_the_force_is_told_within_its_interval(foun
     assert fit.training < 1.1
 
 
-def test_the_place_test_leaves_parameters_that_the_effect_has_not_biased(runs):
-    detection = detect(load_trials(runs))
+def test_the_place_test_leaves_parameters_that_the_effect_has_not_biased(found):
+    detection = found.detection
     misfit, x = detection.base.least_squares.misfit, detection.base.least_squares.x
     place = next(item for item in list_places(misfit) if item.label == "suspension front")
     (result,) = place_test(misfit, x, [place])

@@ -5,15 +5,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from benchmarks.hidden_effects.generator import Effect
 
-from vehgen.diagnose.detect.detection import detect
+from tests.diagnose.conftest import CUBIC
 from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.localise.localisation import shortlist
 from vehgen.diagnose.localise.unknown_force import Place, PlaceResult
 from vehgen.diagnose.select.search import fit_candidates, own_numbers
 from vehgen.effects import EFFECTS, load_effects, registry
-from vehgen.fit.trial import load_trials
 
 TWINS = {"cubic_stiffness": "rear", "sensor_gain": "F_az", "engine_harmonic": "body"}
 """An effect of each kind and where it is tried."""
@@ -39,8 +37,8 @@ FILE = """effects:
 
 
 @pytest.fixture(scope="module")
-def detection(record):
-    return detect(load_trials(record(Effect("cubic_stiffness", "rear", {"k3": 1e8}))))
+def detection(detection_of):
+    return detection_of(CUBIC)
 
 
 def candidates(detection, effects):

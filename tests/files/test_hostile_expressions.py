@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import time
 
 import pytest
 
@@ -128,11 +127,9 @@ FINE = [text for text, message in HOSTILE.items() if not message]
 
 @pytest.mark.parametrize(("text", "message"), [(t, m) for t, m in HOSTILE.items() if m], ids=lambda item: repr(item)[:30])
 def test_refused(text: str, message: str):
-    start = time.perf_counter()
     with pytest.raises(ExpressionError) as caught:
         parse(text)
     assert any(part in str(caught.value) for part in message.split(" or: "))
-    assert time.perf_counter() - start < 0.5
     assert 0 <= caught.value.offset <= max(len(text), 1)
 
 
@@ -157,11 +154,9 @@ def test_what_has_no_value_is_an_error_and_no_crash(text: str):
 def test_towers_of_small_powers_end():
     text = "b1" + "**10" * 1
     tower = parse("(" * 30 + text + ")**10" * 30)
-    start = time.perf_counter()
     with pytest.raises(ExpressionError, match="has no value"):
         tower.evaluate({"b1": 2.0})
     assert tower.evaluate({"b1": 1.0}) == 1.0
-    assert time.perf_counter() - start < 0.5
 
 
 WATCHED = """

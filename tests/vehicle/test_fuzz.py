@@ -10,12 +10,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from tests.vehicle.rig import GOOD
 from vehgen.errors import InputError
-from vehgen.files.document import read_document
+from vehgen.files.document import read_text
 from vehgen.vehicle import bundled_models, parse_vehicle
 
-MODELS = {name: path.read_text(encoding="utf-8") for name, path in bundled_models().items()}
-DATA = {name: read_document(path).plain() for name, path in bundled_models().items()}
+MODELS = {name: path.read_text(encoding="utf-8") for name, path in bundled_models().items()} | {"rig": GOOD}
+DATA = {name: read_text(text, name).plain() for name, text in MODELS.items()}
 
 pieces = st.one_of(
     st.sampled_from(list("{}[]:,-*&!|>'\"#%@?~ \n\t0a.m/+()=<\\\x00\x07\x85\u2028\ufeff\u00e9\U0001f69a")),

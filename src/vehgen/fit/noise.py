@@ -22,6 +22,7 @@ import numpy as np
 import scipy.optimize
 import scipy.signal
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from vehgen.road.iso8608 import REFERENCE_CYCLES_PER_M
 from vehgen.simulate.frequency import frequency_response
@@ -207,7 +208,8 @@ def estimate_noise(residuals: Sequence[tuple[Complex, RoadAnswer]], start: Noise
     mostly_road = Noise(np.full(knots, share), 0.1 * np.sqrt(power), start.slope)
     bounds = [(np.log(SMALLEST_LEVEL), np.log(LARGEST_LEVEL))] * knots + [(np.log(low), np.log(low) + 12.0) for low in floor]
     found = []
-    for first in (start, mostly_road):
-        levels, sigma = np.clip(first.levels, SMALLEST_LEVEL, LARGEST_LEVEL), np.maximum(first.sigma, floor)
-        found.append(scipy.optimize.minimize(loss, np.log(np.concatenate([levels, sigma])), jac=True, method="L-BFGS-B", bounds=bounds))
+    with threadpool_limits(1, user_api="blas"):  # a dozen unknowns: more threads only wait for one another
+        for first in (start, mostly_road):
+            levels, sigma = np.clip(first.levels, SMALLEST_LEVEL, LARGEST_LEVEL), np.maximum(first.sigma, floor)
+            found.append(scipy.optimize.minimize(loss, np.log(np.concatenate([levels, sigma])), jac=True, method="L-BFGS-B", bounds=bounds))
     return read(min(found, key=lambda item: float(item.fun)).x)

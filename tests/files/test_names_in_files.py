@@ -1,51 +1,16 @@
-"""What may be a name, a heading or a text: the rules themselves, every place where files give names, and YAML that vehgen writes."""
+"""Every place where a vehicle, run, cargo, frame or effects file gives a name or a text: a bad one is refused where it stands."""
 
 import json
-import unicodedata
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from vehgen.cargo import load_cargo
 from vehgen.cargo.frame_file import load_frame
 from vehgen.effects.entry import load_effects
-from vehgen.errors import InputError, did_you_mean, shown
-from vehgen.files.document import read_text
-from vehgen.files.names import MAX_TEXT, as_name, is_column, is_identifier, is_name, unprintable
+from vehgen.errors import InputError
+from vehgen.files.names import MAX_TEXT
 from vehgen.simulate import load_run
 from vehgen.vehicle import load_vehicle, parse_vehicle
-from vehgen.vehicle.writing import variant_text, yaml_document, yaml_text, yaml_title
-
-GOOD_NAMES = ("a", "_", "7", "DHCM-1-2", "v1.2_b-c", "挂车", "été", "Ωmega", "x" * 64, "٣")
-BAD_NAMES = (
-    "", " ", "a b", "a\tb", "a\nb", "-a", ".a", "=cmd|' /C calc'!A0", "+1", "@SUM(1)", "a/b", "a\\b", "a:b", "a'b", 'a"b', "a&b", "<b>",
-    "{a}", "${a}", "[/x]", "$x$", "%n", "a;b", "a\u202eb", "a\u200bb", "a\u00adb", "\ufeffa", "ﬁn", "x²", "e\u0301", "x" * 65,
-    "a\x00", "🚚",
-)  # fmt: skip
-ODD = "\"\"\"\n'''\\ \t{{}} ${x} </script> # : - ? & * ! | > % @ ` \u00e9 \U0001f69a"
-
-
-def test_what_may_be_a_name():
-    assert all(is_name(name) for name in GOOD_NAMES)
-    assert [name for name in BAD_NAMES if is_name(name)] == []
-    assert is_identifier("kT_1")
-    assert not any(is_identifier(name) for name in ("1k", "_k", "k-1", "k.1", "ké", "", "k" * 65, "k\n"))
-
-
-@given(st.text())
-def test_any_text_has_a_nearest_name(text):
-    name = as_name(text)
-    assert is_name(name)
-    assert not is_name(text) or name == text
-
-
-@given(st.text(max_size=300))
-def test_a_heading_stays_on_its_line(text):
-    if is_column(text):
-        assert len(text.splitlines()) <= 1
-        assert not any(unicodedata.category(character) in ("Cc", "Cs") for character in text)
-
 
 VEHICLE = """\
 name: rig
@@ -214,48 +179,7 @@ def test_a_vehicle_without_a_name_takes_that_of_its_file(tmp_path):
     assert load_vehicle(path).name == "my_rig__2_"
 
 
-def test_errors_quote_little_of_a_file_and_escape_it():
-    assert shown("a\u202eb") == r"'a\u202eb'"
-    assert shown("x" * 10_000) == "'" + "x" * 57 + "...'"
-    assert len(did_you_mean("y" * 10_000, ["x" * 10_000] * 30)) < 1500
-    assert "\u202e" not in str(InputError("a\u202eb\n"))
-    assert len(str(InputError("x" * 10_000))) <= 2000
+def test_an_error_about_a_long_name_is_short():
     with pytest.raises(InputError) as caught:
         parse_vehicle(VEHICLE.replace("body: frame", f"body: {'z' * 10_000}"))
     assert len(str(caught.value)) < 300
-
-
-TEXTS = st.text(alphabet=st.characters(exclude_categories=("Cs",)), max_size=30).filter(lambda text: unprintable(text) is None)
-LEAVES = st.one_of(TEXTS, st.integers(-(10**9), 10**9), st.floats(allow_nan=False, allow_infinity=False), st.booleans(), st.none())
-TREES = st.recursive(LEAVES, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(TEXTS, inner, max_size=3), max_leaves=12)
-
-
-@given(st.dictionaries(TEXTS, TREES, min_size=1, max_size=4))
-def test_whole_files_that_vehgen_writes_read_back(data):
-    assert read_text(yaml_document(data), "<text>").plain() == data
-
-
-def read_back(scalar):
-    return read_text(f"- {scalar}\n- {{key: {scalar}, other: 1}}\n", "<text>").plain()
-
-
-@given(TEXTS)
-def test_what_vehgen_writes_as_yaml_reads_back(text):
-    assert read_back(yaml_text(text)) == [text, {"key": text, "other": 1}]
-    assert read_back(yaml_title(text))[0] == " ".join(text.split())
-
-
-@pytest.mark.parametrize(
-    "text", [ODD, "null", "true", "NO", "1e3", "0x10", "~", "", " a ", "2020-01-01", ".nan", "a: b", "a #b", "- a", "'", "?0"]
-)
-def test_words_that_yaml_reads_as_something_else_read_back(text):
-    assert read_back(yaml_text(text)) == [text, {"key": text, "other": 1}]
-
-
-def test_a_file_with_odd_texts_is_written_and_read_again(tmp_path):
-    base = load_vehicle(_written(tmp_path / "it's a (base).yaml", VEHICLE))
-    text = variant_text(base, tmp_path, "null", ODD, {"mB": 850.0}, [ODD], {"mB": "note"})
-    again = load_vehicle(_written(tmp_path / "variant.yaml", text))
-    assert again.name == "null"
-    assert again.title == " ".join(ODD.split())
-    assert again.values()["mB"] == 850.0

@@ -1,0 +1,50 @@
+"""What is known besides the recordings: it enters a fit, must belong to the vehicle, and weighs axles as a lever does."""
+
+import pytest
+
+from tests.fit.recordings import sedan_truth, write_run
+from vehgen.errors import InputError
+from vehgen.fit.least_squares import fit_least_squares
+from vehgen.fit.prior_data import load_prior_data
+from vehgen.fit.problem import make_problem
+from vehgen.fit.trial import load_trials
+
+
+@pytest.fixture(scope="module")
+def problem(tmp_path_factory):
+    return make_problem(load_trials([write_run(tmp_path_factory.mktemp("runs"), "fast", sedan_truth())]))
+
+
+def test_facts_enter_the_fit(problem, tmp_path):
+    path = tmp_path / "facts.yaml"
+    path.write_text("parameters: {mf: {value: 95 kg, uncertainty: 1 mg}}\n".replace("1 mg", "1 g"), encoding="utf-8")
+    facts = load_prior_data(path, problem)
+    fit = fit_least_squares(problem, problem.space.unit(problem.space.start), prior_data=facts)
+    assert fit.values[problem.space.names.index("mf")] == pytest.approx(95.0, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("parameters: {mq: {value: 95 kg, uncertainty: 1 g}}", "no parameter 'mq'"),
+        ("parameters: {mf: {value: 95 m, uncertainty: 1 g}}", "mf .*in kg"),
+        ("parameters: {mf: {value: 95 kg, uncertainty: 0 kg}}", "above 0"),
+        ("axle_weights: {middle: {value: 9 kN, uncertainty: 1 kN}}", "no axle 'middle'"),
+        ("uncoupled: {boddy: {front: {value: 9 kN, uncertainty: 1 kN}}}", "no body 'boddy'"),
+        ("{}", "no fact"),
+    ],
+)
+def test_facts_that_do_not_fit_are_refused(problem, tmp_path, text, said):
+    path = tmp_path / "facts.yaml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=said):
+        load_prior_data(path, problem)
+
+
+def test_axle_weights_are_those_of_a_lever(problem, tmp_path):
+    path = tmp_path / "facts.yaml"
+    path.write_text("axle_weights: {front: {value: 1 kN, uncertainty: 1 kN}}", encoding="utf-8")
+    residual = load_prior_data(path, problem).residuals(problem.space.start)[0]
+    start = dict(zip(problem.space.names, problem.space.start, strict=True))
+    load = 9.81 * (1500.0 * (2.8 - start["Lf"]) / 2.8 + start["mf"])
+    assert residual == pytest.approx(load / 1000 - 1, rel=1e-9)
