@@ -29,8 +29,8 @@ def test_facts_enter_the_fit(problem, tmp_path):
         ("parameters: {mq: {value: 95 kg, uncertainty: 1 g}}", "no parameter 'mq'"),
         ("parameters: {mf: {value: 95 m, uncertainty: 1 g}}", "mf .*in kg"),
         ("parameters: {mf: {value: 95 kg, uncertainty: 0 kg}}", "above 0"),
-        ("axle_weights: {middle: {value: 9 kN, uncertainty: 1 kN}}", "no axle 'middle'"),
-        ("uncoupled: {boddy: {front: {value: 9 kN, uncertainty: 1 kN}}}", "no body 'boddy'"),
+        ("axle_weights: {middle: {value: 9 kN, uncertainty: 1 kN}}", "has no axle 'middle'"),
+        ("uncoupled: {boddy: {front: {value: 9 kN, uncertainty: 1 kN}}}", "has no body 'boddy'"),
         ("{}", "no fact"),
     ],
 )

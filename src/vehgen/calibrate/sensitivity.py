@@ -21,7 +21,7 @@ from vehgen.simulate.sensitivity import direct_sensitivities
 from vehgen.vehicle import Vehicle
 
 Array = NDArray[np.float64]
-MAX_SHOWN = 500
+MOST_SENSITIVITIES = 500
 """A file with more channels or parameters than this is refused: no figure could show them."""
 
 
@@ -38,11 +38,11 @@ class SensitivityIndices(Result):
 
     names: tuple[str, ...]
     values: Array1D
-    channels: Annotated[tuple[str, ...], Field(max_length=MAX_SHOWN)]
+    channels: Annotated[tuple[str, ...], Field(max_length=MOST_SENSITIVITIES)]
     frequency: Array1D
     index: Array3D
     relative: Array2D
-    kinds: Annotated[tuple[str, ...], Field(max_length=MAX_SHOWN)]
+    kinds: Annotated[tuple[str, ...], Field(max_length=MOST_SENSITIVITIES)]
 
     def __post_init__(self) -> None:
         shape = len(self.names), len(self.channels), len(self.frequency)

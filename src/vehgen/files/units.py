@@ -102,7 +102,7 @@ UNITS: dict[str, tuple[float, Dimension]] = {
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of free fall [m/s^2], the unit g of accelerometers and of spectra; what pulls on a vehicle is mechanics.GRAVITY."""
 MAX_EXPONENT = 9
-_ATOM = re.compile(r"([A-Za-z]+)(?:(?:\^|\*\*)(-?[0-9]+))?")
+_UNIT_FACTOR = re.compile(r"([A-Za-z]+)(?:(?:\^|\*\*)(-?[0-9]+))?")
 _JOIN = re.compile(r"\s*([/*·])\s*|\s+")
 
 
@@ -124,7 +124,7 @@ def read_unit(text: str, start: int = 0) -> tuple[float, Dimension, int] | None:
     divide = False
     position = start
     while True:
-        atom = _ATOM.match(text, position)
+        atom = _UNIT_FACTOR.match(text, position)
         if atom is None or atom.group(1) not in UNITS or _continues_name(text, atom.end()):
             break
         if end > start and text.startswith("(", atom.end()):
