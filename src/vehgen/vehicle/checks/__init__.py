@@ -1,4 +1,4 @@
-"""What must hold for a vehicle? Checks before its equations are derived, by subject; each failure names its place and what would be right."""
+"""What must hold for a vehicle? Checks before its equations are derived; each failure names its place and what would be right."""
 
 from __future__ import annotations
 
