@@ -8,12 +8,13 @@ import numpy as np
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from vehgen.commands.option_strings import read_column_map, read_hump, read_sensor
 from vehgen.errors import InputError
 from vehgen.mechanics import Place
 from vehgen.phones import ColumnMap, read_export
-from vehgen.phones.csv_table import read_column_map, read_table
+from vehgen.phones.csv_table import read_table
 from vehgen.phones.locating import find_speed
-from vehgen.phones.options import PhoneSensor, Plan, read_hump, read_sensor
+from vehgen.phones.options import PhoneSensor, Plan
 from vehgen.phones.phone import make_phone
 from vehgen.vehicle import load_vehicle
 

@@ -61,17 +61,17 @@ def plan(problem: Problem, method: str, sensors: Sequence[str] = (), frozen: Seq
         return (Step("all sensors", chosen, names, names),)
     if method == "shcm":
         if len(chosen) != 1:
-            raise InputError(f"shcm uses one sensor; choose it with --sensors, one of {', '.join(every)}")
+            raise InputError(f"shcm uses one sensor; choose it (`sensors`), one of {', '.join(every)}")
         return (Step(f"sensor {chosen[0]}", chosen, names, names),)
     if len(chosen) != 2:
-        raise InputError(f"dhcm uses two sensors, found {', '.join(chosen) or 'none'}; choose them with --sensors FIRST,SECOND")
+        raise InputError(f"dhcm uses two sensors, found {', '.join(chosen) or 'none'}; choose them in their order (`sensors`)")
     for name in frozen:
         if name not in names:
             raise InputError(f"{name!r} is not searched and cannot be kept from the first step; {did_you_mean(name, names)}")
     kept = tuple(frozen) or near_parameters(problem, chosen[0])
     rest = tuple(name for name in names if name not in kept)
     if not kept or not rest:
-        raise InputError("dhcm needs parameters of its own for both steps: name those to keep from the first with --freeze")
+        raise InputError("dhcm needs parameters of its own for both steps: name those to keep from the first (`frozen`)")
     return (Step(f"sensor {chosen[0]}", (chosen[0],), names, kept), Step(f"sensor {chosen[1]}", (chosen[1],), rest, rest))
 
 

@@ -71,7 +71,7 @@ def sensitivity_indices(run: Run, names: Sequence[str] | None = None) -> Sensiti
     """
     chosen = tuple(names or run.vehicle.ranges())
     if not chosen:
-        raise InputError(f"no parameter of {run.vehicle.name} has a `range`; name those to differentiate by with --parameters")
+        raise InputError(f"no parameter of {run.vehicle.name} has a `range`; name those to differentiate by (`parameters`)")
     model = derive(run.vehicle, run.outputs(), run.forces())
     values = model.values(overrides=run.values())
     scenario = make_scenario(run, model, values)

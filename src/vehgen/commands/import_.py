@@ -79,11 +79,11 @@ def run(options: argparse.Namespace) -> None:
 
 def _plan(options: argparse.Namespace) -> Plan:
     """Read the plan of an import from the command line."""
+    from vehgen.commands.option_strings import quantity, read_column_map, read_hump, read_profile, read_sensor
     from vehgen.files.limits import FOOTPRINT, ROAD_POSITION, SPEED_LIMIT
     from vehgen.files.units import SPEED
-    from vehgen.phones.csv_table import read_column_map
     from vehgen.phones.importing import with_forward
-    from vehgen.phones.options import Plan, quantity, read_hump, read_profile, read_sensor
+    from vehgen.phones.options import Plan
     from vehgen.vehicle import load_vehicle
 
     by_axles = options.speed == "axles"

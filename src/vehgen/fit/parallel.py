@@ -61,7 +61,7 @@ def runner_at(scheduler: str | None) -> Iterator[Runner]:
     try:
         connect: Any = import_module("distributed").Client
     except ImportError as error:
-        raise InputError("--scheduler needs Dask: pip install 'vehgen[cluster]'") from error
+        raise InputError("a `scheduler` needs Dask: pip install 'vehgen[cluster]'") from error
     try:
         client = connect(scheduler, timeout=10)
     except (OSError, ValueError) as error:

@@ -92,7 +92,7 @@ def import_phones(exports: Sequence[str | Path], plan: Plan) -> Imported:
         For exports that cannot be read or used; it says what would help.
     """
     if len(exports) != len(plan.sensors) or not exports:
-        raise InputError(f"{len(exports)} exports and {len(plan.sensors)} sensors: give one --sensor for each export, in the same order")
+        raise InputError(f"{len(exports)} exports and {len(plan.sensors)} sensors: give one sensor for each export, in the same order")
     if not 1.0 <= plan.top <= 500.0:
         raise InputError(f"the top of the band must be from 1 to 500 Hz, found {plan.top:g} Hz")
     if not 2 * plan.top <= plan.rate <= 1000.0 or abs(1000 / plan.rate - round(1000 / plan.rate)) > 1e-9:
@@ -114,7 +114,7 @@ def import_phones(exports: Sequence[str | Path], plan: Plan) -> Imported:
     matches, arrivals = locate(phones, plan, simulator, simulator.parameters(values)[0], speed, distance, events)
     if plan.by_axles:
         if min(item.correlation for item in matches) < TRUSTED:
-            raise InputError("the vehicle's answer fits too badly to tell the speed by its axles; give --speed in m/s")
+            raise InputError("the vehicle's answer fits too badly to tell the speed by its axles; give the speed in m/s")
         speed, source = speed * matches[0].scale, f"by the axles' marks; {source}"
         matches = [replace(item, scale=1.0) for item in matches]
     return _assemble(phones, plan, speed, source, events, matches, arrivals, distance, wheels)
@@ -170,7 +170,7 @@ def _assemble(
         done.append(ImportedPhone(phone, zero, arrival, found_by, quiet, upward, pitch, orientation, event, item, noise, tuple(notes)))
     fitted = speed * matches[0].scale if all(item.correlation >= TRUSTED for item in matches) else None
     if fitted is not None and abs(fitted / speed - 1) > SPEED_DOUBT:
-        warnings.append(f"the axles' marks fit {fitted:.3f} m/s better than {speed:.3f} m/s ({source}); --speed axles takes that")
+        warnings.append(f"the axles' marks fit {fitted:.3f} m/s better than {speed:.3f} m/s ({source}); the speed `axles` takes that")
     warnings += _clock_warnings(done)
     at = lead if is_hump else None
     return Imported(plan, tuple(done), time, np.column_stack(columns), tuple(channels), speed, source, fitted, at, wheels, tuple(warnings))

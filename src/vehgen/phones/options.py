@@ -1,30 +1,15 @@
-"""What a person says about phones and road: `L1:body=tractor,behind=axle1,distance=-0.29` and `half_sine,length=0.5,height=0.03`."""
+"""What a person says about a pass: where every phone lay, which road was crossed, how fast."""
 
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-import numpy as np
-from pydantic import ValidationError
-
-from vehgen.errors import InputError, did_you_mean, shown
-from vehgen.files.expressions import ExpressionError, parse
-from vehgen.files.limits import HUMP_HEIGHT, HUMP_LENGTH, VEHICLE_LENGTH
-from vehgen.files.names import is_identifier
-from vehgen.files.tables import read_columns
-from vehgen.files.units import LENGTH, NONE, TIME, Dimension
 from vehgen.mechanics import Place, PointOutput
-from vehgen.phones.csv_table import ColumnMap, split_pairs
+from vehgen.phones.csv_table import ColumnMap
 from vehgen.road import Hump, MeasuredProfile, Profile
-from vehgen.simulate.run_file.entries import HumpEntry
 from vehgen.vehicle import Vehicle
-
-_SENSOR_KEYS = ("body", "x", "behind", "distance", "forward", "up", "acceleration_sign", "from", "to")
-_HUMP_KEYS = ("length", "height", "ramp", "radius", "file", "distance", "height_column")
 
 
 @dataclass(frozen=True)
@@ -91,110 +76,3 @@ class Plan:
     after: float = 3.0
     footprint: float = 0.0
     columns: ColumnMap | None = None
-
-
-def quantity(text: str, dimension: Dimension, where: str) -> float:
-    """Read a number, in SI units unless one stands with it; raises InputError."""
-    try:
-        expression = parse(text)
-        if expression.names:
-            raise ExpressionError(f"found a symbol in {text!r}")
-        found, value = expression.dimension({}), expression.evaluate({})
-    except ExpressionError as error:
-        raise InputError(f"{where}: expected a number in {dimension}; {error}") from error
-    if found not in (dimension, NONE) or not math.isfinite(value):
-        raise InputError(f"{where}: expected a finite number in {dimension}, found {text!r}")
-    return value
-
-
-def read_sensor(text: str, vehicle: Vehicle) -> PhoneSensor:
-    """Read `NAME:body=...,behind=...,distance=...[,forward=y][,up=z][,acceleration_sign=-1][,from=SECONDS][,to=SECONDS]`.
-
-    Raises
-    ------
-    InputError
-        For a malformed text, and names that the vehicle lacks, with the nearest that it has.
-    """
-    name, colon, rest = text.partition(":")
-    name, where = name.strip(), f"--sensor {name.strip()}"
-    if not colon or not is_identifier(name):
-        raise InputError(f"--sensor: expected NAME:body=BODY,behind=AXLE,distance=METRES, found {shown(text)}")
-    found = split_pairs(rest, where, _SENSOR_KEYS)
-    if "body" not in found:
-        raise InputError(f"{where} lacks body=; {did_you_mean('', vehicle.bodies)}")
-    if found["body"] not in vehicle.bodies:
-        raise InputError(f"{where}: {vehicle.name} has no body {found['body']!r}; {did_you_mean(found['body'], vehicle.bodies)}")
-    behind = found.get("behind")
-    known = {**vehicle.axles, **vehicle.hinges, **vehicle.bodies}
-    if behind is not None and behind not in known:
-        raise InputError(f"{where}: {vehicle.name} has nothing named {behind!r} to be behind of; {did_you_mean(behind, known)}")
-    if behind is not None and "x" in found:
-        raise InputError(f"{where}: a place has x=, or behind= with distance=, not both")
-    if "distance" in found and behind is None:
-        raise InputError(f"{where}: distance= needs behind=")
-    if "acceleration_sign" in found and found["acceleration_sign"] not in ("1", "+1", "-1"):
-        raise InputError(f"{where}: acceleration_sign is 1 or -1, found {found['acceleration_sign']!r}")
-    try:
-        x = parse(found["x"] if _has_unit(found["x"]) else f"{found['x']} m") if "x" in found else None
-        if x is not None and x.dimension(vehicle.dimensions) != LENGTH:
-            raise ExpressionError("it must be a length")
-    except ExpressionError as error:
-        raise InputError(f"{where}: x={found['x']}: {error}") from error
-    distance = quantity(found.get("distance", "0"), LENGTH, f"{where} distance")
-    VEHICLE_LENGTH.check(distance, f"{where} distance")
-    return PhoneSensor(
-        name,
-        Place(name, found["body"], x, behind, distance),
-        found.get("forward"),
-        found.get("up"),
-        int(found["acceleration_sign"]) if "acceleration_sign" in found else None,
-        quantity(found["from"], TIME, f"{where} from") if "from" in found else -math.inf,
-        quantity(found["to"], TIME, f"{where} to") if "to" in found else math.inf,
-    )
-
-
-def _has_unit(text: str) -> bool:
-    return re.search(r"[A-Za-z]", text) is not None
-
-
-def read_hump(text: str) -> RoadOption:
-    """Read `SHAPE,length=...,height=...` with the shapes and keys of the run file; numbers without a unit are metres.
-
-    Raises
-    ------
-    InputError
-        For an unknown shape or key, one that is missing, and dimensions that do not fit.
-    """
-    shape, _, rest = text.partition(",")
-    found: dict[str, Any] = dict(split_pairs(rest, "--hump", _HUMP_KEYS)) if rest else {}
-    shapes = HumpEntry.model_fields["shape"].annotation.__args__  # type: ignore[union-attr]
-    if shape.strip() not in shapes:
-        raise InputError(f"--hump: unknown shape {shape.strip()!r}; {did_you_mean(shape.strip(), shapes)}")
-    for key in ("length", "height", "radius"):
-        if key in found:
-            found[key] = f"{quantity(found[key], LENGTH, f'--hump {key}'):.10g} m"
-    if "ramp" in found:
-        found["ramp"] = quantity(found["ramp"], NONE, "--hump ramp")
-    try:
-        entry = HumpEntry.model_validate({"shape": shape.strip(), **found, "at": "0 m"})
-    except ValidationError as error:
-        raise InputError(f"--hump: {error.errors()[0]['msg']}") from error
-    written = {"shape": entry.shape, **found}
-    if entry.file is not None:
-        s, height = read_columns(Path(entry.file), (entry.distance, entry.height_column))
-        HUMP_LENGTH.check(float(np.ptp(s)), f"--hump {entry.file}")
-        HUMP_HEIGHT.check(float(np.abs(height).max()), f"--hump {entry.file}")
-        return RoadOption("hump", written, hump=Hump.from_points(0.0, s, height))
-    assert entry.length is not None
-    assert entry.height is not None
-    extra = {key: value for key, value in (("ramp", entry.ramp), ("radius", entry.radius)) if value is not None}
-    return RoadOption("hump", written, hump=Hump.from_shape(entry.shape, 0.0, entry.length, entry.height, **extra))
-
-
-def read_profile(text: str) -> RoadOption:
-    """Read `FILE[,distance=COLUMN][,height=COLUMN]`, a measured profile; raises InputError for a file or columns that are not there."""
-    file, _, rest = text.partition(",")
-    found = split_pairs(rest, "--profile", ("distance", "height")) if rest else {}
-    names = found.get("distance", "distance"), found.get("height", "height")
-    s, height = read_columns(Path(file), names)
-    return RoadOption("profile", {"file": file, "distance": names[0], "height": names[1]}, profile=MeasuredProfile(s, height))

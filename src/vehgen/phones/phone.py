@@ -72,7 +72,7 @@ class Phone:
         sensor = self.sensor
         if self.rotation is not None and sensor.forward is None:
             raise InputError(
-                f"{self.name}: say which of its axes pointed forward, e.g. --forward y where its top edge did; without that the "
+                f"{self.name}: say which of its axes pointed forward, e.g. forward=y where its top edge did; without that the "
                 "pitch rate has no sign"
             )
         sign = sensor.acceleration_sign if sensor.acceleration_sign is not None else self.export.acceleration_sign
@@ -101,8 +101,8 @@ class Phone:
         part = self.acceleration.between(start, end).values
         if len(part) and float(part.mean()) < -4.0:
             raise InputError(
-                f"{self.name}: at rest its acceleration reads {part.mean():.2f} m/s^2, so it points down; write -COLUMN in --columns, or "
-                "acceleration_sign=1 in --sensor if it is upwards all the same"
+                f"{self.name}: at rest its acceleration reads {part.mean():.2f} m/s^2, so it points down; write its column as -COLUMN, or "
+                "acceleration_sign=1 for its sensor if it is upwards all the same"
             )
         return 1.0
 

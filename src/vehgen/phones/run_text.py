@@ -53,7 +53,7 @@ def import_files(out: Path) -> tuple[Path, Path]:
         When `out` is not the name of a run file.
     """
     if out.suffix.lower() not in (".yaml", ".yml"):
-        raise InputError(f"--out names the run file to write, e.g. run.yaml; found {out.name!r}")
+        raise InputError(f"the run file to write has a name such as run.yaml; found {out.name!r}")
     return out, out.with_name(f"{out.stem}_recording.csv")
 
 
