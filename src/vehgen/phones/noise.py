@@ -1,4 +1,4 @@
-"""What a recording holds where nothing happens: noise floor, and acceleration clipped at the sensor's range."""
+"""Noise of a recording where the vehicle is at rest: noise floor, and acceleration clipped at the sensor's range."""
 
 from __future__ import annotations
 

@@ -262,7 +262,7 @@ class Run:
         return self.vehicle.values(self.file.set, own)
 
     def outputs(self) -> tuple[Output, ...]:
-        """Return every channel the run asks for; with no sensor and no output, the acceleration of every body's COG."""
+        """Return every channel that the run file declares; with no sensor and no output, the acceleration of every body's COG."""
         found: list[Output] = []
         for name, sensor in self.file.sensors.items():
             place = sensor.place(name)
