@@ -35,8 +35,9 @@ WEAK_WIDTH = 0.5
 class ParameterSummary:
     """One parameter: its estimate, and what stands behind it.
 
-    `status` is `identified`, `weak` (its interval spans most of its range), `gauge` (no data of this kind can tell it: see the null
-    directions) or `bound` (its range, not the data, set it). `given` is its estimate with the gauge closed by decree.
+    `status` is `identified`, `weak` (its interval spans most of its range), `unidentifiable` (no recording of this kind
+    determines it: see the null directions) or `bound` (its range, not the data, set it). `given` is its estimate with the fixed parameters
+    known exactly.
     """
 
     estimate: Estimate
@@ -119,7 +120,7 @@ class CalibrationSummary:
         runs = ", ".join(trial.name for trial in calibration.problem.trials)
         comments = [
             f"calibrated by vehgen {self.provenance['vehgen']}: {calibration.settings.method} from {runs}, seed {self.provenance['seed']}",
-            f"comments give {LEVEL:.0%} intervals; 'gauge' marks what recordings of this kind cannot tell one by one",
+            f"comments give {LEVEL:.0%} intervals; 'unidentifiable' marks what recordings of this kind cannot determine one by one",
         ]
         notes = {}
         for item in self.parameters:
@@ -199,7 +200,7 @@ def _parameters(result: StepResult, uncertainty: Uncertainty | None, structure: 
         if estimate.name in bounds:
             status = "bound"
         elif estimate.low is None or estimate.high is None:
-            status = "gauge" if uncertainty else "not assessed"
+            status = "unidentifiable" if uncertainty else "not assessed"
         else:
             low, high = (
                 float(space.unit(np.where(np.arange(space.size) == i, end, space.start))[i]) for end in (estimate.low, estimate.high)

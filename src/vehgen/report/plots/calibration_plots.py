@@ -75,7 +75,7 @@ def plot_convergence(outcome: CalibrationSummary) -> Figure:
 
 
 def plot_intervals(outcome: CalibrationSummary) -> Figure:
-    """Plot every parameter's interval over its value; hollow marks with grey bars are known only with the gauge closed by decree."""
+    """Plot every parameter's interval over its value; hollow marks with grey bars are known only if the fixed parameters are."""
     items = [item for item in outcome.parameters if item.estimate.value > 0]
     figure = Figure(figsize=(7.2, 1.3 + 0.2 * len(items)), layout="constrained")
     axes = figure.subplots()
