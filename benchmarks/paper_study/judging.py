@@ -52,7 +52,7 @@ def _with(trial: Trial, values: dict[str, float]) -> Trial:
 
 
 def invariants(rig: Rig, p: dict[str, float]) -> dict[str, float]:
-    """Return what hump data can tell: for the sedan all parameters, for the truck the combinations that no gauge moves."""
+    """Return what hump data can tell: for the sedan all parameters, for the truck the identifiable combinations."""
     if rig.kind == "sedan":
         return {name: p[name] for name in ("Lf", "IZ", "mf", "mr", "kf", "kr", "cf", "cr", "ktf", "ktr")}
     total = p["mT"] + p["mS"]
@@ -60,7 +60,7 @@ def invariants(rig: Rig, p: dict[str, float]) -> dict[str, float]:
     b7, mu = 3.75 - p["b1"], p["mT"] * p["mS"] / total
     found["b7/(mT+mS)"] = b7 / total
     found["b6 mS/(mT+mS)"] = p["b6"] * p["mS"] / total
-    # with masses over mT, as the gauges are; b7^2 is that of the unit tractor mass
+    # with masses over mT, as the unidentifiable directions are; b7^2 is that of the unit tractor mass
     found["JT/(mT+mS)"] = (p["IT"] + p["mT"] * b7**2 + mu * p["a1"] ** 2) / total
     found["JS/(mT+mS)"] = (p["IS"] + p["mS"] * p["b6"] ** 2 + mu * p["a2"] ** 2) / total
     return found

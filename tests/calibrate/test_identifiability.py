@@ -1,4 +1,4 @@
-"""The structural rank and the gauges, against the gauges worked out by hand."""
+"""The structural rank and the unidentifiable directions, against those worked out by hand."""
 
 import numpy as np
 import pytest
@@ -33,7 +33,7 @@ def truck(tmp_path_factory, request):
 
 
 @pytest.mark.parametrize("truck", ["both", "one"], indirect=True)
-def test_a_tractor_semitrailer_has_two_gauges_whatever_the_sensors(truck):
+def test_a_tractor_semitrailer_has_two_unidentifiable_directions_whatever_the_sensors(truck):
     structure = find_structure(truck, truck.space.start)
     assert truck.space.size == 27
     assert structure.rank == 25
@@ -54,7 +54,7 @@ def test_frequencies_of_modes_that_almost_coincide_have_intervals_too(truck, kt3
     assert all(hz.low is not None for hz, _ in known.frequencies())
 
 
-def first_gauge(p: dict[str, float], mS: float) -> dict[str, float]:
+def along_the_first_direction(p: dict[str, float], mS: float) -> dict[str, float]:
     """Return another set that answers alike: a point mass at the hinge may belong to either body (all over mT)."""
     mT, old, new = 8000.0, p["mS"] / 8000.0, mS / 8000.0
     lam = (1 + new) / (1 + old)
@@ -72,12 +72,17 @@ def first_gauge(p: dict[str, float], mS: float) -> dict[str, float]:
 
 
 @pytest.mark.parametrize("truck", ["both"], indirect=True)
-def test_the_null_space_holds_both_gauges(truck):
+def test_the_null_space_holds_both_directions(truck):
     space = truck.space
     p = dict(zip(space.names, space.start.tolist(), strict=True))
     structure = find_structure(truck, space.start)
     step = 1e-5 * p["mS"]
-    one = np.array([(first_gauge(p, p["mS"] + step)[name] - first_gauge(p, p["mS"] - step)[name]) / (2 * step) for name in space.names])
+    one = np.array(
+        [
+            (along_the_first_direction(p, p["mS"] + step)[name] - along_the_first_direction(p, p["mS"] - step)[name]) / (2 * step)
+            for name in space.names
+        ]
+    )
     r = 1e-6
     two = np.zeros(space.size)
     mu = 8000.0 * p["mS"] / (8000.0 + p["mS"])
@@ -91,9 +96,9 @@ def test_the_null_space_holds_both_gauges(truck):
 
 
 @pytest.mark.parametrize("truck", ["both"], indirect=True)
-def test_moving_far_along_a_gauge_changes_no_response(truck):
+def test_moving_far_along_an_unidentifiable_direction_changes_no_response(truck):
     p = dict(zip(truck.space.names, truck.space.start.tolist(), strict=True))
-    q = first_gauge(p, 1.3 * p["mS"])
+    q = along_the_first_direction(p, 1.3 * p["mS"])
     rows = np.array([[item[name] for name in truck.space.names] for item in (p, q)])
     responses = truck.respond(rows, truck.trials[0])[0]
     assert np.abs(responses[0] - responses[1]).max() < 1e-9 * np.abs(responses[0]).max()

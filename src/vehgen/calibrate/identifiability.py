@@ -1,9 +1,9 @@
-"""Which parameters can the measurements tell at all? Structural rank and null directions, for any vehicle.
+"""Structural identifiability: which parameters and combinations recordings can determine at all, for any vehicle.
 
-The road's way to the sensors is known exactly: frequency responses and their derivatives by every searched parameter. Directions in
-parameter space along which no response changes, at any frequency, from any axle, are gauges: no run over any road can tell them, whatever
-the noise. They are found as the null space of the stacked derivatives, which are exact, so that a gap of many decades separates a gauge
-from a parameter that is merely hard to see.
+Frequency responses from the road to the sensors and their derivatives by every searched parameter are exact. Directions in parameter space
+along which no response changes, at any frequency, from any axle, are unidentifiable: no run over any road determines them, whatever the
+noise. They are found as the null space of the stacked derivatives; as these are exact, many decades separate its singular values from
+those of a parameter that the responses hardly depend on.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ FREQUENCIES = np.geomspace(0.4, 40.0, 40)
 NULL_SHARE = 1e-9
 """Singular values below this share of the largest are zero: exact derivatives leave about 1e-14."""
 IN_NULL_SPACE = 1e-5
-"""A quantity whose gradient has a larger share than this in the null space cannot be told."""
+"""A quantity whose gradient has a larger share than this in the null space is not identifiable."""
 
 
 @dataclass(frozen=True)
 class Structure:
-    """What the sensors can tell of the searched parameters.
+    """Structural rank and unidentifiable directions of a problem's searched parameters.
 
-    `null shape (n_null, n_parameters)`: changes of the parameters in the unit cube that no response shows, each of `pivots` changed by one
-    alone. `singular_values shape (n_parameters,)` of the scaled derivatives, largest first.
+    `null shape (n_null, n_parameters)`: changes of the parameters in the unit cube that change no response, each of `fixed_parameters`
+    changed by one of them alone. `singular_values shape (n_parameters,)` of the scaled derivatives, largest first.
     """
 
     space: SearchSpace
@@ -44,16 +44,16 @@ class Structure:
 
     @property
     def rank(self) -> int:
-        """How many combinations of the parameters can be told."""
+        """Structural rank: how many combinations of the parameters are identifiable."""
         return self.space.size - len(self.null)
 
     @property
     def row_space(self) -> Array:
-        """An orthonormal basis of what can be told, `shape (n_parameters, rank)`."""
+        """An orthonormal basis of the identifiable combinations, `shape (n_parameters, rank)`."""
         return np.asarray(scipy.linalg.null_space(self.null)) if len(self.null) else np.eye(self.space.size)
 
     def is_identifiable(self, gradient: Array) -> bool:
-        """Return whether a quantity can be told whose derivatives by the unit cube's coordinates are `gradient shape (n_parameters,)`."""
+        """Return whether a quantity is identifiable whose derivatives by the unit cube are `gradient shape (n_parameters,)`."""
         norm = float(np.linalg.norm(gradient))
         if norm == 0 or not len(self.null):
             return True
@@ -61,7 +61,7 @@ class Structure:
         return bool(np.linalg.norm(basis.T @ gradient) < IN_NULL_SPACE * norm)
 
     def directions(self, values: Array) -> list[dict[str, float]]:
-        """Return each null direction as changes [SI] of the parameters it moves, for a change of its pivot by 1 % of the pivot's range."""
+        """Return each unidentifiable direction as changes [SI] of parameters, for 1 % of the range of its fixed parameter."""
         found = []
         for row, pivot in zip(self.null, self.fixed_parameters, strict=True):
             change = row * self.space.slopes(values)
@@ -75,7 +75,7 @@ def find_structure(problem: Problem, values: Array) -> Structure:
     """Return the structural rank and null directions at searched values `shape (n_parameters,)` [SI].
 
     Every trial's sensors are taken together. The axles' ways to the sensors count one by one: their roads are one road with known delays,
-    which runs at several speeds tell apart. Force laws are not in it.
+    which runs at several speeds separate. Force laws are not in it.
     """
     found = []
     for trial in {(repr(item.simulator.model.channels), item.fixed): item for item in problem.trials}.values():

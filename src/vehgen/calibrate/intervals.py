@@ -1,8 +1,8 @@
-"""How sure? Intervals from the Fisher information, for parameters, combinations and natural frequencies; bootstraps to check them.
+"""Intervals from the Fisher information, for parameters, combinations and natural frequencies; bootstraps to check them.
 
-The information of a fit is J'J of its whitened residuals. Nuisances are marginalised. Along the null directions of the model's structure
-there is none, and what has a part along them gets no interval; for all else the covariance is V (V' F V)^-1 V', V a basis of what can be
-told. Intervals of positive quantities are symmetric on a logarithmic scale.
+The information of a fit is J'J of its whitened residuals. Nuisances are marginalised. Along unidentifiable directions there is none, and
+what depends on them gets no interval; for all else the covariance is V (V' F V)^-1 V', V a basis of the identifiable combinations.
+Intervals of positive quantities are symmetric on a logarithmic scale.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _GRADIENT_STEP = 1e-5
 
 @dataclass(frozen=True)
 class Estimate:
-    """A quantity's value with its interval at LEVEL; `low` and `high` are None where the data cannot tell it."""
+    """A quantity's value with its interval at LEVEL; `low` and `high` are None where it is not identifiable."""
 
     name: str
     value: float
@@ -54,7 +54,7 @@ class Uncertainty:
     fit
         A polished fit.
     structure
-        What its sensors can tell.
+        Structural rank and unidentifiable directions.
     facts
         What else was known, as residuals.
     """
@@ -91,7 +91,7 @@ class Uncertainty:
         return self._interval(name, value, gradient) if self.is_identifiable(gradient) else Estimate(name, value)
 
     def is_identifiable(self, gradient: Array) -> bool:
-        """Return whether the data tell a quantity with these derivatives."""
+        """Return whether the recordings, with what is known from elsewhere, determine a quantity with these derivatives."""
         rest = gradient - self.basis @ (self.basis.T @ gradient)
         return bool(np.linalg.norm(rest) <= 1e-4 * max(float(np.linalg.norm(gradient)), 1e-300))
 
@@ -100,7 +100,7 @@ class Uncertainty:
         return [self.estimate(name, _component(i)) for i, name in enumerate(self.structure.space.names)]
 
     def given_fixed_parameters(self) -> list[Estimate]:
-        """Return every parameter as if the structure's pivots were known exactly: the gauge closed by decree."""
+        """Return every parameter with its interval for the case that the fixed parameters are known exactly."""
         kept = [i for i in range(self.structure.space.size) if i not in self.structure.fixed_parameters]
         covariance = np.zeros_like(self.information)
         covariance[np.ix_(kept, kept)] = np.linalg.pinv(self.information[np.ix_(kept, kept)], hermitian=True)
@@ -143,7 +143,7 @@ class Uncertainty:
         return quantity
 
     def ratios(self) -> list[Estimate]:
-        """Return ratios that the data tell of parameters that they do not tell: those that all null directions scale alike."""
+        """Return identifiable ratios of unidentifiable parameters: those that every unidentifiable direction scales alike."""
         slopes = self.structure.space.slopes(self.values)
         with np.errstate(divide="ignore", invalid="ignore"):
             relative = np.where(self.values == 0, np.nan, self.structure.null * slopes / self.values)
@@ -201,7 +201,7 @@ def _component(i: int) -> Quantity:
 
 
 def _reported(structure: Structure, facts: PriorData | None, values: Array) -> Array:
-    """Return an orthonormal basis of what structure and facts together can tell."""
+    """Return an orthonormal basis of what recordings and facts together determine."""
     if facts is None or not len(structure.null):
         return structure.row_space
     known = facts.jacobian(values) * structure.space.slopes(values)
@@ -213,7 +213,7 @@ def _reported(structure: Structure, facts: PriorData | None, values: Array) -> A
 
 
 def refit(fit: LeastSquaresFit, seed: int, facts: PriorData | None = None) -> Array:
-    """Return the parameters [SI] fitted to one set of measurements drawn from a fit: one replicate of a parametric bootstrap."""
+    """Return the parameters [SI] fitted to recordings drawn at random from a fit: one replicate of a parametric bootstrap."""
     random = np.random.Generator(np.random.PCG64(seed))
     misfit = fit.misfit
     drawn = misfit.draw(fit.x, random)

@@ -1,4 +1,4 @@
-"""The three ways to calibrate: which sensors are compared and which parameters searched, step by step.
+"""Methods of calibration: which sensors are compared and which parameters searched, step by step.
 
 - `shcm`: one sensor, all parameters (Wu & Li 2023, Sect. 2.1).
 - `dhcm`: two sensors, two steps (Sect. 2.4): all parameters from the first sensor, of which those of its axle and its body's pitch inertia

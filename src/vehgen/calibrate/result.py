@@ -24,7 +24,7 @@ MAX_CURVES = 500
 class ParameterSummary:
     """One parameter [unit, SI]: its value, and what stands behind it.
 
-    `status` is `identified`, `weak` (its interval spans most of its range), `gauge` (no data of this kind can tell it: see the null
+    `status` is `identified`, `weak` (its interval spans most of its range), `unidentifiable` (no recording of this kind can tell it: see the null
     directions), `bound` (its range, not the data, set it) or `not assessed`. `interval_given_pivots` is its interval were the pivots known.
     """
 
@@ -155,7 +155,7 @@ class CalibrationSummary(Result):
         runs = ", ".join(trial.name for trial in calibration.problem.trials)
         comments = [
             f"calibrated by vehgen {self.provenance['vehgen']}: {self.method} from {runs}, seed {self.provenance['seed']}",
-            f"comments give {self.confidence:.0%} intervals; 'gauge' marks what recordings of this kind cannot tell one by one",
+            f"comments give {self.confidence:.0%} intervals; 'unidentifiable' marks what recordings of this kind cannot determine one by one",
         ]
         notes = {}
         for key, item in self.parameters.items():

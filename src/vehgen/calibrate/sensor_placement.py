@@ -31,7 +31,7 @@ SIGMA = {"acceleration": 0.01, "pitch_rate": 5e-4}
 SHARE = 0.01
 """Noise as a share of a channel's RMS, added to the floor."""
 PRIOR_SIGMA = 1.0
-"""Standard deviation of ln(parameter) known beforehand: a factor of e either way. It closes the gauges alike for all places."""
+"""Standard deviation of ln(parameter) known beforehand: a factor of e either way, alike for all places."""
 SPACING = 0.5
 """Distance between candidate places [m]."""
 CLOSE_SHARE = 0.02

@@ -125,7 +125,7 @@ def _parameters(result: StepResult, uncertainty: Uncertainty | None) -> dict[str
         if estimate.name in bounds:
             status = "bound"
         elif estimate.low is None or estimate.high is None:
-            status = "gauge" if uncertainty else "not assessed"
+            status = "unidentifiable" if uncertainty else "not assessed"
         else:
             low, high = (
                 float(space.unit(np.where(np.arange(space.size) == i, end, space.start))[i]) for end in (estimate.low, estimate.high)

@@ -169,8 +169,8 @@ def _warnings(outcome: CalibrationSummary) -> list[str]:
     if rank < searched:
         moved = "; ".join(", ".join(list(direction)[:8]) + (" ..." if len(direction) > 8 else "") for direction in outcome.null_directions)
         found.append(
-            f"of {searched} parameters these sensors can tell {rank} combinations, whatever the run: values marked gauge are one of many "
-            f"(they trade along: {moved}); --facts can close this"
+            f"recordings of these sensors can determine {rank} combinations of the {searched} parameters, whatever the run: values marked "
+            f"unidentifiable are some of many that fit alike (what can change together: {moved}); axle weights (--facts) determine more"
         )
     bound = [name for name, item in outcome.parameters.items() if item.status == "bound"]
     if bound:

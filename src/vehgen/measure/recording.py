@@ -28,7 +28,7 @@ REFUSED_IN_A_ROW = 5
 class RecordedChannel:
     """One recorded channel: its name, the sensor it belongs to and what it measures.
 
-    `noise` is the standard deviation of its white noise [SI] where the run file knows it.
+    `noise` is the standard deviation of its white noise [SI] where the run file states it.
     """
 
     name: str

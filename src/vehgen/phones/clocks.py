@@ -1,8 +1,8 @@
 """When the front wheel reached the road's begin, on the clock of each phone, by what the vehicle should do at each phone's place.
 
 The vehicle of the file drives over the road at several speeds; where its answer lies best over a recording, the clock is known. Every axle
-that crosses is a mark, so the distance between the marks tells the speed too, and two phones far apart need not see the same thing to be
-put on one clock. A vehicle whose parameters are a few percent wrong does well enough; how well they fit is reported.
+that crosses is a mark, so the distance between the marks gives the speed too, and two phones far apart need not record the same motion to
+be put on one clock. A vehicle whose parameters are a few percent wrong does well enough; how well they fit is reported.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from vehgen.simulate import Scenario, Simulator
 Array = NDArray[np.float64]
 Answer = Callable[[float], Array]
 COARSE_SCALES = np.arange(0.88, 1.1201, 0.01)
-"""Speeds tried, over the one that was told or measured ..."""
+"""Speeds tried, over the one that was given or measured ..."""
 FINE_SCALE_STEPS = np.arange(-0.01, 0.01001, 0.001)
 """... and then around the best of them."""
 TRUSTED = 0.6
-"""Least correlation of a match that is believed."""
+"""Least correlation of a match that is used."""
 HIGHEST_FREQUENCY_HZ = 20.0
 """Above this frequency [Hz] the vehicle's answer is not compared."""
 
@@ -113,7 +113,7 @@ def _vertex(three: Array) -> float:
 
 
 def epoch_disagreement(first: PhoneExport, moment: float, other: PhoneExport, other_moment: float) -> float | None:
-    """Return how much later [s] the world's clock of the other phone says one event was, None where either phone does not know it."""
+    """Return how much later [s] the other phone's world clock puts one event, None where either phone has none."""
     if first.epoch is None or other.epoch is None:
         return None
     return other.epoch.at(other_moment) - first.epoch.at(moment)

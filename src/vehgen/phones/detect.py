@@ -1,4 +1,4 @@
-"""Which app an export came from, told by its headers and first bytes, never by file names: those of the apps collide."""
+"""Which app an export came from, recognised by its headers and first bytes, never by file names: those of the apps collide."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ ACCELERATION_STREAM = "acceleration"
 LINEAR_ACCELERATION_STREAM = "linear_acceleration"
 """Stream: x, y, z of the phone without gravity [m/s^2]."""
 GRAVITY_STREAM = "gravity"
-"""Stream: x, y, z of gravity alone, as the phone's fusion of sensors sees it [m/s^2]."""
+"""Stream: x, y, z of gravity alone, as the phone estimates it from its sensors [m/s^2]."""
 ROTATION_STREAM = "rotation"
 """Stream: x, y, z of the phone's rate of rotation [rad/s]."""
 SPEED_STREAM = "speed"
@@ -81,12 +81,12 @@ class PhoneExport:
     streams
         The sensors by the names above.
     epoch
-        Its clock against the world's, None where the export does not tell.
+        Its clock against the world's, None where the export does not say.
     notes
         What the reader passed over or took for granted, in words.
     acceleration_sign
         +1 where a phone that lies still, face up, is known to read +9.8 m/s^2 on z, -1 where it is known to read -9.8 m/s^2, None where the
-        export does not tell.
+        export does not say.
     """
 
     app: str
@@ -97,7 +97,7 @@ class PhoneExport:
 
 
 def acceleration_kind(values: Array) -> str:
-    """Say whether `values shape (n, 3)` [m/s^2] hold gravity: the mean of a phone that stays on a vehicle tells.
+    """Say whether `values shape (n, 3)` [m/s^2] hold gravity, by their mean: a phone that stays on a vehicle reads about 9.8 or 0 m/s^2.
 
     Raises
     ------

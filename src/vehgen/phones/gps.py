@@ -10,7 +10,7 @@ from vehgen.errors import InputError
 from vehgen.phones.export import Stream
 
 MIN_MEDIAN_SPEED_M_S = 0.3
-"""A GPS cannot tell slower speeds from standing still [m/s]."""
+"""A GPS cannot distinguish slower speeds from standing still [m/s]."""
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,7 @@ def find_hump(time: Array, upward: Array, crossing: float, name: str) -> HumpEve
     Raises
     ------
     InputError
-        Where there is no hump to be seen, or no quiet before it.
+        Where no hump stands out, or there is no quiet before it.
     """
     step = float(time[1] - time[0])
     width = max(round(ENERGY_WINDOW_S / step), 3)
@@ -83,7 +83,7 @@ def _no_hump(name: str, moment: float, why: str) -> InputError:
 
 
 def expected_onset(upward: Array, step: float, contrast: float) -> float:
-    """Return when the energy of a predicted crossing sets in [s], seen as :func:`find_hump` would in noise of such a contrast."""
+    """Return when the energy of a predicted crossing sets in [s], as :func:`find_hump` would find it in noise of such a contrast."""
     width = max(round(ENERGY_WINDOW_S / step), 3)
     running = np.sqrt(np.convolve(upward**2, np.ones(width) / width, mode="same"))
     loudest = int(np.argmax(running))

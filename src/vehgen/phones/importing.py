@@ -114,7 +114,7 @@ def import_phones(exports: Sequence[str | Path], plan: Plan) -> Imported:
     matches, arrivals = locate(phones, plan, simulator, simulator.parameters(values)[0], speed, distance, events)
     if plan.by_axles:
         if min(item.correlation for item in matches) < TRUSTED:
-            raise InputError("the vehicle's answer fits too badly to tell the speed by its axles; give the speed in m/s")
+            raise InputError("the simulated response fits the recordings too badly to find the speed from its axles; give the speed in m/s")
         speed, source = speed * matches[0].scale, f"by the axles' marks; {source}"
         matches = [replace(item, scale=1.0) for item in matches]
     return _assemble(phones, plan, speed, source, events, matches, arrivals, distance, wheels)
@@ -131,7 +131,7 @@ def _assemble(
     distance: float,
     wheels: dict[str, float],
 ) -> Imported:
-    """Choose t = 0, sample every channel, and say what deserves doubt."""
+    """Choose t = 0, sample every channel, and warn of what is doubtful."""
     is_hump = plan.road.hump is not None
     lead = _lead(phones, plan, speed, [moment for moment, _ in arrivals]) if is_hump else 0.0
     zeros = [moment - lead / speed for moment, _ in arrivals]
@@ -220,14 +220,14 @@ def _clock_warnings(done: list[ImportedPhone]) -> list[str]:
         late = clock_difference(done[0], other)
         if late is not None and abs(late) > CLOCK_DOUBT:
             found.append(
-                f"by the apps' clocks {other.phone.name} crossed {late:+.2f} s after {done[0].phone.name}; the road was believed: are "
-                "both of one pass?"
+                f"by the apps' clocks {other.phone.name} crossed {late:+.2f} s after {done[0].phone.name}; these clocks were not used, the "
+                "axles' marks were: are both of one pass?"
             )
     return found
 
 
 def clock_difference(first: ImportedPhone, other: ImportedPhone) -> float | None:
-    """Return how much later [s] the other phone's world clock says the front wheel reached the hump, None where one does not know."""
+    """Return how much later [s] the other phone's world clock puts the front wheel at the hump, None where either phone has none."""
     return epoch_disagreement(first.phone.export, first.arrival, other.phone.export, other.arrival)
 
 

@@ -1,4 +1,4 @@
-"""When and how fast the vehicle crossed, as the phones of one pass saw it together."""
+"""When and how fast the vehicle crossed, from all phones of one pass together."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ CLOCK_DOUBT = 0.5
 
 
 def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[float, str, list[HumpEvent | None]]:
-    """Return the speed, where it is from, and the hump as every phone saw it."""
+    """Return the speed, where it is from, and when every phone recorded the hump."""
     told: CrossingSpeed | None = None
     teller = next((phone for phone in phones if speed_stream(phone.export) is not None), phones[0])
     speed = plan.speed
@@ -59,7 +59,7 @@ def _event(phone: Phone, crossing: float) -> HumpEvent:
 def locate(
     phones: list[Phone], plan: Plan, simulator: Simulator, parameters: Array, speed: float, distance: float, events: list[HumpEvent | None]
 ) -> tuple[list[Match], list[tuple[float, str]]]:
-    """Return for each phone how the vehicle's answer lies over its recording, and when the front wheel reached the road's begin."""
+    """Return for each phone how the simulated response matches its recording, and when the front wheel reached the road's begin."""
     step = 1 / plan.rate
     lead = 1.0 * speed if plan.road.hump else 0.0
     track = Track((plan.road.at(lead),), plan.footprint)
@@ -102,7 +102,7 @@ def locate(
 
 
 def _fallback(phones: list[Phone], i: int, picked: float, arrivals: list[tuple[float, str]]) -> tuple[float, str]:
-    """Return the arrival of a phone that the vehicle's answer does not fit: by the world's clock, else by when its energy set in."""
+    """Return the arrival of a phone that the simulated response does not match: by the world's clock, else by when its energy set in."""
     if i:
         late = epoch_disagreement(phones[0].export, arrivals[0][0], phones[i].export, picked)
         if late is not None and abs(late) < CLOCK_DOUBT:

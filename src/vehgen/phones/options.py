@@ -14,7 +14,7 @@ from vehgen.vehicle import Vehicle
 
 @dataclass(frozen=True)
 class PhoneSensor:
-    """Where a phone lay: a place as in a run file, which of its axes point forward and up, its accelerations' sign where it must be told.
+    """Where a phone lay: a place as in a run file, which of its axes point forward and up, its accelerations' sign where it must be given.
 
     `start` and `end` [s] on the phone's own clock cut its recording.
     """

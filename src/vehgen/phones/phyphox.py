@@ -1,6 +1,6 @@
 """Exports of phyphox (phyphox.org): zip or folder, one experiment's `Raw Data.csv` or a file a sensor.
 
-The app translates its headers, so columns are told by their units: `Time (s)`, then `... x (m/s^2)`, `... x (rad/s)`, `... (m/s)`.
+The app translates its headers, so columns are recognised by their units: `Time (s)`, then `... x (m/s^2)`, `... x (rad/s)`, `... (m/s)`.
 On iOS, too, phyphox writes accelerations as Android does: flat and face up, z reads +9.8 m/s^2.
 """
 

@@ -1,4 +1,4 @@
-"""The road as the wheels see it: humps, random roads and measured profiles added up, through the tyre's footprint."""
+"""The road that excites the wheels: humps, random roads and measured profiles added up, through the tyre's footprint."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Track:
     """The sum of profiles, times `scale`, averaged over a footprint [m] (0: a point contact).
 
     The moving average is the difference of the road's integral between the edges of the contact, taken from a grid of half a
-    millimetre: a hump shorter than the footprint is still seen whole.
+    millimetre: a hump shorter than the footprint still counts in full.
     """
 
     parts: tuple[Profile, ...]
@@ -72,7 +72,7 @@ class Track:
         return max((part.end for part in self.parts), default=-np.inf) + self.footprint / 2
 
     def height(self, s: Array) -> Array:
-        """Return the height [m] that a wheel centred at s [m] sees."""
+        """Return the height [m], averaged over the footprint, under a wheel centred at s [m]."""
         s = np.asarray(s, dtype=np.float64)
         if self.footprint <= 0:
             return self._raw(s)

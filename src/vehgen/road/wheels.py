@@ -1,4 +1,4 @@
-"""What every wheel sees: one track, delayed by the axle's distance."""
+"""The road under every wheel: one track, delayed by the axle's distance."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The last excitations, by what they were made from: a fit asks for the same road under the same wheels again and again."""
+"""Keeps the excitations made last, by what they were made from: a fit needs the same road under the same wheels many times."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ def lift_off(model: EquationsOfMotion, values: Mapping[str, float], tyre_forces:
 
 
 def spectral_nulls(model: EquationsOfMotion, values: Mapping[str, float], scenario: Scenario) -> Iterator[str]:
-    """Warn where a null of a hump's spectrum meets a hop mode: the run says next to nothing about that axle."""
+    """Warn where a null of a hump's spectrum meets a hop mode: the run hardly excites that axle."""
     hop = np.array([item.motion == "hop" for item in model.coordinates])
     for mode in natural_modes(model, values):
         if not hop.any() or mode.energy[hop].sum() < 0.5:

@@ -52,7 +52,7 @@ def plot_convergence(outcome: CalibrationSummary) -> Figure:
 
 
 def plot_intervals(outcome: CalibrationSummary) -> Figure:
-    """Plot every parameter's interval over its value; hollow marks with grey bars hold only if the pivots were known."""
+    """Plot every parameter's interval over its value; hollow marks with grey bars are known only if the fixed parameters are."""
     items = {name: item for name, item in outcome.parameters.items() if item.value > 0}
     figure = Figure(figsize=(7.2, 1.3 + 0.2 * len(items)), layout="constrained")
     axes = figure.subplots()
