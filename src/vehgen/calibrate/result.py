@@ -24,8 +24,8 @@ MAX_CURVES = 500
 class ParameterSummary:
     """One parameter [unit, SI]: its value, and what stands behind it.
 
-    `status` is `identified`, `weak` (its interval spans most of its range), `unidentifiable` (no recording of this kind can tell it: see the null
-    directions), `bound` (its range, not the data, set it) or `not assessed`. `interval_given_pivots` is its interval were the pivots known.
+    `status` is `identified`, `weak` (its interval spans most of its range), `unidentifiable` (no recording of this kind can tell it: see
+    the null directions), `bound` (its range, not the data, set it) or `not assessed`. `interval_given_pivots` is its interval were the pivots known.
     """
 
     value: float

@@ -114,7 +114,7 @@ def import_phones(exports: Sequence[str | Path], plan: Plan) -> Imported:
     matches, arrivals = locate(phones, plan, simulator, simulator.parameters(values)[0], speed, distance, events)
     if plan.by_axles:
         if min(item.correlation for item in matches) < TRUSTED:
-            raise InputError("the simulated response fits the recordings too badly to find the speed from its axles; give the speed in m/s")
+            raise InputError("the simulated response fits the recordings too badly to find the speed from its axles; give the speed")
         speed, source = speed * matches[0].scale, f"by the axles' marks; {source}"
         matches = [replace(item, scale=1.0) for item in matches]
     return _assemble(phones, plan, speed, source, events, matches, arrivals, distance, wheels)
