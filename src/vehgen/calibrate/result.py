@@ -25,7 +25,8 @@ class ParameterSummary:
     """One parameter [unit, SI]: its value, and what stands behind it.
 
     `status` is `identified`, `weak` (its interval spans most of its range), `unidentifiable` (no recording of this kind can tell it: see
-    the null directions), `bound` (its range, not the data, set it) or `not assessed`. `interval_given_pivots` is its interval were the pivots known.
+    the null directions), `bound` (its range, not the data, set it) or `not assessed`. `interval_given_pivots` is its
+    interval if the fixed parameters were known.
     """
 
     value: float
@@ -155,7 +156,7 @@ class CalibrationSummary(Result):
         runs = ", ".join(trial.name for trial in calibration.problem.trials)
         comments = [
             f"calibrated by vehgen {self.provenance['vehgen']}: {self.method} from {runs}, seed {self.provenance['seed']}",
-            f"comments give {self.confidence:.0%} intervals; 'unidentifiable' marks what recordings of this kind cannot determine one by one",
+            f"comments give {self.confidence:.0%} intervals; 'unidentifiable' marks what such recordings cannot determine one by one",
         ]
         notes = {}
         for key, item in self.parameters.items():
