@@ -15,7 +15,7 @@ from vehgen.codegen import Excitation, Kernel, compile_all
 from vehgen.mechanics import EquationsOfMotion, derive
 from vehgen.mechanics.laws import LAWS
 from vehgen.mechanics.superset import CandidateLaw, add_laws
-from vehgen.simulate.benchmark import KEEP, OUTPUTS, best_time, hump_drive
+from vehgen.simulate.benchmark import KEEP, OUTPUTS, best_time, hump_excitation
 from vehgen.vehicle import load_vehicle
 
 COUNTS = (1, 2, 5, 10, 20, 50, 100)
@@ -59,7 +59,7 @@ def supersets() -> None:
     """Print what one kernel for all candidates costs beside one each."""
     print("| candidates | one for all: start [s] | step [ns] | one each: start [s] | step [ns] | runs of 10 s each at break-even |")
     print("|---|---|---|---|---|---|")
-    ride = hump_drive(built(candidates(1)), 2.0)
+    ride = hump_excitation(built(candidates(1)), 2.0)
     compiled(candidates(1))
     each: list[tuple[float, float]] = []
     for count in COUNTS:

@@ -77,7 +77,7 @@ def run(path: str) -> None:
     model = derive(found.vehicle, (*found.outputs(), *tyres), found.forces())
     values = model.values(overrides=found.values())
     scenario = make_scenario(found, model, values)
-    scenario.drive(model.wheel_offsets(values))
+    scenario.excitation(model.wheel_offsets(values))
     for doubts in (spectral_nulls, step_too_coarse):
         list(doubts(model, values, scenario))
     generate(model)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from vehgen.errors import InputError
@@ -127,3 +129,14 @@ def test_a_change_that_takes_away_what_the_file_uses_is_refused_in_the_file():
     vehicle = parse_vehicle(TEXT, "rig.yaml")
     with pytest.raises(InputError, match=r"^rig.yaml:6:\d+: unknown symbol 'reach'"):
         vehicle.with_changes(parameters={"reach": None})
+
+
+def test_the_snippet_of_the_page_does_what_the_page_says():
+    page = (Path(__file__).parents[2] / "docs" / "vehicle-file.md").read_text(encoding="utf-8")
+    snippet = page.partition("```python\n")[2].partition("```")[0]
+    made_there: dict[str, Vehicle] = {}
+    exec(compile(snippet, "vehicle-file.md", "exec"), made_there)
+    laden = made_there["laden"]
+    assert laden.axles["rear"].tyre.k.evaluate({}) == 1e6
+    assert (laden.title, list(laden.bodies)) == ("laden", ["frame", "load"])
+    assert derive(laden).n_dof == 2

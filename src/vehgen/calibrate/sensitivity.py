@@ -54,8 +54,8 @@ def sensitivity_indices(run: Run, names: Sequence[str] | None = None) -> Sensiti
     model = derive(run.vehicle, run.outputs(), run.forces())
     values = model.values(overrides=run.values())
     scenario = make_scenario(run, model, values)
-    drive = scenario.drive(model.wheel_offsets(values))
-    response, derived = direct_sensitivities(model, drive, chosen, scenario.decimation, values)
+    excitation = scenario.excitation(model.wheel_offsets(values))
+    response, derived = direct_sensitivities(model, excitation, chosen, scenario.decimation, values)
     dt = scenario.dt * scenario.decimation
     frequency, density = record_psd(derived, dt, axis=1)
     rms = np.sqrt(np.mean(response**2, axis=0))

@@ -41,7 +41,7 @@ def benchmark_model(name: str) -> EquationsOfMotion:
     return derive(parse_vehicle(f"extends: tractor5\naxles:\n{axles}"), OUTPUTS)
 
 
-def hump_drive(model: EquationsOfMotion, seconds: float) -> Excitation:
+def hump_excitation(model: EquationsOfMotion, seconds: float) -> Excitation:
     """Return the inputs of a half-sine hump of 0.5 m x 0.03 m at 2 m/s."""
     steps = np.arange(round(seconds / (DT * KEEP)) * KEEP + 1, dtype=np.float64) * DT
     wheels = wheel_inputs(Track((Hump.from_shape("half_sine", 1.0, 0.5, 0.03),)), ConstantSpeed(2.0), model.wheel_offsets(), steps)
@@ -80,10 +80,10 @@ def measure(n_individuals: int = 300, seconds: float = 10.0) -> dict[str, Any]:
         model = benchmark_model(name)
         kernel = Kernel(model)
         kernel.compile()
-        drive, individuals = hump_drive(model, seconds), population(model, n_individuals)
+        excitation, individuals = hump_excitation(model, seconds), population(model, n_individuals)
         for threads in sorted({1, os.cpu_count() or 1}):
-            duration = best_time(partial(kernel.run, individuals, drive, KEEP, threads=threads))
-            per_step = duration / n_individuals / drive.n_steps
+            duration = best_time(partial(kernel.run, individuals, excitation, KEEP, threads=threads))
+            per_step = duration / n_individuals / excitation.n_steps
             operations = kernel.source.operation_counts["step"] + kernel.source.operation_counts["sample"] / KEEP
             cases.append(
                 {
@@ -96,9 +96,9 @@ def measure(n_individuals: int = 300, seconds: float = 10.0) -> dict[str, Any]:
                 }
             )
     model = benchmark_model("linear")
-    drive = hump_drive(model, min(seconds, 2.0))
+    excitation = hump_excitation(model, min(seconds, 2.0))
     reference = cases[0]["ns_per_step_individual"] * 1e-9
-    ratios = {peer: work(model.numeric(), drive) / drive.n_steps / reference for peer, work in _peers().items()}
+    ratios = {peer: work(model.numeric(), excitation) / excitation.n_steps / reference for peer, work in _peers().items()}
     return {"cases": cases, "ratios": ratios, "vector_peak_gflops": peak}
 
 
@@ -109,10 +109,10 @@ def _peers() -> dict[str, Callable[[NumericModel, Excitation], float]]:
     return found
 
 
-def _time_dense(model: NumericModel, drive: Excitation) -> float:
+def _time_dense(model: NumericModel, excitation: Excitation) -> float:
     compiled: Any = numba.njit(_dense_newmark)
-    compiled(model.M, model.C, model.K, model.P, drive.inputs[:2], drive.dt)
-    return best_time(lambda: compiled(model.M, model.C, model.K, model.P, drive.inputs, drive.dt))
+    compiled(model.M, model.C, model.K, model.P, excitation.inputs[:2], excitation.dt)
+    return best_time(lambda: compiled(model.M, model.C, model.K, model.P, excitation.inputs, excitation.dt))
 
 
 def _dense_newmark(M: Array, C: Array, K: Array, P: Array, inputs: Array, dt: float) -> Array:
@@ -143,19 +143,19 @@ def _dense_newmark(M: Array, C: Array, K: Array, P: Array, inputs: Array, dt: fl
     return peak
 
 
-def _time_lsim(model: NumericModel, drive: Excitation) -> float:
+def _time_lsim(model: NumericModel, excitation: Excitation) -> float:
     n = len(model.M)
     inverse = np.linalg.inv(model.M)
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ model.K, -inverse @ model.C]])
     B = np.vstack([np.zeros((n, model.P.shape[1])), inverse @ model.P])
     system = (A, B, A[n:], B[n:])
-    return best_time(lambda: scipy.signal.lsim(system, drive.inputs, drive.time), 2)
+    return best_time(lambda: scipy.signal.lsim(system, excitation.inputs, excitation.time), 2)
 
 
-def _time_pyyeti(model: NumericModel, drive: Excitation) -> float:
+def _time_pyyeti(model: NumericModel, excitation: Excitation) -> float:
     from pyyeti import ode
 
-    return best_time(lambda: ode.SolveNewmark(model.M, model.C, model.K, drive.dt).tsolve(model.P @ drive.inputs.T), 2)
+    return best_time(lambda: ode.SolveNewmark(model.M, model.C, model.K, excitation.dt).tsolve(model.P @ excitation.inputs.T), 2)
 
 
 def _multiply_add(x: Array, factor: float, rounds: int) -> float:

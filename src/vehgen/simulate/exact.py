@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 def exact_response(
     model: EquationsOfMotion,
-    drive: Excitation,
+    excitation: Excitation,
     decimation: int = 1,
     values: Mapping[str, float] | None = None,
     initial: Array | None = None,
@@ -39,38 +39,38 @@ def exact_response(
     B = np.vstack([np.zeros((n, loads.shape[1])), inverse @ loads])
     m = B.shape[1]
     big = np.zeros((2 * n + 2 * m, 2 * n + 2 * m))
-    big[: 2 * n, : 2 * n], big[: 2 * n, 2 * n : 2 * n + m] = A * drive.dt, B * drive.dt
+    big[: 2 * n, : 2 * n], big[: 2 * n, 2 * n : 2 * n + m] = A * excitation.dt, B * excitation.dt
     big[2 * n : 2 * n + m, 2 * n + m :] = np.eye(m)
     transition = scipy.linalg.expm(big)
     Ad, G1, G2 = transition[: 2 * n, : 2 * n], transition[: 2 * n, 2 * n : 2 * n + m], transition[: 2 * n, 2 * n + m :]
-    slope = np.diff(drive.inputs, axis=0) / drive.dt
-    start = np.hstack([drive.inputs[:-1], slope, drive.forces[:-1]])
-    end = np.hstack([drive.inputs[1:], slope, drive.forces[1:]])
-    x = np.zeros((drive.n_steps + 1, 2 * n))
+    slope = np.diff(excitation.inputs, axis=0) / excitation.dt
+    start = np.hstack([excitation.inputs[:-1], slope, excitation.forces[:-1]])
+    end = np.hstack([excitation.inputs[1:], slope, excitation.forces[1:]])
+    x = np.zeros((excitation.n_steps + 1, 2 * n))
     if initial is not None:
         x[0] = initial
     push = start @ (G1 - G2).T + end @ G2.T
-    for k in range(drive.n_steps):
+    for k in range(excitation.n_steps):
         x[k + 1] = Ad @ x[k] + push[k]
-    rates = np.vstack([slope[:1], (slope[1:] + slope[:-1]) / 2, slope[-1:]]) if drive.n_steps else np.zeros((1, width))
+    rates = np.vstack([slope[:1], (slope[1:] + slope[:-1]) / 2, slope[-1:]]) if excitation.n_steps else np.zeros((1, width))
     q, v = x[:, :n], x[:, n:]
-    forces = drive.inputs @ numeric.P.T + rates @ numeric.Q.T + drive.forces @ numeric.F.T
+    forces = excitation.inputs @ numeric.P.T + rates @ numeric.Q.T + excitation.forces @ numeric.F.T
     a = (forces - v @ numeric.C.T - q @ numeric.K.T) @ inverse.T
-    return channel_values(numeric, a, v, q, drive.inputs, rates)[::decimation]
+    return channel_values(numeric, a, v, q, excitation.inputs, rates)[::decimation]
 
 
 def newmark_response(
     model: EquationsOfMotion,
-    drive: Excitation,
+    excitation: Excitation,
     decimation: int = 1,
     values: Mapping[str, float] | None = None,
     initial: Array | None = None,
 ) -> Array:
     """Return the response by textbook Newmark (beta 1/4, gamma 1/2), `shape (n_steps // keep + 1, n_channels)`."""
     numeric = model.numeric(values)
-    forces = drive.inputs @ numeric.P.T + drive.rates @ numeric.Q.T + drive.forces @ numeric.F.T
-    q, v, a = newmark_states(numeric, forces, drive.dt, initial)
-    return channel_values(numeric, a, v, q, drive.inputs, drive.rates)[::decimation]
+    forces = excitation.inputs @ numeric.P.T + excitation.rates @ numeric.Q.T + excitation.forces @ numeric.F.T
+    q, v, a = newmark_states(numeric, forces, excitation.dt, initial)
+    return channel_values(numeric, a, v, q, excitation.inputs, excitation.rates)[::decimation]
 
 
 def newmark_states(numeric: NumericModel, forces: Array, dt: float, initial: Array | None = None) -> tuple[Array, Array, Array]:

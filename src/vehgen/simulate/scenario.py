@@ -29,7 +29,7 @@ from vehgen.road import (
     wheel_inputs,
 )
 from vehgen.simulate.budgets import check_run, placed
-from vehgen.simulate.drive_cache import ExcitationCache
+from vehgen.simulate.excitation_cache import ExcitationCache
 from vehgen.simulate.run_file import Run
 from vehgen.simulate.run_file.entries import DisplacementHarmonic, ForceHarmonic, HumpEntry
 
@@ -40,7 +40,7 @@ AFTER_LAST_HUMP = 3.0
 
 NULLS_TO = 30.0
 """Above it [Hz] no axle hops."""
-_DRIVES = ExcitationCache()
+_EXCITATIONS = ExcitationCache()
 
 
 @dataclass(frozen=True)
@@ -103,10 +103,10 @@ class Scenario:
         law = self.speed if (delay, speed) == (0.0, 1.0) else AdjustedSpeed(self.speed, delay, speed)
         return replace(self, speed=law, track=replace(self.track, scale=self.track.scale * height))
 
-    def drive(self, offsets: Array) -> Excitation:
+    def excitation(self, offsets: Array) -> Excitation:
         """Return the inputs of a vehicle whose axles run `offsets shape (n_axles,)` [m] behind the first to arrive.
 
-        Neither they nor the arrays of the scenario are to be written to: the last drives are remembered.
+        Neither they nor the arrays of the scenario are to be written to: the last excitations are remembered.
         """
         law: SpeedLaw = self.speed
         errors: tuple[float, ...] = ()
@@ -115,9 +115,9 @@ class Scenario:
             law = law.law
         road = (id(self.track.parts), self.track.footprint, self.track.scale, id(law), errors, np.asarray(offsets, dtype=float).tobytes())
         key = (*road, self.start, self.dt, len(self.time), id(self.ground), id(self.forces))
-        return _DRIVES.find(key, (self.track, self.speed, self.ground, self.forces), lambda: self._drive(offsets))
+        return _EXCITATIONS.find(key, (self.track, self.speed, self.ground, self.forces), lambda: self._excitation(offsets))
 
-    def _drive(self, offsets: Array) -> Excitation:
+    def _excitation(self, offsets: Array) -> Excitation:
         wheels = wheel_inputs(self.track, self.speed, offsets, self.time)
         half = self.dt / 2
         ground, ground_rates = [], []

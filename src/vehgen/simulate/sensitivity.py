@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 
 def direct_sensitivities(
-    model: EquationsOfMotion, drive: Excitation, names: Sequence[str], decimation: int = 10, values: Mapping[str, float] | None = None
+    model: EquationsOfMotion, excitation: Excitation, names: Sequence[str], decimation: int = 10, values: Mapping[str, float] | None = None
 ) -> tuple[Array, Array]:
     """Return a response and its derivatives by parameters, exact for the Newmark solution.
 
@@ -31,7 +31,7 @@ def direct_sensitivities(
     ----------
     model
         A linear model (no force laws).
-    drive
+    excitation
         Inputs; parameters that move axles along the road change it, and that part is not included.
     names
         Parameters of `model.parameters`.
@@ -51,21 +51,21 @@ def direct_sensitivities(
             raise InputError(f"no parameter {name!r}; {did_you_mean(name, model.parameters)}")
     values = values or model.values()
     numeric = model.numeric(values)
-    forces = drive.inputs @ numeric.P.T + drive.rates @ numeric.Q.T + drive.forces @ numeric.F.T
-    q, v, a = newmark_states(numeric, forces, drive.dt)
-    response = channel_values(numeric, a, v, q, drive.inputs, drive.rates)[::decimation]
+    forces = excitation.inputs @ numeric.P.T + excitation.rates @ numeric.Q.T + excitation.forces @ numeric.F.T
+    q, v, a = newmark_states(numeric, forces, excitation.dt)
+    response = channel_values(numeric, a, v, q, excitation.inputs, excitation.rates)[::decimation]
     loads = np.zeros((*q.shape, len(names)))
     derived = [matrix_derivatives(model, name, values) for name in names]
     for i, d in enumerate(derived):
-        load = drive.inputs @ d["P"].T + drive.rates @ d["Q"].T + drive.forces @ d["F"].T
+        load = excitation.inputs @ d["P"].T + excitation.rates @ d["Q"].T + excitation.forces @ d["F"].T
         loads[:, :, i] = load - a @ d["M"].T - v @ d["C"].T - q @ d["K"].T
-    sq, sv, sa = newmark_states(numeric, loads, drive.dt)
+    sq, sv, sa = newmark_states(numeric, loads, excitation.dt)
     rows = numeric.outputs
     sensitivities = np.empty((len(names), *response.shape))
     for i, d in enumerate(derived):
         own = sa[:, :, i] @ rows["acceleration"].T + sv[:, :, i] @ rows["velocity"].T + sq[:, :, i] @ rows["displacement"].T
         moved = a @ d["acceleration"].T + v @ d["velocity"].T + q @ d["displacement"].T
-        moved += drive.inputs @ d["input"].T + drive.rates @ d["input_rate"].T
+        moved += excitation.inputs @ d["input"].T + excitation.rates @ d["input_rate"].T
         sensitivities[i] = (own + moved)[::decimation]
     return response, sensitivities
 

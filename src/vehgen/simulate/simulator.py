@@ -102,8 +102,8 @@ class Simulator:
         residuals = np.zeros(len(parameters))
         for index, layout in enumerate(distinct):
             members = np.flatnonzero(group == index)
-            drive: Excitation = scenario.drive(layout)
-            result = self.kernel.run(parameters[members], drive, scenario.decimation, threads=threads)
+            excitation: Excitation = scenario.excitation(layout)
+            result = self.kernel.run(parameters[members], excitation, scenario.decimation, threads=threads)
             failures.update({int(members[i]): reason for i, reason in result.failures.items()})
             residuals[members] = result.residuals
             part = result.responses

@@ -54,7 +54,7 @@ class ProbeMotion:
             for item, value in zip(misfit.shared, numbers, strict=True):
                 scenario = item.scenario(scenario, float(value))
             population = np.array([[known[name] for name in probe.parameters]])
-            run = kernel.run(population, scenario.drive(probe.wheel_offsets(known)), scenario.decimation)
+            run = kernel.run(population, scenario.excitation(probe.wheel_offsets(known)), scenario.decimation)
             self.motions.append(np.asarray(run.responses[0].T.reshape(len(model.elements), 2, -1)))
 
     def moved(self, problem: Problem, values: Array) -> Array | None:

@@ -114,7 +114,7 @@ def _variety(trials: Sequence[Trial]) -> Iterator[Finding]:
     heights = []
     for trial in trials:
         offsets = trial.simulator.model.wheel_offsets(trial.values)
-        heights.append(float(np.ptp(trial.scenario.drive(offsets).inputs[:, : len(offsets)])))
+        heights.append(float(np.ptp(trial.scenario.excitation(offsets).inputs[:, : len(offsets)])))
     for kind, word, found, advice in (
         ("one_amplitude", "height of road", heights, "a run over a higher or lower hump"),
         ("one_speed", "speed", [trial.scenario.top_speed for trial in trials], "a run at another speed"),

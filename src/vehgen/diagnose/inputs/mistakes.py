@@ -61,10 +61,10 @@ class _Moved(Scenario):
     axles: tuple[int, ...] = ()
     shift: float = 0.0
 
-    def drive(self, offsets: Array) -> Excitation:
+    def excitation(self, offsets: Array) -> Excitation:
         moved = np.array(offsets)
         moved[list(self.axles)] += self.shift
-        return super().drive(moved)
+        return super().excitation(moved)
 
 
 @dataclass(frozen=True)

@@ -211,7 +211,7 @@ def _raw(misfit: Misfit, place: Place, component: int, x: Array, kernels: dict[i
         probe, kernel = kernels[id(model)]
         scenario = misfit.nuisances.adjust(trial.scenario, errors[t])
         population = np.array([[values[name] for name in probe.parameters]])
-        motion = kernel.run(population, scenario.drive(probe.wheel_offsets(values)), scenario.decimation).responses[0]
+        motion = kernel.run(population, scenario.excitation(probe.wheel_offsets(values)), scenario.decimation).responses[0]
         frequency = np.asarray(np.fft.rfftfreq(len(motion), trial.recording.dt), dtype=np.float64)
         found.append(
             _Raw(

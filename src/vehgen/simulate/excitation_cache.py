@@ -1,4 +1,4 @@
-"""The last drives, by what they were made from: a fit asks for the same road under the same wheels again and again."""
+"""The last excitations, by what they were made from: a fit asks for the same road under the same wheels again and again."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from threading import Lock
 from vehgen.codegen import Excitation
 
 MAX_CACHED_BYTES = 100_000_000
-"""Drives are forgotten, the oldest first, beyond this size [bytes]."""
+"""Excitations are forgotten, the oldest first, beyond this size [bytes]."""
 
 
 class ExcitationCache:
-    """Remembers drives up to MOST_BYTES.
+    """Remembers excitations up to MAX_CACHED_BYTES.
 
     A key may hold ids of objects: `alive` is kept as long as the key, so that no other object takes their places.
     """
@@ -24,20 +24,20 @@ class ExcitationCache:
         self._lock = Lock()
 
     def find(self, key: Hashable, alive: object, make: Callable[[], Excitation]) -> Excitation:
-        """Return the drive of a key, made if it is not known."""
+        """Return the excitation of a key, made if it is not known."""
         with self._lock:
             if key in self._known:
                 self._known.move_to_end(key)
                 return self._known[key][0]
-        drive = make()
+        excitation = make()
         with self._lock:
             if key not in self._known:
-                self._known[key] = drive, alive
-                self._bytes += _size(drive)
+                self._known[key] = excitation, alive
+                self._bytes += _size(excitation)
             while self._bytes > MAX_CACHED_BYTES and len(self._known) > 1:
                 self._bytes -= _size(self._known.popitem(last=False)[1][0])
-        return drive
+        return excitation
 
 
-def _size(drive: Excitation) -> int:
-    return int(drive.inputs.nbytes + drive.rates.nbytes + drive.forces.nbytes)
+def _size(excitation: Excitation) -> int:
+    return int(excitation.inputs.nbytes + excitation.rates.nbytes + excitation.forces.nbytes)
