@@ -8,6 +8,10 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("whole", deadline=None)  # a busy machine is no fault of an example
+settings.load_profile("whole")
 
 
 def pytest_configure(config: pytest.Config) -> None:

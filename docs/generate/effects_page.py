@@ -108,7 +108,8 @@ HINGE_DAMPING = VehicleEffect(
 hinge_damping = "my_package:HINGE_DAMPING"
 ```
 
-`edit` returns what a vehicle file that extends the base would say. A `RunEffect` names an `adjustment`, a class of
+`edit` returns what a vehicle file that extends the base would say; the symbols, and what the vehicle says at the place, are expressions
+that take part in arithmetic: `{"c": site.spring.c + 2*symbols["c"]}`. A `RunEffect` names an `adjustment`, a class of
 [vehgen.fit.adjustments](../src/vehgen/fit/adjustments.py) or one of your own; a `LineEffect` says between which frequencies lines are
 `looked_for`; what is neither is a class of your own with the methods of [`Effect`](../src/vehgen/effects/base.py). Each may set
 `is_global`."""

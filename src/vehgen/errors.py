@@ -39,14 +39,19 @@ def shown(text: object, limit: int = MAX_SHOWN) -> str:
 
 @dataclass(frozen=True)
 class Position:
-    """A place in a file; `line` and `column` count from 1."""
+    """A place in a file, `line` and `column` counting from 1; of an argument in Python its path in place of the file, and 0."""
 
     file: Path | str
-    line: int
-    column: int
+    line: int = 0
+    column: int = 0
+
+    @property
+    def is_argument(self) -> bool:
+        """Whether it is the path of an argument, such as `Vehicle.bodies.cab.mass`."""
+        return self.line == 0
 
     def __str__(self) -> str:
-        return f"{self.file}:{self.line}:{self.column}"
+        return str(self.file) if self.is_argument else f"{self.file}:{self.line}:{self.column}"
 
 
 class InputError(Exception):
@@ -59,7 +64,7 @@ class InputError(Exception):
     message
         What is wrong and what would be right, in one sentence or two.
     position
-        Where in a file, when it came from one.
+        Where in a file, or in which argument.
 
     """
 

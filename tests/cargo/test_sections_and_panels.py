@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from vehgen.cargo.frame_file import DampingPoint, rayleigh
 from vehgen.cargo.panels import Layer, equivalent_layer
 from vehgen.cargo.sections import Bar, Channel, Tube
+from vehgen.errors import InputError
 
 
 def raster(inside, height, width, n=1200):
@@ -43,7 +43,7 @@ def test_torsion_constants():
 
 
 def test_a_full_section_is_no_tube():
-    with pytest.raises(ValidationError, match="less than half as thick"):
+    with pytest.raises(InputError, match="less than half as thick"):
         Tube(height="100 mm", width="40 mm", thickness="20 mm")
 
 

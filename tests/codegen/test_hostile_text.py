@@ -9,10 +9,10 @@ import pytest
 from vehgen.codegen import Excitation, Kernel, write_kernel
 from vehgen.errors import InputError
 from vehgen.files.names import is_name
+from vehgen.files.yaml_writer import yaml_text
 from vehgen.mechanics import EquationsOfMotion, Place, PointOutput, derive
 from vehgen.simulate import load_run
 from vehgen.vehicle import load_vehicle
-from vehgen.vehicle.writing import yaml_text
 
 TEXT = '"""\n\'\'\'\nopen("PWNED", "w").write("x")\n\\N{BULLET}\\x41\\\n${HOME} {{7*7}} {0} %s </script><b>alert</b> $x$ [/b]\n#'
 WORD = "open_PWNED_w_"

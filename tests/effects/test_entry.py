@@ -19,7 +19,6 @@ from vehgen.mechanics.outputs import PointOutput
 from vehgen.road import ConstantSpeed, Hump, Track
 from vehgen.simulate import Scenario, Simulator
 from vehgen.vehicle import load_vehicle
-from vehgen.vehicle.loading import extend_vehicle
 
 PAGE = Path(__file__).parents[2] / "docs" / "effects.md"
 (EXAMPLE,) = re.findall(r"```yaml\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
@@ -63,7 +62,7 @@ def test_the_pages_example_begins_with_two_laws_of_a_suspension(file, site):
 
 def test_its_force_is_what_the_entry_says(file, site):
     effect = load_effects(file)["soft_damper"]
-    vehicle = extend_vehicle(site.vehicle, effect.change(site, {"c3": 2e4, "k3": 3e7}))
+    vehicle = site.vehicle.with_changes(effect.change(site, {"c3": 2e4, "k3": 3e7}))
     (term,) = read_laws(vehicle, "suspension", "rear")
     symbols = effect.symbols("rear")
     values = {symbols["c3"]: 2e4, symbols["k3"]: 3e7, TRAVEL.name: 0.02, RATE.name: -0.3}
@@ -74,7 +73,7 @@ def test_its_force_is_what_the_entry_says(file, site):
 
 
 def test_a_law_of_the_library_takes_numbers_and_expressions(file, site):
-    vehicle = extend_vehicle(site.vehicle, load_effects(file)["symmetric_stop"].change(site, {"k": 1e5, "gap": 0.01}))
+    vehicle = site.vehicle.with_changes(load_effects(file)["symmetric_stop"].change(site, {"k": 1e5, "gap": 0.01}))
     (term,) = read_laws(vehicle, "suspension", "rear")
     values = vehicle.values()
     numbers = {key: float(item.subs({name: values[name.name] for name in item.free_symbols})) for key, item in term.parameters.items()}
@@ -87,7 +86,7 @@ def test_an_entry_simulates_as_the_library_does(tmp_path, site):
     track = Track((Hump.from_shape("half_sine", 1.0, 0.5, 0.04),))
     answers = []
     for effect in (own, known):
-        vehicle = extend_vehicle(site.vehicle, effect.change(site, {"k3": 1e8}))
+        vehicle = site.vehicle.with_changes(effect.change(site, {"k3": 1e8}))
         simulator = Simulator(vehicle, [PointOutput("az", Place("rear", "body", behind="rear"), "acceleration")])
         answers.append(simulator.run(simulator.parameters(), Scenario(track, ConstantSpeed(2.0), 4.0, 1e-3, 10)).responses[0, :, 0])
     assert np.abs(answers[0]).max() > 1
@@ -106,7 +105,7 @@ def test_hinges_and_tyres_carry_entries_too(tmp_path):
     surveyor = EffectLocator(vehicle, vehicle.values())
     for effect in load_effects(tmp_path / "a.yaml").values():
         place = effect.places(vehicle, ())[0]
-        changed = extend_vehicle(vehicle, effect.change(surveyor.site(place)))
+        changed = vehicle.with_changes(effect.change(surveyor.site(place)))
         assert len(read_laws(changed, effect.attaches, place)) == 1
     assert effect.parameters[0].first(surveyor.site("axle1")) == (1e5,)
     assert effect.parameters[0].unit == "kg m^-1 s^-2"
@@ -175,7 +174,7 @@ def test_an_entry_of_a_global_law_on_tyres_reaches_all_of_them(file):
     (every,), (first,) = (effect.search_dimensions(place, locator) for place in ("all tyres", "axle1"))
     mean = sum(locator.site(axle).kt for axle in vehicle.axles) / 5
     assert every.high / first.high == pytest.approx(mean / locator.site("axle1").kt)
-    changed = extend_vehicle(vehicle, effect.change(locator.site("all tyres")))
+    changed = vehicle.with_changes(effect.change(locator.site("all tyres")))
     assert all(len(read_laws(changed, "tyre", axle)) == len(read_laws(vehicle, "tyre", axle)) + 1 for axle in vehicle.axles)
 
 
@@ -260,7 +259,7 @@ def test_the_pages_python_is_an_effect_that_damps_a_hinge():
     exec(compile(PACKAGE, str(PAGE), "exec"), made)
     effect, vehicle = made["HINGE_DAMPING"], load_vehicle("tractor5")
     (place,) = effect.places(vehicle, ())
-    changed = extend_vehicle(vehicle, effect.change(EffectLocator(vehicle, vehicle.values()).site(place), {"c": 5e4}))
+    changed = vehicle.with_changes(effect.change(EffectLocator(vehicle, vehicle.values()).site(place), {"c": 5e4}))
     before, after = derive(vehicle).numeric(), derive(changed).numeric()
     pitch = [i for i, item in enumerate(derive(vehicle).coordinates) if item.name in ("pitch.tractor", "pitch.semitrailer")]
     assert np.linalg.eigvalsh((after.C - before.C)[np.ix_(pitch, pitch)]) == pytest.approx([0, 1e5], abs=1e-6)

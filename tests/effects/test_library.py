@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 
 from vehgen.effects import EFFECTS, Effect, EffectLocator
+from vehgen.files.yaml_writer import yaml_document
 from vehgen.mechanics import derive
 from vehgen.simulate import natural_modes
 from vehgen.vehicle import load_vehicle, parse_vehicle
-from vehgen.vehicle.loading import extend_vehicle
-from vehgen.vehicle.writing import yaml_document
 
 DOCS = Path(__file__).parents[2] / "docs"
 
@@ -43,7 +42,7 @@ def test_every_edit_gives_a_vehicle_that_vehgen_accepts(name):
     for effect in EFFECTS.values():
         for place in effect.places(vehicle, ())[:2] if effect.changes_vehicle else ():
             change = effect.change(surveyor.site(place))
-            changed = extend_vehicle(vehicle, change)
+            changed = vehicle.with_changes(change)
             written = parse_vehicle(yaml_document({"extends": name, **change}))
             assert (written.bodies, written.axles, written.parameters) == (changed.bodies, changed.axles, changed.parameters)
             assert set(effect.search_names(place)) <= set(changed.ranges())
@@ -63,7 +62,7 @@ def test_every_edit_fits_a_vehicle_with_the_longest_names():
             names = [name for place in effect.places(vehicle, ()) for name in effect.search_names(place)]
             assert len(set(names)) == len(names)
             for place in effect.places(vehicle, ())[:1]:
-                extend_vehicle(vehicle, effect.change(locator.site(place)))
+                vehicle.with_changes(effect.change(locator.site(place)))
 
 
 def frequencies(vehicle):
@@ -73,7 +72,7 @@ def frequencies(vehicle):
 def test_a_walking_beam_leaves_the_tandem_its_heave_and_takes_its_pitch_stiffness():
     vehicle = load_vehicle("tractor5.yaml")
     site = EffectLocator(vehicle, vehicle.values()).site("axle4+axle5")
-    changed = derive(extend_vehicle(vehicle, EFFECTS["walking_beam"].change(site, {"share": 1.0, "split": 0.5})))
+    changed = derive(vehicle.with_changes(EFFECTS["walking_beam"].change(site, {"share": 1.0, "split": 0.5})))
     K = changed.numeric().K
     beam = [item.name for item in changed.coordinates]
     pitch = beam.index("pitch.beam_axle4_axle5")
@@ -87,7 +86,7 @@ def test_a_light_load_leaves_the_body_modes_nearly_alone():
     vehicle = load_vehicle("sedan2.yaml")
     site = EffectLocator(vehicle, vehicle.values()).site("body")
     values = {"mass": 15.0, "frequency": 12.0, "damping_ratio": 0.02, "x": 0.0}
-    changed = extend_vehicle(vehicle, EFFECTS["cargo_module"].change(site, values))
+    changed = vehicle.with_changes(EFFECTS["cargo_module"].change(site, values))
     found = frequencies(changed)
     assert np.delete(found, np.abs(found - 12.0).argmin()) == pytest.approx(frequencies(vehicle), rel=0.02)
 
@@ -116,7 +115,7 @@ def test_bending_follows_the_hand_calculation_of_two_degrees_of_freedom():
 def test_a_stiff_frame_is_a_rigid_one():
     change = {"bodies": {"semitrailer": {"bending": {"length": "12 m", "frequency": "3000 Hz"}}}}
     vehicle = load_vehicle("tractor5.yaml")
-    assert frequencies(extend_vehicle(vehicle, change))[:-1] == pytest.approx(frequencies(vehicle), rel=1e-5)
+    assert frequencies(vehicle.with_changes(change))[:-1] == pytest.approx(frequencies(vehicle), rel=1e-5)
 
 
 def test_the_page_shows_the_library_as_it_is():
@@ -129,7 +128,7 @@ def test_the_page_shows_the_library_as_it_is():
 def test_a_walking_beam_is_no_place_for_cargo_and_takes_its_axles_suspensions_away():
     vehicle = load_vehicle("tractor5.yaml")
     site = EffectLocator(vehicle, vehicle.values()).site("axle2+axle3")
-    changed = extend_vehicle(vehicle, EFFECTS["walking_beam"].change(site))
+    changed = vehicle.with_changes(EFFECTS["walking_beam"].change(site))
     assert "beam_axle2_axle3" in changed.bodies
     for effect in (item for item in EFFECTS.values() if item.attaches == "body"):
         assert effect.places(changed, ()) == effect.places(vehicle, ())

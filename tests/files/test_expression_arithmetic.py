@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from vehgen.errors import InputError
 from vehgen.files.expression_parser import MAX_LENGTH
-from vehgen.files.expression_tree import Name, Number, SyntaxNode
+from vehgen.files.expression_tree import Number, Symbol, SyntaxNode
 from vehgen.files.expressions import Expression, parse
 
 SIGNS = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv}
@@ -22,7 +22,7 @@ Pair = tuple[Expression | float, Any]
 def shape(node: SyntaxNode) -> Any:
     if isinstance(node, Number):
         return (node.value, str(node.dimension))
-    return node.name if isinstance(node, Name) else (node.operator, *map(shape, node.arguments))
+    return node.name if isinstance(node, Symbol) else (node.operator, *map(shape, node.arguments))
 
 
 def joined(sign: str, left: Pair, right: Pair) -> Pair:

@@ -27,7 +27,6 @@ from vehgen.phones import read_export
 from vehgen.simulate import lint, load_run, make_scenario, natural_modes
 from vehgen.simulate.warnings import spectral_nulls, step_too_coarse
 from vehgen.vehicle import Vehicle, load_vehicle, parse_vehicle
-from vehgen.vehicle.loading import extend_vehicle
 
 STATEMENTS = {"Import", "ImportFrom", "FunctionDef", "Expr", "Assign"}
 MODULES = {"math", "numba", "numpy", "vehgen"}
@@ -145,7 +144,7 @@ def effects(path: str) -> None:
         if name in library():
             continue
         for place in found[name].places(tractor(), ())[:1]:
-            generate(derive(extend_vehicle(tractor(), found[name].change(surveyor.site(place)))))
+            generate(derive(tractor().with_changes(found[name].change(surveyor.site(place)))))
 
 
 def export(path: str) -> None:

@@ -9,7 +9,7 @@ import pytest
 from vehgen.errors import InputError
 from vehgen.files.document import read_text
 from vehgen.vehicle import bundled_models, find_vehicle_file, load_vehicle, parse_vehicle
-from vehgen.vehicle.loading import merge
+from vehgen.vehicle.changes import merge
 
 BASE = """\
 name: base

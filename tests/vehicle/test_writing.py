@@ -7,8 +7,10 @@ from hypothesis import strategies as st
 from tests.vehicle.rig import GOOD
 from vehgen.files.document import read_text
 from vehgen.files.names import unprintable
+from vehgen.files.units import FREQUENCY, NAMED_DIMENSIONS, NONE
+from vehgen.files.yaml_writer import even_text, yaml_document, yaml_text
 from vehgen.vehicle import load_vehicle
-from vehgen.vehicle.writing import variant_text, yaml_document, yaml_text, yaml_title
+from vehgen.vehicle.writing import variant_text
 
 ODD = "\"\"\"\n'''\\ \t{{}} ${x} </script> # : - ? & * ! | > % @ ` \u00e9 \U0001f69a"
 TEXTS = st.text(alphabet=st.characters(exclude_categories=("Cs",)), max_size=30).filter(lambda text: unprintable(text) is None)
@@ -28,7 +30,7 @@ def read_back(scalar):
 @given(TEXTS)
 def test_what_vehgen_writes_as_yaml_reads_back(text):
     assert read_back(yaml_text(text)) == [text, {"key": text, "other": 1}]
-    assert read_back(yaml_title(text))[0] == " ".join(text.split())
+    assert read_back(yaml_text(even_text(text)))[0] == " ".join(text.split())
 
 
 @pytest.mark.parametrize(
@@ -49,3 +51,18 @@ def test_a_file_with_odd_texts_is_written_and_read_again(tmp_path):
     assert again.name == "null"
     assert again.title == " ".join(ODD.split())
     assert again.values()["mB"] == 850.0
+
+
+def test_a_parameter_of_every_unit_reads_back(tmp_path):
+    units = {
+        f"p{i}": str(dimension) if dimension != FREQUENCY else "s^-1"
+        for i, dimension in enumerate(NAMED_DIMENSIONS.values())
+        if dimension != NONE
+    }
+    own = "".join(f"  {name}: {{value: 1.5 {unit}}}\n" for name, unit in units.items())
+    (tmp_path / "base.yaml").write_text(GOOD.replace("parameters:\n", f"parameters:\n{own}"), encoding="utf-8")
+    base, values = load_vehicle(tmp_path / "base.yaml"), dict.fromkeys(units, 2.25)
+    (tmp_path / "again.yaml").write_text(variant_text(base, tmp_path, "again", "", values, [], {}), encoding="utf-8")
+    again = load_vehicle(tmp_path / "again.yaml")
+    assert {name: again.values()[name] for name in units} == values
+    assert all(again.dimensions[name] == base.dimensions[name] for name in units)

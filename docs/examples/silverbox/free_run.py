@@ -25,7 +25,6 @@ from vehgen.fit.trial import load_trials
 from vehgen.mechanics import Place, PointOutput
 from vehgen.simulate import Simulator
 from vehgen.vehicle import Vehicle, load_vehicle
-from vehgen.vehicle.loading import extend_vehicle
 
 Array = NDArray[np.float64]
 FIRST = 50
@@ -35,7 +34,7 @@ WHOLE_BAND = (0.5, 300.0)
 
 def with_cubic_spring(vehicle: Vehicle) -> Vehicle:
     """Return the vehicle with the library's cubic spring beside its linear one."""
-    return extend_vehicle(vehicle, EFFECTS["cubic_stiffness"].change(EffectLocator(vehicle, vehicle.values()).site("spring")), "cubic")
+    return vehicle.with_changes(EFFECTS["cubic_stiffness"].change(EffectLocator(vehicle, vehicle.values()).site("spring")))
 
 
 def fit(vehicle: Vehicle, runs: list[Path]) -> dict[str, float]:

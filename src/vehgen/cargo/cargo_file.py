@@ -13,7 +13,6 @@ from vehgen.cargo.quantities import (
     Damping,
     DampingRatio,
     Distance,
-    Frequency,
     Inertia,
     Mass,
     OptionalMass,
@@ -23,6 +22,7 @@ from vehgen.cargo.quantities import (
 from vehgen.files.document import Located
 from vehgen.files.entry import FileModel, read_entries
 from vehgen.files.names import FreeText, Identifier
+from vehgen.files.quantities import Frequency
 
 
 class RigidCargo(FileModel):

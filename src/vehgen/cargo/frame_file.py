@@ -11,13 +11,14 @@ from typing import Literal
 from pydantic import Field
 
 from vehgen.cargo.panels import Layer, equivalent_layer
-from vehgen.cargo.quantities import DampingRatio, Density, Distance, Frequency, Modulus, Poisson, PositiveLength
+from vehgen.cargo.quantities import DampingRatio, Density, Distance, Modulus, Poisson, PositiveLength
 from vehgen.cargo.sections import SectionEntry
 from vehgen.errors import InputError
 from vehgen.files.checks import check_known
 from vehgen.files.document import Located
 from vehgen.files.entry import FileModel, read_entries
 from vehgen.files.names import FreeText, Identifier, Name
+from vehgen.files.quantities import Frequency
 
 MIN_SIDE, MAX_SIDE = 0.1, 100.0
 

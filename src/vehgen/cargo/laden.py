@@ -6,15 +6,19 @@ energies. Wu & Li 2023 (doi:10.3390/s23249691), Eqs. 24-28, write them out by ha
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 from vehgen.cargo.cargo_file import Cargo, ModuleCargo, RigidCargo
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.checks import check_known
+from vehgen.files.expressions import Expression
 from vehgen.files.names import MAX_NAME, is_identifier
+from vehgen.files.yaml_writer import OneLine, even_text, yaml_document
 from vehgen.vehicle.model import Vehicle
-from vehgen.vehicle.writing import base_reference, yaml_text, yaml_title
+from vehgen.vehicle.parts import ZERO
+from vehgen.vehicle.writing import base_reference
 
 Definition = tuple[str, float, str, str]
 """A new parameter: its name without prefix, value [SI], unit and meaning."""
@@ -46,34 +50,31 @@ def laden_text(vehicle: Vehicle, cargo: Cargo, folder: Path, name: str) -> str:
     prefix = _prefix(vehicle, body, [item[0] for item in definitions])
     title = cargo.file.title or ("rigid cargo" if isinstance(load, RigidCargo) else "module")
     empty = (vehicle.title or vehicle.name).removesuffix(", unladen")
-    lines = [
-        f"extends: {yaml_text(base_reference(vehicle, folder))}",
-        f"name: {yaml_text(name)}",
-        f"title: {yaml_title(f'{empty}, laden: {title}')}",
-        *([f"source: {yaml_title(cargo.file.source)}"] if cargo.file.source else []),
-        "parameters:",
-    ]
-    for item, value, unit, meaning in definitions:
-        lines.append(f"  {prefix}{item}: {{value: {value!r} {unit}, meaning: {yaml_title(meaning)}}}")
+    words = {"name": name, "title": even_text(f"{empty}, laden: {title}"), "source": even_text(cargo.file.source)}
+    data: dict[str, Any] = {"extends": base_reference(vehicle, folder), **{key: text for key, text in words.items() if text}}
+    data["parameters"] = {
+        f"{prefix}{item}": {"value": f"{value!r} {unit}", "meaning": even_text(meaning)} for item, value, unit, meaning in definitions
+    }
+    symbols = {item[0]: Expression.symbol(f"{prefix}{item[0]}") for item in definitions}
     if isinstance(load, RigidCargo):
-        lines += _rigid_bodies(prefix, body, title, cargo.file.on, x, z, load.pitch_inertia is not None)
+        data |= _rigid_parts(symbols, body, even_text(title), cargo.file.on, x, z)
     else:
-        lines += _module_bodies(prefix, body, title, cargo.file.on, x, z, load.fixed_mass > 0)
-    return "\n".join(lines) + "\n"
+        data |= _module_parts(symbols, body, even_text(title), cargo.file.on, x, z)
+    return yaml_document(data)
 
 
-def _reference(vehicle: Vehicle, cargo: Cargo) -> tuple[str, str]:
-    """Return what the cargo's distances start from, as expressions: x ahead of and z above the carrier's COG."""
+def _reference(vehicle: Vehicle, cargo: Cargo) -> tuple[Expression, Expression]:
+    """Return what the cargo's distances start from: x ahead of and z above the carrier's COG."""
     on, behind = cargo.file.on, cargo.file.behind
     check_known(on, vehicle.bodies, f"{vehicle.name} has no body", cargo.document, "on")
     hinges = {name: hinge.points[on] for name, hinge in vehicle.hinges.items() if on in hinge.points}
     axles = {name: axle for name, axle in vehicle.axles.items() if axle.body == on}
     if behind in hinges:
-        return f"({hinges[behind].x})", f"({hinges[behind].z})"
+        return hinges[behind].x, hinges[behind].z
     if behind in axles:
-        return f"({axles[behind].x})", "0"
+        return axles[behind].x, ZERO
     if behind == on:
-        return "0", "0"
+        return ZERO, ZERO
     there = "; it is on another body" if behind in {**vehicle.hinges, **vehicle.axles, **vehicle.bodies} else ""
     raise InputError(
         f"{shown(behind)} is no hinge or axle of {on!r}, nor {on!r} itself{there}; {did_you_mean(behind, [*hinges, *axles, on])}",
@@ -146,33 +147,41 @@ def _module_parameters(load: ModuleCargo, behind: str) -> list[Definition]:
     ]
 
 
-def _rigid_bodies(prefix: str, body: str, title: str, on: str, x: str, z: str, has_inertia: bool) -> list[str]:
-    return [
-        "bodies:",
-        f"  {body}:",
-        f"    title: {yaml_title(title)}",
-        f"    mass: {prefix}mass",
-        f"    size: {{length: {prefix}length, height: {prefix}height}}",
-        *([f"    pitch_inertia: {prefix}pitch_inertia"] if has_inertia else []),
-        "    motions: []",
-        f"    carried_by: {{body: {yaml_text(on)}, x: '{x} - {prefix}front - {prefix}length/2', "
-        f"z: '{z} + {prefix}base + {prefix}height/2'}}",
-    ]
+def _rigid_parts(symbols: Mapping[str, Expression], body: str, title: str, on: str, x: Expression, z: Expression) -> dict[str, Any]:
+    """Return the body of a rigid cargo."""
+    inertia = {"pitch_inertia": symbols["pitch_inertia"]} if "pitch_inertia" in symbols else {}
+    return {
+        "bodies": {
+            body: {
+                "title": title,
+                "mass": symbols["mass"],
+                "size": {"length": symbols["length"], "height": symbols["height"]},
+                **inertia,
+                "motions": [],
+                "carried_by": {
+                    "body": on,
+                    "x": x - symbols["front"] - symbols["length"] / 2,
+                    "z": z + symbols["base"] + symbols["height"] / 2,
+                },
+            }
+        }
+    }
 
 
-def _module_bodies(prefix: str, body: str, title: str, on: str, x: str, z: str, has_fixed: bool) -> list[str]:
-    behind = f"{x} - {prefix}front - {prefix}cog_behind_front"
-    carried = f"    carried_by: {{body: {yaml_text(on)}, x: '{behind}', z: '{z} + {prefix}base + {prefix}cog_above_floor'}}"
-    lines = [
-        "bodies:",
-        f"  {body}:",
-        f"    title: {yaml_title(title)}",
-        f"    mass: {prefix}mass",
-        f"    pitch_inertia: {prefix}pitch_inertia",
-    ]
-    lines += ["    motions: [heave]", carried]
-    if has_fixed:
-        fixed_title = f"{title}, fixed part"
-        lines += [f"  {body}_fixed:", f"    title: {yaml_title(fixed_title)}", f"    mass: {prefix}fixed_mass", "    motions: []", carried]
-    mount = f"{{{yaml_text(on)}: {{x: '{behind}'}}, {body}: {{x: 0 m}}, k: {prefix}stiffness, c: {prefix}damping}}"
-    return [*lines, "links:", f"  {body}_mount: {mount}"]
+def _module_parts(symbols: Mapping[str, Expression], body: str, title: str, on: str, x: Expression, z: Expression) -> dict[str, Any]:
+    """Return the bodies of a module and its mount."""
+    place = x - symbols["front"] - symbols["cog_behind_front"]
+    carried = {"body": on, "x": place, "z": z + symbols["base"] + symbols["cog_above_floor"]}
+    sprung = {
+        "title": title,
+        "mass": symbols["mass"],
+        "pitch_inertia": symbols["pitch_inertia"],
+        "motions": ["heave"],
+        "carried_by": carried,
+    }
+    bodies = {body: {**sprung, "carried_by": carried}}
+    if "fixed_mass" in symbols:
+        fixed_title = even_text(f"{title}, fixed part")
+        bodies[f"{body}_fixed"] = {"title": fixed_title, "mass": symbols["fixed_mass"], "motions": [], "carried_by": carried}
+    mount = {on: {"x": place}, body: {"x": "0 m"}, "k": symbols["stiffness"], "c": symbols["damping"]}
+    return {"bodies": bodies, "links": {f"{body}_mount": OneLine(mount)}}

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +18,8 @@ from vehgen.cargo.box_mesh import Mesh, box_mesh, box_node_count
 from vehgen.cargo.eigenmodes import Eigenmodes, RigidBody, eigenmodes, rigid_body
 from vehgen.cargo.elements import assemble
 from vehgen.cargo.frame_file import FrameModule, rayleigh
-from vehgen.errors import InputError, escaped
-from vehgen.vehicle.writing import yaml_text, yaml_title
+from vehgen.errors import InputError
+from vehgen.files.yaml_writer import even_text, yaml_document
 
 BYTES_PER_NODE = 80_000
 """Memory that assembly and factorisation take (about 50 kB a node at 13 000 nodes), with room for growth."""
@@ -119,26 +120,26 @@ def cargo_text(model: ModuleModel) -> str:
     """Return the cargo file of a module, as `laden` reads it."""
     file, body = model.frame.file, model.body
     nodes, kind = len(model.mesh.nodes), "total" if model.fixed_mass == 0 else "effective"
-    lines = [
-        f"# From the finite elements of {escaped(model.frame.path.name)}: {nodes} nodes, mesh size {model.mesh_size:g} m.",
-        f"# Principal vertical mode {model.frequency:.4g} Hz, damping ratio {model.damping_ratio:.4g}; "
+    comments = [
+        f"From the finite elements of {model.frame.path.name}: {nodes} nodes, mesh size {model.mesh_size:g} m.",
+        f"Principal vertical mode {model.frequency:.4g} Hz, damping ratio {model.damping_ratio:.4g}; "
         f"it moves {model.effective_share:.1%} of {body.mass:.6g} kg.",
-        f"# Mass on the spring: {kind}.",
-        *([f"name: {yaml_text(file.name)}"] if file.name else []),
-        *(f"{key}: {yaml_title(text)}" for key, text in (("title", file.title), ("source", file.source)) if text),
-        f"on: {yaml_text(file.on)}",
-        f"behind: {yaml_text(file.behind)}",
-        "module:",
-        f"  mass: {model.mass!r} kg",
-        *([f"  fixed_mass: {model.fixed_mass!r} kg"] if model.fixed_mass > 0 else []),
-        f"  stiffness: {model.stiffness!r} N/m",
-        f"  damping: {model.damping!r} N s/m",
-        f"  cog: {{behind_front: {float(body.cog[0])!r} m, above_floor: {float(body.cog[2])!r} m}}",
-        f"  front: {file.front!r} m",
-        f"  base: {file.base!r} m",
-        f"  pitch_inertia: {body.pitch_inertia!r} kg m^2",
+        f"Mass on the spring: {kind}.",
     ]
-    return "\n".join(lines) + "\n"
+    words = {"name": file.name or "", "title": even_text(file.title), "source": even_text(file.source)}
+    data: dict[str, Any] = {key: text for key, text in words.items() if text}
+    data |= {"on": file.on, "behind": file.behind}
+    data["module"] = {
+        "mass": f"{model.mass!r} kg",
+        **({"fixed_mass": f"{model.fixed_mass!r} kg"} if model.fixed_mass > 0 else {}),
+        "stiffness": f"{model.stiffness!r} N/m",
+        "damping": f"{model.damping!r} N s/m",
+        "cog": {"behind_front": f"{float(body.cog[0])!r} m", "above_floor": f"{float(body.cog[2])!r} m"},
+        "front": f"{file.front!r} m",
+        "base": f"{file.base!r} m",
+        "pitch_inertia": f"{body.pitch_inertia!r} kg m^2",
+    }
+    return yaml_document(data, comments)
 
 
 def convergence(frame: FrameModule) -> list[ModuleModel]:

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import BeforeValidator, Field
 
 from vehgen.files.quantities import read_quantity
-from vehgen.files.units import DAMPING, FORCE, FREQUENCY, INERTIA, LENGTH, MASS, NONE, STIFFNESS, Dimension
+from vehgen.files.units import DAMPING, FORCE, INERTIA, LENGTH, MASS, NONE, STIFFNESS, Dimension
 
 LARGEST_QUANTITY = 1e18
 """What no quantity of a cargo reaches in SI units; vehicle files refuse 1e20."""
@@ -31,7 +31,6 @@ Mass = Annotated[float, _POSITIVE, _read(MASS)]
 OptionalMass = Annotated[float, _NOT_NEGATIVE, _read(MASS)]
 Stiffness = Annotated[float, _POSITIVE, _read(STIFFNESS)]
 Damping = Annotated[float, _NOT_NEGATIVE, _read(DAMPING)]
-Frequency = Annotated[float, _POSITIVE, _read(FREQUENCY)]
 DampingRatio = Annotated[float, Field(ge=0, lt=1), _read(NONE)]
 Inertia = Annotated[float, _NOT_NEGATIVE, _read(INERTIA)]
 Modulus = Annotated[float, _NOT_NEGATIVE, _read(PRESSURE)]

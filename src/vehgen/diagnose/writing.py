@@ -11,9 +11,9 @@ from vehgen.diagnose.select.estimates import estimate
 from vehgen.diagnose.verdict import Verdict
 from vehgen.effects import EffectLocator
 from vehgen.files.names import MAX_TEXT, joined_name
+from vehgen.files.yaml_writer import yaml_document
 from vehgen.fit.problem import Problem
-from vehgen.vehicle.loading import extend_vehicle
-from vehgen.vehicle.writing import base_reference, quantity, yaml_document
+from vehgen.vehicle.writing import base_reference, quantity
 
 
 def effect_file(fit: ModelFit, base: Problem, verdict: Verdict, folder: Path, name: str) -> str:
@@ -40,12 +40,12 @@ def effect_file(fit: ModelFit, base: Problem, verdict: Verdict, folder: Path, na
         own = {parameter.name: values[symbol] for parameter, symbol in zip(candidate.effect.parameters, candidate.parameters, strict=True)}
         change = candidate.effect.change(site, own)
         _merge(data, change)
-        extended = extend_vehicle(extended, change, candidate.label)
+        extended = extended.with_changes(change)
     for effect in verdict.effects:
         for key, item in effect.parameters.items():
             interval = "" if item.interval is None else f", 90 % interval {item.interval[0]:.5g} to {item.interval[1]:.5g}"
             comments.append(f"{effect.name} at {effect.place}: {key} = {item.value:.5g} {item.unit}{interval}")
-    return "".join(f"# {' '.join(line.split())}\n" for line in comments) + yaml_document(data)
+    return yaml_document(data, comments)
 
 
 def _merge(data: dict[str, Any], change: dict[str, Any]) -> None:

@@ -17,13 +17,16 @@ from numpy.typing import NDArray
 from vehgen.effects.evidence import Origins, PlaceEvidence, Residual, StartingPoint
 from vehgen.effects.locator import EffectLocator, EffectSite
 from vehgen.effects.places import ALL_TYRES, Places
+from vehgen.files.expressions import Expression
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.trial import Trial
 from vehgen.simulate import SimulatorPool
 
 Array = NDArray[np.float64]
 Change = dict[str, Any]
-"""Plain mappings, lists, texts and numbers in the form of a vehicle file."""
+"""Mappings and lists in the form of a vehicle file, of expressions, texts and numbers."""
+Symbols = Mapping[str, Expression]
+"""The symbols of an effect's parameters in a vehicle, by the parameters' names."""
 
 
 def one(site: EffectSite) -> float:
@@ -139,7 +142,7 @@ class Effect(ABC):
         return ()
 
     def change(self, site: EffectSite, values: Mapping[str, float] | None = None) -> Change:
-        """Return the change of the vehicle's file at a site and at `values` of its parameters; empty where it leaves the vehicle alone."""
+        """Return the change of the vehicle at a site and at `values` of its parameters; empty where it leaves the vehicle alone."""
         return {}
 
     def change_trials(self, trials: Sequence[Trial], place: str, locator: EffectLocator, simulators: SimulatorPool) -> tuple[Trial, ...]:

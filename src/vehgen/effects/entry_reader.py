@@ -7,11 +7,11 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from vehgen.effects.base import Change, Effect, EffectParameter
+from vehgen.effects.base import Change, Effect, EffectParameter, Symbols
 from vehgen.effects.entry_model import SIZES, EffectEntry, LawPlace, LineEntry, ParameterEntry, RunQuantity
 from vehgen.effects.kinds import LineEffect, RunEffect, VehicleEffect
 from vehgen.effects.library.engine_harmonic import ENGINE_HARMONIC_EFFECT
-from vehgen.effects.library.law_effect import Given, law_edit
+from vehgen.effects.library.law_effect import law_edit
 from vehgen.effects.library.sensor_delay import SENSOR_DELAY_EFFECT
 from vehgen.effects.library.sensor_gain import SENSOR_GAIN_EFFECT
 from vehgen.effects.library.sensor_position import SENSOR_POSITION_EFFECT
@@ -73,7 +73,7 @@ class EntryReader:
         if entry.force is not None:
             self.expect(entry.force, self.force(), {"d": self.travel(), "v": self.travel() / TIME}, "force")
             self.all_used(entry.force.names)
-            law, equation, write = "law", f"f = {entry.force.text}", partial(_own_law, entry.force.text)
+            law, equation, write = "law", f"f = {entry.force.text}", partial(_own_law, entry.force)
         else:
             law, values = self.library_law(entry.law or {})
             equation, write = LAWS[law].equation, partial(_library_law, values)
@@ -225,17 +225,9 @@ def _size(times: Expression, site: EffectSite) -> float:
         raise InputError(f"at {site.place}: {error}") from error
 
 
-def _own_law(force: str, site: EffectSite, symbols: Given) -> Change:
+def _own_law(force: Expression, site: EffectSite, symbols: Symbols) -> Change:
     return {"force": force, "parameters": dict(symbols)}
 
 
-def _library_law(given: dict[str, Expression], site: EffectSite, symbols: Given) -> Change:
-    return {key: value.text if key == "from" else _renamed(value, symbols) for key, value in given.items()}
-
-
-def _renamed(expression: Expression, symbols: Given) -> str:
-    """Return the text of an expression with other names in it."""
-    text = expression.text
-    for item in sorted(expression.symbols, key=lambda name: name.offset, reverse=True):
-        text = text[: item.offset] + symbols[item.name] + text[item.offset + len(item.name) :]
-    return text
+def _library_law(given: dict[str, Expression], site: EffectSite, symbols: Symbols) -> Change:
+    return {key: value if key == "from" else value.substituted(symbols) for key, value in given.items()}

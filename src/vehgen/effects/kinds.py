@@ -10,15 +10,16 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.effects.base import Change, Effect, EffectParameter, SearchDimension, distinct
+from vehgen.effects.base import Change, Effect, EffectParameter, SearchDimension, Symbols, distinct
 from vehgen.effects.evidence import Origins, PlaceEvidence, Residual, StartingPoint
 from vehgen.effects.locator import EffectLocator, EffectSite
+from vehgen.errors import InputError
+from vehgen.files.expressions import Expression
 from vehgen.files.names import MAX_TEXT, joined_name
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.harmonic import Harmonic, harmonic_adjustments
 from vehgen.fit.trial import Trial
 from vehgen.simulate import SimulatorPool
-from vehgen.vehicle.loading import extend_vehicle
 
 Array = NDArray[np.float64]
 
@@ -30,10 +31,10 @@ class VehicleEffect(Effect):
     Attributes
     ----------
     edit
-        Returns the change of the vehicle's file at a site; the symbols of its parameters are given by name.
+        Returns the change of the vehicle at a site, from the symbols of its parameters by name.
     """
 
-    edit: Callable[[EffectSite, Mapping[str, str]], Change]
+    edit: Callable[[EffectSite, Symbols], Change]
 
     @property
     def changes_vehicle(self) -> bool:
@@ -60,25 +61,27 @@ class VehicleEffect(Effect):
         return tuple(SearchDimension(name, *item.bounds(site), item.first(site)[0]) for name, item in named)
 
     def change(self, site: EffectSite, values: Mapping[str, float] | None = None) -> Change:
-        """Return the change of a vehicle's file with its parameters declared, at `values` or at their first start."""
+        """Return the change of a vehicle with its parameters declared, at `values` or at their first start."""
         symbols = self.symbols(site.place)
         declared: Change = {}
         for parameter in self.parameters:
             low, high = parameter.bounds(site)
             value = (values or {}).get(parameter.name, parameter.first(site)[0])
-            unit = f" {parameter.unit}" if parameter.unit else ""
             declared[symbols[parameter.name]] = {
-                "value": f"{value!r}{unit}",
-                "range": [f"{low!r}{unit}", f"{high!r}{unit}"],
+                "value": Expression.quantity(value, parameter.unit),
+                "range": [Expression.quantity(low, parameter.unit), Expression.quantity(high, parameter.unit)],
                 "meaning": f"{self.title}: {parameter.meaning}"[:MAX_TEXT],
             }
-        change = self.edit(site, symbols)
+        change = self.edit(site, {name: Expression.symbol(symbol) for name, symbol in symbols.items()})
         change["parameters"] = {**declared, **change.get("parameters", {})}
         return change
 
     def change_trials(self, trials: Sequence[Trial], place: str, locator: EffectLocator, simulators: SimulatorPool) -> tuple[Trial, ...]:
-        """Return the trials with the changed vehicle."""
-        vehicle = extend_vehicle(trials[0].run.vehicle, self.change(locator.site(place)), f"{self.name} at {place}")
+        """Return the trials with the changed vehicle; raises InputError where a change does not fit it."""
+        try:
+            vehicle = trials[0].run.vehicle.with_changes(self.change(locator.site(place)))
+        except InputError as error:
+            raise InputError(f"{self.name} at {place}: {error.message}", error.position) from error
         return tuple(trial.with_vehicle(vehicle, simulators) for trial in trials)
 
     def starts(self, place: str, locator: EffectLocator, residual: Residual | None = None) -> list[tuple[float, ...]]:

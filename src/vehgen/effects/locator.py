@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import sympy as sp
 
 from vehgen.effects.places import ALL_TYRES
-from vehgen.files.expressions import Expression
 from vehgen.mechanics import GRAVITY, EquationsOfMotion, derive, static_loads
 from vehgen.mechanics.energies import pitch_inertia
 from vehgen.vehicle import Vehicle
@@ -52,16 +51,10 @@ class EffectSite:
         return found
 
     def laws(self, kind: str, name: str) -> list[object]:
-        """Return the force laws that a suspension, tyre, link or hinge carries already, in the form of a vehicle file."""
+        """Return the force laws that a suspension, tyre, link or hinge carries already."""
         joints: dict[str, Mapping[str, Spring]] = {"hinge": self.vehicle.hinges, "link": self.vehicle.links}
         spring = joints[kind][name] if kind in joints else getattr(self.vehicle.axles[name], kind)
-        return [_plain(entry) for entry in spring.laws]
-
-
-def _plain(item: object) -> object:
-    if isinstance(item, Mapping):
-        return {key: _plain(value) for key, value in item.items()}
-    return item.text if isinstance(item, Expression) else item
+        return list(spring.laws)
 
 
 class EffectLocator:

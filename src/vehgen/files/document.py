@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -66,6 +67,31 @@ class Located:
         if offset is None or node.indent is None:
             return node.position
         return replace(node.position, column=node.position.column + node.indent + offset)
+
+
+def locate_arguments(data: Any, path: str, known: Located | None = None) -> Located:
+    """Return plain data given in Python as located data.
+
+    Parameters
+    ----------
+    data
+        Mappings, sequences and anything else, which stays as it is.
+    path
+        What errors call the argument; keys and indices are added to it.
+    known
+        Located data read before: what has a place there keeps it.
+    """
+    position = Position(path) if known is None else known.position
+    key_position = position if known is None else known.key_position
+
+    def inside(part: str | int, item: Any) -> Located:
+        return locate_arguments(item, f"{path}.{part}", None if known is None else known.child(part))
+
+    if isinstance(data, Mapping):
+        return Located({str(key): inside(str(key), item) for key, item in data.items()}, position, key_position)
+    if isinstance(data, list | tuple):
+        return Located([inside(index, item) for index, item in enumerate(data)], position, key_position)
+    return Located(data, position, key_position, None if known is None else known.indent)
 
 
 def read_document(path: Path) -> Located:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar, get_args
 
@@ -10,15 +10,24 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
 
 from vehgen.errors import InputError, did_you_mean, shown
-from vehgen.files.document import Located, read_document
+from vehgen.files.document import Located, locate_arguments, read_document
 
 NO_MAPPING = "a file of `key: value` lines was expected"
 _OWN_WORDS = ("expression", "joint", "parameter", "axle", "quantity", "name")
 """Types of the errors that vehgen's own validators raise: their messages are whole sentences."""
 
 
+def called_by_hand_only(method: Callable[..., None]) -> Callable[..., None]:
+    """Mark an `__init__` that pydantic leaves out where it makes an entry of a file: the file's reader does the same with places."""
+    vars(method)["__pydantic_base_init__"] = True
+    return method
+
+
 class FileModel(BaseModel):
     """What the entries of all files share: unknown keys are refused, values do not change.
+
+    Made in Python, an entry takes what a file says as keyword arguments: texts such as `8 t`, numbers, expressions, other entries.
+    It raises InputError, with the path of the argument, where a file would be refused.
 
     Attributes
     ----------
@@ -32,8 +41,27 @@ class FileModel(BaseModel):
     other_keys: ClassVar[tuple[str, ...]] = ()
     gathered: ClassVar[tuple[str, ...]] = ()
 
+    @called_by_hand_only
+    def __init__(self, /, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise _first_fault(error, type(self), locate_arguments(data, type(self).__name__)) from error
+
 
 Model = TypeVar("Model", bound=FileModel)
+
+
+def file_form(entry: Any) -> Any:
+    """Return an entry as mappings and lists in the form of its file; expressions, numbers and texts in it stay as they are."""
+    if isinstance(entry, FileModel):
+        fields = type(entry).model_fields
+        given = {name: file_form(getattr(entry, name)) for name in fields if name in entry.model_fields_set}
+        spread = {key: item for name in entry.gathered for key, item in given.pop(name, {}).items()}
+        return {fields[name].alias or name: item for name, item in given.items() if item is not None} | spread
+    if isinstance(entry, Mapping):
+        return {key: file_form(item) for key, item in entry.items()}
+    return [file_form(item) for item in entry] if isinstance(entry, list | tuple) else entry
 
 
 def read_entries(model: type[Model], path: str | Path) -> tuple[Model, Located]:
@@ -79,7 +107,7 @@ def _first_fault(error: ValidationError, model: type[FileModel], document: Locat
     if first["type"] in ("missing", "too_long", "tuple_type") and "range" in path[-2:]:
         return InputError("a range has two ends: [low, high]", document.find(path))
     if first["type"] == "missing":
-        place = ".".join(str(part) for part in path[:-1]) or "the file"
+        place = ".".join(str(part) for part in path[:-1]) or ("it" if document.position.is_argument else "the file")
         return InputError(f"{place} lacks the key {str(path[-1])!r}", document.find(path[:-1], key=True))
     if path[-1] == "[key]":
         return InputError(first["msg"], document.find(path[:-1], key=True))

@@ -11,7 +11,7 @@ import math
 import re
 
 from vehgen.errors import InputError, shortened, shown
-from vehgen.files.expression_tree import FUNCTIONS, ExpressionError, Name, Number, Operation, SyntaxNode, constant
+from vehgen.files.expression_tree import FUNCTIONS, ExpressionError, Number, Operation, Symbol, SyntaxNode, constant
 from vehgen.files.units import NONE, Dimension, nearest_unit, read_unit
 
 MAX_LENGTH = 1000
@@ -112,7 +112,7 @@ def _convert(node: ast.expr, quantities: list[tuple[float, Dimension]], offsets:
             value, dimension = quantities[int(name[2:])]
             return Number(value, dimension, offset)
         case ast.Name(id=name):
-            return Name(name, offset)
+            return Symbol(name, offset)
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return Operation("neg", (inside(operand),), offset)
         case ast.UnaryOp(op=ast.UAdd(), operand=operand):

@@ -31,7 +31,7 @@ class Number:
 
 
 @dataclass(frozen=True)
-class Name:
+class Symbol:
     """A parameter's name."""
 
     name: str
@@ -47,12 +47,12 @@ class Operation:
     offset: int = 0
 
 
-SyntaxNode = Number | Name | Operation
+SyntaxNode = Number | Symbol | Operation
 
 
-def symbols_of(node: SyntaxNode) -> Iterator[Name]:
+def symbols_of(node: SyntaxNode) -> Iterator[Symbol]:
     """Yield each use of a name, from left to right."""
-    if isinstance(node, Name):
+    if isinstance(node, Symbol):
         yield node
     elif isinstance(node, Operation):
         for argument in node.arguments:
@@ -107,7 +107,7 @@ def dimension_of_node(node: SyntaxNode, dimensions: Mapping[str, Dimension]) -> 
     """Return the dimension of a tree; raises ExpressionError where units do not fit together."""
     if isinstance(node, Number):
         return node.dimension
-    if isinstance(node, Name):
+    if isinstance(node, Symbol):
         if node.name not in dimensions:
             raise ExpressionError(f"unknown symbol {shown(node.name)}; {did_you_mean(node.name, dimensions)}", node.offset)
         return dimensions[node.name]

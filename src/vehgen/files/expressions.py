@@ -17,7 +17,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from vehgen.errors import InputError, shown
 from vehgen.files.expression_parser import read_tree
-from vehgen.files.expression_tree import ExpressionError, Name, Number, Operation, SyntaxNode, apply_float, dimension_of_node, symbols_of
+from vehgen.files.expression_tree import ExpressionError, Number, Operation, Symbol, SyntaxNode, apply_float, dimension_of_node, symbols_of
 from vehgen.files.units import NONE, Dimension
 
 __all__ = ["Expression", "ExpressionError", "parse"]
@@ -41,7 +41,7 @@ class Expression:
         return frozenset(symbol.name for symbol in self.symbols)
 
     @property
-    def symbols(self) -> tuple[Name, ...]:
+    def symbols(self) -> tuple[Symbol, ...]:
         """Each use of a parameter's name, from left to right."""
         return tuple(symbols_of(self.root))
 
@@ -59,7 +59,7 @@ class Expression:
     def fold(
         self,
         number: Callable[[Number], T],
-        name: Callable[[Name], T],
+        name: Callable[[Symbol], T],
         operation: Callable[[str, list[T]], T],
     ) -> T:
         """Rebuild the expression bottom-up in another algebra (floats, sympy)."""
@@ -67,7 +67,7 @@ class Expression:
         def visit(node: SyntaxNode) -> T:
             if isinstance(node, Number):
                 return number(node)
-            if isinstance(node, Name):
+            if isinstance(node, Symbol):
                 return name(node)
             return operation(node.operator, [visit(argument) for argument in node.arguments])
 

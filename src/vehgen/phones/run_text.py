@@ -10,10 +10,10 @@ from typing import Any
 
 from vehgen.errors import InputError
 from vehgen.files import write_text
+from vehgen.files.yaml_writer import Commented, OneLine, yaml_document
 from vehgen.phones.importing import Imported, ImportedPhone, clock_difference
 from vehgen.simulate import load_run
 from vehgen.vehicle.loading import find_vehicle_file, models_folder
-from vehgen.vehicle.writing import yaml_text
 
 
 def write_import(imported: Imported, vehicle: str, out: Path) -> tuple[Path, Path]:
@@ -70,31 +70,42 @@ def recording_text(imported: Imported) -> str:
 def run_text(imported: Imported, vehicle: str, out: Path) -> str:
     """Return the run file of an import."""
     plan, folder = imported.plan, out.parent
-    lines = ["# Made by `vehgen import`; what was found and assumed stands beside what it led to."]
-    lines += [f"# warning: {_plain(text)}" for text in imported.warnings]
-    lines.append(f"vehicle: {_scalar(_vehicle(vehicle, folder))}")
-    if plan.parameter_set is not None:
-        lines.append(f"set: {_scalar(plan.parameter_set)}")
+    comments = ["Made by `vehgen import`; what was found and assumed stands beside what it led to."]
+    comments += [f"warning: {text}" for text in imported.warnings]
     fitted = "" if imported.fitted_speed is None else f"; the axles' marks fit {imported.fitted_speed:.3f} m/s best"
-    lines.append(f"speed: {imported.speed:.6g} m/s  # {_plain(imported.speed_source)}{fitted}")
-    lines.append(f"duration: {imported.time[-1]:.6g} s")
-    lines.append(f"sample: {1000 / plan.rate:.6g} ms")
-    entry: dict[str, Any] = dict(plan.road.entry)
+    where = "at: front wheel at t = 0 to the hump" if imported.at is not None else "the front wheel is at its begin at t = 0"
+    data: dict[str, Any] = {
+        "vehicle": _vehicle(vehicle, folder),
+        "set": plan.parameter_set,
+        "speed": Commented(f"{imported.speed:.6g} m/s", f"{imported.speed_source}{fitted}"),
+        "duration": f"{imported.time[-1]:.6g} s",
+        "sample": f"{1000 / plan.rate:.6g} ms",
+        "road": Commented([{plan.road.kind: _road_entry(imported, folder)}], where),
+        "footprint": f"{plan.footprint:.6g} m" if plan.footprint else None,
+        "recording": import_files(out)[1].name,
+        "sensors": {item.phone.sensor.name: _sensor(imported, item) for item in imported.phones},
+    }
+    return yaml_document({key: value for key, value in data.items() if value is not None}, comments)
+
+
+def _road_entry(imported: Imported, folder: Path) -> dict[str, Any]:
+    entry: dict[str, Any] = dict(imported.plan.road.entry)
     if "file" in entry:
         entry["file"] = _relative(Path(entry["file"]), folder)
     if imported.at is not None:
         entry["at"] = f"{imported.at:.6g} m"
-    pairs = ", ".join(f"{key}: {_scalar(value)}" for key, value in entry.items())
-    where = "at: front wheel at t = 0 to the hump" if imported.at is not None else "the front wheel is at its begin at t = 0"
-    lines.append(f"road: [{{{plan.road.kind}: {{{pairs}}}}}]  # {where}")
-    if plan.footprint:
-        lines.append(f"footprint: {plan.footprint:.6g} m")
-    lines.append(f"recording: {_scalar(import_files(out)[1].name)}")
-    lines.append("sensors:")
-    for phone in imported.phones:
-        lines += [f"  # {_plain(text)}" for text in phone_notes(imported, phone)]
-        lines.append(f"  {phone.phone.sensor.name}: {{{_place(phone)}, channels: {{{_channels(phone)}}}}}")
-    return "\n".join(lines) + "\n"
+    return entry
+
+
+def _sensor(imported: Imported, item: ImportedPhone) -> Commented:
+    sensor, outputs = item.phone.sensor, item.phone.sensor.outputs(item.pitch is not None)
+    place = {"body": sensor.place.body}
+    if sensor.place.x is not None:
+        place["x"] = sensor.place.x.text
+    if sensor.place.behind is not None:
+        place |= {"behind": sensor.place.behind, "distance": f"{sensor.place.distance:.6g} m"}
+    channels = {output.quantity: output.name for output in outputs}
+    return Commented(OneLine(**place, channels=channels), above=tuple(phone_notes(imported, item)))
 
 
 def phone_notes(imported: Imported, item: ImportedPhone) -> list[str]:
@@ -132,20 +143,6 @@ def first_name(imported: Imported) -> str:
     return imported.phones[0].phone.name
 
 
-def _place(item: ImportedPhone) -> str:
-    place = item.phone.sensor.place
-    parts = [f"body: {_scalar(place.body)}"]
-    if place.x is not None:
-        parts.append(f"x: {_scalar(place.x.text)}")
-    if place.behind is not None:
-        parts += [f"behind: {_scalar(place.behind)}", f"distance: {place.distance:.6g} m"]
-    return ", ".join(parts)
-
-
-def _channels(item: ImportedPhone) -> str:
-    return ", ".join(f"{output.quantity}: {output.name}" for output in item.phone.sensor.outputs(item.pitch is not None))
-
-
 def _vehicle(given: str, folder: Path) -> str:
     path = find_vehicle_file(given)
     return Path(given).name if path.parent == models_folder() else _relative(path, folder)
@@ -153,19 +150,3 @@ def _vehicle(given: str, folder: Path) -> str:
 
 def _relative(path: Path, folder: Path) -> str:
     return Path(os.path.relpath(path, folder)).as_posix()
-
-
-def _scalar(value: Any) -> str:
-    """Write a number or quantity bare, and any other text so that YAML reads it back as it is."""
-    text = str(value)
-    return text if isinstance(value, (int, float)) or _is_quantity(text) else yaml_text(text)
-
-
-def _is_quantity(text: str) -> bool:
-    number, _, unit = text.partition(" ")
-    return unit in ("m", "s", "m/s") and number.replace(".", "").replace("-", "").replace("e", "").replace("+", "").isdigit()
-
-
-def _plain(text: str) -> str:
-    """Return a text that stays within its comment."""
-    return "".join(character if character.isprintable() else "?" for character in text)

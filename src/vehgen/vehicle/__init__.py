@@ -5,15 +5,18 @@ Bodies, hinges, axles, links and parameters, `extends`, parameter sets, bundled 
 
 from vehgen.vehicle.loading import bundled_models, find_vehicle_file, load_vehicle, parse_vehicle
 from vehgen.vehicle.model import Vehicle
-from vehgen.vehicle.parts import Axle, Body, Hinge, Link, Parameter, Point, Spring
+from vehgen.vehicle.parts import Axle, Bending, Body, CarriedBy, Hinge, Link, Parameter, Point, Size, Spring
 
 __all__ = [
     "Axle",
+    "Bending",
     "Body",
+    "CarriedBy",
     "Hinge",
     "Link",
     "Parameter",
     "Point",
+    "Size",
     "Spring",
     "Vehicle",
     "bundled_models",

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
-from typing import Any
 
 from vehgen.errors import InputError, Position, did_you_mean, shown
 from vehgen.files.document import Located, read_document, read_text
-from vehgen.files.entry import NO_MAPPING, validate
+from vehgen.files.entry import NO_MAPPING
 from vehgen.files.names import as_name
 from vehgen.files.reading import short_path
-from vehgen.vehicle.checks import check_vehicle
+from vehgen.vehicle.changes import merge
 from vehgen.vehicle.model import Vehicle
 
 MAX_EXTENDS = 20
@@ -79,43 +76,13 @@ def load_vehicle(name: str | Path, beside: Path | None = None) -> Vehicle:
     """
     path = find_vehicle_file(name, beside)
     document, files = _read_extended(path, ())
-    return _finish(document, files, as_name(path.stem))
+    return Vehicle.from_document(document, files, as_name(path.stem))
 
 
 def parse_vehicle(text: str, name: str = "<text>") -> Vehicle:
     """Read a vehicle from YAML text; as :func:`load_vehicle`. `extends` may name bundled models only."""
     document, files = _extend(read_text(text, name), None, ())
-    return _finish(document, files, "vehicle")
-
-
-def extend_vehicle(vehicle: Vehicle, change: Mapping[str, Any], name: str = "<change>") -> Vehicle:
-    """Return a vehicle with a change laid over it, as a file that extends it would say it.
-
-    Parameters
-    ----------
-    vehicle
-        A vehicle read from a file or text.
-    change
-        Plain mappings, lists, texts and numbers in the form of a vehicle file; None removes a key.
-
-    Raises
-    ------
-    InputError
-        For a change that does not fit.
-    """
-    assert vehicle._document is not None
-    merged = merge(vehicle._document, read_text(json.dumps(change), name))
-    return _finish(merged, vehicle.files, vehicle.name)
-
-
-def _finish(document: Located, files: tuple[Path, ...], default_name: str) -> Vehicle:
-    data = document.plain()
-    data.setdefault("name", default_name)
-    vehicle = validate(Vehicle, data, document)
-    vehicle._document = document
-    vehicle._files = files
-    check_vehicle(vehicle)
-    return vehicle
+    return Vehicle.from_document(document, files, "vehicle")
 
 
 def _read_extended(path: Path, seen: tuple[Path, ...], at: Position | None = None) -> tuple[Located, tuple[Path, ...]]:
@@ -149,24 +116,3 @@ def _extend(document: Located, path: Path | None, seen: tuple[Path, ...]) -> tup
     own = {key: item for key, item in document.value.items() if key != "extends"}
     merged = merge(base, Located(own, document.position))
     return merged, (*files, *base_files)
-
-
-def merge(base: Located, change: Located) -> Located:
-    """Lay `change` over `base`: mappings merge key by key, null removes, everything else replaces."""
-    if not (isinstance(base.value, dict) and isinstance(change.value, dict)):
-        return change
-    kept = dict(base.value)
-    for clash, other in (("equals", ("value", "range")), ("value", ("equals",))):
-        if clash in change.value and not isinstance(change.value[clash].value, dict):
-            kept = {key: item for key, item in kept.items() if key not in other}
-    for key, item in change.value.items():
-        if item.value is None:
-            if key not in kept:
-                raise InputError(
-                    f"null removes {shown(key)}, but the file it extends has none; {did_you_mean(key, kept)}",
-                    item.key_position,
-                )
-            del kept[key]
-        else:
-            kept[key] = merge(kept[key], item) if key in kept else item
-    return Located(kept, change.position, change.key_position)

@@ -4,23 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from pydantic import Field, PrivateAttr
 
 from vehgen.errors import InputError, Position, did_you_mean, shown
-from vehgen.files.document import Located
-from vehgen.files.entry import FileModel
+from vehgen.files.document import Located, locate_arguments
+from vehgen.files.entry import FileModel, called_by_hand_only, file_form, validate
 from vehgen.files.expressions import Expression, ExpressionError
 from vehgen.files.names import FreeText, Name
 from vehgen.files.units import DAMPING, FREQUENCY, INERTIA, LENGTH, MASS, MOMENT, NONE, PITCH_DAMPING, STIFFNESS, Dimension
+from vehgen.vehicle.changes import merge
 from vehgen.vehicle.parts import Axle, Body, Hinge, Link, Parameter
 
 
 class Vehicle(FileModel):
-    """A road vehicle as its file declares it.
+    """A road vehicle, its names, units, connections and values checked.
 
-    Made by :func:`vehgen.vehicle.load_vehicle`, which has checked names, units, connections and values.
+    Read from a file by :func:`vehgen.vehicle.load_vehicle`, or made of parts, as in
+    `Vehicle(name="rig", bodies={"frame": Body(mass="8 t", motions=["heave"])}, axles={"front": Axle(body="frame", tyre=tyre)})`.
+
+    Raises
+    ------
+    InputError
+        Made of parts: what is wrong, with the path of the argument.
     """
 
     other_keys: ClassVar[tuple[str, ...]] = ("extends",)
@@ -37,6 +44,54 @@ class Vehicle(FileModel):
 
     _document: Located = PrivateAttr()
     _files: tuple[Path, ...] = PrivateAttr(())
+
+    @called_by_hand_only
+    def __init__(self, /, **data: Any) -> None:
+        super().__init__(**data)
+        self._finish(locate_arguments(file_form(self), type(self).__name__), ())
+
+    @classmethod
+    def from_document(cls, document: Located, files: tuple[Path, ...], default_name: str) -> Vehicle:
+        """Return the checked vehicle of a document that extends no other any more.
+
+        Raises
+        ------
+        InputError
+            At the place of the first fault.
+        """
+        data = document.plain()
+        data.setdefault("name", default_name)
+        vehicle = validate(cls, data, document)
+        vehicle._finish(document, files)
+        return vehicle
+
+    def _finish(self, document: Located, files: tuple[Path, ...]) -> None:
+        from vehgen.vehicle.checks import check_vehicle
+
+        self._document, self._files = document, files
+        check_vehicle(self)
+
+    def with_changes(self, change: Mapping[str, Any] | None = None, /, **parts: Any) -> Vehicle:
+        """Return a vehicle with a change laid over it, as a file that extends it would say it.
+
+        Parameters
+        ----------
+        change
+            A mapping in the form of a vehicle file. Its leaves may be texts, numbers and expressions; a typed part replaces the one before
+            as a whole, a mapping changes what it names, None removes it.
+        parts
+            The same by its uppermost keys: `bodies={"cab": Body(...)}`, `parameters={"mass": {"value": "9 t"}}`, `title="laden"`.
+
+        Raises
+        ------
+        InputError
+            For a change that does not fit, with the path of the argument; at the place in the file where what stood there does not fit it.
+        """
+        for key in parts.keys() & (change or {}).keys():
+            raise InputError(f"`{key}` is changed twice: in the mapping and as an argument of its own")
+        base = locate_arguments(file_form(self), type(self).__name__, self._document)
+        merged = merge(base, locate_arguments({**(change or {}), **parts}, "change"))
+        return Vehicle.from_document(merged, self._files, self.name)
 
     @property
     def files(self) -> tuple[Path, ...]:

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from vehgen.effects.base import Change, EffectParameter
+from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.kinds import VehicleEffect
-from vehgen.effects.library.law_effect import Given, on_spring
+from vehgen.effects.library.law_effect import on_spring
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import suspensions
 from vehgen.mechanics.laws import LAWS
 
 
-def _edit(site: EffectSite, symbols: Given) -> Change:
-    ratio, c = symbols["ratio"], site.spring.c.text
-    bump, more = f"2*({c})*{ratio}/(1 + {ratio})", f"2*({c})*(1 - {ratio})/(1 + {ratio})"
-    law = {"asymmetric_damping": {"c": more, "ratio": "0"}}
+def _edit(site: EffectSite, symbols: Symbols) -> Change:
+    ratio, c = symbols["ratio"], site.spring.c
+    bump, more = 2 * c * ratio / (1 + ratio), 2 * c * (1 - ratio) / (1 + ratio)
+    law = {"asymmetric_damping": {"c": more, "ratio": 0}}
     return on_spring(site, {"c": bump, "laws": [*site.laws(site.kind, site.place), law]})
 
 

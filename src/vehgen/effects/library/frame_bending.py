@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from vehgen.effects.base import Change, EffectParameter
+from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.kinds import VehicleEffect
-from vehgen.effects.library.law_effect import Given
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import long_bodies
 
 
-def _edit(site: EffectSite, symbols: Given) -> Change:
+def _edit(site: EffectSite, symbols: Symbols) -> Change:
     return {
         "bodies": {
             site.place: {

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
-from vehgen.effects.base import Change, EffectParameter
+from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import ALL_TYRES, hinges, suspensions
 from vehgen.mechanics.laws import LAWS
 
-Given = Mapping[str, str]
 
-
-def law_edit(kind: str, law: str, write: Callable[[EffectSite, Given], Change] | None = None) -> Callable[[EffectSite, Given], Change]:
+def law_edit(kind: str, law: str, write: Callable[[EffectSite, Symbols], Change] | None = None) -> Callable[[EffectSite, Symbols], Change]:
     """Return the edit that adds a law to a suspension (or a link in its place), tyre or hinge.
 
     Parameters
@@ -26,7 +24,7 @@ def law_edit(kind: str, law: str, write: Callable[[EffectSite, Given], Change] |
         Returns the law's entry from the symbols (default: each of its parameters is the symbol of that name).
     """
 
-    def edit(site: EffectSite, symbols: Given) -> Change:
+    def edit(site: EffectSite, symbols: Symbols) -> Change:
         entry = {law: write(site, symbols) if write else dict(symbols)}
         if kind == "hinge":
             return {"hinges": {site.place: {"laws": [*site.laws(kind, site.place), entry]}}}

@@ -2,28 +2,28 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
-from vehgen.effects.base import Change, EffectParameter
-from vehgen.effects.library.law_effect import Given
+from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.locator import EffectSite
 from vehgen.files.names import joined_name
 
 
-def mass_edit(name: str) -> Callable[[EffectSite, Given], Change]:
+def mass_edit(name: str) -> Callable[[EffectSite, Symbols], Change]:
     """Return the edit that cuts a heave-only mass out of a body and mounts it on a link."""
 
-    def edit(site: EffectSite, symbols: Given) -> Change:
+    def edit(site: EffectSite, symbols: Symbols) -> Change:
         body, new = site.place, joined_name(name, site.place)
         mass, f, zeta, x = (symbols[key] for key in ("mass", "frequency", "damping_ratio", "x"))
-        omega = f"(6.283185307179586*{f})"
+        omega = 2 * math.pi * f
         return {
             "bodies": {
-                body: {"mass": f"{site.vehicle.bodies[body].mass.text} - {mass}"},
+                body: {"mass": site.vehicle.bodies[body].mass - mass},
                 new: {"mass": mass, "motions": ["heave"], "carried_by": {"body": body, "x": x}},
             },
             "links": {
-                joined_name(new, "mount"): {body: {"x": x}, new: {"x": "0 m"}, "k": f"{mass}*{omega}**2", "c": f"2*{zeta}*{mass}*{omega}"},
+                joined_name(new, "mount"): {body: {"x": x}, new: {"x": "0 m"}, "k": mass * omega**2, "c": 2 * zeta * mass * omega},
             },
         }
 

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from vehgen.effects.base import Change, EffectParameter
+from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.kinds import VehicleEffect
-from vehgen.effects.library.law_effect import Given
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import ALL_TYRES, tyres
 
 
-def _edit(site: EffectSite, symbols: Given) -> Change:
+def _edit(site: EffectSite, symbols: Symbols) -> Change:
     change: Change = {}
     for name, axle in site.vehicle.axles.items():
         if site.place in (ALL_TYRES, name):
-            mass = axle.mass.text if axle.mass is not None else site.vehicle.bodies[axle.body].mass.text
-            change[name] = {"tyre": {"c": f"2*{symbols['ratio']}*sqrt(({axle.tyre.k.text})*({mass}))"}}
+            mass = site.vehicle.bodies[axle.body].mass if axle.mass is None else axle.mass
+            change[name] = {"tyre": {"c": 2 * symbols["ratio"] * (axle.tyre.k * mass).sqrt()}}
     return {"axles": change}
 
 

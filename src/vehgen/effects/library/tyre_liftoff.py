@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from vehgen.effects.base import Change
+from vehgen.effects.base import Change, Symbols
 from vehgen.effects.kinds import VehicleEffect
-from vehgen.effects.library.law_effect import Given, law_edit
+from vehgen.effects.library.law_effect import law_edit
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import tyres
+from vehgen.files.expressions import Expression
 from vehgen.mechanics.laws import LAWS
 
 _ADD = law_edit("tyre", "tyre_liftoff")
 
 
-def _edit(site: EffectSite, symbols: Given) -> Change:
-    return _ADD(site, {"share": "1"})
+def _edit(site: EffectSite, symbols: Symbols) -> Change:
+    return _ADD(site, {"share": Expression.quantity(1)})
 
 
 TYRE_LIFTOFF_EFFECT = VehicleEffect(

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from vehgen.effects.base import Change, EffectParameter
+from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.kinds import VehicleEffect
-from vehgen.effects.library.law_effect import Given
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import tandems
 from vehgen.files.names import joined_name
-from vehgen.vehicle.parts import Spring
 
 
-def _spring(suspension: Spring) -> tuple[str, str]:
-    return suspension.k.text, suspension.c.text
-
-
-def _edit(site: EffectSite, symbols: Given) -> Change:
+def _edit(site: EffectSite, symbols: Symbols) -> Change:
     first, second = site.place.split("+")
     one, two = site.vehicle.axles[first], site.vehicle.axles[second]
     assert one.mass is not None
@@ -23,36 +17,33 @@ def _edit(site: EffectSite, symbols: Given) -> Change:
     assert one.suspension is not None
     assert two.suspension is not None
     body, beam = one.body, joined_name("beam", first, second)
-    near, far, m1, m2 = (f"({text})" for text in (one.x.text, two.x.text, one.mass.text, two.mass.text))
-    k1, c1, k2, c2 = (f"({text})" for text in (*_spring(one.suspension), *_spring(two.suspension)))
-    middle, half = f"({near} + {far})/2", f"({near} - {far})/2"
-    offset = f"{half}*({m1} - {m2})/({m1} + {m2})"
-    share, pivot = symbols["share"], f"{half}*(2*{symbols['split']} - 1)"
-    ends = {first: (near, f"{half} - {offset}", k1, c1), second: (far, f"-{half} - {offset}", k2, c2)}
+    m1, m2, k1, k2, c1, c2 = one.mass, two.mass, one.suspension.k, two.suspension.k, one.suspension.c, two.suspension.c
+    middle, half = (one.x + two.x) / 2, (one.x - two.x) / 2
+    offset = half * (m1 - m2) / (m1 + m2)
+    share, pivot = symbols["share"], half * (2 * symbols["split"] - 1)
+    ends = {first: half - offset, second: -(one.x - two.x) / 2 - offset}
+    rests = {first: (one.x, k1, c1), second: (two.x, k2, c2)}
     return {
         "bodies": {
             beam: {
-                "mass": f"{m1} + {m2}",
-                "pitch_inertia": f"4*{m1}*{m2}/({m1} + {m2})*({half})**2",
-                "carried_by": {"body": body, "x": f"{middle} + {offset}"},
+                "mass": m1 + m2,
+                "pitch_inertia": 4 * m1 * m2 / (m1 + m2) * half**2,
+                "carried_by": {"body": body, "x": middle + offset},
             }
         },
         "links": {
             joined_name(beam, "pivot"): {
-                body: {"x": f"{middle} + {pivot}"},
-                beam: {"x": f"{pivot} - {offset}"},
-                "k": f"{share}*({k1} + {k2})",
-                "c": f"{share}*({c1} + {c2})",
+                body: {"x": middle + pivot},
+                beam: {"x": pivot - offset},
+                "k": share * (k1 + k2),
+                "c": share * (c1 + c2),
             },
             **{
-                joined_name(beam, name): {body: {"x": x}, beam: {"x": end}, "k": f"(1 - {share})*{k}", "c": f"(1 - {share})*{c}"}
-                for name, (x, end, k, c) in ends.items()
+                joined_name(beam, name): {body: {"x": x}, beam: {"x": ends[name]}, "k": (1 - share) * k, "c": (1 - share) * c}
+                for name, (x, k, c) in rests.items()
             },
         },
-        "axles": {
-            first: {"body": beam, "x": f"{half} - {offset}", "mass": None, "suspension": None},
-            second: {"body": beam, "x": f"-{half} - {offset}", "mass": None, "suspension": None},
-        },
+        "axles": {name: {"body": beam, "x": end, "mass": None, "suspension": None} for name, end in ends.items()},
     }
 
 
