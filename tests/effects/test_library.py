@@ -23,7 +23,7 @@ def test_the_library_holds_the_effect_of_every_file_in_its_folder():
     modules = [importlib.import_module(f"{folder.__name__}.{item.name}") for item in pkgutil.iter_modules(folder.__path__)]
     written = {id(value): module for module in modules for value in vars(module).values() if isinstance(value, Effect)}
     assert set(written) == {id(effect) for effect in EFFECTS.values()}
-    assert all(vars(written[id(effect)])[name.upper()] is effect for name, effect in EFFECTS.items())
+    assert all(vars(written[id(effect)])[f"{name.upper()}_EFFECT"] is effect for name, effect in EFFECTS.items())
 
 
 @pytest.mark.parametrize("effect", EFFECTS.values(), ids=list(EFFECTS))

@@ -175,7 +175,7 @@ def test_a_long_road_is_averaged_piece_by_piece_alike(monkeypatch):
     road = Iso8608Road("C", 3, 400.0)
     s = np.linspace(0.0, 390.0, 4000).reshape(2, 2000)
     whole = Track((road,), 0.24).height(s)
-    monkeypatch.setattr("vehgen.road.track._WINDOW", 37.0)
+    monkeypatch.setattr("vehgen.road.track._PIECE_LENGTH_M", 37.0)
     np.testing.assert_allclose(Track((road,), 0.24).height(s), whole, atol=1e-12)
 
 

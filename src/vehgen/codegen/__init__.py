@@ -3,9 +3,9 @@
 A straight-line program of the model, its sparse factorisation, the condensation of force laws, kernel source, machine code, the cache.
 """
 
-from vehgen.codegen.cache import cache_folder, write_text
+from vehgen.codegen.cache import cache_folder
 from vehgen.codegen.kernel import Excitation, Kernel, KernelResult
 from vehgen.codegen.kernel_source import KernelSource, write_kernel
 from vehgen.codegen.parallel import compile_all
 
-__all__ = ["Excitation", "Kernel", "KernelResult", "KernelSource", "cache_folder", "compile_all", "write_kernel", "write_text"]
+__all__ = ["Excitation", "Kernel", "KernelResult", "KernelSource", "cache_folder", "compile_all", "write_kernel"]

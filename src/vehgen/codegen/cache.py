@@ -61,36 +61,6 @@ def kernel_name(text: str) -> str:
     return f"kernel_{digest[:20]}"
 
 
-def write_text(path: Path, text: str) -> None:
-    """Write a file under a temporary name and rename it, so that no half-written file stays behind.
-
-    Raises
-    ------
-    InputError
-        When the folder cannot be written to.
-
-    """
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror}") from error
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        Path(temporary).chmod(0o666 & ~_umask())  # mkstemp keeps a file to its owner
-        Path(temporary).replace(path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
-
-
 def is_compiled(text: str, folder: Path) -> bool:
     """Whether this process has loaded a kernel, or the folder holds its compiled code, or none is wanted (NUMBA_DISABLE_JIT)."""
     name = kernel_name(text)
