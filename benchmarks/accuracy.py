@@ -117,7 +117,7 @@ def summary(kind: str, replicates: Sequence[Sequence[Row]]) -> str:
     header = (
         "quantity",
         "interval holds the truth [%]",
-        "standard error told [%]",
+        "standard error given [%]",
         "rms error found [%]",
         "mean error / standard error",
         "without interval",
