@@ -1,5 +1,7 @@
 import numpy as np
 import pytest
+import scipy.optimize
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from vehgen.fit.noise import EVEN, KNOT_WAVENUMBERS, Noise, RoadAnswer, estimate_noise, taper, transform
 
@@ -57,6 +59,22 @@ def test_level_and_sigma_come_out_of_noise_that_was_drawn_with_them():
     assert found.sigma == pytest.approx(truth.sigma, rel=0.2)
     inside = (answer.wavenumber > 0.3) & (answer.wavenumber < 15)
     assert np.median(found.level(answer.wavenumber[inside])) == pytest.approx(2e-3, rel=0.15)
+
+
+def test_levels_are_looked_for_on_one_thread_whatever_the_caller_allows(monkeypatch):
+    """A dozen unknowns: on a busy machine, more threads of BLAS made it ten times slower."""
+    random, threads, minimize = np.random.default_rng(2), set(), scipy.optimize.minimize
+
+    def watch(*arguments, **options):
+        threads.update(item["num_threads"] for item in threadpool_info() if item["user_api"] == "blas")
+        return minimize(*arguments, **options)
+
+    monkeypatch.setattr(scipy.optimize, "minimize", watch)
+    answer = make_answer(random, n=50)
+    truth = Noise(np.full(len(KNOT_WAVENUMBERS), 2e-3), np.array([0.05, 0.2, 0.1, 0.3]))
+    with threadpool_limits(2, user_api="blas"):
+        estimate_noise([(draw(truth, answer, random), answer)], truth)
+    assert threads == {1}
 
 
 def test_histories_drawn_have_the_density_they_should():
