@@ -8,7 +8,7 @@ from pathlib import Path
 from vehgen.commands.results import add_out, folder_named, tell_written
 from vehgen.commands.terminal import add_json, print_json
 
-EXAMPLE = "python -m vehgen report diagnosis/diagnosis.json --out again"
+EXAMPLE = "vehgen report diagnosis/diagnosis.json --out again"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
