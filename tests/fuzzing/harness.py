@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -98,7 +99,7 @@ class Worker:
             new.append("a kernel was imported")
         answer = read_answer(found, new)
         verdict = judge(answer, folder, limits, needs_place=case.format != "export" and is_regular(case))
-        verdict = checked_for_name(case, verdict)
+        verdict = replace(checked_for_name(case, verdict), compiles=kernels)
         shutil.rmtree(folder)
         return verdict
 

@@ -19,10 +19,12 @@ from vehgen.cargo.quantities import (
     OptionalMass,
     PositiveLength,
     Stiffness,
+    check_derived,
 )
 from vehgen.errors import InputError
 from vehgen.files.document import Located, read_document
 from vehgen.files.names import FreeText, Identifier
+from vehgen.files.units import DAMPING, STIFFNESS
 from vehgen.vehicle.loading import validate
 from vehgen.vehicle.model import FileModel
 
@@ -133,4 +135,7 @@ def load_cargo(path: str | Path) -> Cargo:
     file = validate(CargoFile, document.plain(), document)
     if (file.rigid is None) == (file.module is None):
         raise InputError("a cargo is either `rigid` or a `module`", document.position)
+    if file.module is not None:
+        check_derived(file.module.k0, STIFFNESS, "the module's stiffness", document.find(("module",), key=True))
+        check_derived(file.module.c0, DAMPING, "the module's damping", document.find(("module",), key=True))
     return Cargo(file, path, document)

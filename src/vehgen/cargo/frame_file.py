@@ -197,7 +197,7 @@ def _check(frame: FrameModule) -> None:
         known("section", member.section, file.sections, "frame", name, "section")
         if file.materials[member.material].E == 0:
             raise InputError(
-                f"a frame member needs a material with E above 0; {member.material!r} has none", document.find(("frame", name))
+                f"a frame member needs a material with E above 0; {shown(member.material)} has none", document.find(("frame", name))
             )
     for _, key, panel in file.panels.faces():
         for index, layer in enumerate(panel.layers):

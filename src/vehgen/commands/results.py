@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from vehgen.commands.terminal import say
-from vehgen.errors import InputError
+from vehgen.errors import InputError, shown
 
 
 def add_out(parser: argparse.ArgumentParser, metavar: str, meaning: str, required: bool = False) -> None:
@@ -35,7 +35,7 @@ def file_named(text: str, option: str = "--out") -> Path:
     """
     path = _named(text, option)
     if text.endswith(("/", os.sep)):
-        raise InputError(f"{option} names a file to write; found {text!r}, a folder")
+        raise InputError(f"{option} names a file to write; found {shown(text)}, a folder")
     return path
 
 
@@ -58,5 +58,5 @@ def tell_written(paths: Iterable[Path]) -> None:
 
 def _named(text: str, option: str) -> Path:
     if not text or "\0" in text:
-        raise InputError(f"{option} wants a name; found {text!r}")
+        raise InputError(f"{option} wants a name; found {shown(text)}")
     return Path(text)

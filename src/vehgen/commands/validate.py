@@ -28,20 +28,20 @@ def run(options: argparse.Namespace) -> None:
     import json
 
     from vehgen.calibrate.validation import validate
-    from vehgen.errors import InputError, did_you_mean
+    from vehgen.errors import InputError, did_you_mean, shown
     from vehgen.fit.trial import load_trials
     from vehgen.measure import SPECTRA
     from vehgen.report.plots.validation_plots import save_validation_figures, validation_figure_files
     from vehgen.vehicle import load_vehicle
 
     if options.astm is not None and options.astm not in SPECTRA:
-        raise InputError(f"no spectrum {options.astm!r}; {did_you_mean(options.astm, SPECTRA)}")
+        raise InputError(f"no spectrum {shown(options.astm)}; {did_you_mean(options.astm, SPECTRA)}")
     bands = None
     if options.bands:
         try:
             edges = [float(part) for part in options.bands.split(",")]
         except ValueError:
-            raise InputError(f"--bands wants frequencies in Hz, e.g. 2,5,8,12; found {options.bands!r}") from None
+            raise InputError(f"--bands wants frequencies in Hz, e.g. 2,5,8,12; found {shown(options.bands)}") from None
         bands = tuple(pairwise(edges))
     vehicle = load_vehicle(options.vehicle)
     trials = load_trials(options.runs, vehicle)

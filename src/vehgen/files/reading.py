@@ -62,7 +62,7 @@ def open_regular(path: Path, most: int, kind: str = "a file", *, state: bool = F
     except OSError as error:
         raise InputError(f"cannot read {name}: {error.strerror}; {kind} was expected") from error
     except ValueError as error:
-        raise InputError(f"{name!r} cannot be a path: {error}; {kind} was expected") from error
+        raise InputError(f"'{name}' cannot be a path: {error}; {kind} was expected") from error
     return os.fdopen(handle, "rb")
 
 

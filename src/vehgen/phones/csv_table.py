@@ -69,7 +69,7 @@ class Table:
                 )
             if np.isnan(number) and text.lower() not in _MISSING:
                 raise InputError(
-                    f"expected a number in column {self.header[index]!r}, found {text[:40]!r}", Position(self.name, line, index + 1)
+                    f"expected a number in column {shown(self.header[index])}, found {shown(text)}", Position(self.name, line, index + 1)
                 )
             found.append(number if np.isfinite(number) else np.nan)
         return np.array(found)
@@ -168,9 +168,9 @@ def split_pairs(text: str, option: str, known: tuple[str, ...]) -> dict[str, str
     for part in text.split(","):
         key, sign, value = (item.strip() for item in part.partition("="))
         if not sign or not value:
-            raise InputError(f"{option}: expected key=value pairs joined by commas, found {part!r}")
+            raise InputError(f"{option}: expected key=value pairs joined by commas, found {shown(part)}")
         if key not in known:
-            raise InputError(f"{option}: unknown key {key!r}; {did_you_mean(key, known)}")
+            raise InputError(f"{option}: unknown key {shown(key)}; {did_you_mean(key, known)}")
         if key in found:
             raise InputError(f"{option}: {key} is given twice")
         found[key] = value
@@ -218,5 +218,5 @@ def unit_factor(unit: str, dimension: Dimension, where: str) -> float:
         return extra[unit, dimension]
     factor, found = parse_unit(unit)
     if found != dimension:
-        raise InputError(f"{where}: expected a unit of {dimension}, found {unit!r}")
+        raise InputError(f"{where}: expected a unit of {dimension}, found {shown(unit)}")
     return factor

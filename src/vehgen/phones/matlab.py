@@ -30,7 +30,7 @@ def is_matlab(path: Path) -> bool:
     try:
         with open_regular(path, MAX_FILE) as stream:
             return stream.read(19).startswith(_MARKS)
-    except InputError:
+    except (InputError, OSError):  # what cannot be read is no MATLAB file; the reader that comes next says why
         return False
 
 

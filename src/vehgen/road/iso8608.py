@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ class Iso8608Road:
 
     def __post_init__(self) -> None:
         if self.roughness not in CLASSES:
-            raise InputError(f"unknown road class {self.roughness!r}; {did_you_mean(self.roughness, CLASSES)}")
+            raise InputError(f"unknown road class {shown(self.roughness)}; {did_you_mean(self.roughness, CLASSES)}")
         if not self.length > 0:
             raise InputError(f"a road needs a positive length, found {self.length} m")
         check_length(self.length)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -305,6 +304,23 @@ def load_run(path: str | Path, vehicle: Vehicle | None = None) -> Run:
     return run
 
 
+def _check_channel_names(run: Run) -> None:
+    """Refuse a channel that is called as the time is, or as another channel, where it is named."""
+    named = [
+        (sensor.channel(name, quantity), ("sensors", name, "channels", quantity, "column"))
+        for name, sensor in run.file.sensors.items()
+        for quantity in sensor.channels
+    ]
+    seen: set[str] = set()
+    for name, path in (*named, *((name, ("outputs", name)) for name in run.file.outputs)):
+        where = run.document.find(path, key=True)
+        if name == TIME_COLUMN:
+            raise InputError(f"a channel cannot be named {name!r}, as the column of the time is; choose another name", where)
+        if name in seen:
+            raise InputError(f"two channels are named {shown(name)}; each column needs a name of its own", where)
+        seen.add(name)
+
+
 def _check(run: Run) -> None:
     file, vehicle, document = run.file, run.vehicle, run.document
 
@@ -382,15 +398,9 @@ def _check(run: Run) -> None:
                 f"unknown quantity {shown(output.quantity)} of {owner}; {did_you_mean(output.quantity, quantities)}",
                 document.find(("outputs", name, "quantity")),
             )
-    names = Counter(output.name for output in run.outputs())
-    if names.total() > MOST_CHANNELS:
-        raise InputError(f"{names.total()} channels; a run has at most {MOST_CHANNELS}", document.find(("sensors",), key=True))
-    for name, count in names.items():
-        where = document.find(("outputs", name) if name in file.outputs else ("sensors",), key=True)
-        if name == TIME_COLUMN:
-            raise InputError(f"a channel cannot be named {name!r}, as the column of the time is; choose another name", where)
-        if count > 1:
-            raise InputError(f"two channels are named {shown(name)}; each column needs a name of its own", where)
+    if (count := len(run.outputs())) > MOST_CHANNELS:
+        raise InputError(f"{count} channels; a run has at most {MOST_CHANNELS}", document.find(("sensors",), key=True))
+    _check_channel_names(run)
     if file.duration is not None and file.duration > MAX_STEPS * file.step:
         raise InputError(
             f"a run has at most {MAX_STEPS} steps; {file.duration:g} s in steps of {file.step:g} s are more",

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vehgen.codegen import Excitation
 from vehgen.errors import InputError
 from vehgen.files.limits import HUMP_HEIGHT, HUMP_LENGTH, SPEED_LIMIT
-from vehgen.files.tables import read_columns
+from vehgen.files.tables import Columns, read_columns
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.road import (
     AdjustedSpeed,
@@ -165,12 +165,12 @@ def _speed(run: Run) -> SpeedLaw:
     spec = run.file.speed
     if isinstance(spec, float):
         return ConstantSpeed(spec)
-    time, speed = _columns(run, spec.file, (spec.time, spec.speed), ("speed", "file"))
-    with placed(run, "speed", "file"):
-        history = SpeedHistory(time, speed)
-        for extreme in (speed.min(), speed.max()):
-            SPEED_LIMIT.check(float(extreme), f"the column {spec.speed!r} of {spec.file}")
-    return history
+    found = _columns(run, spec.file, (spec.time, spec.speed), ("speed", "file"))
+    found.check_ascending()
+    if (stands := np.flatnonzero(found.values[1] <= 0)).size:
+        raise InputError("every speed of a history must be above 0", found.place(int(stands[0]), 1))
+    found.check_limit(1, SPEED_LIMIT)
+    return SpeedHistory(*found.values)
 
 
 def _road_part(number: int, run: Run, speed: SpeedLaw, offsets: Array) -> Profile:
@@ -178,10 +178,10 @@ def _road_part(number: int, run: Run, speed: SpeedLaw, offsets: Array) -> Profil
     if entry.hump is not None:
         return _hump(entry.hump, run, ("road", number, "hump"))
     if entry.profile is not None:
-        place = ("road", number, "profile", "file")
-        distance, height = _columns(run, entry.profile.file, (entry.profile.distance, entry.profile.height), place)
-        with placed(run, *place):
-            return MeasuredProfile(distance, height)
+        names = entry.profile.distance, entry.profile.height
+        found = _columns(run, entry.profile.file, names, ("road", number, "profile", "file"))
+        found.check_ascending()
+        return MeasuredProfile(*found.values)
     assert entry.iso8608 is not None
     with placed(run, "road", number, "iso8608", key=True):
         return Iso8608Road(entry.iso8608.class_, entry.iso8608.seed, _random_length(run, speed, offsets))
@@ -200,11 +200,9 @@ def _random_length(run: Run, speed: SpeedLaw, offsets: Array) -> float:
 
 def _hump(entry: HumpEntry, run: Run, place: tuple[str | int, ...]) -> Hump:
     if entry.shape == "points":
-        s, height = _columns(run, entry.file or "", (entry.distance, entry.height_column), (*place, "file"))
-        with placed(run, *place, "file"):
-            HUMP_LENGTH.check(float(np.ptp(s)), f"{entry.file}")
-            HUMP_HEIGHT.check(float(np.abs(height).max()), f"{entry.file}")
-            return Hump.from_points(entry.at, s, height)
+        found = _columns(run, entry.file or "", (entry.distance, entry.height_column), (*place, "file"))
+        check_hump_points(found)
+        return Hump.from_points(entry.at, *found.values)
     extra = {"ramp": entry.ramp} if entry.ramp is not None else {}
     if entry.radius is not None:
         extra["radius"] = entry.radius
@@ -224,13 +222,20 @@ def _ground(run: Run, link: str) -> Signal | None:
 
 
 def _measured(run: Run, file: str, time: str, column: str, place: tuple[str, ...]) -> Signal:
-    t, values = _columns(run, file, (time, column), (*place, "file"))
-    if (np.diff(t) <= 0).any():
-        raise InputError(f"the times in {file} must ascend", run.document.find((*place, "file")))
-    return Signal(time=t, values=values)
+    found = _columns(run, file, (time, column), (*place, "file"))
+    found.check_ascending(least=1)
+    return Signal(time=found.values[0], values=found.values[1])
 
 
-def _columns(run: Run, file: str, names: tuple[str, str], place: tuple[str | int, ...]) -> tuple[Array, Array]:
+def _columns(run: Run, file: str, names: tuple[str, str], place: tuple[str | int, ...]) -> Columns:
     with placed(run, *place):
-        first, second = read_columns(Path(run.folder) / file, names)
-    return first, second
+        return read_columns(Path(run.folder) / file, names)
+
+
+def check_hump_points(points: Columns) -> None:
+    """Check the points of a hump, distance and height [m]; raises InputError at the row that is wrong."""
+    points.check_ascending()
+    points.check_limit(1, HUMP_HEIGHT)
+    length = float(np.ptp(points.values[0]))
+    if (reason := HUMP_LENGTH.refusal(length)) is not None:
+        raise InputError(reason, points.place(-1))

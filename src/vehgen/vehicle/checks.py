@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterable, Mapping
 from itertools import chain
 
-from vehgen.errors import InputError, did_you_mean, shortened, shown
+from vehgen.errors import InputError, did_you_mean, shortened, shown, trail_text
 from vehgen.files.expressions import Expression, ExpressionError
 from vehgen.files.limits import MOST_PARTS, VEHICLE_LIMITS
 from vehgen.files.names import is_identifier
@@ -76,8 +76,7 @@ def _check_circles(vehicle: Vehicle) -> None:
 
     def visit(name: str, trail: tuple[str, ...]) -> int:
         if name in trail:
-            circle = " -> ".join((*trail[trail.index(name) :], name))
-            raise _fail(vehicle, f"circular `equals`: {circle}", "parameters", trail[-1], "equals")
+            raise _fail(vehicle, f"circular `equals`: {trail_text((*trail[trail.index(name) :], name))}", "parameters", trail[-1], "equals")
         definition = vehicle.parameters[name].equals
         if name in depths or definition is None:
             return depths.get(name, 0)
@@ -129,7 +128,7 @@ def _check_units(vehicle: Vehicle) -> None:
             if name not in vehicle.free_parameters:
                 raise _fail(
                     vehicle,
-                    f"a set changes parameters that have a `value`; {name!r} is none; {did_you_mean(name, vehicle.free_parameters)}",
+                    f"a set changes parameters that have a `value`; {shown(name)} is none; {did_you_mean(name, vehicle.free_parameters)}",
                     "sets",
                     set_name,
                     name,
@@ -247,7 +246,7 @@ def _check_tree(vehicle: Vehicle) -> None:
             if carrier.body in trail:
                 raise _fail(
                     vehicle,
-                    f"bodies carry each other in a circle: {' -> '.join((*trail, carrier.body))}",
+                    f"bodies carry each other in a circle: {trail_text((*trail, carrier.body))}",
                     "bodies",
                     name,
                     "carried_by",
@@ -290,7 +289,7 @@ def _check_values(vehicle: Vehicle) -> None:
                 "range",
             )
     for parameter_set in (None, *vehicle.sets):
-        check_values(vehicle, vehicle.values(parameter_set), f" in the set {parameter_set!r}" if parameter_set else "")
+        check_values(vehicle, vehicle.values(parameter_set), f" in the set {shown(parameter_set)}" if parameter_set else "")
 
 
 def _check_number(vehicle: Vehicle, expression: Expression | None, *path: str | int) -> None:

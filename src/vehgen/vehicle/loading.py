@@ -10,7 +10,7 @@ from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from vehgen.errors import InputError, Position, did_you_mean, shown
+from vehgen.errors import InputError, Position, did_you_mean, shortened, shown, trail_text
 from vehgen.files.document import Located, read_document, read_text
 from vehgen.files.names import as_name
 from vehgen.files.reading import short_path
@@ -19,8 +19,6 @@ from vehgen.vehicle.model import Joint, Vehicle
 
 Model = TypeVar("Model", bound=BaseModel)
 MAX_EXTENDS = 20
-MAX_PATH = 300
-"""So many characters of a path that a file names are quoted."""
 
 
 def models_folder() -> Path:
@@ -123,7 +121,7 @@ def _finish(document: Located, files: tuple[Path, ...], default_name: str) -> Ve
 def _read_extended(path: Path, seen: tuple[Path, ...], at: Position | None = None) -> tuple[Located, tuple[Path, ...]]:
     resolved = path.resolve()
     if resolved in seen:
-        chain = " -> ".join(item.name for item in (*seen[seen.index(resolved) :], resolved))
+        chain = trail_text([item.name for item in (*seen[seen.index(resolved) :], resolved)])
         raise InputError(f"circular `extends`: {chain}", at)
     if len(seen) >= MAX_EXTENDS:
         raise InputError(f"more than {MAX_EXTENDS} files extend one another", at)
@@ -198,7 +196,7 @@ def _translate(error: ValidationError, model: type[BaseModel], document: Located
         return InputError("a range has two ends: [low, high]", document.find(path))
     if first["type"] == "missing":
         place = ".".join(str(part) for part in path[:-1]) or "the file"
-        return InputError(f"{place} lacks the key {str(path[-1])!r}", document.find(path[:-1], key=True))
+        return InputError(f"{shortened(place)} lacks the key {shown(path[-1])}", document.find(path[:-1], key=True))
     if path[-1] == "[key]":
         return InputError(first["msg"], document.find(path[:-1], key=True))
     offset = (first.get("ctx") or {}).get("offset")
