@@ -216,7 +216,7 @@ def test_a_file_of_ten_megabytes_is_not_read(tmp_path: Path):
     path = tmp_path / "large.yaml"
     path.write_bytes(b"a: 1\n" * 2_000_000)
     start = time.perf_counter()
-    with pytest.raises(InputError, match=f"has 10000000 bytes; a YAML file of at most {MAX_DOCUMENT_BYTES} bytes was expected"):
+    with pytest.raises(InputError, match=f"10000000 bytes; a YAML file of at most {MAX_DOCUMENT_BYTES} bytes was expected"):
         read_document(path)
     assert time.perf_counter() - start < 0.5
 

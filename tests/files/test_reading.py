@@ -52,7 +52,7 @@ def test_size_is_checked_before_the_first_byte_is_read(tmp_path):
     with path.open("wb") as stream:
         stream.truncate(2**40)
     for read in (read_document, read_members, lambda item: read_columns(item, ("t",))):
-        with pytest.raises(InputError, match="has 1099511627776 bytes"):
+        with pytest.raises(InputError, match="1:1: 1099511627776 bytes"):
             read(path)
 
 

@@ -142,6 +142,8 @@ def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) 
     file = run.file
     offsets = model.wheel_offsets(values)
     speed = _speed(run)
+    if file.duration is not None:
+        _check_cost(run, file.duration, speed, model)
     parts = tuple(_road_part(number, run, speed, offsets) for number in range(len(file.road)))
     track = Track(parts, footprint=file.footprint or 0.0)
     if file.duration is not None:
@@ -149,9 +151,9 @@ def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) 
     elif any(isinstance(part, Hump) for part in parts):
         with placed(run, "road", key=True):
             duration = pass_time(track, speed, offsets) + AFTER_LAST_HUMP
+        _check_cost(run, duration, speed, model)
     else:
         raise InputError("a run without a hump needs `duration`, e.g. 10 s", run.document.position)
-    check_run(run, duration, float(speed.distance(np.array([duration]))[0]), len(model.inputs))
     names = model.inputs[len(run.vehicle.axles) :]
     ground = tuple(_ground(run, name.partition(".")[2]) for name in names)
     forces = tuple(
@@ -159,6 +161,10 @@ def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) 
         for name, entry in file.forces.items()
     )
     return Scenario(track, speed, duration, file.step, run.decimation, ground, forces)
+
+
+def _check_cost(run: Run, duration: float, speed: SpeedLaw, model: EquationsOfMotion) -> None:
+    check_run(run, duration, float(speed.distance(np.array([duration]))[0]), len(model.inputs))
 
 
 def _speed(run: Run) -> SpeedLaw:
