@@ -14,7 +14,7 @@ from tests.fuzzing.hostile import MARK
 from vehgen.errors import InputError, Position
 
 
-class RawRefusal(InputError):
+class RawRefusalError(InputError):
     """A refusal that says its message as it came, which InputError itself does not."""
 
     def __init__(self, message: str, position: Position) -> None:
@@ -92,11 +92,11 @@ def no_such_file() -> None:
 
 
 def reversed_text() -> None:
-    raise RawRefusal("\u202ewrong", Position("mischief.yaml", 1, 1))
+    raise RawRefusalError("\u202ewrong", Position("mischief.yaml", 1, 1))
 
 
 def two_lines() -> None:
-    raise RawRefusal("wrong\nwrong", Position("mischief.yaml", 1, 1))
+    raise RawRefusalError("wrong\nwrong", Position("mischief.yaml", 1, 1))
 
 
 def long_text() -> None:

@@ -77,6 +77,8 @@ def read_columns(path: Path, names: tuple[str, ...]) -> Columns:
     places: list[int] = []
     for line, row in rows:
         places = places or [_place(path, header, name) for name in names]
+        if any(cell.strip() for cell in row[len(header) :]):
+            raise InputError(f"{len(row)} cells below {len(header)} headings", Position(path, line, len(header) + 1))
         for name, place, column in zip(names, places, columns, strict=True):
             try:
                 number = float(row[place])
