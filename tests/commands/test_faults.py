@@ -163,6 +163,8 @@ def test_doubts_are_warnings_on_stderr(monkeypatch: pytest.MonkeyPatch, capsys: 
         (["--lead", "1e12"], "--lead: a place along the road is at most 1e+06 m"),
         (["--top", "-1", "--rate", "100"], "the top of the band must be from 1 to 500 Hz, found -1 Hz"),
         (["--rate", "1e9"], "the rate must be from 50 to 1000 Hz"),
+        (["--hump", ""], "--hump: unknown shape ''"),
+        (["--sensor=--"], "--sensor wants a value; found '--'"),
         (["--sensor", "L1:body=body,behind=body,distance=1e9"], "--sensor L1 distance: a length on a vehicle is at most 1000 m"),
     ],
 )

@@ -160,6 +160,18 @@ def test_nulls_cost_nothing_until_they_are_asked_for(tmp_path, monkeypatch):
     assert asked == [pytest.approx(2.0)]
 
 
+def test_nulls_of_many_humps_are_sought_among_few_lobes(tmp_path, monkeypatch):
+    sought = []
+    monkeypatch.setattr(Hump, "spectral_nulls", lambda self, speed, f_max: sought.append(f_max * self.length / speed) or np.array([]))
+    for count, most in ((1, 30.0 * 50.0 / 0.5), (200, 2000.0)):
+        humps = ", ".join(f"{{hump: {{shape: half_sine, length: 50 m, height: 1 cm, at: {i} m}}}}" for i in range(count))
+        (tmp_path / "run.yaml").write_text(f"vehicle: quarter_car\nspeed: 0.5 m/s\nduration: 1 s\nroad: [{humps}]\n")
+        sought.clear()
+        assert scenario_of(tmp_path / "run.yaml").nulls == ()
+        assert len(sought) == count
+        assert sum(sought) <= min(most, 2000.0) * (1 + 1e-9)
+
+
 @pytest.mark.parametrize(("length", "speed"), [(0.5, 2.0), (0.37, 1.7), (3.0, 5.0), (50.0, 0.5)])
 def test_nulls_of_a_half_sine_are_where_they_are_known_to_be(length, speed):
     found = Hump.from_shape("half_sine", 0.0, length, 0.1).spectral_nulls(speed, 30.0)

@@ -76,7 +76,7 @@ def run(options: argparse.Namespace) -> None:
     vehicle = load_vehicle(options.vehicle)
     plan = Plan(
         vehicle,
-        read_hump(options.hump) if options.hump else read_profile(options.profile),
+        read_hump(options.hump) if options.hump is not None else read_profile(options.profile),
         with_forward([read_sensor(text, vehicle) for text in options.sensor], options.forward),
         options.parameter_set,
         speed,

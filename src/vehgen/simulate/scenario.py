@@ -39,6 +39,8 @@ AFTER_LAST_HUMP = 3.0
 
 NULLS_TO = 30.0
 """Above it [Hz] no axle hops."""
+LOBES_SOUGHT = 2000.0
+"""So many lobes of all humps' spectra together are searched for nulls: a second of work."""
 _DRIVES = ExcitationCache()
 
 
@@ -90,7 +92,9 @@ class Scenario:
     def nulls(self) -> tuple[float, ...]:
         """The frequencies [Hz], rounded to mHz, up to NULLS_TO at which a hump of the track excites nothing; found when first asked for."""
         top = float(np.max(np.diff(self.speed.distance(np.linspace(0.0, self.duration, 200)))) / (self.duration / 199))
-        return tuple(sorted({round(float(null), 3) for hump in self.humps for null in hump.spectral_nulls(top, NULLS_TO)}))
+        share = LOBES_SOUGHT / max(len(self.humps), 1)
+        found = (hump.spectral_nulls(top, min(NULLS_TO, share * top / hump.length)) for hump in self.humps)
+        return tuple(sorted({round(float(null), 3) for nulls in found for null in nulls}))
 
     @property
     def top_speed(self) -> float:
