@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable
+import unicodedata
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,9 +19,17 @@ BIDIRECTIONAL = frozenset("\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u206
 """Characters that change the direction of the text after them, and so can make a line read as something else."""
 
 
-def escaped(text: str) -> str:
-    """Return a text with every character that does not print as itself (line ends too) written as in a Python string."""
-    return "".join(character if character.isprintable() else ascii(character)[1:-1] for character in text)
+def escaped(text: str, keep: str = "") -> str:
+    """Return a text with every character written as in a Python string that is no space, does not print as itself and is not in `keep`."""
+    return "".join(
+        character if character.isprintable() or character in keep or unicodedata.category(character) == "Zs" else ascii(character)[1:-1]
+        for character in text
+    )
+
+
+def printable(text: str) -> str:
+    """Return an escaped text in which line ends and tabs stand."""
+    return escaped(text, keep="\n\t")
 
 
 def shortened(text: str, limit: int = MAX_SHOWN) -> str:
@@ -35,6 +44,12 @@ def shown(text: object, limit: int = MAX_SHOWN) -> str:
     if len(quoted) <= limit + 2:
         return quoted
     return f"{quoted[: limit - 2]}...{quoted[-1]}"
+
+
+def trail_text(names: Sequence[str]) -> str:
+    """Return names that follow one another, joined by arrows; of a long trail the first and the last few."""
+    cut = [*names[:4], "...", *names[-3:]] if len(names) > 8 else names
+    return " -> ".join(shortened(name) for name in cut)
 
 
 @dataclass(frozen=True)

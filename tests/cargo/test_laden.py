@@ -204,7 +204,10 @@ def test_a_cargo_that_does_not_fit_the_vehicle(tmp_path, text, message):
             "3:15: expected kg, found no unit in 5; write e.g. '5 kg'",
         ),
         ("on: a\nbehind: b\nrigid: {mass: 5 m, length: 1 m, height: 1 m, front: 0 m}\n", "3:15: expected kg, found m in '5 m'"),
-        ("on: a\nbehind: b\nrigid: {mass: -5 kg, length: 1 m, height: 1 m, front: 0 m}\n", "3:15: input should be greater than 0"),
+        (
+            "on: a\nbehind: b\nrigid: {mass: -5 kg, length: 1 m, height: 1 m, front: 0 m}\n",
+            "3:15: expected a finite number above 0, found -5.0",
+        ),
         (MODULE.replace("stiffness: 8931 kN/m, ", ""), "3:9: a module has either `stiffness` or `frequency`"),
         (MODULE.replace("damping:", "damping_ratio: 0.02, damping:"), "3:9: a module has either `damping` or `damping_ratio`"),
         ("name: 2x\n" + MODULE, "1:7: '2x' cannot be a name"),

@@ -16,8 +16,8 @@ import pytest
 from tests.commands.calls import python
 from vehgen.commands import diagnose, main
 from vehgen.commands.progress import Bars
-from vehgen.commands.terminal import MAX_LINE, one_line, print_table, printable, warn
-from vehgen.errors import CacheWarning, InputError
+from vehgen.commands.terminal import MAX_LINE, one_line, print_table, warn
+from vehgen.errors import CacheWarning, InputError, printable
 
 RUN = """vehicle: quarter_car
 speed: 2 m/s

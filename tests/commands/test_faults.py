@@ -92,6 +92,7 @@ def test_a_bad_run_is_one_line_on_stderr(text: str, message: str, work: Path, ca
         (["modes", "tractor5", "--set", "SHCM1"], "error: tractor5 has no parameter set 'SHCM1'; did you mean 'SHCM-1'"),
         (["simulate", "absent.yaml"], "error: no file absent.yaml"),
         (["static", "floating.yaml"], "error: floating.yaml:2:3: singular stiffness: nothing holds heave.body against gravity"),
+        (["modes", "sedan2", "--set=--"], "error: --set wants a value; found '--'"),
     ],
 )
 def test_other_faults(arguments: list[str], message: str, work: Path, capsys: pytest.CaptureFixture[str]):
@@ -163,6 +164,7 @@ def test_doubts_are_warnings_on_stderr(monkeypatch: pytest.MonkeyPatch, capsys: 
         (["--lead", "1e12"], "--lead: a place along the road is at most 1e+06 m"),
         (["--top", "-1", "--rate", "100"], "the top of the band must be from 1 to 500 Hz, found -1 Hz"),
         (["--rate", "1e9"], "the rate must be from 50 to 1000 Hz"),
+        (["--hump", ""], "--hump: unknown shape ''"),
         (["--sensor", "L1:body=body,behind=body,distance=1e9"], "--sensor L1 distance: a length on a vehicle is at most 1000 m"),
     ],
 )

@@ -173,6 +173,9 @@ def test_long_work_does_not_begin(
     ("out", "message"),
     [
         ("", "--out wants a name; found ''"),
+        ("a\nb.csv", "--out wants a name; found 'a\\nb.csv'"),
+        ("a\0.csv", "--out wants a name; found 'a\\x00.csv'"),
+        ("-", "results are not written to standard output"),
         ("results/", "--out names a file to write; found 'results/', a folder"),
         ("folder", "cannot write folder: it is a folder; the name of a file was expected"),
         (".", "cannot write .: it is a folder"),

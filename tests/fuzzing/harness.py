@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -37,14 +38,16 @@ class Worker:
         self._number = 0
 
     def __enter__(self) -> Worker:
-        for name in ("home", "cache", "cases", "healthy"):
+        for name in ("home", "cache", "cases", "healthy", "temporary"):
             (self.scratch / name).mkdir(parents=True, exist_ok=True)
-        (self.scratch / "cache").chmod(0o700)
+        for name in ("cache", "temporary"):
+            (self.scratch / name).chmod(0o700)
         threads = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
         import vehgen
 
         path = os.pathsep.join([str(Path(vehgen.__file__).parents[1]), str(ROOT), os.environ.get("PYTHONPATH", "")])
         home = {"HOME": str(self.scratch / "home"), "MPLCONFIGDIR": str(self.scratch / "home"), "VEHGEN_CACHE": str(self.scratch / "cache")}
+        home["TMPDIR"] = str(self.scratch / "temporary")
         self._log = (self.scratch / "worker.log").open("w")
         self._process = subprocess.Popen(
             [sys.executable, "-m", "tests.fuzzing.worker", str(self.scratch)],
@@ -98,7 +101,7 @@ class Worker:
             new.append("a kernel was imported")
         answer = read_answer(found, new)
         verdict = judge(answer, folder, limits, needs_place=case.format != "export" and is_regular(case))
-        verdict = checked_for_name(case, verdict)
+        verdict = replace(checked_for_name(case, verdict), compiles=kernels)
         shutil.rmtree(folder)
         return verdict
 

@@ -41,11 +41,12 @@ class Answer:
 
 @dataclass(frozen=True)
 class Verdict:
-    """`outcome`: accepted, refused or FAULT; `reasons`: what is wrong; `answer`: what it is about."""
+    """`outcome`: accepted, refused or FAULT; `reasons`: what is wrong; `answer`: what it is about; `compiles`: whether a kernel was."""
 
     outcome: str
     reasons: tuple[str, ...]
     answer: Answer
+    compiles: bool = False
 
     @property
     def signature(self) -> str:

@@ -14,6 +14,17 @@ from tests.fuzzing.hostile import MARK
 from vehgen.errors import InputError, Position
 
 
+class RawRefusalError(InputError):
+    """A refusal that says its message as it came, which InputError itself does not."""
+
+    def __init__(self, message: str, position: Position) -> None:
+        super().__init__(message, position)
+        self._raw = f"{position}: {message}"
+
+    def __str__(self) -> str:
+        return self._raw
+
+
 def write_beside() -> None:
     Path("beside.txt").write_text("x", encoding="utf-8")
 
@@ -81,11 +92,11 @@ def no_such_file() -> None:
 
 
 def reversed_text() -> None:
-    raise InputError("\u202ewrong", Position("mischief.yaml", 1, 1))
+    raise RawRefusalError("\u202ewrong", Position("mischief.yaml", 1, 1))
 
 
 def two_lines() -> None:
-    raise InputError("wrong\nwrong", Position("mischief.yaml", 1, 1))
+    raise RawRefusalError("wrong\nwrong", Position("mischief.yaml", 1, 1))
 
 
 def long_text() -> None:

@@ -75,6 +75,7 @@ def child(job: dict[str, Any], audit: Audit, pipe: int) -> None:
     resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(job["seconds"]) + 1, resource.RLIM_INFINITY))
     resource.setrlimit(resource.RLIMIT_AS, (start + int(job["megabytes"] * 2**20), resource.RLIM_INFINITY))
     own = [os.environ["VEHGEN_CACHE"], os.environ["MPLCONFIGDIR"]] if job["command"] else []
+    own += [os.environ["TMPDIR"]] if job["kernels"] else []
     audit.arm([str(folder / "out"), *own], job["kernels"])
     answer: dict[str, Any] = {}
     done = False

@@ -60,3 +60,20 @@ def test_a_recording_that_cannot_be_used_says_why(tmp_path, change, said):
     with pytest.raises(InputError, match=said) as caught:
         read_recording(run)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("change", "place", "said"),
+    [
+        ({"t": np.r_[np.arange(300), np.arange(300)] * 0.01}, "302:1", "'t' must ascend; 0 comes after 2.99"),
+        ({"t": np.arange(600) * 0.4}, "3:1", "logged at 2.5 Hz"),
+        ({"t": np.r_[np.arange(300), np.arange(400, 700)] * 0.01}, "302:1", "an uneven clock"),
+        ({"az": np.full(600, 9.81)}, "1:2", "az is constant"),
+        ({"q": np.r_[np.sin(np.arange(500) * 0.1), np.full(100, 3.0)]}, "502:3", "q is clipped"),
+        ({"t": np.arange(3) * 0.01, "az": np.arange(3), "q": np.arange(3)}, "4:1", "3 rows of numbers; at least 16 were expected"),
+    ],
+)
+def test_it_is_refused_at_its_row(tmp_path, change, place, said):
+    with pytest.raises(InputError) as caught:
+        read_recording(write(tmp_path, **change))
+    assert f"data.csv:{place}: {said}" in str(caught.value)

@@ -193,7 +193,7 @@ CASES = [
 ELSEWHERE = {
     "no speed": ("1:1", "the file lacks the key 'speed'"),
     "two in one entry": ("13:5", "a road entry is one of hump, iso8608, profile"),
-    "channels of one name": ("22:1", "two channels are named 'v2'; each column needs a name of its own"),
+    "channels of one name": ("24:56", "two channels are named 'v2'; each column needs a name of its own"),
     "sensor and output of one name": ("27:3", "two channels are named 'L1_az'"),
 }
 

@@ -15,7 +15,7 @@ import scipy.stats
 from numpy.typing import NDArray
 
 from vehgen.calibrate.identifiability import Structure
-from vehgen.errors import InputError
+from vehgen.errors import InputError, shown
 from vehgen.files.expressions import ExpressionError, parse
 from vehgen.fit.least_squares import FitOptions, LeastSquaresFit, fit_least_squares
 from vehgen.fit.linearisation import linearise
@@ -131,10 +131,10 @@ class Uncertainty:
             expression = parse(text)
             unknown = expression.names - set(vehicle.parameters)
             if unknown:
-                raise InputError(f"the combination {text!r} names {', '.join(sorted(unknown))}, which {vehicle.name} does not have")
+                raise InputError(f"the combination {shown(text)} names {', '.join(sorted(unknown))}, which {vehicle.name} does not have")
             expression.dimension(vehicle.dimensions)
         except ExpressionError as error:
-            raise InputError(f"{text!r}: {error}") from error
+            raise InputError(f"{shown(text)}: {error}") from error
 
         def quantity(values: Array) -> float:
             free = {name: trial.values[name] for name in vehicle.free_parameters} | dict(zip(names, values.tolist(), strict=True))

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.expressions import Expression
 from vehgen.fit.problem import Problem
 from vehgen.vehicle import Vehicle
@@ -49,12 +49,12 @@ def plan(problem: Problem, method: str, sensors: Sequence[str] = (), frozen: Seq
         For an unknown method or sensor, or a number of sensors that the method cannot use.
     """
     if method not in METHODS:
-        raise InputError(f"no method {method!r}; {did_you_mean(method, METHODS)}")
+        raise InputError(f"no method {shown(method)}; {did_you_mean(method, METHODS)}")
     known = [name for name in problem.trials[0].run.file.sensors if all(name in trial.run.file.sensors for trial in problem.trials)]
     every = list(dict.fromkeys(name for trial in problem.trials for name in trial.run.file.sensors))
     for name in sensors:
         if name not in every:
-            raise InputError(f"no run has a sensor {name!r}; {did_you_mean(name, every)}")
+            raise InputError(f"no run has a sensor {shown(name)}; {did_you_mean(name, every)}")
     chosen = tuple(sensors) or tuple(every if method == "joint" else known)
     names = problem.space.names
     if method == "joint":
@@ -67,7 +67,7 @@ def plan(problem: Problem, method: str, sensors: Sequence[str] = (), frozen: Seq
         raise InputError(f"dhcm uses two sensors, found {', '.join(chosen) or 'none'}; choose them in their order (`sensors`)")
     for name in frozen:
         if name not in names:
-            raise InputError(f"{name!r} is not searched and cannot be kept from the first step; {did_you_mean(name, names)}")
+            raise InputError(f"{shown(name)} is not searched and cannot be kept from the first step; {did_you_mean(name, names)}")
     kept = tuple(frozen) or near_parameters(problem, chosen[0])
     rest = tuple(name for name in names if name not in kept)
     if not kept or not rest:

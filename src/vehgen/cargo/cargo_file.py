@@ -18,11 +18,13 @@ from vehgen.cargo.quantities import (
     OptionalMass,
     PositiveLength,
     Stiffness,
+    check_derived,
 )
 from vehgen.files.document import Located
 from vehgen.files.entry import FileModel, read_entries
 from vehgen.files.names import FreeText, Identifier
 from vehgen.files.quantities import Frequency
+from vehgen.files.units import DAMPING, STIFFNESS
 
 
 class RigidCargo(FileModel):
@@ -132,4 +134,8 @@ def load_cargo(path: str | Path) -> Cargo:
     """
     path = Path(path)
     file, document = read_entries(CargoFile, path)
+    if file.module is not None:
+        place = document.find(("module",), key=True)
+        check_derived(file.module.k0, STIFFNESS, "the module's stiffness", place)
+        check_derived(file.module.c0, DAMPING, "the module's damping", place)
     return Cargo(file, path, document)

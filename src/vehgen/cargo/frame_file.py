@@ -13,7 +13,7 @@ from pydantic import Field
 from vehgen.cargo.panels import Layer, equivalent_layer
 from vehgen.cargo.quantities import DampingRatio, Density, Distance, Modulus, Poisson, PositiveLength
 from vehgen.cargo.sections import SectionEntry
-from vehgen.errors import InputError
+from vehgen.errors import InputError, shown
 from vehgen.files.checks import check_known
 from vehgen.files.document import Located
 from vehgen.files.entry import FileModel, read_entries
@@ -192,7 +192,7 @@ def _check(frame: FrameModule) -> None:
         check_known(member.section, file.sections, "no section", document, "frame", name, "section")
         if file.materials[member.material].E == 0:
             raise InputError(
-                f"a frame member needs a material with E above 0; {member.material!r} has none", document.find(("frame", name))
+                f"a frame member needs a material with E above 0; {shown(member.material)} has none", document.find(("frame", name))
             )
     for _, key, panel in file.panels.faces():
         for index, layer in enumerate(panel.layers):

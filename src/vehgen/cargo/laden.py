@@ -77,7 +77,7 @@ def _reference(vehicle: Vehicle, cargo: Cargo) -> tuple[Expression, Expression]:
         return ZERO, ZERO
     there = "; it is on another body" if behind in {**vehicle.hinges, **vehicle.axles, **vehicle.bodies} else ""
     raise InputError(
-        f"{shown(behind)} is no hinge or axle of {on!r}, nor {on!r} itself{there}; {did_you_mean(behind, [*hinges, *axles, on])}",
+        f"{shown(behind)} is no hinge or axle of {shown(on)}, nor {shown(on)} itself{there}; {did_you_mean(behind, [*hinges, *axles, on])}",
         cargo.document.find(("behind",)),
     )
 
@@ -91,7 +91,7 @@ def _body_name(vehicle: Vehicle, cargo: Cargo) -> str:
             raise InputError(message, cargo.document.find(("name",)))
         clash = next((name for name in names if name in taken), None)
         if clash is not None:
-            message = f"{vehicle.name} has a part named {clash!r} already; choose another name for the cargo"
+            message = f"{vehicle.name} has a part named {shown(clash)} already; choose another name for the cargo"
             raise InputError(message, cargo.document.find(("name",)))
         return cargo.file.name
     base = "cargo" if isinstance(cargo.load, RigidCargo) else "module"

@@ -94,8 +94,11 @@ def module_model(frame: FrameModule, mesh_size: float | None = None, mass: str |
     if not body.mass > 0:
         raise InputError("the module weighs nothing; give its materials a density", frame.document.find(("materials",), key=True))
     held = (6 * corners[:, None] + np.arange(3)).ravel()
-    modes = eigenmodes(matrices, held)
-    found = modes.principal
+    try:
+        modes = eigenmodes(matrices, held)
+        found = modes.principal
+    except InputError as error:
+        raise InputError(error.message, error.position or frame.document.find(("mesh", "size"))) from error
     frequency, effective = float(modes.frequency[found]), float(modes.effective_mass[found])
     alpha, beta = rayleigh(*frame.file.damping)
     w0 = 2 * math.pi * frequency

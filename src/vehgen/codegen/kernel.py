@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from vehgen.codegen.cache import cache_folder, import_kernel, is_compiled, kernel_name
 from vehgen.codegen.kernel_source import KernelSource, Precision, write_kernel
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
 
@@ -103,7 +103,7 @@ class Kernel:
         self, model: EquationsOfMotion, folder: Path | None = None, sweeps: int | None = None, precision: Precision = "double"
     ) -> None:
         if precision not in get_args(Precision):
-            raise InputError(f"unknown precision {precision!r}; {did_you_mean(precision, get_args(Precision))}")
+            raise InputError(f"unknown precision {shown(precision)}; {did_you_mean(precision, get_args(Precision))}")
         self.model = model
         self.source: KernelSource = write_kernel(model, sweeps=sweeps, precision=precision)
         self._number = np.float32 if precision == "single" else np.float64

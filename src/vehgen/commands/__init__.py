@@ -31,6 +31,7 @@ from vehgen.commands import (
     validate,
 )
 from vehgen.commands.faults import end_of, show_warnings
+from vehgen.errors import InputError, shortened
 from vehgen.files import guarding_results, noting_reads
 
 COMMANDS = (
@@ -93,6 +94,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _run(words: list[str]) -> int | None:
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # a title in another script must not fail on a plain terminal
+    for word in words:
+        if word.startswith("--") and word.endswith("=--"):  # argparse of Python 3.11 would take the value for the end of the options
+            raise InputError(f"{shortened(word.removesuffix('=--'))} wants a value; found '--'")
     parser = make_parser()
     options = parser.parse_args(words)
     if options.version:

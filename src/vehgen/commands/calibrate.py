@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from vehgen.commands.faults import STOPPED
 from vehgen.commands.results import add_out, folder_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table, warn
-from vehgen.errors import InputError
+from vehgen.errors import InputError, shown
 from vehgen.files import check_results, write_text
 
 if TYPE_CHECKING:
@@ -135,9 +135,9 @@ def _band(text: str) -> tuple[float, float]:
     try:
         low, high = (float(part) for part in text.split(","))
     except ValueError:
-        raise InputError(f"--band wants two frequencies in Hz, e.g. 0.3,40; found {text!r}") from None
+        raise InputError(f"--band wants two frequencies in Hz, e.g. 0.3,40; found {shown(text)}") from None
     if not 0 < low < high:
-        raise InputError(f"--band wants 0 < LOW < HIGH, found {text!r}")
+        raise InputError(f"--band wants 0 < LOW < HIGH, found {shown(text)}")
     return low, high
 
 

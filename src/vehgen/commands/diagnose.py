@@ -37,7 +37,7 @@ def run(options: argparse.Namespace) -> int | None:
     from vehgen.diagnose.pipeline import diagnose
     from vehgen.diagnose.writing import effect_file, file_name, files_named_so
     from vehgen.effects import extended_library
-    from vehgen.errors import InputError, did_you_mean
+    from vehgen.errors import InputError, did_you_mean, shown
     from vehgen.files.results import json_text
     from vehgen.fit.trial import load_trials
     from vehgen.report.pages.diagnosis_page import write_diagnosis_page
@@ -49,7 +49,7 @@ def run(options: argparse.Namespace) -> int | None:
         names = list(dict.fromkeys(part.strip() for part in options.effects.split(",")))
         for name in names:
             if name not in known:
-                raise InputError(f"no effect {name!r}; {did_you_mean(name, known)}")
+                raise InputError(f"no effect {shown(name)}; {did_you_mean(name, known)}")
         chosen = [known[name] for name in names]
     vehicle = load_vehicle(options.vehicle)
     trials = load_trials(options.runs, vehicle)

@@ -99,7 +99,7 @@ def _plan(options: argparse.Namespace) -> Plan:
     vehicle = load_vehicle(options.vehicle)
     return Plan(
         vehicle,
-        read_hump(options.hump) if options.hump else read_profile(options.profile),
+        read_hump(options.hump) if options.hump is not None else read_profile(options.profile),
         with_forward([read_sensor(text, vehicle) for text in options.sensor], options.forward),
         options.parameter_set,
         speed,

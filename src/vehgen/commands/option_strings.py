@@ -7,12 +7,11 @@ import re
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from pydantic import ValidationError
 
-from vehgen.errors import InputError, did_you_mean, shown
+from vehgen.errors import InputError, did_you_mean, shortened, shown
 from vehgen.files.expressions import ExpressionError, parse
-from vehgen.files.limits import HUMP_HEIGHT, HUMP_LENGTH, VEHICLE_LENGTH
+from vehgen.files.limits import VEHICLE_LENGTH
 from vehgen.files.names import is_identifier
 from vehgen.files.tables import read_columns
 from vehgen.files.units import LENGTH, NONE, TIME, Dimension
@@ -21,6 +20,7 @@ from vehgen.phones.csv_table import ColumnMap
 from vehgen.phones.options import PhoneSensor, RoadOption
 from vehgen.road import Hump, MeasuredProfile
 from vehgen.simulate.run_file.entries import HumpEntry
+from vehgen.simulate.scenario import check_hump_points
 from vehgen.vehicle import Vehicle
 
 _SENSOR_KEYS = ("body", "x", "behind", "distance", "forward", "up", "acceleration_sign", "from", "to")
@@ -32,12 +32,12 @@ def quantity(text: str, dimension: Dimension, where: str) -> float:
     try:
         expression = parse(text)
         if expression.names:
-            raise ExpressionError(f"found a symbol in {text!r}")
+            raise ExpressionError(f"found a symbol in {shown(text)}")
         found, value = expression.dimension({}), expression.evaluate({})
     except ExpressionError as error:
         raise InputError(f"{where}: expected a number in {dimension}; {error}") from error
     if found not in (dimension, NONE) or not math.isfinite(value):
-        raise InputError(f"{where}: expected a finite number in {dimension}, found {text!r}")
+        raise InputError(f"{where}: expected a finite number in {dimension}, found {shown(text)}")
     return value
 
 
@@ -50,30 +50,30 @@ def read_sensor(text: str, vehicle: Vehicle) -> PhoneSensor:
         For a malformed text, and names that the vehicle lacks, with the nearest that it has.
     """
     name, colon, rest = text.partition(":")
-    name, where = name.strip(), f"--sensor {name.strip()}"
+    name, where = name.strip(), f"--sensor {shortened(name.strip())}"
     if not colon or not is_identifier(name):
         raise InputError(f"--sensor: expected NAME:body=BODY,behind=AXLE,distance=METRES, found {shown(text)}")
     found = split_pairs(rest, where, _SENSOR_KEYS)
     if "body" not in found:
         raise InputError(f"{where} lacks body=; {did_you_mean('', vehicle.bodies)}")
     if found["body"] not in vehicle.bodies:
-        raise InputError(f"{where}: {vehicle.name} has no body {found['body']!r}; {did_you_mean(found['body'], vehicle.bodies)}")
+        raise InputError(f"{where}: {vehicle.name} has no body {shown(found['body'])}; {did_you_mean(found['body'], vehicle.bodies)}")
     behind = found.get("behind")
     known = {**vehicle.axles, **vehicle.hinges, **vehicle.bodies}
     if behind is not None and behind not in known:
-        raise InputError(f"{where}: {vehicle.name} has nothing named {behind!r} to be behind of; {did_you_mean(behind, known)}")
+        raise InputError(f"{where}: {vehicle.name} has nothing named {shown(behind)} to be behind of; {did_you_mean(behind, known)}")
     if behind is not None and "x" in found:
         raise InputError(f"{where}: a place has x=, or behind= with distance=, not both")
     if "distance" in found and behind is None:
         raise InputError(f"{where}: distance= needs behind=")
     if "acceleration_sign" in found and found["acceleration_sign"] not in ("1", "+1", "-1"):
-        raise InputError(f"{where}: acceleration_sign is 1 or -1, found {found['acceleration_sign']!r}")
+        raise InputError(f"{where}: acceleration_sign is 1 or -1, found {shown(found['acceleration_sign'])}")
     try:
         x = parse(found["x"] if _has_unit(found["x"]) else f"{found['x']} m") if "x" in found else None
         if x is not None and x.dimension(vehicle.dimensions) != LENGTH:
             raise ExpressionError("it must be a length")
     except ExpressionError as error:
-        raise InputError(f"{where}: x={found['x']}: {error}") from error
+        raise InputError(f"{where}: x={shortened(found['x'])}: {error}") from error
     distance = quantity(found.get("distance", "0"), LENGTH, f"{where} distance")
     VEHICLE_LENGTH.check(distance, f"{where} distance")
     return PhoneSensor(
@@ -103,7 +103,7 @@ def read_hump(text: str) -> RoadOption:
     found: dict[str, Any] = dict(split_pairs(rest, "--hump", _HUMP_KEYS)) if rest else {}
     shapes = HumpEntry.model_fields["shape"].annotation.__args__  # type: ignore[union-attr]
     if shape.strip() not in shapes:
-        raise InputError(f"--hump: unknown shape {shape.strip()!r}; {did_you_mean(shape.strip(), shapes)}")
+        raise InputError(f"--hump: unknown shape {shown(shape.strip())}; {did_you_mean(shape.strip(), shapes)}")
     for key in ("length", "height", "radius"):
         if key in found:
             found[key] = f"{quantity(found[key], LENGTH, f'--hump {key}'):.10g} m"
@@ -115,10 +115,9 @@ def read_hump(text: str) -> RoadOption:
         raise InputError(f"--hump: {error.errors()[0]['msg']}") from error
     written = {"shape": entry.shape, **found}
     if entry.file is not None:
-        s, height = read_columns(Path(entry.file), (entry.distance, entry.height_column))
-        HUMP_LENGTH.check(float(np.ptp(s)), f"--hump {entry.file}")
-        HUMP_HEIGHT.check(float(np.abs(height).max()), f"--hump {entry.file}")
-        return RoadOption("hump", written, hump=Hump.from_points(0.0, s, height))
+        points = read_columns(Path(entry.file), (entry.distance, entry.height_column))
+        check_hump_points(points)
+        return RoadOption("hump", written, hump=Hump.from_points(0.0, *points.values))
     assert entry.length is not None
     assert entry.height is not None
     extra = {key: value for key, value in (("ramp", entry.ramp), ("radius", entry.radius)) if value is not None}
@@ -130,8 +129,9 @@ def read_profile(text: str) -> RoadOption:
     file, _, rest = text.partition(",")
     found = split_pairs(rest, "--profile", ("distance", "height")) if rest else {}
     names = found.get("distance", "distance"), found.get("height", "height")
-    s, height = read_columns(Path(file), names)
-    return RoadOption("profile", {"file": file, "distance": names[0], "height": names[1]}, profile=MeasuredProfile(s, height))
+    points = read_columns(Path(file), names)
+    points.check_ascending()
+    return RoadOption("profile", {"file": file, "distance": names[0], "height": names[1]}, profile=MeasuredProfile(*points.values))
 
 
 def read_column_map(text: str) -> ColumnMap:
@@ -155,9 +155,9 @@ def split_pairs(text: str, option: str, known: tuple[str, ...]) -> dict[str, str
     for part in text.split(","):
         key, sign, value = (item.strip() for item in part.partition("="))
         if not sign or not value:
-            raise InputError(f"{option}: expected key=value pairs joined by commas, found {part!r}")
+            raise InputError(f"{option}: expected key=value pairs joined by commas, found {shown(part)}")
         if key not in known:
-            raise InputError(f"{option}: unknown key {key!r}; {did_you_mean(key, known)}")
+            raise InputError(f"{option}: unknown key {shown(key)}; {did_you_mean(key, known)}")
         if key in found:
             raise InputError(f"{option}: {key} is given twice")
         found[key] = value

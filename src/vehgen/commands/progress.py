@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from vehgen.commands.terminal import console, printable
+from vehgen.commands.terminal import console
+from vehgen.errors import printable
 
 
 class Bars:

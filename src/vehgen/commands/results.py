@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import os
+import unicodedata
 from collections.abc import Iterable
 from pathlib import Path
 
 from vehgen.commands.terminal import say
-from vehgen.errors import InputError
+from vehgen.errors import InputError, shown
 
 
 def add_out(parser: argparse.ArgumentParser, metavar: str, meaning: str, required: bool = False) -> None:
@@ -31,11 +32,11 @@ def file_named(text: str, option: str = "--out") -> Path:
     Raises
     ------
     InputError
-        For an empty name, and one that ends as a folder's does.
+        For an empty name, one with control characters, `-`, and one that ends as a folder's does.
     """
     path = _named(text, option)
     if text.endswith(("/", os.sep)):
-        raise InputError(f"{option} names a file to write; found {text!r}, a folder")
+        raise InputError(f"{option} names a file to write; found {shown(text)}, a folder")
     return path
 
 
@@ -45,7 +46,7 @@ def folder_named(text: str | None, default: str | Path) -> Path:
     Raises
     ------
     InputError
-        For an empty name.
+        For an empty name, one with control characters, and `-`.
     """
     return Path(default) if text is None else _named(text, "--out")
 
@@ -57,6 +58,8 @@ def tell_written(paths: Iterable[Path]) -> None:
 
 
 def _named(text: str, option: str) -> Path:
-    if not text or "\0" in text:
-        raise InputError(f"{option} wants a name; found {text!r}")
+    if not text or any(unicodedata.category(sign) == "Cc" for sign in text):
+        raise InputError(f"{option} wants a name; found {shown(text)}")
+    if text == "-":
+        raise InputError(f"{option} wants a name; results are not written to standard output (a file of this name is ./-)")
     return Path(text)

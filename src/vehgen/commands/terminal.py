@@ -8,9 +8,10 @@ from __future__ import annotations
 import argparse
 import json
 import re
-import unicodedata
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
+
+from vehgen.errors import escaped, printable
 
 MAX_LINE = 600
 """Characters of an error or a warning; the middle of a longer one is left out."""
@@ -46,19 +47,9 @@ def print_json(data: Any) -> None:
     print(json.dumps(data, indent=2, allow_nan=False))
 
 
-def printable(text: str) -> str:
-    """Return text with everything escaped that would steer a terminal: control characters, and those that turn the direction around."""
-    return "".join(
-        character
-        if character.isprintable() or character in "\n\t" or unicodedata.category(character) == "Zs"
-        else character.encode("unicode_escape").decode("ascii")
-        for character in text
-    )
-
-
 def one_line(text: str) -> str:
     """Return a message as one printable line of at most `MAX_LINE` characters."""
-    line = printable(re.sub(r"\s*[\r\n]\s*", " ", text.strip()).replace("\t", " "))
+    line = escaped(re.sub(r"\s*[\r\n]\s*", " ", text.strip()).replace("\t", " "))
     if len(line) <= MAX_LINE:
         return line
     return f"{line[: MAX_LINE - 205]} ... {line[-200:]}"

@@ -32,7 +32,7 @@ def run(options: argparse.Namespace) -> None:
     from dataclasses import replace
 
     from vehgen.calibrate.validation import reference_spectrum, validate
-    from vehgen.errors import InputError
+    from vehgen.errors import InputError, shown
     from vehgen.files.results import json_text
     from vehgen.fit.trial import load_trials
     from vehgen.report.plots.validation_plots import save_validation_figures, validation_figure_files
@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> None:
         try:
             edges = [float(part) for part in options.bands.split(",")]
         except ValueError:
-            raise InputError(f"--bands wants frequencies in Hz, e.g. 2,5,8,12; found {options.bands!r}") from None
+            raise InputError(f"--bands wants frequencies in Hz, e.g. 2,5,8,12; found {shown(options.bands)}") from None
         bands = tuple(pairwise(edges))
     vehicle = load_vehicle(options.vehicle)
     trials = load_trials(options.runs, vehicle)

@@ -10,7 +10,7 @@ from vehgen.effects.base import Effect
 from vehgen.effects.entry_model import EffectsFile
 from vehgen.effects.entry_reader import EntryReader
 from vehgen.effects.registry import library
-from vehgen.errors import InputError
+from vehgen.errors import InputError, shown
 from vehgen.files.entry import read_entries
 
 
@@ -53,6 +53,6 @@ def load_effects(path: str | Path, taken: Mapping[str, Effect] | None = None) ->
     found = {}
     for name, entry in file.effects.items():
         if name in known:
-            raise InputError(f"an effect is named {name!r} already; choose another name", document.find(("effects", name), key=True))
+            raise InputError(f"an effect is named {shown(name)} already; choose another name", document.find(("effects", name), key=True))
         found[name] = EntryReader(document, name, entry).effect()
     return found

@@ -20,7 +20,7 @@ from vehgen.effects.library.speed_error import SPEED_ERROR_EFFECT
 from vehgen.effects.library.tyre_footprint import TYRE_FOOTPRINT_EFFECT
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import Places, axles, hinges, suspensions, tyres
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.checks import check_dimension
 from vehgen.files.document import Located
 from vehgen.files.expressions import Expression, ExpressionError
@@ -156,7 +156,7 @@ class EntryReader:
         """Return a parameter in SI units."""
         path = ("parameters", name)
         if name in ("d", "v"):
-            raise self.wrong(f"{name!r} is the travel or rate of a law", *path, key=True)
+            raise self.wrong(f"{shown(name)} is the travel or rate of a law", *path, key=True)
         try:
             factor, dimension = parse_unit(item.unit) if item.unit else (1.0, NONE)
         except InputError as error:
@@ -183,26 +183,26 @@ class EntryReader:
         ((name, values),) = given.items()
         if name not in LAWS:
             hint = " (your own law is an expression under `force`)" if name == "law" else ""
-            raise self.wrong(f"unknown force law {name!r}; {did_you_mean(name, LAWS)}{hint}", "law", name, key=True)
+            raise self.wrong(f"unknown force law {shown(name)}; {did_you_mean(name, LAWS)}{hint}", "law", name, key=True)
         law, kind = LAWS[name], self.entry.attaches
         if kind not in law.attaches_to:
             raise self.wrong(f"{name} belongs on a {' or '.join(law.attaches_to)}, not on a {kind}", "law", name, key=True)
         known = {item.name: item for item in law.parameters}
         for key in values:
             if key not in known and key != "from":
-                raise self.wrong(f"{name} has no parameter {key!r}; {did_you_mean(key, [*known, 'from'])}", "law", name, key, key=True)
+                raise self.wrong(f"{name} has no parameter {shown(key)}; {did_you_mean(key, [*known, 'from'])}", "law", name, key, key=True)
         for key, item in known.items():
             if key in values:
                 self.expect(values[key], item.dimension(kind), {}, "law", name, key)
             elif item.default is None:
-                raise self.wrong(f"{name} lacks its parameter {key!r}: {item.meaning}", "law", name, key=True)
+                raise self.wrong(f"{name} lacks its parameter {shown(key)}: {item.meaning}", "law", name, key=True)
         self.all_used({used for key, value in values.items() if key != "from" for used in value.names})
         return name, values
 
     def all_used(self, names: Iterable[str]) -> None:
         """Refuse a parameter that no law uses: a search could not find it."""
         for name in self.own.keys() - set(names):
-            raise self.wrong(f"the parameter {name!r} is used nowhere", "parameters", name, key=True)
+            raise self.wrong(f"the parameter {shown(name)} is used nowhere", "parameters", name, key=True)
 
     def expect(
         self,

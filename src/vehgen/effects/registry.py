@@ -81,6 +81,6 @@ def library() -> dict[str, Effect]:
         if not is_identifier(effect.name):
             raise InputError(f"the entry point {shown(point.name)} of {GROUP} names its effect {shown(effect.name)}, which is no name")
         if effect.name in found:
-            raise InputError(f"two effects are named {effect.name!r}; the entry point {shown(point.name)} must choose another name")
+            raise InputError(f"two effects are named {shown(effect.name)}; the entry point {shown(point.name)} must choose another name")
         found[effect.name] = effect
     return found

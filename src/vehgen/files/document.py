@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ruamel.yaml import YAML
+from ruamel.yaml.composer import Composer
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 from ruamel.yaml.reader import ReaderError
@@ -94,6 +95,29 @@ def locate_arguments(data: Any, path: str, known: Located | None = None) -> Loca
     return Located(data, position, key_position, None if known is None else known.indent)
 
 
+class _TooManyError(Exception):
+    """A text holds more keys and values than are read; `line` and `column` count from 0."""
+
+    def __init__(self, line: int, column: int) -> None:
+        super().__init__(line, column)
+        self.line, self.column = line, column
+
+
+class _BoundedComposer(Composer):
+    """Composes no more nodes than MAX_VALUES with their keys need: reading what would be refused later takes seconds."""
+
+    def __init__(self, loader: Any = None) -> None:
+        super().__init__(loader)
+        self._count = 0
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        self._count += 1
+        if self._count > 2 * MAX_VALUES + 1:
+            mark = self.parser.peek_event().start_mark
+            raise _TooManyError(mark.line, mark.column)
+        return super().compose_node(parent, index)
+
+
 def read_document(path: Path) -> Located:
     """Read a YAML file into located data.
 
@@ -109,8 +133,12 @@ def read_document(path: Path) -> Located:
 def read_text(text: str, path: Path | str) -> Located:
     """Read YAML text into located data; `path` is what errors call it."""
     lines = text.splitlines()
+    reader = YAML(typ="safe", pure=True)
+    reader.Composer = _BoundedComposer
     try:
-        root = YAML(typ="safe", pure=True).compose(text)
+        root = reader.compose(text)
+    except _TooManyError as error:
+        raise InputError(f"more than {MAX_VALUES} values", _within(lines, path, error.line, error.column)) from error
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         place = _within(lines, path, mark.line, mark.column) if mark else Position(path, 1, 1)

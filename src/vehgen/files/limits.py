@@ -24,8 +24,8 @@ from vehgen.files.units import (
     Dimension,
 )
 
-MOST_PARTS = {"parameters": 1000, "bodies": 200, "hinges": 200, "axles": 200, "links": 400, "sets": 200}
-"""How many of each a vehicle may have."""
+MOST_PARTS = {"parameters": 1000, "bodies": 100, "hinges": 50, "axles": 100, "links": 200, "sets": 100}
+"""How many of each a vehicle may have; a chain of hinges couples every body to every other, at a cost that grows with the third power."""
 MOST_ROADS = 200
 """So many entries a road may have."""
 MOST_CHANNELS = 500

@@ -32,22 +32,29 @@ def read_quantity(value: Any, dimension: Dimension) -> float:
     return number
 
 
-def _within(limit: Limit, value: Any, *, positive: bool) -> float:
-    """Read a quantity; raises a pydantic error where it is not finite, not above 0 though it must be, or outside its limit."""
+def _within(limit: Limit, value: Any, above: float | None, least: float | None) -> float:
+    """Read a quantity; raises a pydantic error where it is not finite, not above or below what it must be, or outside its limit."""
     number = read_quantity(value, limit.dimension)
-    if positive and not 0 < number < math.inf:
-        raise PydanticCustomError("quantity", "expected a finite number above 0, found {value}", {"value": number})
+    wrong = not math.isfinite(number) or (above is not None and number <= above) or (least is not None and number < least)
+    if wrong:
+        bound = "" if above is None and least is None else f" above {above:g}" if above is not None else f" of at least {least:g}"
+        raise PydanticCustomError("quantity", "expected a finite number{bound}, found {value}", {"bound": bound, "value": number})
     if (reason := limit.refusal(number)) is not None:
         raise PydanticCustomError("quantity", "{reason}", {"reason": reason})
     return number
 
 
+def limited(limit: Limit, above: float | None = None, least: float | None = None) -> BeforeValidator:
+    """Return what reads a quantity within a limit; `above` and `least` bound the number itself, not its magnitude."""
+    return BeforeValidator(lambda value: _within(limit, value, above, least))
+
+
 def _any(limit: Limit) -> tuple[BeforeValidator, WithJsonSchema]:
-    return BeforeValidator(lambda value: _within(limit, value, positive=False)), _schema(limit.dimension)
+    return limited(limit), _schema(limit.dimension)
 
 
 def _positive(limit: Limit) -> tuple[BeforeValidator, WithJsonSchema]:
-    return BeforeValidator(lambda value: _within(limit, value, positive=True)), _schema(limit.dimension)
+    return limited(limit, above=0.0), _schema(limit.dimension)
 
 
 def _schema(dimension: Dimension) -> WithJsonSchema:

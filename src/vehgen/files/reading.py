@@ -50,10 +50,10 @@ def open_regular(path: Path, most: int, kind: str = "a file", *, state: bool = F
     if not state:
         note_read(path)
     try:
-        _check(os.stat(path), name, most, kind)
+        _check(os.stat(path), path, most, kind)
         handle = os.open(path, _FLAGS)
         try:
-            _check(os.fstat(handle), name, most, kind)
+            _check(os.fstat(handle), path, most, kind)
         except InputError:
             os.close(handle)
             raise
@@ -62,17 +62,18 @@ def open_regular(path: Path, most: int, kind: str = "a file", *, state: bool = F
     except OSError as error:
         raise InputError(f"cannot read {name}: {error.strerror}; {kind} was expected") from error
     except ValueError as error:
-        raise InputError(f"{name!r} cannot be a path: {error}; {kind} was expected") from error
+        raise InputError(f"'{name}' cannot be a path: {error}; {kind} was expected") from error
     return os.fdopen(handle, "rb")
 
 
-def _check(status: os.stat_result, name: str, most: int, kind: str) -> None:
+def _check(status: os.stat_result, path: Path, most: int, kind: str) -> None:
+    name = short_path(path)
     if stat.S_ISDIR(status.st_mode):
         raise InputError(f"{name} is a folder; {kind} was expected")
     if not stat.S_ISREG(status.st_mode):
         raise InputError(f"{name} is a pipe, socket or device; {kind} was expected")
     if status.st_size > most:
-        raise InputError(f"{name} has {status.st_size} bytes; {kind} of at most {most} bytes was expected")
+        raise InputError(f"{status.st_size} bytes; {kind} of at most {most} bytes was expected", Position(path, 1, 1))
 
 
 def read_bytes(path: Path, most: int, kind: str = "a file", *, state: bool = False) -> bytes:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -90,7 +90,7 @@ def search_space(vehicle: Vehicle, values: Mapping[str, float], names: Sequence[
         )
     for name in names or ():
         if name not in ranges:
-            raise InputError(f"{name!r} is not a parameter with a range; {did_you_mean(name, ranges)}")
+            raise InputError(f"{shown(name)} is not a parameter with a range; {did_you_mean(name, ranges)}")
     chosen = [name for name in ranges if names is None or name in names]
     for name in chosen:
         low, high = ranges[name]

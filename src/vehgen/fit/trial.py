@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.measure import Recording, read_recording
 from vehgen.simulate import Run, Scenario, Simulator, SimulatorPool, load_run, make_scenario
 from vehgen.vehicle import Vehicle
@@ -52,7 +52,7 @@ class Trial:
         """
         for sensor in sensors:
             if sensor not in self.run.file.sensors:
-                raise InputError(f"{self.name} has no sensor {sensor!r}; {did_you_mean(sensor, self.run.file.sensors)}")
+                raise InputError(f"{self.name} has no sensor {shown(sensor)}; {did_you_mean(sensor, self.run.file.sensors)}")
         measurement = self.recording.of_sensors(tuple(sensors))
         return replace(self, recording=measurement, simulator=_simulator(self.run, measurement, simulators))
 

@@ -10,14 +10,17 @@ from pydantic_core import PydanticCustomError
 
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.quantities import read_quantity
-from vehgen.files.tables import read_columns
+from vehgen.files.tables import Columns, read_columns
 from vehgen.files.units import UNITS, read_unit
 from vehgen.measure.quality import find_clipping
 from vehgen.mechanics.outputs import POINT_QUANTITIES, PointOutput
 from vehgen.simulate import Run
+from vehgen.simulate.run_file.checks import TIME_COLUMN
 from vehgen.simulate.run_file.entries import ChannelEntry, SensorEntry
 
 Array = NDArray[np.float64]
+FEWEST_SAMPLES = 16
+"""Fewer samples are no recording: a run has hundreds."""
 LOWEST_RATE = 50.0
 """Below this sampling rate [Hz] a recording cannot show the axles' hop."""
 REFUSED_IN_A_ROW = 5
@@ -81,14 +84,14 @@ def read_recording(run: Run) -> Recording:
             columns.append(sensor.column(sensor_name, quantity))
             factors.append(_factor(run, sensor_name, quantity, entry))
     try:
-        time, *recorded = read_columns(path, ("t", *columns))
+        table = read_columns(path, (TIME_COLUMN, *columns))
     except InputError as error:
-        raise InputError(f"{error.message} ({error.position})" if error.position else error.message, place) from error
-    values = np.column_stack(recorded) * np.array(factors)
-    _check_clock(time, path.name)
+        raise InputError(error.message, error.position or place) from error
+    values = np.column_stack(table.values[1:]) * np.array(factors)
+    _check_clock(table)
     for i, channel in enumerate(channels):
-        _check_samples(time, values[:, i], channel, path.name)
-    return Recording(time, values, tuple(channels))
+        _check_samples(table, i + 1, values[:, i], channel)
+    return Recording(table.values[0], values, tuple(channels))
 
 
 def _channel(sensor_name: str, sensor: SensorEntry, quantity: str) -> RecordedChannel:
@@ -130,28 +133,29 @@ def _factor(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> 
     return factor
 
 
-def _check_clock(time: Array, name: str) -> None:
-    if len(time) < 16:
-        raise InputError(f"{name} holds {len(time)} samples; a run has hundreds")
+def _check_clock(table: Columns) -> None:
+    table.check_ascending(least=FEWEST_SAMPLES)
+    time = table.values[0]
     steps = np.diff(time)
-    if not np.isfinite(time).all() or (steps <= 0).any():
-        row = int(np.flatnonzero(~(steps > 0))[0]) + 2
-        raise InputError(f"{name}: the times must be numbers and ascend; they do not at data row {row}")
     dt = float(np.median(steps))
     rate = 1 / dt
     if rate < LOWEST_RATE * 0.99:
-        raise InputError(f"{name} was logged at {rate:.3g} Hz; at least {LOWEST_RATE:g} Hz is needed (100 Hz is usual): log again, faster")
+        raise InputError(
+            f"logged at {rate:.3g} Hz; at least {LOWEST_RATE:g} Hz is needed (100 Hz is usual): log again, faster", table.place(1)
+        )
     if np.abs(time - time[0] - dt * np.arange(len(time))).max() > 0.25 * dt:
         raise InputError(
-            f"{name} has an uneven clock (steps of {steps.min():.4g} to {steps.max():.4g} s); `vehgen import` puts it on an even one"
+            f"an uneven clock (steps of {steps.min():.4g} to {steps.max():.4g} s, most {dt:.4g} s); `vehgen import` puts it on an even one",
+            table.place(int(np.argmax(np.abs(steps - dt))) + 1),
         )
 
 
-def _check_samples(time: Array, values: Array, channel: RecordedChannel, name: str) -> None:
+def _check_samples(table: Columns, column: int, values: Array, channel: RecordedChannel) -> None:
     if np.ptp(values) == 0:
-        raise InputError(f"{name}: {channel.name} is constant; the sensor recorded nothing")
+        raise InputError(f"{channel.name} is constant; the sensor recorded nothing", table.heading(column))
     for item in find_clipping(values, REFUSED_IN_A_ROW):
         raise InputError(
-            f"{name}: {channel.name} is clipped at {item.level:.4g} from t = {time[item.first]:.4g} s: use a sensor with a larger range, "
-            "a lower speed or a lower hump"
+            f"{channel.name} is clipped at {item.level:.4g} from t = {table.values[0][item.first]:.4g} s: use a sensor with a larger "
+            "range, a lower speed or a lower hump",
+            table.place(item.first, column),
         )

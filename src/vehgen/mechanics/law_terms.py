@@ -108,7 +108,7 @@ def _read(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], name: str, 
         expression = given.get(key)
         if expression is None:
             if parameter.default is None:
-                raise InputError(f"{name} lacks its parameter {key!r}: {parameter.meaning}", vehicle.position(*path, key=True))
+                raise InputError(f"{name} lacks its parameter {shown(key)}: {parameter.meaning}", vehicle.position(*path, key=True))
             values[key] = number(parameter.default)
             continue
         if not isinstance(expression, Expression):
@@ -153,7 +153,7 @@ def _read_custom(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], give
     for key, expression in own.items():
         if key in ("d", "v"):
             raise InputError(
-                f"{key!r} is the law's travel or rate and cannot be a parameter", vehicle.position(*path, "parameters", key, key=True)
+                f"{shown(key)} is the law's travel or rate and cannot be a parameter", vehicle.position(*path, "parameters", key, key=True)
             )
         dimensions[key] = dimension_of(expression, vehicle.dimensions, vehicle.document, *path, "parameters", key)
     travel, moment = (NONE, MOMENT) if kind == "hinge" else (LENGTH, FORCE)

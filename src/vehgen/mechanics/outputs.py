@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.expressions import Expression
 from vehgen.mechanics.energies import Element
 from vehgen.mechanics.equations_of_motion import Channel
@@ -49,13 +49,13 @@ class Place:
     def locate(self, vehicle: Vehicle, layout: Layout) -> sp.Expr:
         """Return its position ahead of its body's COG [m]; raises InputError for names the vehicle lacks."""
         if self.body not in vehicle.bodies:
-            raise InputError(f"{self.name}: no body {self.body!r}; {did_you_mean(self.body, vehicle.bodies)}")
+            raise InputError(f"{self.name}: no body {shown(self.body)}; {did_you_mean(self.body, vehicle.bodies)}")
         shift = parameter(self.shift)
         if self.behind is None:
             return (to_sympy(self.x) if self.x is not None else sp.S.Zero) + shift
         known = {**vehicle.axles, **vehicle.hinges, **vehicle.bodies}
         if self.behind not in known:
-            raise InputError(f"{self.name}: nothing named {self.behind!r} to be behind of; {did_you_mean(self.behind, known)}")
+            raise InputError(f"{self.name}: nothing named {shown(self.behind)} to be behind of; {did_you_mean(self.behind, known)}")
         return layout.place(vehicle, self.behind) - layout.bodies[self.body][0] - number(self.distance) + shift
 
 
@@ -84,7 +84,7 @@ def point_channel(output: PointOutput, vehicle: Vehicle, layout: Layout, motion:
     """Return the row of a quantity at a point of a body."""
     quantity = output.quantity
     if quantity not in POINT_QUANTITIES:
-        raise InputError(f"{output.name}: unknown quantity {quantity!r} of a sensor; {did_you_mean(quantity, POINT_QUANTITIES)}")
+        raise InputError(f"{output.name}: unknown quantity {shown(quantity)} of a sensor; {did_you_mean(quantity, POINT_QUANTITIES)}")
     x = output.place.locate(vehicle, layout)
     row = motion.turn(output.place.body, x) if quantity.startswith("pitch") else motion.rise(output.place.body, x)
     part = {"pitch": "displacement", "pitch_rate": "velocity", "pitch_acceleration": "acceleration"}.get(quantity, quantity)
@@ -96,11 +96,11 @@ def element_channel(output: ElementOutput, elements: tuple[Element, ...]) -> Cha
     quantity = output.quantity
     known = {**AXLE_QUANTITIES, **LINK_QUANTITIES}
     if quantity not in known:
-        raise InputError(f"{output.name}: unknown quantity {quantity!r} of an axle or link; {did_you_mean(quantity, known)}")
+        raise InputError(f"{output.name}: unknown quantity {shown(quantity)} of an axle or link; {did_you_mean(quantity, known)}")
     kind = quantity.rpartition("_")[0]
     owners = {element.name: element for element in elements if element.kind == kind}
     if output.owner not in owners:
-        raise InputError(f"{output.name}: {output.owner!r} has no {kind}; {did_you_mean(output.owner, owners)}")
+        raise InputError(f"{output.name}: {shown(output.owner)} has no {kind}; {did_you_mean(output.owner, owners)}")
     element = owners[output.owner]
     if quantity.endswith("travel"):
         return Channel(output.name, quantity, known[quantity], output.owner, displacement=element.row, input=element.input_row)

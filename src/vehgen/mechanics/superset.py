@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.expressions import Expression
 from vehgen.files.units import NONE
 from vehgen.mechanics.laws import LAWS, Kind, Law, LawParameter
@@ -68,7 +68,7 @@ def add_laws(vehicle: Vehicle, candidates: Iterable[CandidateLaw]) -> Superset:
         entry = {law_name: {key: Expression.symbol(name) for key, name in own.items()}}
         group = groups["axles" if kind in ("suspension", "tyre") else f"{kind}s"]
         if owner not in group:
-            raise InputError(f"{vehicle.name} has no {kind} {owner!r}; {did_you_mean(owner, group)}")
+            raise InputError(f"{vehicle.name} has no {kind} {shown(owner)}; {did_you_mean(owner, group)}")
         holder = group[owner]
         if kind in ("suspension", "tyre"):
             spring: Spring | None = getattr(holder, kind)
@@ -83,7 +83,7 @@ def add_laws(vehicle: Vehicle, candidates: Iterable[CandidateLaw]) -> Superset:
 
 def _find_law(kind: Kind, name: str) -> Law:
     if name not in LAWS:
-        raise InputError(f"unknown force law {name!r}; {did_you_mean(name, LAWS)}")
+        raise InputError(f"unknown force law {shown(name)}; {did_you_mean(name, LAWS)}")
     law = LAWS[name]
     if kind not in law.attaches_to:
         raise InputError(f"{name} belongs on a {' or '.join(law.attaches_to)}, not on a {kind}")

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 from typing import IO
 
-from vehgen.errors import InputError, shown
+from vehgen.errors import InputError, shortened, shown
 from vehgen.files.reading import bounded, open_regular, read_bytes, short_path
 
 MAX_FILE = 64 * 2**20
@@ -104,7 +104,7 @@ def _zip(path: Path, stream: IO[bytes]) -> dict[str, bytes]:
                     with archive.open(entry) as member:
                         found[entry.filename] = bounded(member, f"{path}: {entry.filename}", entry.file_size)
     except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, struct.error, NotImplementedError, RuntimeError) as error:
-        raise InputError(f"{path} is a damaged zip file ({error}); export again") from error
+        raise InputError(f"{path} is a damaged zip file ({shortened(str(error))}); export again") from error
     return found
 
 

@@ -69,7 +69,7 @@ class Table:
                 )
             if np.isnan(number) and text.lower() not in _MISSING:
                 raise InputError(
-                    f"expected a number in column {self.header[index]!r}, found {text[:40]!r}", Position(self.name, line, index + 1)
+                    f"expected a number in column {shown(self.header[index])}, found {shown(text)}", Position(self.name, line, index + 1)
                 )
             found.append(number if np.isfinite(number) else np.nan)
         return np.array(found)
@@ -188,5 +188,5 @@ def unit_factor(unit: str, dimension: Dimension, where: str) -> float:
         return extra[unit, dimension]
     factor, found = parse_unit(unit)
     if found != dimension:
-        raise InputError(f"{where}: expected a unit of {dimension}, found {unit!r}")
+        raise InputError(f"{where}: expected a unit of {dimension}, found {shown(unit)}")
     return factor

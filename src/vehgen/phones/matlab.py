@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.errors import InputError
+from vehgen.errors import InputError, shortened
 from vehgen.files.reading import open_regular, read_bytes, short_path
 from vehgen.phones.archive import MAX_FILE, MAX_TOTAL
 from vehgen.phones.export import ROTATION_STREAM, SPEED_STREAM, EpochMap, PhoneExport, Stream, acceleration_kind
@@ -30,7 +30,7 @@ def is_matlab(path: Path) -> bool:
     try:
         with open_regular(path, MAX_FILE) as stream:
             return stream.read(19).startswith(_MARKS)
-    except InputError:
+    except (InputError, OSError):  # what cannot be read is no MATLAB file; the reader that comes next says why
         return False
 
 
@@ -48,7 +48,7 @@ def _check_packed(path: Path) -> None:
                 try:
                     total += len(unpacker.decompress(rest, 2**20))
                 except zlib.error as error:
-                    raise InputError(f"{short_path(path)} is a damaged MATLAB file ({error}); export again") from error
+                    raise InputError(f"{short_path(path)} is a damaged MATLAB file ({shortened(str(error))}); export again") from error
                 rest = unpacker.unconsumed_tail
         place += size
     if total > MAX_TOTAL:
@@ -75,7 +75,7 @@ def read_matlab(path: Path) -> PhoneExport:
         except MemoryError:
             raise
         except Exception as error:  # a damaged file fails in mat-io, h5py or zlib in ways that none of them lists
-            message = " ".join(str(error).split()) or type(error).__name__
+            message = shortened(" ".join(str(error).split())) or type(error).__name__
             raise InputError(f"{path} cannot be read as a MATLAB file: {message}") from error
     tables = {name: found[name] for name in _TABLES if hasattr(found.get(name), "columns")}
     if "Acceleration" not in tables:

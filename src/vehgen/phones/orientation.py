@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
@@ -75,7 +75,7 @@ def find_orientation(
     """
     for option, axis in (("up", up), ("forward", forward)):
         if axis is not None and axis not in AXES:
-            raise InputError(f"{name}: {option} is an axis of the phone, found {axis!r}; {did_you_mean(axis, AXES)}")
+            raise InputError(f"{name}: {option} is an axis of the phone, found {shown(axis)}; {did_you_mean(axis, AXES)}")
     if gravity is None:
         if up is None:
             raise InputError(

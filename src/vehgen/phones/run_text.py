@@ -8,7 +8,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from vehgen.errors import InputError
+from vehgen.errors import InputError, shown
 from vehgen.files import write_text
 from vehgen.files.yaml_writer import Commented, OneLine, yaml_document
 from vehgen.phones.importing import Imported, ImportedPhone, clock_difference
@@ -53,7 +53,7 @@ def import_files(out: Path) -> tuple[Path, Path]:
         When `out` is not the name of a run file.
     """
     if out.suffix.lower() not in (".yaml", ".yml"):
-        raise InputError(f"the run file to write has a name such as run.yaml; found {out.name!r}")
+        raise InputError(f"the run file to write has a name such as run.yaml; found {shown(out.name)}")
     return out, out.with_name(f"{out.stem}_recording.csv")
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from vehgen.errors import InputError
+from vehgen.errors import InputError, shown
 from vehgen.files import write_bytes
 
 FORMATS = ("png", "svg", "pdf")
@@ -53,7 +53,7 @@ def figure_format(path: Path) -> str:
     """
     kind = path.suffix.removeprefix(".").lower()
     if kind not in FORMATS:
-        raise InputError(f"cannot save a figure as {path.name!r}: its name must end in {', '.join('.' + item for item in FORMATS)}")
+        raise InputError(f"cannot save a figure as {shown(path.name)}: its name must end in {', '.join('.' + item for item in FORMATS)}")
     return kind
 
 

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 
 Array = NDArray[np.float64]
 Shape = Callable[[Array], Array]
@@ -56,7 +56,7 @@ class Hump:
             "rectangle": rectangle,
         }
         if name not in makers:
-            raise InputError(f"unknown hump shape {name!r}; {did_you_mean(name, makers)}")
+            raise InputError(f"unknown hump shape {shown(name)}; {did_you_mean(name, makers)}")
         if not (length > 0 and np.isfinite([at, length, height]).all()):
             raise InputError(f"a hump needs a positive length and finite numbers, found length {length} m, height {height} m, at {at} m")
         return cls(at, length, makers[name](length, height, **extra))

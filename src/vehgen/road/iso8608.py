@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import next_fast_len
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 
 Array = NDArray[np.float64]
 
@@ -21,6 +22,8 @@ CLASSES: dict[str, tuple[float, float, float]] = {
 """Class -> (lower, geometric mean, upper) bound of the displacement PSD Gd(n0) [m^3]; A has no lower and H no upper bound of its own."""
 LONGEST_ROAD_M = 50_000.0
 """No random road is longer [m]: at the spacing of its points these are five million."""
+_SLOW = 1_000_000
+"""A road of more points is made a little longer where the transform of their number would cost much memory."""
 TAPER = 2.0
 """The road rises smoothly from level over its first metres, so that a vehicle can start at rest."""
 
@@ -40,14 +43,16 @@ class Iso8608Road:
 
     def __post_init__(self) -> None:
         if self.roughness not in CLASSES:
-            raise InputError(f"unknown road class {self.roughness!r}; {did_you_mean(self.roughness, CLASSES)}")
+            raise InputError(f"unknown road class {shown(self.roughness)}; {did_you_mean(self.roughness, CLASSES)}")
         if not self.length > 0:
             raise InputError(f"a road needs a positive length, found {self.length} m")
         check_length(self.length)
-        n_points = int(np.ceil(max(self.length, 1.0 / SPATIAL_BAND_CYCLES_PER_M[0]) / self.spacing)) + 1
+        least = int(np.ceil(max(self.length, 1.0 / SPATIAL_BAND_CYCLES_PER_M[0]) / self.spacing)) + 1
+        n_points = next_fast_len(least, real=True) if least > _SLOW else least
         period = n_points * self.spacing
-        n = np.arange(n_points // 2 + 1) / period
-        inside = (n >= SPATIAL_BAND_CYCLES_PER_M[0]) & (n <= SPATIAL_BAND_CYCLES_PER_M[1])
+        low, high = SPATIAL_BAND_CYCLES_PER_M
+        n = np.arange(min(n_points // 2, int(np.ceil(high * period))) + 1) / period  # what lies beyond is zero and need not be held
+        inside = (n >= low) & (n <= high)
         amplitude = np.zeros_like(n)
         amplitude[inside] = np.sqrt(2.0 * displacement_psd(self.roughness, n[inside]) / period)
         phase = np.random.default_rng(self.seed).uniform(0.0, 2.0 * np.pi, len(n))

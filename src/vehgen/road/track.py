@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from vehgen.errors import InputError
 
 Array = NDArray[np.float64]
-_PIECE_LENGTH_M = 5000.0
-"""Longer stretches are integrated piece by piece [m]: a piece has ten million points."""
-_GRID = 5e-4
+_PIECE_LENGTH_M = 500.0
+"""Longer stretches are integrated piece by piece [m]: a piece has a million points."""
+GRID = 5e-4
 """Spacing of the grid on which the road is integrated [m]."""
 
 
@@ -89,10 +89,10 @@ class Track:
     def _averaged(self, s: Array) -> Array:
         """Return the averaged height over one grid from the first to the last of the positions [m]."""
         half = self.footprint / 2
-        first = np.floor((s.min() - half) / _GRID) - 1
-        grid = np.arange(first, np.ceil((s.max() + half) / _GRID) + 2) * _GRID
+        first = np.floor((s.min() - half) / GRID) - 1
+        grid = np.arange(first, np.ceil((s.max() + half) / GRID) + 2) * GRID
         heights = self._raw(grid)
-        integral = np.concatenate([[0.0], np.cumsum((heights[1:] + heights[:-1]) * (_GRID / 2))])
+        integral = np.concatenate([[0.0], np.cumsum((heights[1:] + heights[:-1]) * (GRID / 2))])
         return np.asarray((np.interp(s + half, grid, integral) - np.interp(s - half, grid, integral)) / self.footprint)
 
     def _raw(self, s: Array) -> Array:

@@ -6,16 +6,17 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from vehgen.errors import InputError
+from vehgen.road.track import GRID
 from vehgen.simulate.run_file import Run
 from vehgen.simulate.run_file.checks import MAX_STEPS
 
-MAX_RESPONSE_NUMBERS = 25_000_000
-"""So many numbers may describe what excites one vehicle and what it answers: 200 MB."""
+MAX_RESPONSE_NUMBERS = 8_000_000
+"""So many numbers may describe what excites one vehicle and what it answers: 64 MB, and four times that while they are made."""
 MOST_RESPONSES = 250_000_000
 """So many numbers may a population's answers hold: 2 GB."""
-MOST_LOOKUPS = 5_000_000_000
-"""So often may a wheel look up the height of one entry of the road."""
-MOST_AVERAGED = 100_000.0
+MOST_LOOKUPS = 100_000_000
+"""So often may the height of one entry of the road be looked up, by wheels and where a footprint averages: about a second of work."""
+MOST_AVERAGED = 10_000.0
 """Over no longer way [m] is a road averaged over a footprint."""
 
 
@@ -63,8 +64,8 @@ def check_run(run: Run, duration: float, way: float, n_wheels: int) -> None:
         reason = f"a run has at most {MAX_STEPS} steps; {duration:g} s in steps of {file.step:g} s are more"
     elif numbers > MAX_RESPONSE_NUMBERS:
         reason = f"{steps:.0f} steps of this vehicle are {numbers:.3g} numbers in memory; at most {MAX_RESPONSE_NUMBERS:.3g} were expected"
-    elif steps * n_wheels * len(file.road) > MOST_LOOKUPS:
-        reason = f"{steps:.0f} steps over a road of {len(file.road)} entries; a shorter run or fewer entries were expected"
+    elif (steps * n_wheels + (way / GRID if file.footprint is not None else 0.0)) * len(file.road) > MOST_LOOKUPS:
+        reason = f"{steps:.0f} steps over {way:.3g} m of a road of {len(file.road)} entries; a shorter run or fewer entries were expected"
     if reason is not None:
         where = "" if file.duration is not None else " (until the last wheel has left the last hump; `duration` may end the run before)"
         raise InputError(f"{reason}{where}", run.document.find(said))

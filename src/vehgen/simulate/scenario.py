@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vehgen.codegen import Excitation
 from vehgen.errors import InputError
 from vehgen.files.limits import HUMP_HEIGHT, HUMP_LENGTH, SPEED_LIMIT
-from vehgen.files.tables import read_columns
+from vehgen.files.tables import Columns, read_columns
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.road import (
     AdjustedSpeed,
@@ -40,6 +40,8 @@ AFTER_LAST_HUMP = 3.0
 
 NULLS_TO = 30.0
 """Above it [Hz] no axle hops."""
+LOBES_SOUGHT = 2000.0
+"""So many lobes of all humps' spectra together are searched for nulls: a second of work."""
 _EXCITATIONS = ExcitationCache()
 
 
@@ -91,7 +93,9 @@ class Scenario:
     def nulls(self) -> tuple[float, ...]:
         """The frequencies [Hz], rounded to mHz, up to NULLS_TO at which a hump of the track excites nothing; found when first asked for."""
         top = float(np.max(np.diff(self.speed.distance(np.linspace(0.0, self.duration, 200)))) / (self.duration / 199))
-        return tuple(sorted({round(float(null), 3) for hump in self.humps for null in hump.spectral_nulls(top, NULLS_TO)}))
+        share = LOBES_SOUGHT / max(len(self.humps), 1)
+        found = (hump.spectral_nulls(top, min(NULLS_TO, share * top / hump.length)) for hump in self.humps)
+        return tuple(sorted({round(float(null), 3) for nulls in found for null in nulls}))
 
     @property
     def top_speed(self) -> float:
@@ -143,6 +147,8 @@ def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) 
     file = run.file
     offsets = model.wheel_offsets(values)
     speed = _speed(run)
+    if file.duration is not None:
+        _check_cost(run, file.duration, speed, model)
     parts = tuple(_road_part(number, run, speed, offsets) for number in range(len(file.road)))
     track = Track(parts, footprint=file.footprint or 0.0)
     if file.duration is not None:
@@ -150,9 +156,9 @@ def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) 
     elif any(isinstance(part, Hump) for part in parts):
         with placed(run, "road", key=True):
             duration = pass_time(track, speed, offsets) + AFTER_LAST_HUMP
+        _check_cost(run, duration, speed, model)
     else:
         raise InputError("a run without a hump needs `duration`, e.g. 10 s", run.document.position)
-    check_run(run, duration, float(speed.distance(np.array([duration]))[0]), len(model.inputs))
     names = model.inputs[len(run.vehicle.axles) :]
     ground = tuple(_ground(run, name.partition(".")[2]) for name in names)
     forces = tuple(
@@ -162,16 +168,20 @@ def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) 
     return Scenario(track, speed, duration, file.step, run.decimation, ground, forces)
 
 
+def _check_cost(run: Run, duration: float, speed: SpeedLaw, model: EquationsOfMotion) -> None:
+    check_run(run, duration, float(speed.distance(np.array([duration]))[0]), len(model.inputs))
+
+
 def _speed(run: Run) -> SpeedLaw:
     spec = run.file.speed
     if isinstance(spec, float):
         return ConstantSpeed(spec)
-    time, speed = _columns(run, spec.file, (spec.time, spec.speed), ("speed", "file"))
-    with placed(run, "speed", "file"):
-        history = SpeedHistory(time, speed)
-        for extreme in (speed.min(), speed.max()):
-            SPEED_LIMIT.check(float(extreme), f"the column {spec.speed!r} of {spec.file}")
-    return history
+    found = _columns(run, spec.file, (spec.time, spec.speed), ("speed", "file"))
+    found.check_ascending()
+    if (stands := np.flatnonzero(found.values[1] <= 0)).size:
+        raise InputError("every speed of a history must be above 0", found.place(int(stands[0]), 1))
+    found.check_limit(1, SPEED_LIMIT)
+    return SpeedHistory(*found.values)
 
 
 def _road_part(number: int, run: Run, speed: SpeedLaw, offsets: Array) -> Profile:
@@ -179,10 +189,10 @@ def _road_part(number: int, run: Run, speed: SpeedLaw, offsets: Array) -> Profil
     if entry.hump is not None:
         return _hump(entry.hump, run, ("road", number, "hump"))
     if entry.profile is not None:
-        place = ("road", number, "profile", "file")
-        distance, height = _columns(run, entry.profile.file, (entry.profile.distance, entry.profile.height), place)
-        with placed(run, *place):
-            return MeasuredProfile(distance, height)
+        names = entry.profile.distance, entry.profile.height
+        found = _columns(run, entry.profile.file, names, ("road", number, "profile", "file"))
+        found.check_ascending()
+        return MeasuredProfile(*found.values)
     assert entry.iso8608 is not None
     with placed(run, "road", number, "iso8608", key=True):
         return Iso8608Road(entry.iso8608.class_, entry.iso8608.seed, _random_length(run, speed, offsets))
@@ -201,11 +211,9 @@ def _random_length(run: Run, speed: SpeedLaw, offsets: Array) -> float:
 
 def _hump(entry: HumpEntry, run: Run, place: tuple[str | int, ...]) -> Hump:
     if entry.shape == "points":
-        s, height = _columns(run, entry.file or "", (entry.distance, entry.height_column), (*place, "file"))
-        with placed(run, *place, "file"):
-            HUMP_LENGTH.check(float(np.ptp(s)), f"{entry.file}")
-            HUMP_HEIGHT.check(float(np.abs(height).max()), f"{entry.file}")
-            return Hump.from_points(entry.at, s, height)
+        found = _columns(run, entry.file or "", (entry.distance, entry.height_column), (*place, "file"))
+        check_hump_points(found)
+        return Hump.from_points(entry.at, *found.values)
     extra = {"ramp": entry.ramp} if entry.ramp is not None else {}
     if entry.radius is not None:
         extra["radius"] = entry.radius
@@ -225,13 +233,20 @@ def _ground(run: Run, link: str) -> Signal | None:
 
 
 def _measured(run: Run, file: str, time: str, column: str, place: tuple[str, ...]) -> Signal:
-    t, values = _columns(run, file, (time, column), (*place, "file"))
-    if (np.diff(t) <= 0).any():
-        raise InputError(f"the times in {file} must ascend", run.document.find((*place, "file")))
-    return Signal(time=t, values=values)
+    found = _columns(run, file, (time, column), (*place, "file"))
+    found.check_ascending(least=1)
+    return Signal(time=found.values[0], values=found.values[1])
 
 
-def _columns(run: Run, file: str, names: tuple[str, str], place: tuple[str | int, ...]) -> tuple[Array, Array]:
+def _columns(run: Run, file: str, names: tuple[str, str], place: tuple[str | int, ...]) -> Columns:
     with placed(run, *place):
-        first, second = read_columns(Path(run.folder) / file, names)
-    return first, second
+        return read_columns(Path(run.folder) / file, names)
+
+
+def check_hump_points(points: Columns) -> None:
+    """Check the points of a hump, distance and height [m]; raises InputError at the row that is wrong."""
+    points.check_ascending()
+    points.check_limit(1, HUMP_HEIGHT)
+    length = float(np.ptp(points.values[0]))
+    if (reason := HUMP_LENGTH.refusal(length)) is not None:
+        raise InputError(reason, points.place(-1))

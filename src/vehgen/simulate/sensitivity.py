@@ -14,7 +14,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from vehgen.codegen import Excitation
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.simulate.exact import channel_values, newmark_states
 
@@ -47,7 +47,7 @@ def direct_sensitivities(
         raise InputError("direct differentiation is for linear vehicles; this one has force laws (use Simulator.jacobian)")
     for name in names:
         if name not in model.parameters:
-            raise InputError(f"no parameter {name!r}; {did_you_mean(name, model.parameters)}")
+            raise InputError(f"no parameter {shown(name)}; {did_you_mean(name, model.parameters)}")
     values = values or model.values()
     numeric = model.numeric(values)
     forces = excitation.inputs @ numeric.P.T + excitation.rates @ numeric.Q.T + excitation.forces @ numeric.F.T

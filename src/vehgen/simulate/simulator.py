@@ -16,7 +16,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from vehgen.codegen import Excitation, Kernel, KernelResult
-from vehgen.errors import InputError, ModelWarning, did_you_mean
+from vehgen.errors import InputError, ModelWarning, did_you_mean, shown
 from vehgen.files import write_text
 from vehgen.files.result_fields import Array1D, Array3D
 from vehgen.files.results import Cell, Result, Table
@@ -170,7 +170,7 @@ class Simulator:
 
     def _column(self, name: str) -> int:
         if name not in self.model.parameters:
-            raise InputError(f"no parameter {name!r}; {did_you_mean(name, self.model.parameters)}")
+            raise InputError(f"no parameter {shown(name)}; {did_you_mean(name, self.model.parameters)}")
         return self.model.parameters.index(name)
 
     def wheel_offsets(self, parameters: Array) -> Array:

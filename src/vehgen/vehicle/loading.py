@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import resources
 from pathlib import Path
 
-from vehgen.errors import InputError, Position, did_you_mean, shown
+from vehgen.errors import InputError, Position, did_you_mean, shown, trail_text
 from vehgen.files.document import Located, read_document, read_text
 from vehgen.files.entry import NO_MAPPING
 from vehgen.files.names import as_name
@@ -14,8 +14,6 @@ from vehgen.vehicle.changes import merge
 from vehgen.vehicle.model import Vehicle
 
 MAX_EXTENDS = 20
-MAX_PATH = 300
-"""So many characters of a path that a file names are quoted."""
 
 
 def models_folder() -> Path:
@@ -88,7 +86,7 @@ def parse_vehicle(text: str, name: str = "<text>") -> Vehicle:
 def _read_extended(path: Path, seen: tuple[Path, ...], at: Position | None = None) -> tuple[Located, tuple[Path, ...]]:
     resolved = path.resolve()
     if resolved in seen:
-        chain = " -> ".join(item.name for item in (*seen[seen.index(resolved) :], resolved))
+        chain = trail_text([item.name for item in (*seen[seen.index(resolved) :], resolved)])
         raise InputError(f"circular `extends`: {chain}", at)
     if len(seen) >= MAX_EXTENDS:
         raise InputError(f"more than {MAX_EXTENDS} files extend one another", at)

@@ -11,6 +11,7 @@ from tests.fuzzing.table_mutations import archive_of, lying
 
 CARGO = read("docs/examples/cargo/pallets.yaml").decode()
 FRAME = read("docs/examples/cargo/steel_module.yaml").decode().replace("{size: 0.2 m}", "{size: 0.7 m}")
+WALLS = FRAME[FRAME.index("  walls:") :].partition("\n")[0] + "\n"
 
 
 def changed(format: str, name: str, healthy: str, old: str, new: str, refused: bool = True) -> Nasty:
@@ -62,6 +63,10 @@ OTHERS: tuple[Nasty, ...] = (
     changed("frame", "mesh of 1e300 m", FRAME, "0.7 m", "1e300 m", refused=False),
     changed("frame", "1e9 m long", FRAME, "length: 8.7 m", "length: §1e9 m"),
     changed("frame", "1e-9 m wide", FRAME, "width: 3.0 m", "width: 1e-9 m", refused=False),
+    changed("frame", "layer of 1e-300 m", FRAME, "22 mm", "§1e-300 m"),
+    changed("frame", "1e-300 Pa", FRAME, "200 GPa", "§1e-300 Pa"),
+    changed("frame", "studs without walls", FRAME, WALLS, "", refused=False),
+    changed("cargo", "on a base of 1e12 m", CARGO, "base: 0 m", "base: §1e12 m"),
     changed("frame", "spacing of 1 um", FRAME, "spacing: 0.45 m", "spacing: 1e-6 m"),
     changed("frame", "E of 1e300", FRAME, "200 GPa", "§1e300 GPa"),
     changed(
@@ -77,6 +82,7 @@ OTHERS: tuple[Nasty, ...] = (
     changed("effects", "deep force", EFFECTS, "c3*v^3 + k3*d^3", "§" + "(" * 20000 + "c3*v^3 + k3*d^3" + ")" * 20000),
     changed("effects", "tower", EFFECTS, "c3*v^3", "§c3*v^3^9^9^9^9^9"),
     changed("effects", "starts of nothing", EFFECTS, "[0.3, 3]", "§[]"),
+    marked("effects", "6 MB", "effects:\n" + "# " + "x" * 6_000_000),
     changed("effects", "upside down", EFFECTS, "low: 0.01, high: 100", "low: 100, high: 0.01"),
     export("empty", b""),
     export("no archive", b"PK\x03\x04" + b"\x00" * 100),
@@ -88,5 +94,6 @@ OTHERS: tuple[Nasty, ...] = (
     export("archive in an archive", archive_of({"phone.zip": ARCHIVE})),
     export("Excel", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(2000)),
     export("MATLAB", b"MATLAB 5.0 MAT-file, Platform: PCWIN64".ljust(124) + b"\x00\x01IM" + b"\xff" * 200),
+    Nasty("export: link to memory", Case("export", {}, "phone.zip", special={"phone.zip": "link:/proc/self/mem"})),
     export("hostile header", archive_of({"Accelerometer.csv": b"Time (s),\x1b[2JX,\xe2\x80\xaeY,=cmd|' /C calc'!A0\n0,0,0,0\n"})),
 )

@@ -70,6 +70,15 @@ RUNS: tuple[Nasty, ...] = (
         marked("run", f"seed {seed}", f"{HEAD}speed: 9 m/s\nduration: 1 s\nroad:\n  - iso8608: {{class: B, seed: §{seed}}}\n")
         for seed in ("-1", "1e300", "x")
     ),
+    *(
+        marked("run", f"{name}, as large as it may be", f"vehicle: quarter_car\n{text}", refused=False)
+        for name, text in (
+            ("numbers", "speed: 8 m/s\nduration: 2480 s\nroad:\n  - iso8608: {class: B}\n"),
+            ("footprint", "speed: 8 m/s\nduration: 1240 s\nfootprint: 0.2 m\nroad:\n  - iso8608: {class: B}\n"),
+            ("random road", "speed: 50 m/s\nduration: 990 s\nroad:\n  - iso8608: {class: B}\n"),
+            ("many humps", f"speed: 8 m/s\nduration: 240 s\nroad:\n{''.join(HUMP.replace('at: 2', f'at: {i}') for i in range(200))}"),
+        )
+    ),
     marked("run", "footprint 1e9 m", f"footprint: §1e9 m\n{RUN}"),
     marked("run", "duration 1e-9 s", RUN.replace("duration: 4 s", "duration: §1e-9 s")),
     marked("run", "duration 1e9 s", RUN.replace("duration: 4 s", "duration: §1e9 s")),

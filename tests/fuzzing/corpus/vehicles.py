@@ -6,7 +6,7 @@ import json
 import re
 from dataclasses import replace
 
-from tests.fuzzing.bulk_mutations import carried, doubling
+from tests.fuzzing.bulk_mutations import carried, chained, doubling, many
 from tests.fuzzing.cases import Case
 from tests.fuzzing.corpus.entry import HERE, Nasty, marked
 from tests.fuzzing.hostile import MARK, TEXTS
@@ -83,6 +83,11 @@ VEHICLES: tuple[Nasty, ...] = (
     marked("vehicle", "half surrogate", f'name: x\ntitle: §"\\ud800"\n{REST}', refused=False),
     marked("vehicle", "1000 bodies carried", json.dumps(carried(1000, circle=False), indent=1), refused=False),
     marked("vehicle", "1000 bodies in a circle", json.dumps(carried(1000, circle=True), indent=1)),
+    marked("vehicle", "100 bodies in a circle", json.dumps(carried(100, circle=True), indent=1)),
+    marked("vehicle", "chain of 51 bodies", json.dumps(chained(51), indent=1), refused=False),
+    marked("vehicle", "chain of 100 bodies", json.dumps(chained(100), indent=1)),
+    marked("vehicle", "100 axles, 98 links, 98 sets", json.dumps(many(98), indent=1), refused=False),
+    marked("vehicle", "half a million values", f"x: [{'1,' * 490_000}1]\n{REST}"),
     marked("vehicle", "doubling", json.dumps(doubling(60, power=False), indent=1), refused=False),
     marked("vehicle", "powers", json.dumps(doubling(60, power=True), indent=1), refused=False),
     marked("vehicle", "parameter of itself", f"parameters:\n  a: {{equals: b}}\n  b: {{equals: a}}\n{REST}"),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from typing import TYPE_CHECKING
 
 from vehgen.errors import InputError, did_you_mean, shown
@@ -118,17 +117,19 @@ def _check_output(run: Run, name: str, output: OutputEntry) -> None:
 
 
 def _check_channel_names(run: Run) -> None:
-    """Check that no two channels share a name, nor one with the time."""
-    document = run.document
-    names = Counter(output.name for output in run.outputs())
-    if names.total() > MOST_CHANNELS:
-        raise InputError(f"{names.total()} channels; a run has at most {MOST_CHANNELS}", document.find(("sensors",), key=True))
-    for name, count in names.items():
-        where = document.find(("outputs", name) if name in run.file.outputs else ("sensors",), key=True)
+    """Check that no two channels share a name, nor one with the time; each where it is named."""
+    document, sensors = run.document, run.file.sensors.items()
+    if (count := len(run.outputs())) > MOST_CHANNELS:
+        raise InputError(f"{count} channels; a run has at most {MOST_CHANNELS}", document.find(("sensors",), key=True))
+    named = [(item.channel(name, key), ("sensors", name, "channels", key, "column")) for name, item in sensors for key in item.channels]
+    known: set[str] = set()
+    for name, path in (*named, *((name, ("outputs", name)) for name in run.file.outputs)):
+        where = document.find(path, key=True)
         if name == TIME_COLUMN:
             raise InputError(f"a channel cannot be named {name!r}, as the column of the time is; choose another name", where)
-        if count > 1:
+        if name in known:
             raise InputError(f"two channels are named {shown(name)}; each column needs a name of its own", where)
+        known.add(name)
 
 
 def _check_steps(run: Run) -> None:

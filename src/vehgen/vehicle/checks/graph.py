@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from vehgen.errors import InputError, did_you_mean, shown
+from vehgen.errors import InputError, did_you_mean, shown, trail_text
 from vehgen.vehicle.model import Vehicle
 from vehgen.vehicle.parts import GROUND
 
@@ -35,7 +35,7 @@ def check_circles(vehicle: Vehicle) -> None:
 
     def visit(name: str, trail: tuple[str, ...]) -> int:
         if name in trail:
-            circle = " -> ".join((*trail[trail.index(name) :], name))
+            circle = trail_text((*trail[trail.index(name) :], name))
             raise InputError(f"circular `equals`: {circle}", vehicle.position("parameters", trail[-1], "equals"))
         definition = vehicle.parameters[name].equals
         if name in depths or definition is None:
@@ -109,7 +109,7 @@ def check_carriers(vehicle: Vehicle) -> None:
         trail = [name]
         while (carrier := vehicle.bodies[trail[-1]].carried_by) is not None:
             if carrier.body in trail:
-                message = f"bodies carry each other in a circle: {' -> '.join((*trail, carrier.body))}"
+                message = f"bodies carry each other in a circle: {trail_text((*trail, carrier.body))}"
                 raise InputError(message, vehicle.position("bodies", name, "carried_by"))
             trail.append(carrier.body)
 

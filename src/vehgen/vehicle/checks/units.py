@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from vehgen.errors import InputError, did_you_mean, shortened
+from vehgen.errors import InputError, did_you_mean, shortened, shown
 from vehgen.files.checks import check_dimension, dimension_of
 from vehgen.files.units import Dimension
 from vehgen.vehicle.model import Vehicle
@@ -39,7 +39,7 @@ def _check_set(vehicle: Vehicle, set_name: str, dimensions: dict[str, Dimension]
     for name, expression in vehicle.sets[set_name].items():
         if name not in vehicle.free_parameters:
             known = did_you_mean(name, vehicle.free_parameters)
-            message = f"a set changes parameters that have a `value`; {name!r} is none; {known}"
+            message = f"a set changes parameters that have a `value`; {shown(name)} is none; {known}"
             raise InputError(message, vehicle.position("sets", set_name, name, key=True))
         if expression.names:
             raise InputError("a set lists plain quantities, not expressions of parameters", vehicle.position("sets", set_name, name))

@@ -28,7 +28,7 @@ def check_all_values(vehicle: Vehicle) -> None:
             _check_finite(vehicle, expression, "sets", set_name, name)
     _check_ranges(vehicle)
     for parameter_set in (None, *vehicle.sets):
-        check_values(vehicle, vehicle.values(parameter_set), f" in the set {parameter_set!r}" if parameter_set else "")
+        check_values(vehicle, vehicle.values(parameter_set), f" in the set {shown(parameter_set)}" if parameter_set else "")
 
 
 def _check_finite(vehicle: Vehicle, expression: Expression, *path: str | int) -> None:
