@@ -109,7 +109,7 @@ class EntryReader:
             raise self.wrong(f"{entry.adjusts} is {kind}, found {item.unit or 'no unit'}", *where, key=not item.unit)
         if entry.adjusts in ("speed", "footprint") and item.low <= 0:
             raise self.wrong(f"{entry.adjusts} is above 0, found {item.low:g}", "parameters", name, "low")
-        return replace(known, parameters=(parameter,), **self.told(known))
+        return replace(known, parameters=(parameter,), **self.description(known))
 
     def line_effect(self, line: LineEntry) -> LineEffect:
         """Return the line, looked for between its two frequencies."""
@@ -123,14 +123,14 @@ class EntryReader:
             raise self.wrong(f"`low` must be above 0 and below `high`, found {low:g} and {high:g} Hz", "line", "low")
         frequency, *others = ENGINE_HARMONIC.parameters
         searched = replace(frequency, low=low, high=high, starts=((low + high) / 2,), meaning="frequency of the line at the start of a run")
-        return replace(ENGINE_HARMONIC, parameters=(searched, *others), looked_for=(low, high), **self.told(ENGINE_HARMONIC))
+        return replace(ENGINE_HARMONIC, parameters=(searched, *others), looked_for=(low, high), **self.description(ENGINE_HARMONIC))
 
     def frequency(self, given: Expression, key: str) -> float:
         """Return a frequency [Hz]."""
         self.expect(given, FREQUENCY, {}, "line", key, names={})
         return given.evaluate({})
 
-    def told(self, known: Effect) -> dict[str, Any]:
+    def description(self, known: Effect) -> dict[str, Any]:
         """Return what an entry says of itself, where it adapts an effect of the library."""
         entry = self.entry
         is_global = known.is_global if entry.global_ is None else entry.global_
