@@ -102,12 +102,12 @@ def test_hinges_and_tyres_carry_entries_too(tmp_path):
 """
     (tmp_path / "a.yaml").write_text(text, encoding="utf-8")
     vehicle = load_vehicle("tractor5")
-    surveyor = EffectLocator(vehicle, vehicle.values())
+    locator = EffectLocator(vehicle, vehicle.values())
     for effect in load_effects(tmp_path / "a.yaml").values():
         place = effect.places(vehicle, ())[0]
-        changed = vehicle.with_changes(effect.change(surveyor.site(place)))
+        changed = vehicle.with_changes(effect.change(locator.site(place)))
         assert len(read_laws(changed, effect.attaches, place)) == 1
-    assert effect.parameters[0].first(surveyor.site("axle1")) == (1e5,)
+    assert effect.parameters[0].first(locator.site("axle1")) == (1e5,)
     assert effect.parameters[0].unit == "kg m^-1 s^-2"
 
 

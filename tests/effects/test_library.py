@@ -38,10 +38,10 @@ def test_every_effect_says_what_it_is_and_begins_within_its_range(effect):
 @pytest.mark.parametrize("name", ["sedan2.yaml", "tractor5.yaml", "road_train.yaml", "truck_dolly_trailer.yaml"])
 def test_every_edit_gives_a_vehicle_that_vehgen_accepts(name):
     vehicle = load_vehicle(name)
-    surveyor = EffectLocator(vehicle, vehicle.values())
+    locator = EffectLocator(vehicle, vehicle.values())
     for effect in EFFECTS.values():
         for place in effect.places(vehicle, ())[:2] if effect.changes_vehicle else ():
-            change = effect.change(surveyor.site(place))
+            change = effect.change(locator.site(place))
             changed = vehicle.with_changes(change)
             written = parse_vehicle(yaml_document({"extends": name, **change}))
             assert (written.bodies, written.axles, written.parameters) == (changed.bodies, changed.axles, changed.parameters)

@@ -139,12 +139,12 @@ def effects(path: str) -> None:
     found = extended_library([path])
     model = derive(tractor())
     values = model.values()
-    surveyor = EffectLocator(tractor(), values)
+    locator = EffectLocator(tractor(), values)
     for name in list(dict.fromkeys([*found]))[:20]:
         if name in library():
             continue
         for place in found[name].places(tractor(), ())[:1]:
-            generate(derive(tractor().with_changes(found[name].change(surveyor.site(place)))))
+            generate(derive(tractor().with_changes(found[name].change(locator.site(place)))))
 
 
 def export(path: str) -> None:

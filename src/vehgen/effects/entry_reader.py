@@ -109,7 +109,7 @@ class EntryReader:
             raise self.wrong(f"{entry.adjusts} is {kind}, found {item.unit or 'no unit'}", *where, key=not item.unit)
         if entry.adjusts in ("speed", "footprint") and item.low <= 0:
             raise self.wrong(f"{entry.adjusts} is above 0, found {item.low:g}", "parameters", name, "low")
-        return replace(known, parameters=(parameter,), **self.own_words(known))
+        return replace(known, parameters=(parameter,), **self.description(known))
 
     def line_effect(self, line: LineEntry) -> LineEffect:
         """Return the line, looked for between its two frequencies."""
@@ -124,7 +124,7 @@ class EntryReader:
         frequency, *others = ENGINE_HARMONIC_EFFECT.parameters
         searched = replace(frequency, low=low, high=high, starts=((low + high) / 2,), meaning="frequency of the line at the start of a run")
         return replace(
-            ENGINE_HARMONIC_EFFECT, parameters=(searched, *others), looked_for=(low, high), **self.own_words(ENGINE_HARMONIC_EFFECT)
+            ENGINE_HARMONIC_EFFECT, parameters=(searched, *others), looked_for=(low, high), **self.description(ENGINE_HARMONIC_EFFECT)
         )
 
     def frequency(self, given: Expression, key: str) -> float:
@@ -132,7 +132,7 @@ class EntryReader:
         self.expect(given, FREQUENCY, {}, "line", key, names={})
         return given.evaluate({})
 
-    def own_words(self, known: Effect) -> dict[str, Any]:
+    def description(self, known: Effect) -> dict[str, Any]:
         """Return what an entry says of itself, where it adapts an effect of the library."""
         entry = self.entry
         is_global = known.is_global if entry.global_ is None else entry.global_

@@ -33,12 +33,12 @@ PATIENCE = 2.0
 
 def is_own(path: Path) -> bool:
     """Whether a regular file holds exactly what vehgen last wrote under its name; False when that cannot be found out."""
-    told = read_manifest(path.parent).get(path.name)
-    if told is None:
+    recorded = read_manifest(path.parent).get(path.name)
+    if recorded is None:
         return False
     try:
         with path.open("rb") as stream:
-            return hashlib.file_digest(stream, "sha256").hexdigest() == told
+            return hashlib.file_digest(stream, "sha256").hexdigest() == recorded
     except OSError:
         return False
 
@@ -47,7 +47,7 @@ def mark_own(path: Path, data: bytes) -> None:
     """Enter a file that was just written; when the list cannot be written the file is merely taken for the user's next time."""
     try:
         with _alone(path.parent):
-            files = {name: told for name, told in read_manifest(path.parent).items() if os.path.lexists(path.parent / name)}
+            files = {name: recorded for name, recorded in read_manifest(path.parent).items() if os.path.lexists(path.parent / name)}
             files[path.name] = hashlib.sha256(data).hexdigest()
             replace_file(path.parent / MANIFEST, json.dumps({KEY: dict(sorted(files.items()))}, indent=1).encode())
     except (InputError, OSError):
@@ -66,7 +66,7 @@ def read_manifest(folder: Path) -> dict[str, str]:
     files = data.get(KEY) if isinstance(data, dict) else None
     if not isinstance(files, dict):
         return {}
-    return {name: told for name, told in files.items() if isinstance(told, str) and Path(name).name == name}
+    return {name: recorded for name, recorded in files.items() if isinstance(recorded, str) and Path(name).name == name}
 
 
 @contextmanager
