@@ -119,7 +119,7 @@ def test_equal_models_are_said_to_be_equal(tied):
 
 
 def test_where_no_run_is_enough_the_best_is_named_with_the_repeats_it_takes(tied, monkeypatch):
-    monkeypatch.setattr(experiment, "ENOUGH", 5e3)
+    monkeypatch.setattr(experiment, "ENOUGH_CHI2", 5e3)
     monkeypatch.setattr(experiment, "REPEATS", 100)
     monkeypatch.setattr("vehgen.diagnose.design.candidate_runs.HEIGHTS", (0.5, 1.0))
     found = propose(*tied)
@@ -150,7 +150,7 @@ def test_added_channels_are_simulated_beside_the_old_ones(tied):
 def test_a_sensor_is_added_where_those_there_do_not_suffice(tied, monkeypatch):
     quarter = PointOutput("quarter", Place("quarter", "body", behind="front", distance=0.7), "acceleration")
     monkeypatch.setattr(experiment, "free_places", lambda trial: [quarter])
-    monkeypatch.setattr(experiment, "ENOUGH", 5e3)
+    monkeypatch.setattr(experiment, "ENOUGH_CHI2", 5e3)
     monkeypatch.setattr(experiment, "WORTH", 0.5)
     found = propose(*tied)
     assert found.added == "an accelerometer on body at front"
