@@ -29,10 +29,14 @@ def arguments() -> argparse.Namespace:
     return parser.parse_args()
 
 
-def work(numbers: list[int], options: argparse.Namespace, folder: Path, faults: Faults, lock: threading.Lock) -> None:
-    """Try cases in a worker process of their own."""
+def work(
+    numbers: list[int], options: argparse.Namespace, folder: Path, faults: Faults, lock: threading.Lock, stop: threading.Event
+) -> None:
+    """Try cases in a worker process of their own, until told to stop."""
     with Worker(folder) as worker:
         for number in numbers:
+            if stop.is_set():
+                return
             case = make_case(options.seed, number, options.compiling)
             verdict = worker.try_case(case)
             with lock:
@@ -52,12 +56,15 @@ def main() -> None:
             return
         formats = set(options.formats.split(","))
         numbers = [n for n in range(options.first, options.first + options.files) if FORMATS[n % len(FORMATS)] in formats]
-        lock = threading.Lock()
+        lock, stop = threading.Lock(), threading.Event()
         with ThreadPoolExecutor(options.processes) as pool:
             shares = [[n for n in numbers if n // len(FORMATS) % options.processes == k] for k in range(options.processes)]
-            jobs = [pool.submit(work, share, options, Path(scratch) / str(k), faults, lock) for k, share in enumerate(shares)]
-            for job in jobs:
-                job.result()
+            jobs = [pool.submit(work, share, options, Path(scratch) / str(k), faults, lock, stop) for k, share in enumerate(shares)]
+            try:
+                for job in jobs:
+                    job.result()
+            except KeyboardInterrupt:
+                stop.set()  # each process ends with its file; what was tried is told
     print(faults.table())
     print(f"\n{len(faults.counts)} distinct faults in {sum(faults.outcomes.values())} files, {time.monotonic() - start:.0f} s")
     print(faults.list())
