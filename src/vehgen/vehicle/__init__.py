@@ -1,5 +1,6 @@
 """What is it? The typed vehicle, read and checked from its file."""
 
+from vehgen.vehicle.given import VehicleLike, as_vehicle
 from vehgen.vehicle.loading import bundled_models, find_vehicle_file, load_vehicle, parse_vehicle
 from vehgen.vehicle.model import Axle, Body, Hinge, Link, Parameter, Point, Spring, Vehicle
 
@@ -12,6 +13,8 @@ __all__ = [
     "Point",
     "Spring",
     "Vehicle",
+    "VehicleLike",
+    "as_vehicle",
     "bundled_models",
     "find_vehicle_file",
     "load_vehicle",
