@@ -7,7 +7,7 @@ from benchmarks.hidden_effects.generator import Effect
 
 from vehgen.commands import main
 from vehgen.diagnose.detect.noise_floor import find_noise_floor
-from vehgen.diagnose.pipeline import diagnose, split_runs
+from vehgen.diagnose.pipeline import diagnose_trials, split_runs
 from vehgen.fit.trial import load_trials
 from vehgen.vehicle import load_vehicle
 
@@ -31,14 +31,14 @@ def test_the_noise_floor_is_that_of_the_phones(nothing):
 
 
 def test_nothing_hidden_is_found_to_be_nothing(nothing):
-    found = diagnose(load_trials(nothing))
+    found = diagnose_trials(load_trials(nothing))
     assert found.verdict.verdict == "no_missing_effect"
     assert found.detection.chi < 1.06
 
 
 def test_a_hidden_spring_is_placed_named_and_measured_and_the_order_of_runs_does_not_matter(cubic):
     trials = load_trials(cubic)
-    found = diagnose(trials)
+    found = diagnose_trials(trials)
     assert {item.place.label for item in found.passed} == {"suspension rear", "tyre rear"}
     assert found.verdict.verdict == "named"
     effect = found.verdict.effects[0]
@@ -49,7 +49,7 @@ def test_a_hidden_spring_is_placed_named_and_measured_and_the_order_of_runs_does
     assert effect.validation_gain > 0.98
     assert found.verdict.gap.after < 1.2 < 5 < found.verdict.gap.before
     assert any("random laws at the same place" in note for note in found.verdict.notes)
-    assert diagnose(trials[::-1]).verdict.to_dict() == found.verdict.to_dict()
+    assert diagnose_trials(trials[::-1]).verdict.to_dict() == found.verdict.to_dict()
 
 
 def test_the_command_leaves_report_and_vehicle(cubic, tmp_path, capsys):
@@ -66,7 +66,7 @@ def test_the_command_leaves_report_and_vehicle(cubic, tmp_path, capsys):
 
 def test_a_sensor_that_reads_too_much_is_told_from_a_force(record):
     paths = record(Effect("sensor_gain", "F_az", {"error": 0.15}))
-    found = diagnose(load_trials(paths)).verdict
+    found = diagnose_trials(load_trials(paths)).verdict
     assert found.verdict == "named"
     assert (found.effects[0].name, found.effects[0].place) == ("sensor_gain", "F_az")
     low, high = found.effects[0].parameters["gain"].interval
@@ -74,7 +74,7 @@ def test_a_sensor_that_reads_too_much_is_told_from_a_force(record):
 
 
 def test_one_run_names_nothing(cubic):
-    found = diagnose(load_trials(cubic[:1])).verdict
+    found = diagnose_trials(load_trials(cubic[:1])).verdict
     assert found.verdict == "insufficient_data"
     assert "three runs" in found.next_experiment
 

@@ -11,7 +11,7 @@ from tests.diagnose.conftest import RUNS
 from vehgen.diagnose.detect.detection import detect
 from vehgen.diagnose.localise.unknown_force import list_places
 from vehgen.diagnose.localise.unknown_force import score_locations as place_test
-from vehgen.diagnose.pipeline import diagnose
+from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.select.estimates import RunEstimate, disagreement
 from vehgen.effects import EFFECTS
 from vehgen.fit.misfit import Misfit
@@ -28,7 +28,7 @@ def runs(record):
 
 @pytest.fixture(scope="module")
 def found(runs):
-    return diagnose(load_trials(runs), [EFFECTS["dry_friction"]])
+    return diagnose_trials(load_trials(runs), [EFFECTS["dry_friction"]])
 
 
 def test_friction_gets_shorter_steps_where_it_jumps_and_smooth_models_none(found):

@@ -193,7 +193,7 @@ def test_recordings_that_cannot_be_used(tmp_path, capsys, change, options, messa
 @pytest.mark.parametrize(
     ("sensors", "road", "message"),
     [
-        (("L1:body=tractor",), HUMP, "say which of its axes pointed forward, e.g. --forward y"),
+        (("L1:body=tractor",), HUMP, "say with --forward which of its axes pointed forward"),
         ((L1, L2), HUMP, "1 exports and 2 sensors"),
         (("L1:body=tracter",), HUMP, "tractor5 has no body 'tracter'; did you mean 'tractor'?"),
         (("L1:body=tractor,behind=axle9",), HUMP, "did you mean"),

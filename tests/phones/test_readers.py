@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from vehgen.commands.option_strings import read_column_map
 from vehgen.errors import InputError
-from vehgen.phones import ColumnMap, EpochMap, read_column_map, read_export
+from vehgen.phones import ColumnMap, EpochMap, read_export
 
 from .exports import SEPARATORS, SHARED, phyphox, sensor_logger, still, table, write_folder, write_zip
 

@@ -1,1 +1,6 @@
-"""What is missing? Detect, localise, name, add, verify."""
+"""What does the model lack? Detection, localisation, effects one by one, and what to measure next."""
+
+from vehgen.diagnose.api import diagnose
+from vehgen.diagnose.result import Diagnosis
+
+__all__ = ["Diagnosis", "diagnose"]

@@ -1,7 +1,7 @@
 """What could be missing? One file an effect."""
 
 from vehgen.effects.base import Change, Effect, EffectParameter
-from vehgen.effects.entry import extended_library, load_effects
+from vehgen.effects.entry import effects, effects_named, load_effects
 from vehgen.effects.kinds import LineEffect, RunEffect, VehicleEffect
 from vehgen.effects.locator import EffectLocator, EffectSite
 from vehgen.effects.registry import EFFECTS, library
@@ -16,7 +16,8 @@ __all__ = [
     "LineEffect",
     "RunEffect",
     "VehicleEffect",
-    "extended_library",
+    "effects",
+    "effects_named",
     "library",
     "load_effects",
 ]

@@ -16,7 +16,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.errors import InputError, Position, did_you_mean, shortened, shown
+from vehgen.errors import ArgumentError, InputError, Position, did_you_mean, shortened, shown
 from vehgen.files.csv_rows import csv_rows
 from vehgen.files.reading import split_lines
 from vehgen.files.units import ACCELERATION, FREQUENCY, TIME, Dimension, parse_unit
@@ -147,36 +147,6 @@ class ColumnMap:
     speed_unit: str = "m/s"
 
 
-def read_column_map(text: str) -> ColumnMap:
-    """Read `time=t,time_unit=ms,acceleration=az,pitch_rate=-gy,...`, the keys being those of ColumnMap.
-
-    Raises
-    ------
-    InputError
-        For an unknown, repeated or missing key.
-    """
-    found = split_pairs(text, "--columns", tuple(ColumnMap.__dataclass_fields__))
-    for key in ("time", "acceleration"):
-        if key not in found:
-            raise InputError(f"--columns lacks {key}=COLUMN; expected e.g. time=t,acceleration=az,pitch_rate=q")
-    return ColumnMap(**found)
-
-
-def split_pairs(text: str, option: str, known: tuple[str, ...]) -> dict[str, str]:
-    """Split `key=value,key=value` of a command-line option; raises InputError for what is not such a pair, unknown or repeated."""
-    found: dict[str, str] = {}
-    for part in text.split(","):
-        key, sign, value = (item.strip() for item in part.partition("="))
-        if not sign or not value:
-            raise InputError(f"{option}: expected key=value pairs joined by commas, found {part!r}")
-        if key not in known:
-            raise InputError(f"{option}: unknown key {key!r}; {did_you_mean(key, known)}")
-        if key in found:
-            raise InputError(f"{option}: {key} is given twice")
-        found[key] = value
-    return found
-
-
 def read_plain(table: Table, columns: ColumnMap | None) -> PhoneExport:
     """Read a plain CSV whose columns are named by a map.
 
@@ -187,11 +157,9 @@ def read_plain(table: Table, columns: ColumnMap | None) -> PhoneExport:
     """
     if columns is None:
         shown = ", ".join(repr(item) for item in table.header[:12])
-        raise InputError(
-            f"{table.name} is of no app that vehgen knows (its columns: {shown}); say which columns are which: "
-            "--columns time=...,acceleration=...,pitch_rate=..."
-        )
-    time = _column(table, columns.time) * unit_factor(columns.time_unit, TIME, "--columns time_unit")
+        message = f"{table.name} is of no app that vehgen knows (its columns: {shown}); say which columns are which with `columns`: "
+        raise ArgumentError(f"{message}time=...,acceleration=...,pitch_rate=...", "columns")
+    time = _column(table, columns.time) * unit_factor(columns.time_unit, TIME, "`columns` time_unit")
     wanted = (
         (VERTICAL_ACCELERATION_STREAM, columns.acceleration, columns.acceleration_unit, ACCELERATION, "m/s^2"),
         (PITCH_RATE_STREAM, columns.pitch_rate, columns.pitch_rate_unit, FREQUENCY, "rad/s"),
@@ -200,7 +168,7 @@ def read_plain(table: Table, columns: ColumnMap | None) -> PhoneExport:
     streams = {}
     for name, column, unit, dimension, si in wanted:
         if column is not None:
-            values = _column(table, column) * unit_factor(unit, dimension, "--columns")
+            values = _column(table, column) * unit_factor(unit, dimension, "`columns`")
             streams[name] = Stream(time, values[:, None], (column,), si)
     return PhoneExport("plain CSV", streams)
 
@@ -218,5 +186,5 @@ def unit_factor(unit: str, dimension: Dimension, where: str) -> float:
         return extra[unit, dimension]
     factor, found = parse_unit(unit)
     if found != dimension:
-        raise InputError(f"{where}: expected a unit of {dimension}, found {unit!r}")
+        raise ArgumentError(f"{where}: expected a unit of {dimension}, found {unit!r}", "columns")
     return factor

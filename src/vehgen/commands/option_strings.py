@@ -1,0 +1,120 @@
+"""Values of options that hold several things: `L1:body=tractor,behind=axle1,distance=-0.29`, `half_sine,length=0.5`, `0.3,40`."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+from vehgen.errors import InputError, did_you_mean, shown
+
+if TYPE_CHECKING:
+    from vehgen.phones import ColumnMap, PhoneSensor
+
+_SENSOR_KEYS = ("body", "x", "behind", "distance", "forward", "up", "acceleration_sign", "from", "to")
+
+
+def split_list(text: str | None) -> tuple[str, ...]:
+    """Split `A,B,C`; nothing for None and for blanks."""
+    return tuple(part.strip() for part in text.split(",") if part.strip()) if text else ()
+
+
+def split_pairs(text: str, option: str, known: tuple[str, ...]) -> dict[str, str]:
+    """Split `key=value,key=value`; raises InputError for what is not such a pair, unknown or repeated."""
+    found: dict[str, str] = {}
+    for part in text.split(","):
+        key, sign, value = (item.strip() for item in part.partition("="))
+        if not sign or not value:
+            raise InputError(f"{option}: expected key=value pairs joined by commas, found {part!r}")
+        if key not in known:
+            raise InputError(f"{option}: unknown key {key!r}; {did_you_mean(key, known)}")
+        if key in found:
+            raise InputError(f"{option}: {key} is given twice")
+        found[key] = value
+    return found
+
+
+def read_sensor(text: str) -> PhoneSensor:
+    """Read `NAME:body=...,behind=...,distance=...[,forward=y][,up=z][,acceleration_sign=-1][,from=SECONDS][,to=SECONDS]`.
+
+    Raises
+    ------
+    InputError
+        For a malformed text.
+    """
+    from vehgen.files.names import is_identifier
+    from vehgen.files.units import LENGTH, TIME
+    from vehgen.phones.plan import PhoneSensor, number_of
+
+    name, colon, rest = text.partition(":")
+    name, where = name.strip(), f"--sensor {name.strip()}"
+    if not colon or not is_identifier(name):
+        raise InputError(f"--sensor: expected NAME:body=BODY,behind=AXLE,distance=METRES, found {shown(text)}")
+    found = split_pairs(rest, where, _SENSOR_KEYS)
+    if "body" not in found:
+        raise InputError(f"{where} lacks body=, the body that the phone lay on")
+    if "distance" in found and "behind" not in found:
+        raise InputError(f"{where}: distance= needs behind=")
+    if "acceleration_sign" in found and found["acceleration_sign"] not in ("1", "+1", "-1"):
+        raise InputError(f"{where}: acceleration_sign is 1 or -1, found {found['acceleration_sign']!r}")
+    return PhoneSensor(
+        name,
+        found["body"],
+        found.get("x"),
+        found.get("behind"),
+        number_of(found.get("distance", "0"), LENGTH, f"{where} distance", "sensors"),
+        found.get("forward"),
+        found.get("up"),
+        int(found["acceleration_sign"]) if "acceleration_sign" in found else None,
+        number_of(found["from"], TIME, f"{where} from", "sensors") if "from" in found else -math.inf,
+        number_of(found["to"], TIME, f"{where} to", "sensors") if "to" in found else math.inf,
+    )
+
+
+def read_hump(text: str) -> dict[str, Any]:
+    """Read `SHAPE,length=...,height=...` with the shapes and keys of the run file; raises InputError for a malformed text."""
+    from vehgen.phones.plan import HUMP_KEYS
+
+    shape, _, rest = text.partition(",")
+    return {"shape": shape.strip(), **(split_pairs(rest, "--hump", HUMP_KEYS[1:]) if rest else {})}
+
+
+def read_profile(text: str) -> dict[str, str]:
+    """Read `FILE[,distance=COLUMN][,height=COLUMN]`, a measured profile; raises InputError for a malformed text."""
+    file, _, rest = text.partition(",")
+    return {"file": file, **(split_pairs(rest, "--profile", ("distance", "height")) if rest else {})}
+
+
+def read_column_map(text: str) -> ColumnMap:
+    """Read `time=t,time_unit=ms,acceleration=az,pitch_rate=-gy,...`, the keys being those of ColumnMap.
+
+    Raises
+    ------
+    InputError
+        For an unknown, repeated or missing key.
+    """
+    from vehgen.phones.csv_table import ColumnMap
+
+    found = split_pairs(text, "--columns", tuple(ColumnMap.__dataclass_fields__))
+    for key in ("time", "acceleration"):
+        if key not in found:
+            raise InputError(f"--columns lacks {key}=COLUMN; expected e.g. time=t,acceleration=az,pitch_rate=q")
+    return ColumnMap(**found)
+
+
+def read_band(text: str) -> tuple[float, float]:
+    """Read `LOW,HIGH` [Hz]; raises InputError for what are not two numbers."""
+    try:
+        low, high = (float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError(f"--band wants two frequencies in Hz, e.g. 0.3,40; found {text!r}") from None
+    return low, high
+
+
+def read_bands(text: str) -> tuple[tuple[float, float], ...]:
+    """Read `A,B,C`, the edges of bands [Hz]; raises InputError for what are not numbers."""
+    try:
+        edges = [float(part) for part in text.split(",")]
+    except ValueError:
+        raise InputError(f"--bands wants frequencies in Hz, e.g. 2,5,8,12; found {text!r}") from None
+    return tuple(pairwise(edges))
