@@ -13,7 +13,7 @@ from benchmarks.hidden_effects.cases import HiddenCase
 def solve(item: HiddenCase) -> dict:
     """Write a case, diagnose it, return what came out beside the truth."""
     from benchmarks.hidden_effects.generator import write_case
-    from vehgen.diagnose.pipeline import diagnose
+    from vehgen.diagnose.pipeline import diagnose_trials
     from vehgen.fit.trial import load_trials
 
     warnings.simplefilter("ignore")
@@ -27,7 +27,7 @@ def solve(item: HiddenCase) -> dict:
     with tempfile.TemporaryDirectory() as seen, tempfile.TemporaryDirectory() as hidden:
         write_case(item.case, Path(seen), Path(hidden))
         try:
-            found = diagnose(load_trials(sorted(Path(seen).glob("*.yaml"))))
+            found = diagnose_trials(load_trials(sorted(Path(seen).glob("*.yaml"))))
         except Exception as error:  # a crash is a result too
             return {**record, "verdict": "crash", "error": f"{type(error).__name__}: {error}", "seconds": time.perf_counter() - start}
     data = found.verdict.to_dict()

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.paper_study.recordings import Rig
-from vehgen.calibrate.calibration import Settings, calibrate
+from vehgen.calibrate.calibration import Settings, calibrate_problem
 from vehgen.calibrate.genetic import GeneticSearch
 from vehgen.calibrate.objective import PsdObjective
 from vehgen.fit.problem import Problem, make_problem
@@ -84,7 +84,7 @@ def fit(problem: Problem, method: Method, truth: dict[str, float], generations: 
     """Calibrate by one method; kernels are compiled before the clock starts."""
     search = GeneticSearch(method.populations, 100, generations)
     settings = Settings(method.method, method.sensors, search=search, seed=seed, polish=method.polish)
-    calibrate(problem, replace(settings, search=replace(search, generations=0), polish=False))
+    calibrate_problem(problem, replace(settings, search=replace(search, generations=0), polish=False))
     last, spent = [time.perf_counter()], {"search": 0.0, "polish": 0.0}
 
     def clock(label: str, done: int, total: int, best: float) -> None:
@@ -92,7 +92,7 @@ def fit(problem: Problem, method: Method, truth: dict[str, float], generations: 
         spent["polish" if label.endswith("polish") else "search"] += now - last[0]
         last[0] = now
 
-    found = calibrate(problem, settings, progress=clock)
+    found = calibrate_problem(problem, settings, progress=clock)
     used = problem.of_sensors(method.sensors)
     objective = PsdObjective(used)
     points = np.array([[source[name] for name in problem.space.names] for source in (found.values, truth)])

@@ -42,7 +42,7 @@ def judge(rig: Rig, fits: Sequence[Fit], truth: dict[str, float], unseen: Path) 
     trial = load_trials([unseen])[0]
     named = [("truth", truth), *((item.method.name, item.values) for item in fits)]
     return [
-        Judgement(name, rig.system(values).frequencies(), errors(rig, values, truth), validate([_with(trial, values)]))
+        Judgement(name, rig.system(values).frequencies(), errors(rig, values, truth), validate(trial.run.vehicle, [_with(trial, values)]))
         for name, values in named
     ]
 

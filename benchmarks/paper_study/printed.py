@@ -10,7 +10,7 @@ import scipy.signal
 from benchmarks.paper_study.recordings import Rig
 from benchmarks.paper_study.roads import LEVELS
 from vehgen import Place, PointOutput, derive, load_vehicle
-from vehgen.simulate.frequency import frequency_response
+from vehgen.simulate.frequency import transfer_functions
 
 Array = np.ndarray
 FREQUENCY = np.arange(0.3, 30.001, 0.05)
@@ -55,7 +55,7 @@ def printed_vehicles(rig: Rig) -> list[Printed]:
     for name, parameter_set in SETS[rig.kind].items():
         values = model.values(overrides=vehicle.values(parameter_set))
         late = model.wheel_offsets(values) / rig.cruise
-        gains = frequency_response(model.numeric(values), fine)[0][:, 0, : len(late)]
+        gains = transfer_functions(model.numeric(values), fine)[0][:, 0, : len(late)]
         total = (gains * np.exp(-2j * np.pi * fine[:, None] * late)).sum(axis=1)
         road = LEVELS["B"] * 0.1**2 * rig.cruise / fine**2
         smooth = np.convolve(np.abs(total) ** 2 * road, window / window.sum(), mode="valid")

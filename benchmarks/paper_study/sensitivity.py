@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.paper_study.truth import TRACTOR_MASS
-from vehgen.calibrate.sensitivity import sensitivity_indices
+from vehgen.calibrate.sensitivity import sensitivity
 from vehgen.simulate import load_run
 
 Array = np.ndarray
@@ -46,7 +46,7 @@ def sensitivities(folder: Path) -> Sensitivities:
     path = folder / "sensitivity.yaml"
     path.write_text("\n".join([*lines, ""]), encoding="utf-8")
     names = [f"{kind}{i}" for kind in KINDS for i in range(1, 6)]
-    found = sensitivity_indices(load_run(path), names)
+    found = sensitivity(load_run(path), names)
     inside = found.frequency <= HIGHEST
     scaled = found.index[:, :, inside] * TRACTOR_MASS**2
     index = {place: {name: scaled[i, j] for i, name in enumerate(names)} for j, place in enumerate(found.channels)}

@@ -1,11 +1,13 @@
-"""vehgen: declare a road vehicle in YAML; derive, compile and simulate its pitch-plane dynamics.
+"""vehgen: declare a road vehicle in YAML; derive, compile, simulate, calibrate and diagnose its pitch-plane dynamics.
 
 The names below are imported when they are first used, so that `import vehgen` stays fast.
 """
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
@@ -13,6 +15,13 @@ __version__ = "0.1.0"
 _HOMES = {
     "InputError": "vehgen.errors",
     "ModelWarning": "vehgen.errors",
+    "Axle": "vehgen.vehicle",
+    "Body": "vehgen.vehicle",
+    "Hinge": "vehgen.vehicle",
+    "Link": "vehgen.vehicle",
+    "Parameter": "vehgen.vehicle",
+    "Spring": "vehgen.vehicle",
+    "Vehicle": "vehgen.vehicle",
     "bundled_models": "vehgen.vehicle",
     "load_vehicle": "vehgen.vehicle",
     "parse_vehicle": "vehgen.vehicle",
@@ -25,19 +34,61 @@ _HOMES = {
     "Excitation": "vehgen.codegen",
     "Kernel": "vehgen.codegen",
     "Response": "vehgen.simulate",
+    "Run": "vehgen.simulate",
     "Simulator": "vehgen.simulate",
+    "frequency_response": "vehgen.simulate",
     "load_run": "vehgen.simulate",
+    "make_scenario": "vehgen.simulate",
     "natural_modes": "vehgen.simulate",
+    "simulate": "vehgen.simulate",
+    "state_space": "vehgen.simulate",
+    "laden": "vehgen.cargo",
+    "PhoneSensor": "vehgen.phones",
+    "import_phones": "vehgen.phones",
+    "Effect": "vehgen.effects",
+    "effects": "vehgen.effects",
+    "advise_sensors": "vehgen.calibrate",
+    "calibrate": "vehgen.calibrate",
+    "sensitivity": "vehgen.calibrate",
+    "validate": "vehgen.calibrate",
+    "diagnose": "vehgen.diagnose",
+    "build": "vehgen.report",
+    "draw_vehicle": "vehgen.report",
+    "read_result": "vehgen.report",
+    "report": "vehgen.report",
 }
 
 __all__ = [*_HOMES]
 
 if TYPE_CHECKING:
+    from vehgen.calibrate import advise_sensors, calibrate, validate
+    from vehgen.calibrate.sensitivity import sensitivity
+    from vehgen.cargo.laden import laden
     from vehgen.codegen import Excitation, Kernel
+    from vehgen.diagnose import diagnose
+    from vehgen.effects import Effect, effects
     from vehgen.errors import InputError, ModelWarning
     from vehgen.mechanics import ElementOutput, EquationsOfMotion, Place, PointOutput, derive, static_loads
-    from vehgen.simulate import Response, Simulator, load_run, natural_modes
-    from vehgen.vehicle import bundled_models, load_vehicle, parse_vehicle
+    from vehgen.phones import PhoneSensor, import_phones
+    from vehgen.report import build, draw_vehicle, read_result, report
+    from vehgen.simulate import Response, Run, Simulator, load_run, make_scenario, natural_modes, simulate
+    from vehgen.simulate.frequency_response import frequency_response
+    from vehgen.simulate.state_space import state_space
+    from vehgen.vehicle import Axle, Body, Hinge, Link, Parameter, Spring, Vehicle, bundled_models, load_vehicle, parse_vehicle
+
+
+class _Package(ModuleType):
+    """The package, in which functions stand before the rooms that share their names: `vehgen.simulate` is the function.
+
+    An import of a room would set the attribute to the room itself; `from vehgen.simulate import ...` needs none.
+    """
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not (name in _HOMES and isinstance(value, ModuleType)):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package
 
 
 def __getattr__(name: str) -> Any:

@@ -89,6 +89,23 @@ class InputError(Exception):
         super().__init__(f"{escaped(str(position))}: {self.message}" if position else self.message)
 
 
+class ArgumentError(InputError):
+    """An argument of a function cannot be used.
+
+    Parameters
+    ----------
+    message
+        What is wrong and what would be right. Arguments stand in it in backquotes.
+    names
+        Those arguments: the command line writes its options in their places.
+
+    """
+
+    def __init__(self, message: str, *names: str) -> None:
+        self.names = names
+        super().__init__(message)
+
+
 class ModelWarning(UserWarning):
     """The input can be used, but its answer deserves doubt."""
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from tests.fit.recordings import sedan_truth, write_run
-from vehgen.calibrate.calibration import Settings, calibrate
+from vehgen.calibrate.calibration import Settings, calibrate_problem
 from vehgen.calibrate.genetic import GeneticSearch
-from vehgen.calibrate.sensitivity import sensitivity_indices
+from vehgen.calibrate.sensitivity import sensitivity
 from vehgen.calibrate.sensor_placement import advise_sensors
 from vehgen.calibrate.summary import summarise
 from vehgen.calibrate.validation import validate
@@ -40,7 +40,7 @@ def truck(tmp_path_factory):
 
 def test_sensitivities_are_those_of_finite_differences(tmp_path):
     run = load_run(write_run(tmp_path, "hump", sedan_truth()))
-    found = sensitivity_indices(run, ["kr", "mf"])
+    found = sensitivity(run, ["kr", "mf"])
     problem = make_problem(load_trials([tmp_path / "hump.yaml"]), ["mf", "kr"])
     for name in found.names:
         column = problem.space.names.index(name)
@@ -56,7 +56,7 @@ def test_sensitivities_are_those_of_finite_differences(tmp_path):
 
 
 def test_the_first_sensor_feels_axle_1_and_the_second_the_others_as_in_the_papers_figure_5(truck):
-    found = sensitivity_indices(truck)
+    found = sensitivity(truck)
     power = found.index.sum(axis=2) * found.values[:, None] ** 2
     for kind in ("m", "k", "c", "kt"):
         rows = np.array([power[found.names.index(f"{kind}{i}")] for i in range(1, 6)])
@@ -79,12 +79,12 @@ def test_a_vehicle_is_valid_on_its_own_recording_and_another_is_not(tmp_path):
     path = write_run(tmp_path, "hump", truth, noise=0.001)
     vehicle = load_vehicle("sedan2.yaml")
     own = load_run(path, vehicle)
-    assert validate(load_trials([path], vehicle)).worst > 0.05
+    assert validate(vehicle, [path]).worst > 0.05
     text = path.read_text(encoding="utf-8")
     units = {"m": "kg", "I": "kg m^2", "k": "N/m", "c": "N s/m", "L": "m"}
     given = ", ".join(f"{name}: {value!r} {units[name[0]]}" for name, value in truth.items())
     path.write_text(f"parameters: {{{given}}}\n{text}", encoding="utf-8")
-    found = validate(load_trials([path], own.vehicle))
+    found = validate(own.vehicle, [path])
     assert found.worst < 0.01
     assert {item.channel for item in found.channels} == {"F_az", "F_q", "R_az", "R_q"}
 
@@ -92,7 +92,7 @@ def test_a_vehicle_is_valid_on_its_own_recording_and_another_is_not(tmp_path):
 @pytest.fixture(scope="module")
 def calibration(tmp_path_factory):
     problem = make_problem(load_trials([write_run(tmp_path_factory.mktemp("run"), "hump", sedan_truth())]))
-    return calibrate(problem, Settings(search=GeneticSearch(1, 10, 2), starts=2))
+    return calibrate_problem(problem, Settings(search=GeneticSearch(1, 10, 2), starts=2))
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.fit.recordings import sedan_truth, write_run
-from vehgen.calibrate.calibration import Settings, calibrate
+from vehgen.calibrate.calibration import Settings, calibrate_problem
 from vehgen.calibrate.genetic import GeneticSearch
 from vehgen.calibrate.identifiability import find_structure
 from vehgen.calibrate.intervals import Uncertainty
@@ -55,7 +55,7 @@ def test_an_individual_that_cannot_be_simulated_has_an_infinite_objective(proble
 
 
 def test_a_joint_fit_finds_the_truth_within_its_intervals(problem):
-    found = calibrate(problem, small())
+    found = calibrate_problem(problem, small())
     outcome = summarise(found, combinations=("kf/mf",))
     assert found.array == pytest.approx(truth_of(problem), rel=0.02)
     covered = [item.interval[0] <= TRUTH[name] <= item.interval[1] for name, item in outcome.parameters.items()]
@@ -67,7 +67,7 @@ def test_a_joint_fit_finds_the_truth_within_its_intervals(problem):
 
 @pytest.mark.parametrize(("method", "sensors"), [("shcm", ("F",)), ("dhcm", ("F", "R"))])
 def test_the_papers_methods_find_the_truth_too(problem, method, sensors):
-    found = calibrate(problem, small(method, sensors=sensors))
+    found = calibrate_problem(problem, small(method, sensors=sensors))
     assert found.array == pytest.approx(truth_of(problem), rel=0.05)
     assert len(found.steps) == (2 if method == "dhcm" else 1)
 
@@ -95,33 +95,33 @@ def test_plans_that_cannot_work_are_refused(problem, method, sensors, frozen, sa
 
 
 def test_the_same_seed_gives_the_same_result_bit_for_bit(problem):
-    first, second = (calibrate(problem, small(polish=False)) for _ in range(2))
+    first, second = (calibrate_problem(problem, small(polish=False)) for _ in range(2))
     assert first.values == second.values
-    assert first.values != calibrate(problem, small(polish=False, seed=2)).values
+    assert first.values != calibrate_problem(problem, small(polish=False, seed=2)).values
 
 
 def test_a_stopped_search_is_resumed_bit_for_bit(problem, tmp_path):
-    whole = calibrate(problem, small("dhcm", polish=False))
+    whole = calibrate_problem(problem, small("dhcm", polish=False))
     path = tmp_path / "search.json"
 
     def stop(label, done, total, best):
         if label == "sensor R" and done == 13:
             raise KeyboardInterrupt
 
-    part = calibrate(problem, small("dhcm", polish=False), progress=stop, checkpoint=path)
+    part = calibrate_problem(problem, small("dhcm", polish=False), progress=stop, checkpoint=path)
     assert part.stopped
     assert set(part.values) == set(whole.values)
-    again = calibrate(problem, small("dhcm", polish=False), checkpoint=path, resume=True)
+    again = calibrate_problem(problem, small("dhcm", polish=False), checkpoint=path, resume=True)
     assert again.values == whole.values
     with pytest.raises(InputError, match="another calibration"):
-        calibrate(problem, small("dhcm", polish=False, seed=9), checkpoint=path, resume=True)
+        calibrate_problem(problem, small("dhcm", polish=False, seed=9), checkpoint=path, resume=True)
     path.write_text("{", encoding="utf-8")
     with pytest.raises(InputError, match="not a checkpoint"):
-        calibrate(problem, small(), checkpoint=path, resume=True)
+        calibrate_problem(problem, small(), checkpoint=path, resume=True)
 
 
 def test_fisher_intervals_agree_with_a_bootstrap(problem):
-    found = calibrate(problem, Settings(search=GeneticSearch(1, 10, 0), starts=2))
+    found = calibrate_problem(problem, Settings(search=GeneticSearch(1, 10, 0), starts=2))
     outcome = summarise(found, replicates=60)
     widths = [np.ptp(outcome.bootstrap[f"{mode.name} [Hz]"].interval) / np.ptp(mode.interval) for mode in outcome.modes]
     assert 0.75 < np.median(widths) < 1.3
@@ -141,7 +141,7 @@ def test_intervals_cover_the_truth_over_a_rough_road(tmp_path):
 def test_the_vehicle_file_that_comes_out_is_read_back_exactly(problem, tmp_path):
     from vehgen.vehicle import load_vehicle
 
-    outcome = summarise(calibrate(problem, small(polish=False)))
+    outcome = summarise(calibrate_problem(problem, small(polish=False)))
     path = tmp_path / "sedan2_calibrated.yaml"
     path.write_text(outcome.vehicle_text(tmp_path, "sedan2_calibrated"), encoding="utf-8")
     values = load_vehicle(path).values()

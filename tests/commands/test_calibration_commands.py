@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from tests.fit.recordings import sedan_truth, write_run
-from vehgen.calibrate.calibration import Settings, calibrate
+from vehgen.calibrate.calibration import Settings, calibrate_problem
 from vehgen.calibrate.genetic import GeneticSearch
 from vehgen.calibrate.result import CalibrationSummary
 from vehgen.calibrate.summary import summarise
@@ -62,7 +62,7 @@ def same_figures_again(folder, name, again, capsys):
 
 def test_a_calibration_survives_its_file(run, tmp_path):
     problem = make_problem(load_trials([run]))
-    summary = summarise(calibrate(problem, Settings(search=GeneticSearch(1, 10, 2), starts=1)), replicates=2)
+    summary = summarise(calibrate_problem(problem, Settings(search=GeneticSearch(1, 10, 2), starts=1)), replicates=2)
     again = CalibrationSummary.from_dict(json.loads(json_text(summary)))
     assert again == summary
     assert again.parameters == summary.parameters

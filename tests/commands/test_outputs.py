@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -141,14 +142,14 @@ def test_laden_and_module_keep_what_they_did_not_write(own: Path, capsys: pytest
 @pytest.mark.parametrize(
     ("arguments", "work_of", "name"),
     [
-        (("calibrate", "sedan2.yaml", "hump.yaml"), "vehgen.calibrate.calibration.calibrate", "sedan2_calibrated.yaml"),
-        (("calibrate", "sedan2.yaml", "hump.yaml"), "vehgen.calibrate.calibration.calibrate", "search.json"),
-        (("calibrate", "sedan2.yaml", "hump.yaml"), "vehgen.calibrate.calibration.calibrate", "intervals.png"),
-        (("diagnose", "sedan2.yaml", "hump.yaml"), "vehgen.diagnose.pipeline.diagnose", "report.html"),
-        (("diagnose", "sedan2.yaml", "hump.yaml"), "vehgen.diagnose.pipeline.diagnose", "sedan2_with_dry_friction.yaml"),
-        (("validate", "sedan2.yaml", "hump.yaml"), "vehgen.calibrate.validation.validate", "validation_bands.png"),
-        (("sensitivity", "sedan2.yaml", "hump.yaml"), "vehgen.calibrate.sensitivity.sensitivity_indices", "sensitivity_R_q.png"),
-        (("build", "sedan2.yaml"), "vehgen.mechanics.derive", "kernel.py"),
+        (("calibrate", "sedan2.yaml", "hump.yaml"), "vehgen.calibrate.api:calibrate", "sedan2_calibrated.yaml"),
+        (("calibrate", "sedan2.yaml", "hump.yaml"), "vehgen.calibrate.api:calibrate", "search.json"),
+        (("calibrate", "sedan2.yaml", "hump.yaml"), "vehgen.calibrate.api:calibrate", "intervals.png"),
+        (("diagnose", "sedan2.yaml", "hump.yaml"), "vehgen.diagnose:diagnose", "report.html"),
+        (("diagnose", "sedan2.yaml", "hump.yaml"), "vehgen.diagnose:diagnose", "sedan2_with_dry_friction.yaml"),
+        (("validate", "sedan2.yaml", "hump.yaml"), "vehgen.calibrate:validate", "validation_bands.png"),
+        (("sensitivity", "sedan2.yaml", "hump.yaml"), "vehgen.calibrate:sensitivity", "sensitivity_R_q.png"),
+        (("build", "sedan2.yaml"), "vehgen.report.building:derive", "kernel.py"),
     ],
 )
 def test_long_work_does_not_begin(
@@ -158,7 +159,8 @@ def test_long_work_does_not_begin(
     out = work / "out"
     out.mkdir()
     (out / name).write_text("mine")
-    monkeypatch.setattr(work_of, lambda *_, **__: pytest.fail("the work began"))
+    module, _, function = work_of.partition(":")
+    monkeypatch.setattr(import_module(module), function, lambda *_, **__: pytest.fail("the work began"))
     assert FOREIGN in refused(capsys, *arguments, "--out", "out")
     assert contents(out) == {name: b"mine"}
     with pytest.raises(pytest.fail.Exception, match="the work began"):

@@ -7,7 +7,7 @@ from benchmarks.hidden_effects.generator import Effect
 
 from tests.diagnose.conftest import CUBIC
 from vehgen.commands import main
-from vehgen.diagnose.pipeline import diagnose, split_runs
+from vehgen.diagnose.pipeline import diagnose_trials, split_runs
 from vehgen.fit.trial import load_trials
 from vehgen.vehicle import load_vehicle
 
@@ -31,13 +31,13 @@ def test_the_noise_floor_is_that_of_the_phones(detection_of):
 
 
 def test_nothing_hidden_is_found_to_be_nothing(trials_of):
-    found = diagnose(trials_of())
+    found = diagnose_trials(trials_of())
     assert found.verdict.verdict == "no_missing_effect"
     assert found.detection.chi < 1.06
 
 
 def test_a_hidden_spring_is_placed_named_and_measured(trials_of):
-    found = diagnose(trials_of(CUBIC))
+    found = diagnose_trials(trials_of(CUBIC))
     assert {item.place.label for item in found.passed} == {"suspension rear", "tyre rear"}
     assert found.verdict.verdict == "named"
     effect = found.verdict.effects[0]
@@ -62,7 +62,7 @@ def test_the_command_leaves_report_and_vehicle(told):
 
 def test_a_sensor_that_reads_too_much_is_told_from_a_force(record):
     paths = record(Effect("sensor_gain", "F_az", {"error": 0.15}))
-    found = diagnose(load_trials(paths)).verdict
+    found = diagnose_trials(load_trials(paths)).verdict
     assert found.verdict == "named"
     assert (found.effects[0].name, found.effects[0].place) == ("sensor_gain", "F_az")
     low, high = found.effects[0].parameters["gain"].interval
@@ -70,7 +70,7 @@ def test_a_sensor_that_reads_too_much_is_told_from_a_force(record):
 
 
 def test_one_run_names_nothing(cubic):
-    found = diagnose(load_trials(cubic[:1])).verdict
+    found = diagnose_trials(load_trials(cubic[:1])).verdict
     assert found.verdict == "insufficient_data"
     assert "three runs" in found.next_experiment
 

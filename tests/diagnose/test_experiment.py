@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from benchmarks.hidden_effects.generator import Case, Effect, Hump, Noise, RunSpec, simulate_case, write_case
 
-from vehgen.diagnose.design import experiment
+from vehgen.diagnose.design import candidate_runs, experiment
 from vehgen.diagnose.design.candidate_runs import free_places, list_runs
 from vehgen.diagnose.design.discrimination import FittedModel, at_most, separate
 from vehgen.diagnose.design.experiment import propose, propose_stronger
@@ -121,7 +121,7 @@ def test_equal_models_are_said_to_be_equal(tied):
 def test_where_no_run_is_enough_the_best_is_named_with_the_repeats_it_takes(tied, monkeypatch):
     monkeypatch.setattr(experiment, "ENOUGH_CHI2", 5e3)
     monkeypatch.setattr(experiment, "REPEATS", 100)
-    monkeypatch.setattr("vehgen.diagnose.design.candidate_runs.HEIGHTS", (0.5, 1.0))
+    monkeypatch.setattr(candidate_runs, "HEIGHTS", (0.5, 1.0))
     found = propose(*tied)
     assert not found.separates
     assert found.height <= 0.03

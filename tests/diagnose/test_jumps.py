@@ -10,7 +10,7 @@ from benchmarks.hidden_effects.generator.simulate import true_parameters
 from tests.diagnose.conftest import RUNS
 from vehgen.diagnose.localise.unknown_force import list_places
 from vehgen.diagnose.localise.unknown_force import score_locations as place_test
-from vehgen.diagnose.pipeline import diagnose
+from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.select.estimates import RunEstimate, disagreement
 from vehgen.effects import EFFECTS
 from vehgen.fit.misfit import Misfit
@@ -21,7 +21,7 @@ FRICTION = Effect("dry_friction", "front", {"force": 600.0})
 
 @pytest.fixture(scope="module")
 def found(trials_of):
-    return diagnose(trials_of(FRICTION), [EFFECTS["dry_friction"]])
+    return diagnose_trials(trials_of(FRICTION), [EFFECTS["dry_friction"]])
 
 
 def test_friction_gets_shorter_steps_where_it_jumps_and_smooth_models_none(found):

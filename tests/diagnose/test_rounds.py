@@ -7,7 +7,7 @@ from benchmarks.hidden_effects.generator import Effect
 
 from tests.diagnose.conftest import CUBIC
 from vehgen.diagnose.detect.detection import band_gaps, run_gaps
-from vehgen.diagnose.pipeline import diagnose
+from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.select.estimates import estimates_by_run
 from vehgen.diagnose.writing import effect_file
 from vehgen.effects import EFFECTS
@@ -22,7 +22,7 @@ PAIR = (CUBIC, Effect("sensor_gain", "F_az", {"error": 0.2}))
 
 @pytest.fixture(scope="module")
 def two(trials_of):
-    return diagnose(trials_of(*PAIR), FEW)
+    return diagnose_trials(trials_of(*PAIR), FEW)
 
 
 def test_two_effects_are_found_one_after_the_other(two):
@@ -70,7 +70,7 @@ def test_the_gap_is_told_beside_height_and_speed(two):
 
 def test_an_engine_is_found_by_its_line(trials_of):
     engine = Effect("engine_harmonic", "body", {"amplitude": 450.0, "frequency": 24.0, "drift": 0.01, "x": 0.4})
-    found = diagnose(trials_of(engine), [EFFECTS[name] for name in ("engine_harmonic", "tyre_damping", "cargo_module")])
+    found = diagnose_trials(trials_of(engine), [EFFECTS[name] for name in ("engine_harmonic", "tyre_damping", "cargo_module")])
     assert found.verdict.verdict == "named"
     effect = found.verdict.effects[0]
     assert (effect.name, effect.place) == ("engine_harmonic", "body")
@@ -84,7 +84,7 @@ def test_ctrl_c_leaves_what_was_found(trials_of):
         if stage == "name" and done == 2:
             raise KeyboardInterrupt
 
-    found = diagnose(trials_of(*PAIR), FEW, progress=tell)
+    found = diagnose_trials(trials_of(*PAIR), FEW, progress=tell)
     assert found.stopped
     assert found.verdict.verdict == "insufficient_data"
     assert "stopped by hand after 2 candidates" in found.verdict.reason
@@ -99,14 +99,14 @@ def test_the_order_of_runs_and_the_names_of_channels_change_nothing_but_names(re
         path.write_text(path.read_text(encoding="utf-8").replace("F_az", "zz").replace("R_q", "aa"), encoding="utf-8")
     for path in folder.glob("*.yaml"):
         path.write_text(path.read_text(encoding="utf-8").replace("F_az", "zz").replace("R_q", "aa"), encoding="utf-8")
-    found = diagnose(load_trials(sorted(folder.glob("*.yaml"))[::-1]), FEW)
+    found = diagnose_trials(load_trials(sorted(folder.glob("*.yaml"))[::-1]), FEW)
     assert (found.verdict.verdict, found.verdict.gap) == (two.verdict.verdict, two.verdict.gap)
     renamed = [(item.name, item.place.replace("zz", "F_az"), item.parameters) for item in found.verdict.effects]
     assert renamed == [(item.name, item.place, item.parameters) for item in two.verdict.effects]
 
 
 def test_one_sensor_late_is_the_other_one_early(trials_of):
-    found = diagnose(trials_of(Effect("sensor_delay", "F", {"time": 0.015})), [EFFECTS["sensor_delay"]])
+    found = diagnose_trials(trials_of(Effect("sensor_delay", "F", {"time": 0.015})), [EFFECTS["sensor_delay"]])
     delays = {item.place: item.parameters["delay"].value for item in found.verdict.effects}
     assert found.verdict.verdict == "ambiguous"
     assert delays == {"F": pytest.approx(0.015, rel=0.05), "R": pytest.approx(-0.015, rel=0.05)}

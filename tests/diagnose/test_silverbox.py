@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from vehgen.diagnose.detect.noise_floor import find_noise_floor
-from vehgen.diagnose.pipeline import detect, diagnose
+from vehgen.diagnose.pipeline import detect, diagnose_trials
 from vehgen.effects import EFFECTS
 from vehgen.errors import InputError
 from vehgen.fit.noise import road_answer
@@ -117,7 +117,7 @@ def runs(silverbox, tmp_path_factory):
 
 def test_the_silverbox_lacks_a_cubic_spring(runs):
     tried = [EFFECTS[name] for name in ("cubic_stiffness", "progressive_stiffness", "quadratic_damping")]
-    found = diagnose(load_trials(runs[:3]), tried).verdict
+    found = diagnose_trials(load_trials(runs[:3]), tried).verdict
     assert found.verdict == "named", found.reason
     effect = found.effects[0]
     assert (effect.name, effect.place) == ("cubic_stiffness", "spring")
@@ -126,7 +126,7 @@ def test_the_silverbox_lacks_a_cubic_spring(runs):
 
 
 def test_at_a_low_level_nothing_is_named(runs):
-    found = diagnose(load_trials(runs[3:])).verdict
+    found = diagnose_trials(load_trials(runs[3:])).verdict
     assert found.verdict in ("no_missing_effect", "too_weak")
     assert found.effects == ()
 

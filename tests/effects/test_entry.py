@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from vehgen.commands import main
-from vehgen.effects import EFFECTS, EffectLocator, extended_library, load_effects
+from vehgen.effects import EFFECTS, EffectLocator, effects, load_effects
 from vehgen.effects.entry import effects_schema
 from vehgen.errors import InputError
 from vehgen.files.document import read_text
@@ -266,9 +266,9 @@ def test_the_pages_python_is_an_effect_that_damps_a_hinge():
 
 
 def test_two_files_may_not_share_a_name(tmp_path, file):
-    assert list(extended_library([file]))[-2:] == ["late_phone", "cooling_fan"]
+    assert list(effects([file]))[-2:] == ["late_phone", "cooling_fan"]
     with pytest.raises(InputError, match="'soft_damper' already"):
-        extended_library([file, file])
+        effects([file, file])
 
 
 def test_the_command_lists_them(file, capsys):

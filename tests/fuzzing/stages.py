@@ -16,7 +16,8 @@ from vehgen.cargo import laden_text, load_cargo
 from vehgen.cargo.frame_file import load_frame
 from vehgen.cargo.module_model import cargo_text, module_model
 from vehgen.codegen import write_kernel
-from vehgen.effects import EffectLocator, extended_library, library
+from vehgen.effects import EffectLocator, library
+from vehgen.effects import effects as all_effects
 from vehgen.errors import InputError
 from vehgen.fit.prior_data import load_prior_data
 from vehgen.fit.problem import Problem, make_problem
@@ -136,7 +137,7 @@ def facts(path: str) -> None:
 
 def effects(path: str) -> None:
     """Load an effects library, and put each new effect at its first place on a vehicle."""
-    found = extended_library([path])
+    found = all_effects([path])
     model = derive(tractor())
     values = model.values()
     locator = EffectLocator(tractor(), values)

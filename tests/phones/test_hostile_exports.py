@@ -10,20 +10,19 @@ from hypothesis import strategies as st
 
 from vehgen.commands.option_strings import read_column_map, read_hump, read_sensor
 from vehgen.errors import InputError
-from vehgen.mechanics import Place
 from vehgen.phones import ColumnMap, read_export
 from vehgen.phones.csv_table import read_table
 from vehgen.phones.locating import find_speed
-from vehgen.phones.options import PhoneSensor, Plan
 from vehgen.phones.phone import make_phone
+from vehgen.phones.plan import PhoneSensor, Plan, hump_road
 from vehgen.vehicle import load_vehicle
 
 from .exports import phyphox, sensor_logger, still, write_zip
 
 QUICK = settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-SENSOR = PhoneSensor("L1", Place("L1", "body"), forward="y")
+SENSOR = PhoneSensor("L1", "body", forward="y")
 VEHICLE = load_vehicle("tractor5.yaml")
-PLAN = Plan(VEHICLE, read_hump("half_sine,length=0.5,height=0.03"), (SENSOR,))
+PLAN = Plan(VEHICLE, hump_road(read_hump("half_sine,length=0.5,height=0.03")), (SENSOR,))
 HEADS = st.sampled_from(
     [
         "time,seconds_elapsed,z,y,x", '"Time (s)","X (m/s^2)","Y (m/s^2)","Z (m/s^2)"', "Time (s);X (m/s^2);Y (m/s^2);Z (m/s^2)",
@@ -112,7 +111,7 @@ def test_shuffled_and_poisoned_samples(data):
 @QUICK
 @given(st.text(alphabet="L1:body=tractor,hinde.x-0 \n\"'{", max_size=60))
 def test_options(text):
-    for read in (read_hump, read_column_map, partial(read_sensor, vehicle=VEHICLE)):
+    for read in (lambda text: hump_road(read_hump(text)), read_column_map, lambda text: read_sensor(text).check(VEHICLE)):
         for given_text in (text, "L1:" + text):
             error = refusal(partial(read, given_text))
             assert error is None or (str(error) and "\n" not in str(error))

@@ -66,7 +66,7 @@ def test_gps_speed_is_the_median_of_valid_readings_in_the_crossing():
     [(None, "recorded no GPS speed"), ([-1, -1, -1], "no valid GPS speed"), ([0, 0, 0.1], "cannot be"), ([900, 900], "cannot be")],
 )
 def test_no_speed_asks_for_one(values, message):
-    with pytest.raises(InputError, match=rf"{message}.*give the speed"):
+    with pytest.raises(InputError, match=rf"{message}.*give `speed`"):
         crossing_speed(None if values is None else gps(values), 0.0, 5.0, "phone")
 
 

@@ -1,5 +1,6 @@
 """Phone exports of known passes, made by scipy alone (docs/examples/phones/make_exports.py), imported whole."""
 
+import importlib
 import importlib.util
 import json
 import zipfile
@@ -24,7 +25,7 @@ HUMP = ("--hump", "half_sine,length=0.5,height=0.03")
 def _figures(request, monkeypatch):
     """Figures take long to draw; one test looks at them."""
     if "assumed" not in request.node.name:
-        monkeypatch.setattr("vehgen.report.save_figure", lambda figure, path: None)
+        monkeypatch.setattr(importlib.import_module("vehgen.report"), "save_figure", lambda figure, path: None)
 
 
 def command(out, exports, *options, sensors=(L1, L2), road=HUMP):
@@ -193,7 +194,7 @@ def test_recordings_that_cannot_be_used(tmp_path, capsys, change, options, messa
 @pytest.mark.parametrize(
     ("sensors", "road", "message"),
     [
-        (("L1:body=tractor",), HUMP, "say which of its axes pointed forward, e.g. forward=y"),
+        (("L1:body=tractor",), HUMP, "say with --forward which of its axes pointed forward"),
         ((L1, L2), HUMP, "1 exports and 2 sensors"),
         (("L1:body=tracter",), HUMP, "tractor5 has no body 'tracter'; did you mean 'tractor'?"),
         (("L1:body=tractor,behind=axle9",), HUMP, "did you mean"),

@@ -8,10 +8,9 @@ import pytest
 from matplotlib.figure import Figure
 
 from tests.fit.recordings import sedan_truth, write_run
-from vehgen.calibrate.sensitivity import SensitivityIndices, sensitivity_indices
+from vehgen.calibrate.sensitivity import SensitivityIndices, sensitivity
 from vehgen.calibrate.sensor_placement import SensorAdvice, advise_sensors
 from vehgen.calibrate.validation import Validation, reference_spectrum, validate
-from vehgen.fit.trial import load_trials
 from vehgen.mechanics import StaticLoads, derive, static_loads
 from vehgen.simulate import Response, load_run, natural_modes, simulate
 from vehgen.simulate.modes import Modes
@@ -27,9 +26,9 @@ def results(tmp_path_factory):
         "modes": natural_modes(model),
         "static loads": static_loads(model),
         "response": simulate(run),
-        "sensitivity": sensitivity_indices(run, ("kf", "mr")),
+        "sensitivity": sensitivity(run, ("kf", "mr")),
         "sensor advice": advise_sensors(run, 2),
-        "validation": validate(load_trials([path])),
+        "validation": validate("sedan2", path),
     }
 
 

@@ -3,7 +3,7 @@ import pytest
 
 from vehgen.mechanics import Place, derive
 from vehgen.mechanics.outputs import PointOutput
-from vehgen.simulate.frequency import frequency_response, response_derivatives
+from vehgen.simulate.frequency import response_derivatives, transfer_functions
 from vehgen.vehicle import load_vehicle
 
 
@@ -17,7 +17,7 @@ def test_a_quarter_cars_response_is_the_textbooks():
     a, b, c, d = (s**2 * M[i, j] + s * C[i, j] + K[i, j] for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)))
     load = P[:, 0][:, None] + Q[:, 0][:, None] * s
     body = (d * load[0] - b * load[1]) / (a * d - b * c)
-    assert frequency_response(numeric, frequency)[0][:, 0, 0] == pytest.approx(s**2 * body, rel=1e-10)
+    assert transfer_functions(numeric, frequency)[0][:, 0, 0] == pytest.approx(s**2 * body, rel=1e-10)
 
 
 def test_derivatives_agree_with_differences():
@@ -29,6 +29,6 @@ def test_derivatives_agree_with_differences():
     exact = response_derivatives(model, values, names, frequency)
     for i, name in enumerate(names):
         step = 1e-5 * values[name]
-        sides = [frequency_response(model.numeric({**values, name: values[name] + s}), frequency)[0] for s in (step, -step)]
+        sides = [transfer_functions(model.numeric({**values, name: values[name] + s}), frequency)[0] for s in (step, -step)]
         difference = (sides[0] - sides[1]) / (2 * step)
         assert np.abs(exact[i] - difference).max() < 1e-6 * np.abs(difference).max()

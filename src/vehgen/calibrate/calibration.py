@@ -90,7 +90,7 @@ CalibrationProgress = Callable[[str, int, int, float], None]
 """Called with what is done, how many of how many, and the best objective so far."""
 
 
-def calibrate(
+def calibrate_problem(
     problem: Problem,
     settings: Settings,
     prior_data: PriorData | None = None,
@@ -99,7 +99,7 @@ def calibrate(
     resume: bool = False,
     runner: Runner | None = None,
 ) -> Calibration:
-    """Calibrate a vehicle against its trials.
+    """Search, then polish, the parameters of a problem step by step.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from vehgen.errors import InputError, did_you_mean, shown
+from vehgen.errors import ArgumentError, did_you_mean, shown
 from vehgen.files.expressions import Expression
 from vehgen.fit.problem import Problem
 from vehgen.vehicle import Vehicle
@@ -49,29 +49,32 @@ def plan(problem: Problem, method: str, sensors: Sequence[str] = (), frozen: Seq
         For an unknown method or sensor, or a number of sensors that the method cannot use.
     """
     if method not in METHODS:
-        raise InputError(f"no method {shown(method)}; {did_you_mean(method, METHODS)}")
+        raise ArgumentError(f"`method`: no method {shown(method)}; {did_you_mean(method, METHODS)}", "method")
     known = [name for name in problem.trials[0].run.file.sensors if all(name in trial.run.file.sensors for trial in problem.trials)]
     every = list(dict.fromkeys(name for trial in problem.trials for name in trial.run.file.sensors))
     for name in sensors:
         if name not in every:
-            raise InputError(f"no run has a sensor {shown(name)}; {did_you_mean(name, every)}")
+            raise ArgumentError(f"`sensors`: no run has a sensor {shown(name)}; {did_you_mean(name, every)}", "sensors")
     chosen = tuple(sensors) or tuple(every if method == "joint" else known)
     names = problem.space.names
     if method == "joint":
         return (Step("all sensors", chosen, names, names),)
     if method == "shcm":
         if len(chosen) != 1:
-            raise InputError(f"shcm uses one sensor; choose it (`sensors`), one of {', '.join(every)}")
+            raise ArgumentError(f"shcm uses one sensor; choose it with `sensors`, one of {', '.join(every)}", "sensors")
         return (Step(f"sensor {chosen[0]}", chosen, names, names),)
     if len(chosen) != 2:
-        raise InputError(f"dhcm uses two sensors, found {', '.join(chosen) or 'none'}; choose them in their order (`sensors`)")
+        raise ArgumentError(
+            f"dhcm uses two sensors, found {', '.join(chosen) or 'none'}; choose first and second with `sensors`", "sensors"
+        )
     for name in frozen:
         if name not in names:
-            raise InputError(f"{shown(name)} is not searched and cannot be kept from the first step; {did_you_mean(name, names)}")
+            message = f"`freeze`: {shown(name)} is not searched and cannot be kept from the first step; {did_you_mean(name, names)}"
+            raise ArgumentError(message, "freeze")
     kept = tuple(frozen) or near_parameters(problem, chosen[0])
     rest = tuple(name for name in names if name not in kept)
     if not kept or not rest:
-        raise InputError("dhcm needs parameters of its own for both steps: name those to keep from the first (`frozen`)")
+        raise ArgumentError("dhcm needs parameters of its own for both steps: name those to keep from the first with `freeze`", "freeze")
     return (Step(f"sensor {chosen[0]}", (chosen[0],), names, kept), Step(f"sensor {chosen[1]}", (chosen[1],), rest, rest))
 
 

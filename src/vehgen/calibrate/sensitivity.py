@@ -10,15 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from vehgen.errors import InputError
+from vehgen.errors import ArgumentError, did_you_mean, shown
 from vehgen.files.result_fields import Array1D, Array2D, Array3D
 from vehgen.files.results import Result, Table
 from vehgen.files.units import DAMPING, LENGTH, MASS, STIFFNESS
 from vehgen.measure import record_psd
 from vehgen.mechanics import derive
-from vehgen.simulate import Run, make_scenario
+from vehgen.simulate import RunLike, as_run, make_scenario
 from vehgen.simulate.sensitivity import direct_sensitivities
-from vehgen.vehicle import Vehicle
+from vehgen.vehicle import Vehicle, VehicleLike
 
 Array = NDArray[np.float64]
 MOST_SENSITIVITIES = 500
@@ -54,24 +54,25 @@ class SensitivityIndices(Result):
         return ("parameter", *self.channels), [(name, *row) for name, row in zip(self.names, self.relative.tolist(), strict=True)]
 
 
-def sensitivity_indices(run: Run, names: Sequence[str] | None = None) -> SensitivityIndices:
+def sensitivity(run: RunLike, parameters: Sequence[str] | None = None, *, vehicle: VehicleLike | None = None) -> SensitivityIndices:
     """Return the sensitivity indices, PSD of d(channel)/d(parameter), of a run's channels by direct differentiation (Eq. 19).
 
     Parameters
     ----------
     run
-        A run; it needs no recording.
-    names
-        Parameters (default: all with a range).
+        A run or its file; it needs no recording.
+    parameters
+        Those to differentiate by (default: all with a range).
+    vehicle
+        In place of the one that the run names: itself, its file, or the name of a bundled model.
 
     Raises
     ------
     InputError
         For a vehicle with force laws, or without ranges.
     """
-    chosen = tuple(names or run.vehicle.ranges())
-    if not chosen:
-        raise InputError(f"no parameter of {run.vehicle.name} has a `range`; name those to differentiate by (`parameters`)")
+    run = as_run(run, vehicle)
+    chosen = searched_parameters(run.vehicle, parameters)
     model = derive(run.vehicle, run.outputs(), run.forces())
     values = model.values(overrides=run.values())
     scenario = make_scenario(run, model, values)
@@ -83,9 +84,29 @@ def sensitivity_indices(run: Run, names: Sequence[str] | None = None) -> Sensiti
     change = np.sqrt(np.mean(derived**2, axis=1)) * 0.01 * np.abs([[values[name]] for name in chosen])
     relative = change / np.where(rms > 0, rms, np.nan)
     channels = tuple(channel.name for channel in model.channels)
-    parameters = np.array([values[name] for name in chosen])
+    numbers = np.array([values[name] for name in chosen])
     kinds = tuple(_kind(name, run.vehicle) for name in chosen)
-    return SensitivityIndices(chosen, parameters, channels, frequency, density.transpose(0, 2, 1), relative, kinds)
+    return SensitivityIndices(chosen, numbers, channels, frequency, density.transpose(0, 2, 1), relative, kinds)
+
+
+def searched_parameters(vehicle: Vehicle, parameters: Sequence[str] | None) -> tuple[str, ...]:
+    """Return the parameters that an argument names, or all of a vehicle with a range.
+
+    Raises
+    ------
+    InputError
+        For a name that no free parameter has, and where there is none.
+    """
+    if isinstance(parameters, str):
+        raise ArgumentError(f"`parameters`: a list was expected, e.g. [{parameters!r}]", "parameters")
+    chosen = tuple(parameters or vehicle.ranges())
+    for name in chosen:
+        if name not in vehicle.free_parameters:
+            known = did_you_mean(name, vehicle.free_parameters)
+            raise ArgumentError(f"`parameters`: {vehicle.name} has no parameter {shown(name)} with a value; {known}", "parameters")
+    if not chosen:
+        raise ArgumentError(f"no parameter of {vehicle.name} has a range; name those that matter with `parameters`", "parameters")
+    return chosen
 
 
 def _kind(name: str, vehicle: Vehicle) -> str:

@@ -17,13 +17,15 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from vehgen.calibrate.identifiability import null_space, stacked_derivatives
-from vehgen.errors import InputError
+from vehgen.calibrate.sensitivity import searched_parameters
+from vehgen.files.limits import check_count
 from vehgen.files.result_fields import Array1D
 from vehgen.files.results import Cell, Result, Table
 from vehgen.mechanics import derive
 from vehgen.mechanics.outputs import Place, PointOutput
-from vehgen.simulate import Run, make_scenario
+from vehgen.simulate import Run, RunLike, as_run, make_scenario
 from vehgen.simulate.sensitivity import direct_sensitivities
+from vehgen.vehicle import VehicleLike
 
 Array = NDArray[np.float64]
 SIGMA = {"acceleration": 0.01, "pitch_rate": 5e-4}
@@ -89,25 +91,33 @@ class SensorAdvice(Result):
         return ("sensors", "where", "mean error", *self.names), rows
 
 
-def advise_sensors(run: Run, count: int = 3, names: Sequence[str] | None = None) -> SensorAdvice:
+def advise_sensors(
+    run: RunLike, count: int = 3, *, parameters: Sequence[str] | None = None, vehicle: VehicleLike | None = None
+) -> SensorAdvice:
     """Return where to put 1, 2, ... `count` sensors on a run's vehicle.
 
     Parameters
     ----------
     run
-        The run that would be measured: speed, hump and vehicle; its own sensors are ignored.
+        The run that would be measured, or its file: speed, hump and vehicle; its own sensors are ignored.
     count
         The largest number of sensors.
-    names
-        Parameters that matter (default: all with a range).
+    parameters
+        Those that matter (default: all with a range).
+    vehicle
+        In place of the one that the run names: itself, its file, or the name of a bundled model.
+
+    Raises
+    ------
+    InputError
+        For a number or parameters that cannot be used.
     """
-    vehicle = run.vehicle
-    chosen = tuple(names or vehicle.ranges())
-    if not chosen:
-        raise InputError(f"no parameter of {vehicle.name} has a `range`")
+    check_count(count, "count", 1, 100)
+    run = as_run(run, vehicle)
+    chosen = searched_parameters(run.vehicle, parameters)
     places = candidates(run)
     outputs, mixing = _channels(places)
-    model = derive(vehicle, outputs)
+    model = derive(run.vehicle, outputs)
     values = model.values(overrides=run.values())
     scenario = make_scenario(run, model, values)
     excitation = scenario.excitation(model.wheel_offsets(values))

@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from vehgen.errors import InputError, did_you_mean
+from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
 from vehgen.files.result_fields import Array1D, Flags
 from vehgen.files.results import Result, Table
-from vehgen.fit.trial import Trial
+from vehgen.fit.trial import Trial, TrialLike, load_trials
 from vehgen.measure import ARTICULATED_BANDS, SPECTRA, TWO_AXLE_BANDS, band_rms, record_psd, relative_errors, welch_psd
 from vehgen.measure.astm import NOTE
 from vehgen.measure.curves import ChannelCurves
+from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 
 Array = NDArray[np.float64]
 Bands = tuple[tuple[float, float], ...]
@@ -118,7 +119,9 @@ class Validation(Result):
         ]
 
 
-def validate(trials: Sequence[Trial], bands: Bands | None = None) -> Validation:
+def validate(
+    vehicle: VehicleLike, runs: TrialLike | Sequence[TrialLike], *, bands: Bands | None = None, reference: str | None = None
+) -> Validation:
     """Compare simulated with measured on every channel.
 
     Runs over rough roads are compared by Welch's PSD, hump runs as one record. The vehicle's own values are used: calibrate writes a
@@ -126,49 +129,71 @@ def validate(trials: Sequence[Trial], bands: Bands | None = None) -> Validation:
 
     Parameters
     ----------
-    trials
-        Runs with recordings.
+    vehicle
+        Itself, its file (such as a calibration wrote), or the name of a bundled model.
+    runs
+        Runs with recordings: their files, runs, or trials.
     bands
         Frequency bands [Hz] (default: the paper's, for two axles or for articulated vehicles).
+    reference
+        A standard's spectrum to draw beside the accelerations, such as `level II`.
+
+    Raises
+    ------
+    InputError
+        For bands or a spectrum that are none, and for runs that cannot be used.
     """
+    spectrum = None if reference is None else reference_spectrum(reference)
+    own = as_vehicle(vehicle)
+    used = _bands(bands, own)
+    channels = [item for trial in load_trials(runs, own) for item in compare_trial(trial, used)]
+    return Validation(own.name, used, tuple(channels), spectrum)
+
+
+def _bands(bands: Bands | None, vehicle: Vehicle) -> Bands:
     if bands is None:
-        articulated = bool(trials[0].run.vehicle.hinges)
-        bands = ARTICULATED_BANDS if articulated else TWO_AXLE_BANDS[:5]
+        return ARTICULATED_BANDS if vehicle.hinges else TWO_AXLE_BANDS[:5]
+    if not bands or not all(len(band) == 2 and 0 <= band[0] < band[1] for band in bands):
+        raise ArgumentError(f"`bands`: frequencies [Hz] that ascend were expected, found {shown(bands)}", "bands")
+    return tuple((float(low), float(high)) for low, high in bands)
+
+
+def compare_trial(trial: Trial, bands: Bands) -> list[ChannelComparison]:
+    """Return every channel of a trial, measured against simulated at the trial's own values."""
     found = []
-    for trial in trials:
-        model = trial.simulator.model
-        population = np.array([[trial.values[name] for name in model.parameters]])
-        result = trial.simulator.run(population, trial.scenario)
-        if result.failures:
-            raise InputError(f"{trial.name}: {result.failures[0]}")
-        rough = not any(entry.hump is not None for entry in trial.run.file.road)
-        dt = trial.recording.dt
-        for i, channel in enumerate(trial.recording.channels):
-            measured, simulated = trial.recording.values[:, i], result.responses[0, :, i]
-            densities = []
-            for values in (measured, simulated):
-                averaged = rough and len(values) * dt > LONGEST_RECORD * SEGMENT
-                frequency, density = welch_psd(values, dt, SEGMENT) if averaged else record_psd(values, dt)
-                densities.append(density)
-            rms = [band_rms(frequency, density, bands) for density in densities]
-            found.append(
-                ChannelComparison(
-                    run=trial.name,
-                    channel=channel.name,
-                    quantity=channel.quantity,
-                    measured_rms=rms[0],
-                    simulated_rms=rms[1],
-                    errors=relative_errors(rms[1], rms[0]),
-                    audible=rms[0] > LOUD * _noise_rms(frequency, densities[0], bands),
-                    frequency=frequency,
-                    measured_psd=densities[0],
-                    simulated_psd=densities[1],
-                    time=trial.recording.time,
-                    measured=measured,
-                    simulated=simulated,
-                )
+    model = trial.simulator.model
+    population = np.array([[trial.values[name] for name in model.parameters]])
+    result = trial.simulator.run(population, trial.scenario)
+    if result.failures:
+        raise InputError(f"{trial.name}: {result.failures[0]}")
+    rough = not any(entry.hump is not None for entry in trial.run.file.road)
+    dt = trial.recording.dt
+    for i, channel in enumerate(trial.recording.channels):
+        measured, simulated = trial.recording.values[:, i], result.responses[0, :, i]
+        densities = []
+        for values in (measured, simulated):
+            averaged = rough and len(values) * dt > LONGEST_RECORD * SEGMENT
+            frequency, density = welch_psd(values, dt, SEGMENT) if averaged else record_psd(values, dt)
+            densities.append(density)
+        rms = [band_rms(frequency, density, bands) for density in densities]
+        found.append(
+            ChannelComparison(
+                run=trial.name,
+                channel=channel.name,
+                quantity=channel.quantity,
+                measured_rms=rms[0],
+                simulated_rms=rms[1],
+                errors=relative_errors(rms[1], rms[0]),
+                audible=rms[0] > LOUD * _noise_rms(frequency, densities[0], bands),
+                frequency=frequency,
+                measured_psd=densities[0],
+                simulated_psd=densities[1],
+                time=trial.recording.time,
+                measured=measured,
+                simulated=simulated,
             )
-    return Validation(trials[0].run.vehicle.name, bands, tuple(found))
+        )
+    return found
 
 
 def reference_spectrum(name: str) -> ReferenceSpectrum:
@@ -180,7 +205,7 @@ def reference_spectrum(name: str) -> ReferenceSpectrum:
         For a name that no spectrum has.
     """
     if name not in SPECTRA:
-        raise InputError(f"no spectrum {name!r}; {did_you_mean(name, SPECTRA)}")
+        raise ArgumentError(f"`reference`: no spectrum {shown(name)}; {did_you_mean(name, SPECTRA)}", "reference")
     frequency = np.geomspace(*REFERENCE_HZ, 200)
     return ReferenceSpectrum(f"{SPECTRA[name].name} ({NOTE})", frequency, SPECTRA[name].at(frequency))
 

@@ -2,7 +2,7 @@
 
 from vehgen.cargo.cargo_file import Cargo, CargoFile, ModuleCargo, RigidCargo, load_cargo
 from vehgen.cargo.comparison import LadenComparison, compare_laden
-from vehgen.cargo.laden import laden_text
+from vehgen.cargo.laden import laden, laden_text
 
 __all__ = [
     "Cargo",
@@ -11,6 +11,7 @@ __all__ = [
     "ModuleCargo",
     "RigidCargo",
     "compare_laden",
+    "laden",
     "laden_text",
     "load_cargo",
 ]

@@ -6,22 +6,64 @@ energies. Wu & Li 2023 (doi:10.3390/s23249691), Eqs. 24-28, write them out by ha
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from vehgen.cargo.cargo_file import Cargo, ModuleCargo, RigidCargo
-from vehgen.errors import InputError, did_you_mean, shown
+from vehgen.cargo.cargo_file import Cargo, ModuleCargo, RigidCargo, load_cargo
+from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
+from vehgen.files import check_results, write_text
+from vehgen.files.atomic import temporary_file
 from vehgen.files.checks import check_known
 from vehgen.files.expressions import Expression
-from vehgen.files.names import MAX_NAME, is_identifier
+from vehgen.files.names import MAX_NAME, as_name, is_identifier
 from vehgen.files.yaml_writer import OneLine, even_text, yaml_document
+from vehgen.vehicle import VehicleLike, as_vehicle, load_vehicle
 from vehgen.vehicle.model import Vehicle
 from vehgen.vehicle.parts import ZERO
 from vehgen.vehicle.writing import base_reference
 
 Definition = tuple[str, float, str, str]
 """A new parameter: its name without prefix, value [SI], unit and meaning."""
+
+
+def laden(vehicle: VehicleLike, cargo: Cargo | str | os.PathLike[str], *, out: str | os.PathLike[str], name: str | None = None) -> Vehicle:
+    """Put a cargo on a vehicle, write the laden vehicle's file, and return the laden vehicle as read from it.
+
+    Parameters
+    ----------
+    vehicle
+        The unladen vehicle: itself, its file, or the name of a bundled model.
+    cargo
+        What it carries, or its file.
+    out
+        The file to write; it extends the unladen vehicle's.
+    name
+        The laden vehicle's (default: that of its file).
+
+    Raises
+    ------
+    InputError
+        When the vehicle has no such body, hinge or axle, or the laden vehicle would not be valid; nothing is then left behind.
+    """
+    empty = as_vehicle(vehicle)
+    load = cargo if isinstance(cargo, Cargo) else load_cargo(Path(cargo))
+    path = Path(out)
+    if not empty.files:
+        raise ArgumentError(f"`vehicle`: {empty.name} was not read from a file, which the laden vehicle's could extend", "vehicle")
+    check_results([path])
+    text = laden_text(empty, load, path.parent, as_name(path.stem) if name is None else name)
+    try:
+        with temporary_file(path.parent) as draft:
+            draft.write_text(text, encoding="utf-8")
+            load_vehicle(draft)
+    except InputError as error:
+        raise InputError(f"the laden vehicle would not be valid: {error.message}") from error
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror}") from error
+    write_text(path, text)
+    return load_vehicle(path)
 
 
 def laden_text(vehicle: Vehicle, cargo: Cargo, folder: Path, name: str) -> str:

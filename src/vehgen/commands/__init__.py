@@ -7,7 +7,7 @@ import ast
 import inspect
 import io
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from types import ModuleType
 
@@ -31,7 +31,7 @@ from vehgen.commands import (
     validate,
 )
 from vehgen.commands.faults import end_of, show_warnings
-from vehgen.errors import InputError, shortened
+from vehgen.errors import ArgumentError, InputError, shortened
 from vehgen.files import guarding_results, noting_reads
 
 COMMANDS = (
@@ -77,7 +77,7 @@ def make_parser() -> argparse.ArgumentParser:
         )
         command.add_arguments(sub)
         _add_debug(sub)
-        sub.set_defaults(run=command.run)
+        sub.set_defaults(run=command.run, argument_options=getattr(command, "ARGUMENT_OPTIONS", {}))
     return parser
 
 
@@ -108,9 +108,28 @@ def _run(words: list[str]) -> int | None:
     else:
         show_warnings()
         with noting_reads(), guarding_results(getattr(options, "force", False)):
-            code: int | None = options.run(options)
-            return code
+            try:
+                code: int | None = options.run(options)
+                return code
+            except ArgumentError as error:
+                raise InputError(in_options(error, options.argument_options), error.position) from error
     return None
+
+
+def in_options(error: ArgumentError, options: Mapping[str, str]) -> str:
+    """Return an error's message with options in the places of the arguments it names: `speed_error` becomes --speed-error.
+
+    Parameters
+    ----------
+    error
+        An error of the API.
+    options
+        The options that are not called as their arguments.
+    """
+    message = error.message
+    for name in error.names:
+        message = message.replace(f"`{name}`", options.get(name, f"--{name.replace('_', '-')}"))
+    return message
 
 
 def _summary(command: ModuleType) -> str:

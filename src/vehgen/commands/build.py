@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 from vehgen.commands.results import add_out, folder_named
 from vehgen.commands.terminal import add_vehicle, console, load, print_json, print_table, warn
-from vehgen.files import check_results
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vehgen.mechanics import EquationsOfMotion, StaticLoads
     from vehgen.simulate import Mode
+    from vehgen.simulate.build import Build
 
 EXAMPLE = "vehgen build tractor5.yaml --out build/tractor5"
 
@@ -32,31 +32,20 @@ def run(options: argparse.Namespace) -> None:
     start = time.perf_counter()
     vehicle, _free = load(options)
     folder = folder_named(options.out, Path("build") / vehicle.name)
-    from vehgen.report import build_files, write_build_folder
+    from vehgen.report import build, build_files
 
-    check_results(build_files(folder, plots=not options.no_plots))
-    from vehgen.codegen import Kernel
-    from vehgen.mechanics import derive, static_loads
-    from vehgen.simulate import natural_modes
-    from vehgen.simulate.build import body_channels
-    from vehgen.simulate.lint import lint
-
-    model = derive(vehicle, body_channels(vehicle))
-    values = model.values(options.parameter_set)
-    modes = natural_modes(model, values)
-    loads = static_loads(model, values)
-    findings = lint(model, values)
-    kernel = Kernel(model)
-    kernel.compile()
-    written = write_build_folder(folder, model, values, modes, loads, kernel.source, findings, plots=not options.no_plots)
+    found = build(vehicle, folder, parameter_set=options.parameter_set, plots=not options.no_plots)
     seconds = time.perf_counter() - start
-    if options.json:
-        print_json(_summary(model, values, modes, loads, findings, kernel.source.operation_counts, folder, written))
-        return
-    _show(model, values, modes, loads)
+    model, kernel = found.model, found.kernel
+    assert model is not None
+    assert kernel is not None
     counts = kernel.source.operation_counts
+    if options.json:
+        print_json(_summary(model, found, counts, folder, build_files(folder, plots=not options.no_plots)))
+        return
+    _show(model, found.values, found.modes, found.loads)
     print_table("Kernel", ("phase", "operations"), [(phase, str(count)) for phase, count in counts.items()], right=(1,))
-    warn(findings)
+    warn(found.warnings)
     console().print(f"built in {seconds:.1f} s; open {folder / 'index.html'}", highlight=False, markup=False)
 
 
@@ -101,26 +90,17 @@ def _show(model: EquationsOfMotion, values: dict[str, float], modes: Sequence[Mo
     )
 
 
-def _summary(
-    model: EquationsOfMotion,
-    values: dict[str, float],
-    modes: Sequence[Mode],
-    loads: StaticLoads,
-    findings: list[str],
-    counts: dict[str, int],
-    folder: Path,
-    written: list[Path],
-) -> dict[str, object]:
+def _summary(model: EquationsOfMotion, found: Build, counts: dict[str, int], folder: Path, written: list[Path]) -> dict[str, object]:
     keys = ("name", "undamped_hz", "damped_hz", "damping_ratio")
     return {
         "vehicle": model.vehicle.name,
         "coordinates": [item.name for item in model.coordinates],
-        "parameters": values,
-        "modes": [{key: getattr(mode, key) for key in keys} for mode in modes],
-        "axles": loads.axles,
-        "hinges": loads.hinges,
-        "operation_counts": {**counts, **model.operation_counts()},
-        "warnings": findings,
+        "parameters": found.values,
+        "modes": [{key: getattr(mode, key) for key in keys} for mode in found.modes],
+        "axles": found.loads.axles,
+        "hinges": found.loads.hinges,
+        "operation_counts": {**counts, **found.operation_counts},
+        "warnings": list(found.warnings),
         "folder": str(folder),
         "files": [path.name for path in written],
     }

@@ -7,13 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehgen.commands.faults import STOPPED
+from vehgen.commands.option_strings import read_band, split_list
 from vehgen.commands.results import add_out, folder_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table, warn
-from vehgen.errors import InputError, shown
-from vehgen.files import check_results, write_text
+from vehgen.files import check_results, note_read, write_text
 
 if TYPE_CHECKING:
-    from vehgen.calibrate.calibration import Settings
     from vehgen.calibrate.result import CalibrationSummary
 
 EXAMPLE = "vehgen calibrate tractor5.yaml hump_2ms.yaml hump_3ms.yaml --method joint --out calibrated"
@@ -52,37 +51,52 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int | None:
     """Calibrate and write the vehicle file, the result and figures; returns an exit code where Ctrl-C ended it early."""
-    from vehgen.calibrate.calibration import calibrate
-    from vehgen.calibrate.summary import summarise
+    from vehgen.calibrate.api import calibrate, check_numbers
     from vehgen.commands.progress import Bars
     from vehgen.files.names import joined_name
     from vehgen.files.results import json_text
-    from vehgen.fit.parallel import runner_at
-    from vehgen.fit.prior_data import load_prior_data
-    from vehgen.fit.problem import make_problem
+    from vehgen.fit.band import CALIBRATION_BAND_HZ
     from vehgen.fit.trial import load_trials
     from vehgen.report.plots.calibration_plots import calibration_figure_files, save_calibration_figures
     from vehgen.vehicle import load_vehicle
 
-    _check_numbers(options)
+    band = read_band(options.band) if options.band else CALIBRATION_BAND_HZ
+    errors = options.height_error, options.speed_error
+    check_numbers(options.size, options.generations, options.starts, options.bootstrap, options.seed, *errors, band)
     vehicle = load_vehicle(options.vehicle)
-    problem = make_problem(load_trials(options.runs, vehicle))
-    facts = load_prior_data(options.facts, problem) if options.facts else None
+    trials = load_trials(options.runs, vehicle)
+    if options.facts is not None:
+        note_read(options.facts)
     folder = folder_named(options.out, f"{Path(options.vehicle).stem}_calibrated")
     name = joined_name(vehicle.name, "calibrated")
     files, checkpoint = [folder / f"{name}.yaml", folder / "calibration.json"], folder / "search.json"
     check_results([*files, checkpoint, *calibration_figure_files(folder)])
-    settings = _settings(options)
-    with runner_at(options.scheduler) as runner:
-        with Bars(quiet=options.json) as progress:
-
-            def tell(label: str, done: int, total: int, best: float) -> None:
-                progress.tell(label, done, total, f"best {best:.5g}")
-
-            found = calibrate(problem, settings, facts, tell, checkpoint, options.resume, runner)
-            if found.stopped:
-                progress.say("stopped: the best so far is kept; --resume goes on")
-        outcome = summarise(found, facts, options.combination, 0 if found.stopped else options.bootstrap, runner)
+    with Bars(quiet=options.json) as progress:
+        outcome = calibrate(
+            vehicle,
+            trials,
+            method=options.method,
+            sensors=split_list(options.sensors),
+            freeze=split_list(options.freeze),
+            search=options.search,
+            size=options.size,
+            generations=options.generations,
+            starts=options.starts,
+            polish=not options.no_polish,
+            seed=options.seed,
+            band=band,
+            height_error=options.height_error,
+            speed_error=options.speed_error,
+            facts=options.facts,
+            combinations=options.combination,
+            bootstrap=options.bootstrap,
+            scheduler=options.scheduler,
+            checkpoint=checkpoint,
+            resume=options.resume,
+            progress=lambda label, done, total, best: progress.tell(label, done, total, f"best {best:.5g}"),
+        )
+        if outcome.stopped:
+            progress.say("stopped: the best so far is kept; --resume goes on")
     write_text(files[0], outcome.vehicle_text(folder, name))
     write_text(files[1], json_text(outcome))
     files += save_calibration_figures(outcome, folder)
@@ -91,54 +105,7 @@ def run(options: argparse.Namespace) -> int | None:
         print_json({**data, "files": [str(path) for path in files]})
     else:
         _show(outcome, files)
-    return STOPPED if found.stopped else None
-
-
-def _check_numbers(options: argparse.Namespace) -> None:
-    """Refuse numbers that no search can use, before anything is read or made."""
-    from vehgen.files.limits import RELATIVE_ERROR, check_count, check_seed
-
-    check_seed(options.seed, "--seed")
-    for name, least, most in (("size", 2, 100_000), ("generations", 0, 1_000_000), ("starts", 0, 10_000), ("bootstrap", 0, 100_000)):
-        check_count(getattr(options, name), f"--{name}", least, most)
-    for name, value in (("--height-error", options.height_error), ("--speed-error", options.speed_error)):
-        if not value >= 0:
-            raise InputError(f"{name} must not be below 0, found {value}")
-        RELATIVE_ERROR.check(value, name)
-
-
-def _settings(options: argparse.Namespace) -> Settings:
-    from vehgen.calibrate.calibration import Settings
-    from vehgen.calibrate.genetic import GeneticSearch
-    from vehgen.fit.band import CALIBRATION_BAND_HZ
-    from vehgen.fit.misfit import Nuisances
-
-    kind = options.search or ("ga" if options.method == "shcm" else "mpga")
-    return Settings(
-        method=options.method,
-        sensors=_list(options.sensors),
-        frozen=_list(options.freeze),
-        search=GeneticSearch(3 if kind == "mpga" else 1, options.size, options.generations),
-        seed=options.seed,
-        polish=not options.no_polish,
-        starts=max(1, options.starts),
-        band=_band(options.band) if options.band else CALIBRATION_BAND_HZ,
-        nuisances=Nuisances(speed=options.speed_error, height=options.height_error),
-    )
-
-
-def _list(text: str | None) -> tuple[str, ...]:
-    return tuple(part.strip() for part in text.split(",") if part.strip()) if text else ()
-
-
-def _band(text: str) -> tuple[float, float]:
-    try:
-        low, high = (float(part) for part in text.split(","))
-    except ValueError:
-        raise InputError(f"--band wants two frequencies in Hz, e.g. 0.3,40; found {shown(text)}") from None
-    if not 0 < low < high:
-        raise InputError(f"--band wants 0 < LOW < HIGH, found {shown(text)}")
-    return low, high
+    return STOPPED if outcome.stopped else None
 
 
 def _show(outcome: CalibrationSummary, files: list[Path]) -> None:

@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehgen.commands.faults import STOPPED
+from vehgen.commands.option_strings import split_list
 from vehgen.commands.results import add_out, folder_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table, say
 from vehgen.files import check_results, write_text
 
 if TYPE_CHECKING:
-    from vehgen.diagnose.pipeline import Diagnosis
+    from vehgen.diagnose import Diagnosis
 
 EXAMPLE = "vehgen diagnose tractor5.yaml hump_2ms.yaml hump_3ms.yaml high_2ms.yaml --out diagnosis"
 
@@ -34,30 +35,22 @@ def run(options: argparse.Namespace) -> int | None:
     from dataclasses import replace
 
     from vehgen.commands.progress import Bars
-    from vehgen.diagnose.pipeline import diagnose
+    from vehgen.diagnose import diagnose
     from vehgen.diagnose.writing import effect_file, file_name, files_named_so
-    from vehgen.effects import extended_library
-    from vehgen.errors import InputError, did_you_mean, shown
+    from vehgen.effects import effects_named
     from vehgen.files.results import json_text
     from vehgen.fit.trial import load_trials
     from vehgen.report.pages.diagnosis_page import write_diagnosis_page
     from vehgen.vehicle import load_vehicle
 
-    known = extended_library(options.library)
-    chosen = list(known.values())
-    if options.effects:
-        names = list(dict.fromkeys(part.strip() for part in options.effects.split(",")))
-        for name in names:
-            if name not in known:
-                raise InputError(f"no effect {shown(name)}; {did_you_mean(name, known)}")
-        chosen = [known[name] for name in names]
+    chosen = effects_named(split_list(options.effects) or None, options.library)
     vehicle = load_vehicle(options.vehicle)
     trials = load_trials(options.runs, vehicle)
     folder = folder_named(options.out, f"{Path(options.vehicle).stem}_diagnosis")
     files = [folder / "diagnosis.json", folder / "report.html"]
     check_results([*files, *files_named_so(vehicle.name, folder)])
     with Bars(quiet=options.json) as bars:
-        found = diagnose(trials, chosen, options.everywhere, bars.tell, workers=os.cpu_count() or 1)
+        found = diagnose(vehicle, trials, effects=chosen, everywhere=options.everywhere, workers=os.cpu_count() or 1, progress=bars.tell)
     if found.chosen:
         name = file_name(vehicle.name, found.chosen[-1])
         path = folder / f"{name}.yaml"

@@ -17,9 +17,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Print the library."""
-    from vehgen.effects import extended_library
+    from vehgen.effects import effects
 
-    known = extended_library(options.library)
+    known = effects(options.library)
     if options.json:
         print_json(
             [

@@ -4,15 +4,9 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from vehgen.commands.results import add_out, file_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table
-from vehgen.files import check_results, write_text
-from vehgen.files.atomic import temporary_file
-
-if TYPE_CHECKING:
-    from vehgen.vehicle import Vehicle
 
 EXAMPLE = "vehgen laden tractor5.yaml bananas.yaml --out laden.yaml"
 
@@ -28,16 +22,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Write the laden vehicle and print the comparison."""
-    from vehgen.cargo import compare_laden, laden_text, load_cargo
-    from vehgen.files.names import as_name
+    from vehgen.cargo import compare_laden, laden, load_cargo
     from vehgen.vehicle import load_vehicle
 
     vehicle, cargo = load_vehicle(options.vehicle), load_cargo(options.cargo)
     vehicle.values(options.parameter_set)
     path = Path(f"{vehicle.name}_laden.yaml") if options.out is None else file_named(options.out)
-    check_results([path])
-    laden = _write(path, laden_text(vehicle, cargo, path.parent, as_name(path.stem)))
-    found = compare_laden(vehicle, laden, cargo.file.on, options.parameter_set)
+    found = compare_laden(vehicle, laden(vehicle, cargo, out=path), cargo.file.on, options.parameter_set)
     (before, after), (forward, up) = found.carrier, found.cog_shift
     if options.json:
         data = {
@@ -63,20 +54,3 @@ def run(options: argparse.Namespace) -> None:
     mode_rows = [(name, "" if light is None else f"{light:.4f}", f"{heavy:.4f}") for name, light, heavy in found.modes]
     print_table("Undamped natural frequencies, Hz", ("mode", "unladen", "laden"), mode_rows, right=(1, 2))
     tell_written([path])
-
-
-def _write(path: Path, text: str) -> Vehicle:
-    """Write a vehicle file that was read back from a draft beside it; nothing is left behind when it cannot be read."""
-    from vehgen.errors import InputError
-    from vehgen.vehicle import load_vehicle
-
-    try:
-        with temporary_file(path.parent) as draft:
-            draft.write_text(text, encoding="utf-8")
-            laden = load_vehicle(draft)
-    except InputError as error:
-        raise InputError(f"the laden vehicle would not be valid: {error.message}") from error
-    except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror}") from error
-    write_text(path, text)
-    return laden

@@ -20,9 +20,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Read a result and draw it."""
-    from vehgen.report.redraw import redraw
+    from vehgen.report import report
 
-    files = redraw(options.file, folder_named(options.out, options.file.parent))
+    files = report(options.file, folder_named(options.out, options.file.parent))
     if options.json:
         print_json({"files": [str(path) for path in files]})
         return

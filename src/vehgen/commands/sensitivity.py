@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from vehgen.commands.option_strings import split_list
 from vehgen.commands.results import add_out, folder_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table
 from vehgen.files import check_results, write_text
@@ -23,17 +24,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Compute sensitivity indices, print their ranking and draw them."""
-    from vehgen.calibrate.sensitivity import sensitivity_indices
+    from vehgen.calibrate import sensitivity
     from vehgen.files.results import json_text
     from vehgen.report.plots.sensitivity_plots import save_sensitivity_figures, sensitivity_figure_files
     from vehgen.simulate import load_run
     from vehgen.vehicle import load_vehicle
 
     run_ = load_run(options.run_file, load_vehicle(options.vehicle))
-    names = [part.strip() for part in options.parameters.split(",")] if options.parameters else None
     folder = folder_named(options.out, f"{Path(options.vehicle).stem}_sensitivity")
     check_results([folder / "sensitivity.json", *sensitivity_figure_files([output.name for output in run_.outputs()], folder)])
-    found = sensitivity_indices(run_, names)
+    found = sensitivity(run_, split_list(options.parameters))
     files = [folder / "sensitivity.json"]
     write_text(files[0], json_text(found))
     files += save_sensitivity_figures(found, folder)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from vehgen.commands.option_strings import split_list
 from vehgen.commands.terminal import add_json, print_json, print_table
 
 EXAMPLE = "vehgen sensors tractor5.yaml hump_2ms.yaml --count 3"
@@ -20,15 +21,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Print the best places for 1, 2, ... sensors."""
-    from vehgen.calibrate.sensor_placement import advise_sensors
-    from vehgen.files.limits import check_count
-    from vehgen.simulate import load_run
-    from vehgen.vehicle import load_vehicle
+    from vehgen.calibrate import advise_sensors
 
-    check_count(options.count, "--count", 1, 100)
-    run_ = load_run(options.run_file, load_vehicle(options.vehicle))
-    names = [part.strip() for part in options.parameters.split(",")] if options.parameters else None
-    found = advise_sensors(run_, options.count, names)
+    found = advise_sensors(options.run_file, options.count, parameters=split_list(options.parameters), vehicle=options.vehicle)
     if options.json:
         print_json(
             {

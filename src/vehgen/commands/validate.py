@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import argparse
-from itertools import pairwise
 from pathlib import Path
 
+from vehgen.commands.option_strings import read_bands
 from vehgen.commands.results import add_out, folder_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table
 from vehgen.files import check_results, write_text
 
 EXAMPLE = "vehgen validate calibrated/tractor5_calibrated.yaml road_b.yaml --out validation"
+ARGUMENT_OPTIONS = {"reference": "--astm"}
 
 
 VALIDATION_CURVES = ("frequency", "measured_psd", "simulated_psd", "time", "measured", "simulated")
@@ -29,29 +30,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Validate and write the table and figures."""
-    from dataclasses import replace
-
-    from vehgen.calibrate.validation import reference_spectrum, validate
-    from vehgen.errors import InputError, shown
+    from vehgen.calibrate import validate
+    from vehgen.calibrate.validation import reference_spectrum
     from vehgen.files.results import json_text
     from vehgen.fit.trial import load_trials
     from vehgen.report.plots.validation_plots import save_validation_figures, validation_figure_files
     from vehgen.vehicle import load_vehicle
 
-    reference = reference_spectrum(options.astm) if options.astm is not None else None
-    bands = None
-    if options.bands:
-        try:
-            edges = [float(part) for part in options.bands.split(",")]
-        except ValueError:
-            raise InputError(f"--bands wants frequencies in Hz, e.g. 2,5,8,12; found {shown(options.bands)}") from None
-        bands = tuple(pairwise(edges))
+    if options.astm is not None:
+        reference_spectrum(options.astm)
+    bands = read_bands(options.bands) if options.bands else None
     vehicle = load_vehicle(options.vehicle)
     trials = load_trials(options.runs, vehicle)
     folder = folder_named(options.out, f"{Path(options.vehicle).stem}_validation")
     files = [folder / "validation.json"]
     check_results([*files, *validation_figure_files(folder)])
-    found = replace(validate(trials, bands), reference=reference)
+    found = validate(vehicle, trials, bands=bands, reference=options.astm)
     write_text(files[0], json_text(found))
     files += save_validation_figures(found, folder)
     if options.json:

@@ -16,7 +16,7 @@ from vehgen.effects import Effect, library
 from vehgen.fit.trial import Trial
 
 
-def diagnose(
+def diagnose_trials(
     trials: Sequence[Trial],
     effects: Sequence[Effect] | None = None,
     everywhere: bool = False,
@@ -32,9 +32,9 @@ def diagnose(
         Runs with recordings, of one vehicle. At least three are needed to name anything: one in three stays untouched by all fits.
     effects
         The library to try (default: all effects known).
-    everything
+    everywhere
         Try the whole library everywhere, whatever the place test says.
-    tell
+    progress
         Told of progress.
     band
         Frequencies compared [Hz] (default: what the run files ask for).
@@ -70,4 +70,4 @@ def with_evidence(found: Decided, progress: DiagnosisProgress) -> Diagnosis:
     return Diagnosis(found.verdict, stopped, evidence, found.models)
 
 
-__all__ = ["Detection", "Diagnosis", "detect", "diagnose", "localise", "search_round", "shortlist", "split_runs"]
+__all__ = ["Detection", "Diagnosis", "detect", "diagnose_trials", "localise", "search_round", "shortlist", "split_runs"]

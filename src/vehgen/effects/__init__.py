@@ -4,7 +4,7 @@ Each tells where it attaches, what it changes and how many numbers it costs; oth
 """
 
 from vehgen.effects.base import Change, Effect, EffectParameter
-from vehgen.effects.entry import extended_library, load_effects
+from vehgen.effects.entry import effects, effects_named, load_effects
 from vehgen.effects.kinds import LineEffect, RunEffect, VehicleEffect
 from vehgen.effects.locator import EffectLocator, EffectSite
 from vehgen.effects.registry import EFFECTS, library
@@ -19,7 +19,8 @@ __all__ = [
     "LineEffect",
     "RunEffect",
     "VehicleEffect",
-    "extended_library",
+    "effects",
+    "effects_named",
     "library",
     "load_effects",
 ]

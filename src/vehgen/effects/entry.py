@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import os
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ from vehgen.effects.base import Effect
 from vehgen.effects.entry_model import EffectsFile
 from vehgen.effects.entry_reader import EntryReader
 from vehgen.effects.registry import library
-from vehgen.errors import InputError, shown
+from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
 from vehgen.files.entry import read_entries
 
 
@@ -19,8 +20,8 @@ def effects_schema() -> dict[str, Any]:
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **EffectsFile.model_json_schema(), "title": "vehgen effects file"}
 
 
-def extended_library(paths: Iterable[str | Path]) -> dict[str, Effect]:
-    """Return all effects known, then those of files.
+def effects(files: Iterable[str | os.PathLike[str]] | str | os.PathLike[str] = ()) -> dict[str, Effect]:
+    """Return all effects known, then those of files, by name.
 
     Raises
     ------
@@ -28,12 +29,37 @@ def extended_library(paths: Iterable[str | Path]) -> dict[str, Effect]:
         As :func:`load_effects`, and for names that two files share.
     """
     known = library()
-    for path in paths:
+    for path in [files] if isinstance(files, str | os.PathLike) else files:
         known |= load_effects(path, known)
     return known
 
 
-def load_effects(path: str | Path, taken: Mapping[str, Effect] | None = None) -> dict[str, Effect]:
+def effects_named(
+    names: Sequence[str | Effect] | None, files: Iterable[str | os.PathLike[str]] | str | os.PathLike[str] = ()
+) -> list[Effect]:
+    """Return the effects that an argument means: all of the library and of files, or those given by name or themselves.
+
+    Raises
+    ------
+    InputError
+        For a name that no effect has.
+    """
+    known = effects(files)
+    if names is None:
+        return list(known.values())
+    if isinstance(names, str | Effect):
+        raise ArgumentError("`effects`: a list of effects or of their names was expected", "effects")
+    chosen: list[Effect] = []
+    for item in names:
+        if not isinstance(item, Effect) and item not in known:
+            raise ArgumentError(f"`effects`: no effect {shown(item)}; {did_you_mean(str(item), known)}", "effects")
+        effect = item if isinstance(item, Effect) else known[item]
+        if effect not in chosen:
+            chosen.append(effect)
+    return chosen
+
+
+def load_effects(path: str | os.PathLike[str], taken: Mapping[str, Effect] | None = None) -> dict[str, Effect]:
     """Read and check a file of effects.
 
     Parameters
@@ -48,7 +74,7 @@ def load_effects(path: str | Path, taken: Mapping[str, Effect] | None = None) ->
     InputError
         With file, line and column, what is wrong and what would be right.
     """
-    file, document = read_entries(EffectsFile, path)
+    file, document = read_entries(EffectsFile, Path(path))
     known = library() if taken is None else taken
     found = {}
     for name, entry in file.effects.items():

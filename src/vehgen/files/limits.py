@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vehgen.errors import InputError
+from vehgen.errors import ArgumentError, InputError, shown
 from vehgen.files.units import (
     DAMPING,
     FORCE,
@@ -88,13 +88,21 @@ VEHICLE_LIMITS: dict[Dimension, Limit] = {
 """What the quantities of a vehicle may be, by their dimension."""
 
 
-def check_seed(seed: int, where: str) -> None:
-    """Raise InputError for a seed that is negative or beyond LARGEST_SEED."""
-    if not 0 <= seed <= LARGEST_SEED:
-        raise InputError(f"{where}: a seed is a whole number from 0 to {LARGEST_SEED}, found {seed}")
+def check_seed(seed: int, name: str) -> None:
+    """Raise ArgumentError for a seed that is negative or beyond LARGEST_SEED; `name` is the argument's."""
+    if not (isinstance(seed, int) and 0 <= seed <= LARGEST_SEED):
+        raise ArgumentError(f"`{name}`: a seed is a whole number from 0 to {LARGEST_SEED}, found {shown(seed)}", name)
 
 
-def check_count(count: int, where: str, least: int, most: int) -> None:
-    """Raise InputError for a number of things below `least` or above `most`."""
-    if not least <= count <= most:
-        raise InputError(f"{where}: a whole number from {least} to {most} was expected, found {count}")
+def check_count(count: int, name: str, least: int, most: int) -> None:
+    """Raise ArgumentError for a number of things below `least` or above `most`; `name` is the argument's."""
+    if not (isinstance(count, int) and least <= count <= most):
+        raise ArgumentError(f"`{name}`: a whole number from {least} to {most} was expected, found {shown(count)}", name)
+
+
+def check_share(number: float, name: str) -> None:
+    """Raise ArgumentError for a relative uncertainty below 0 or beyond 1; `name` is the argument's."""
+    if not number >= 0:
+        raise ArgumentError(f"`{name}` must not be below 0, found {number}", name)
+    if (reason := RELATIVE_ERROR.refusal(number)) is not None:
+        raise ArgumentError(f"`{name}`: {reason}", name)

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from vehgen.road.iso8608 import REFERENCE_CYCLES_PER_M
-from vehgen.simulate.frequency import frequency_response
+from vehgen.simulate.frequency import transfer_functions
 
 if TYPE_CHECKING:
     from vehgen.fit.trial import Trial
@@ -161,7 +161,7 @@ def transform(values: Array, dt: float, inside: NDArray[np.bool_]) -> Complex:
 def road_answer(trial: Trial, frequency: Array, values: dict[str, float]) -> RoadAnswer:
     """Return the channels' answer to a road of level 1 that all axles follow, at frequencies `shape (n,)` [Hz]."""
     model = trial.simulator.model
-    displaced, pushed = frequency_response(model.numeric(values), frequency)
+    displaced, pushed = transfer_functions(model.numeric(values), frequency)
     response = displaced[:, :, : len(trial.run.vehicle.axles)]
     speed, dt = trial.scenario.top_speed, trial.recording.dt
     late = model.wheel_offsets(values) / speed

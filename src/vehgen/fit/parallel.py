@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, TypeVar
 
-from vehgen.errors import InputError
+from vehgen.errors import ArgumentError, InputError
 
 Input = TypeVar("Input")
 R = TypeVar("R")
@@ -61,7 +61,7 @@ def runner_at(scheduler: str | None) -> Iterator[Runner]:
     try:
         connect: Any = import_module("distributed").Client
     except ImportError as error:
-        raise InputError("a `scheduler` needs Dask: pip install 'vehgen[cluster]'") from error
+        raise ArgumentError("`scheduler` needs Dask: pip install 'vehgen[cluster]'", "scheduler") from error
     try:
         client = connect(scheduler, timeout=10)
     except (OSError, ValueError) as error:

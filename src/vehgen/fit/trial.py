@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -9,10 +10,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.errors import InputError, did_you_mean, shown
+from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
 from vehgen.measure import Recording, read_recording
-from vehgen.simulate import Run, Scenario, Simulator, SimulatorPool, load_run, make_scenario
-from vehgen.vehicle import Vehicle
+from vehgen.simulate import Run, RunLike, Scenario, Simulator, SimulatorPool, as_run, make_scenario
+from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 
 Array = NDArray[np.float64]
 LONGEST_STEP_S = 1e-3
@@ -64,23 +65,46 @@ class Trial:
         return replace(self, run=run, simulator=simulator, values=values)
 
 
-def load_trials(paths: Sequence[str | Path], vehicle: Vehicle | None = None) -> list[Trial]:
-    """Read run files with their recordings; `vehicle` takes the place of the one they name.
+TrialLike = Trial | RunLike
+"""A trial, a run with a recording, or its file."""
+
+
+def load_trials(runs: TrialLike | Sequence[TrialLike], vehicle: VehicleLike | None = None) -> list[Trial]:
+    """Return runs with their recordings, ready to be simulated.
+
+    Parameters
+    ----------
+    runs
+        Run files, runs, or trials that stay as they are; a single one is taken for a list of one.
+    vehicle
+        In place of the one that the runs name: itself, its file, or the name of a bundled model.
 
     Raises
     ------
     InputError
         For a run that cannot be used, with its place.
     """
+    own = None if vehicle is None else as_vehicle(vehicle)
     simulators = SimulatorPool()
     trials: list[Trial] = []
-    for path in paths:
-        trial = make_trial(load_run(path, vehicle), Path(path).stem, simulators)
-        taken = {item.name for item in trials}
-        trials.append(replace(trial, name=trial.name if trial.name not in taken else str(path)))
+    for item in [runs] if isinstance(runs, Trial | Run | str | os.PathLike) else runs:
+        trial, path = _trial(item, own, simulators)
+        taken = {other.name for other in trials}
+        trials.append(replace(trial, name=trial.name if trial.name not in taken else path))
     if not trials:
-        raise InputError("at least one run was expected")
+        raise ArgumentError("`runs`: at least one run was expected", "runs")
     return trials
+
+
+def _trial(item: TrialLike, vehicle: Vehicle | None, simulators: SimulatorPool) -> tuple[Trial, str]:
+    """Return the trial that an argument means, and its path."""
+    if isinstance(item, Trial):
+        return (item if vehicle is None or item.run.vehicle is vehicle else item.with_vehicle(vehicle, simulators)), item.name
+    if not isinstance(item, Run | str | os.PathLike):
+        raise ArgumentError(f"`runs`: run files, runs or trials were expected, found {type(item).__name__}", "runs")
+    run = as_run(item, vehicle)
+    path = run.document.position.file if isinstance(item, Run) and run.document.position else item
+    return make_trial(run, Path(str(path)).stem, simulators), str(path)
 
 
 def make_trial(run: Run, name: str, simulators: SimulatorPool | None = None) -> Trial:

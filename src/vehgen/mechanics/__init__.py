@@ -5,6 +5,7 @@ Layout, kinematics, energies, Lagrange's equations, sensor rows, static loads an
 
 from vehgen.mechanics.derivation import derive
 from vehgen.mechanics.equations_of_motion import GRAVITY, Channel, EquationsOfMotion, NumericModel
+from vehgen.mechanics.given import ModelLike, all_values, as_model
 from vehgen.mechanics.kinematics import Coordinate
 from vehgen.mechanics.outputs import ElementOutput, Output, Place, PointOutput
 from vehgen.mechanics.static_loads import StaticLoads, static_loads
@@ -15,11 +16,14 @@ __all__ = [
     "Coordinate",
     "ElementOutput",
     "EquationsOfMotion",
+    "ModelLike",
     "NumericModel",
     "Output",
     "Place",
     "PointOutput",
     "StaticLoads",
+    "all_values",
+    "as_model",
     "derive",
     "static_loads",
 ]

@@ -20,16 +20,16 @@ from vehgen.mechanics.layout import lay_out
 from vehgen.mechanics.outputs import Output, Place, PointOutput, element_channel, point_channel
 from vehgen.mechanics.rows import Row, SparseMatrix, add_outer, combine
 from vehgen.mechanics.symbols import number, parameter, to_sympy
-from vehgen.vehicle.model import Vehicle
+from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 
 
-def derive(vehicle: Vehicle, outputs: Iterable[Output] = (), forces: Iterable[Place] = ()) -> EquationsOfMotion:
+def derive(vehicle: VehicleLike, outputs: Iterable[Output] = (), forces: Iterable[Place] = ()) -> EquationsOfMotion:
     """Derive the equations of motion of a vehicle.
 
     Parameters
     ----------
     vehicle
-        A checked vehicle.
+        A vehicle, its file, or the name of a bundled model.
     outputs
         What to compute: quantities at points of bodies, and of suspensions, tyres and links.
     forces
@@ -41,7 +41,7 @@ def derive(vehicle: Vehicle, outputs: Iterable[Output] = (), forces: Iterable[Pl
         For an output or force at a place that the vehicle lacks, or a vehicle whose parts are nowhere.
 
     """
-    outputs, forces = tuple(outputs), tuple(forces)
+    vehicle, outputs, forces = as_vehicle(vehicle), tuple(outputs), tuple(forces)
     layout = lay_out(vehicle)
     motion = derive_kinematics(vehicle)
     energies, inputs = write_energies(vehicle, motion)

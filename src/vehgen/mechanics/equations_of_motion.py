@@ -54,6 +54,14 @@ class NumericModel:
     weight: NDArray[np.float64]
     outputs: dict[str, NDArray[np.float64]]
 
+    def state_matrices(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return A and B of x' = A x + B u with x = (q, q') and u = (w, w', f): displacement inputs, their rates, forces."""
+        n = len(self.M)
+        inverse = np.linalg.inv(self.M)
+        A = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ self.K, -inverse @ self.C]])
+        loads = np.hstack([self.P, self.Q, self.F])
+        return A, np.vstack([np.zeros((n, loads.shape[1])), inverse @ loads])
+
 
 @dataclass(frozen=True)
 class EquationsOfMotion:

@@ -15,6 +15,7 @@ from vehgen.files.result_fields import Array1D, PairKeys
 from vehgen.files.results import Result, Table
 from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
+from vehgen.mechanics.given import ModelLike, all_values, as_model
 from vehgen.vehicle.parts import GROUND
 
 
@@ -40,8 +41,17 @@ class StaticLoads(Result):
         return ("kind", "name", "force [N]"), [*rows, *((*key, force) for key, force in self.elements.items())]
 
 
-def static_loads(model: EquationsOfMotion, values: Mapping[str, float] | None = None) -> StaticLoads:
-    """Solve K q = weight at the given parameter values (default: the file's), with the laws that count from the unloaded position.
+def static_loads(model: ModelLike, values: Mapping[str, float] | None = None, *, parameter_set: str | None = None) -> StaticLoads:
+    """Solve K q = weight, with the laws that count from the unloaded position.
+
+    Parameters
+    ----------
+    model
+        Equations of motion, or a vehicle: itself, its file, or the name of a bundled model.
+    values
+        Parameters [SI] by name; what is not named keeps the value of the set, or the file's.
+    parameter_set
+        One of the vehicle's sets.
 
     Raises
     ------
@@ -49,7 +59,8 @@ def static_loads(model: EquationsOfMotion, values: Mapping[str, float] | None = 
         When K is singular (part of the vehicle rests on nothing), or when those laws cannot carry the weight.
 
     """
-    values = values or model.values()
+    model = as_model(model)
+    values = all_values(model, values, parameter_set)
     if model.is_preloaded:
         found = equilibria(model, np.array([[values[name] for name in model.parameters]], dtype=np.float64))
         if found.failures:

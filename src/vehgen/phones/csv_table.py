@@ -16,7 +16,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.errors import InputError, Position, did_you_mean, shortened, shown
+from vehgen.errors import ArgumentError, InputError, Position, did_you_mean, shortened, shown
 from vehgen.files.csv_rows import csv_rows
 from vehgen.files.reading import split_lines
 from vehgen.files.units import ACCELERATION, FREQUENCY, STANDARD_GRAVITY, TIME, Dimension, parse_unit
@@ -157,11 +157,9 @@ def read_plain(table: Table, columns: ColumnMap | None) -> PhoneExport:
     """
     if columns is None:
         shown = ", ".join(repr(item) for item in table.header[:12])
-        raise InputError(
-            f"{table.name} is of no app that vehgen knows (its columns: {shown}); say which of its `columns` are which: "
-            "time=...,acceleration=...,pitch_rate=..."
-        )
-    time = _column(table, columns.time) * unit_factor(columns.time_unit, TIME, "time_unit")
+        message = f"{table.name} is of no app that vehgen knows (its columns: {shown}); say which columns are which with `columns`: "
+        raise ArgumentError(f"{message}time=...,acceleration=...,pitch_rate=...", "columns")
+    time = _column(table, columns.time) * unit_factor(columns.time_unit, TIME, "`columns` time_unit")
     wanted = (
         (VERTICAL_ACCELERATION_STREAM, columns.acceleration, columns.acceleration_unit, ACCELERATION, "m/s^2"),
         (PITCH_RATE_STREAM, columns.pitch_rate, columns.pitch_rate_unit, FREQUENCY, "rad/s"),
@@ -170,7 +168,7 @@ def read_plain(table: Table, columns: ColumnMap | None) -> PhoneExport:
     streams = {}
     for name, column, unit, dimension, si in wanted:
         if column is not None:
-            values = _column(table, column) * unit_factor(unit, dimension, f"the unit of {column}")
+            values = _column(table, column) * unit_factor(unit, dimension, "`columns`")
             streams[name] = Stream(time, values[:, None], (column,), si)
     return PhoneExport("plain CSV", streams)
 
@@ -188,5 +186,5 @@ def unit_factor(unit: str, dimension: Dimension, where: str) -> float:
         return extra[unit, dimension]
     factor, found = parse_unit(unit)
     if found != dimension:
-        raise InputError(f"{where}: expected a unit of {dimension}, found {shown(unit)}")
+        raise ArgumentError(f"{where}: expected a unit of {dimension}, found {shown(unit)}", "columns")
     return factor

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from vehgen.errors import InputError
+from vehgen.errors import ArgumentError, InputError
 from vehgen.phones.archive import read_members
 from vehgen.phones.csv_table import ColumnMap, Table, read_plain, read_table
 from vehgen.phones.export import PhoneExport
@@ -45,5 +45,5 @@ def read_export(path: str | Path, columns: ColumnMap | None = None) -> PhoneExpo
     if any(is_phyphox(table) for table in tables):
         return read_phyphox([table for table in tables if is_phyphox(table)])
     if len(tables) > 1 and columns is not None:
-        raise InputError(f"{path} holds {len(tables)} tables; where `columns` are named, give the one CSV file")
+        raise ArgumentError(f"{path} holds {len(tables)} tables; with `columns`, give the one CSV file", "columns")
     return read_plain(tables[0], columns)

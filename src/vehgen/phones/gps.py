@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehgen.errors import InputError
+from vehgen.errors import ArgumentError
 from vehgen.phones.export import Stream
 
 MIN_MEDIAN_SPEED_M_S = 0.3
@@ -34,14 +34,14 @@ def crossing_speed(stream: Stream | None, start: float, end: float, name: str) -
     InputError
         Where no speed was recorded, or none worth the name.
     """
-    hint = "give the speed"
+    hint = "give `speed` in m/s, e.g. 2.0"
     if stream is None:
-        raise InputError(f"{name} recorded no GPS speed; {hint}, e.g. 2.0 m/s")
+        raise ArgumentError(f"{name} recorded no GPS speed; {hint}", "speed")
     part = stream.between(start, end).values[:, 0]
     part = part[np.isfinite(part) & (part >= 0)]
     if not len(part):
-        raise InputError(f"{name} has no valid GPS speed from {start:.1f} to {end:.1f} s; {hint}, e.g. 2.0 m/s")
+        raise ArgumentError(f"{name} has no valid GPS speed from {start:.1f} to {end:.1f} s; {hint}", "speed")
     median = float(np.median(part))
     if not MIN_MEDIAN_SPEED_M_S <= median <= 60.0:
-        raise InputError(f"{name}: the GPS speed over the crossing is {median:.2f} m/s, which cannot be; {hint}, e.g. 2.0 m/s")
+        raise ArgumentError(f"{name}: the GPS speed over the crossing is {median:.2f} m/s, which cannot be; {hint}", "speed")
     return CrossingSpeed(median, float(part.min()), float(part.max()), len(part))

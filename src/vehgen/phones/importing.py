@@ -5,6 +5,7 @@ clean -> orientation -> hump -> speed -> the vehicle's answer laid over each rec
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,16 +13,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.errors import InputError
+from vehgen.errors import ArgumentError, InputError
 from vehgen.measure.quality import NoiseFloor, find_clipping, noise_floor
 from vehgen.phones.clocks import TRUSTED, Match, epoch_disagreement
 from vehgen.phones.detect import read_export
 from vehgen.phones.export import Stream
 from vehgen.phones.hump_event import HumpEvent
 from vehgen.phones.locating import CLOCK_DOUBT, find_speed, locate
-from vehgen.phones.options import PhoneSensor, Plan
 from vehgen.phones.orientation import Orientation
 from vehgen.phones.phone import MARGIN, QUIET, Phone, make_phone
+from vehgen.phones.plan import PhoneSensor, Plan
 from vehgen.simulate import Simulator
 
 Array = NDArray[np.float64]
@@ -76,7 +77,7 @@ class Imported:
     warnings: tuple[str, ...]
 
 
-def import_phones(exports: Sequence[str | Path], plan: Plan) -> Imported:
+def read_pass(exports: Sequence[str | os.PathLike[str]], plan: Plan) -> Imported:
     """Turn the exports of the phones in one vehicle, one pass, into channels on one even clock.
 
     Parameters
@@ -92,16 +93,18 @@ def import_phones(exports: Sequence[str | Path], plan: Plan) -> Imported:
         For exports that cannot be read or used; it says what would help.
     """
     if len(exports) != len(plan.sensors) or not exports:
-        raise InputError(f"{len(exports)} exports and {len(plan.sensors)} sensors: give one sensor for each export, in the same order")
+        count = f"{len(exports)} exports and {len(plan.sensors)} sensors"
+        raise ArgumentError(f"{count}: give one of `sensors` for each export, in the same order", "sensors")
     if not 1.0 <= plan.top <= 500.0:
-        raise InputError(f"the top of the band must be from 1 to 500 Hz, found {plan.top:g} Hz")
+        raise ArgumentError(f"`top`: the top of the band must be from 1 to 500 Hz, found {plan.top:g} Hz", "top")
     if not 2 * plan.top <= plan.rate <= 1000.0 or abs(1000 / plan.rate - round(1000 / plan.rate)) > 1e-9:
-        raise InputError(f"the rate must be from {2 * plan.top:g} to 1000 Hz with a step of whole milliseconds, found {plan.rate:g} Hz")
+        reach = f"from {2 * plan.top:g} to 1000 Hz with a step of whole milliseconds"
+        raise ArgumentError(f"`rate`: the rate must be {reach}, found {plan.rate:g} Hz", "rate")
     names = [sensor.name for sensor in plan.sensors]
     if len(set(names)) < len(names):
-        raise InputError(f"two sensors have one name ({', '.join(names)}); each needs its own")
+        raise ArgumentError(f"`sensors`: two sensors have one name ({', '.join(names)}); each needs its own", "sensors")
     phones = [
-        make_phone(read_export(path, plan.columns), sensor, Path(path).name, plan.top)
+        make_phone(read_export(Path(path), plan.columns), sensor, Path(path).name, plan.top)
         for path, sensor in zip(exports, plan.sensors, strict=True)
     ]
     outputs = [output for phone in phones for output in phone.sensor.outputs(phone.rotation is not None)]
@@ -114,7 +117,9 @@ def import_phones(exports: Sequence[str | Path], plan: Plan) -> Imported:
     matches, arrivals = locate(phones, plan, simulator, simulator.parameters(values)[0], speed, distance, events)
     if plan.by_axles:
         if min(item.correlation for item in matches) < TRUSTED:
-            raise InputError("the simulated response fits the recordings too badly to find the speed from its axles; give the speed")
+            raise ArgumentError(
+                "the simulated response fits the recordings too badly to find the speed from its axles; give `speed`", "speed"
+            )
         speed, source = speed * matches[0].scale, f"by the axles' marks; {source}"
         matches = [replace(item, scale=1.0) for item in matches]
     return _assemble(phones, plan, speed, source, events, matches, arrivals, distance, wheels)
@@ -170,7 +175,7 @@ def _assemble(
         done.append(ImportedPhone(phone, zero, arrival, found_by, quiet, upward, pitch, orientation, event, item, noise, tuple(notes)))
     fitted = speed * matches[0].scale if all(item.correlation >= TRUSTED for item in matches) else None
     if fitted is not None and abs(fitted / speed - 1) > SPEED_DOUBT:
-        warnings.append(f"the axles' marks fit {fitted:.3f} m/s better than {speed:.3f} m/s ({source}); the speed `axles` takes that")
+        warnings.append(f"the axles' marks fit {fitted:.3f} m/s better than {speed:.3f} m/s ({source}); the speed by the axles takes that")
     warnings += _clock_warnings(done)
     at = lead if is_hump else None
     return Imported(plan, tuple(done), time, np.column_stack(columns), tuple(channels), speed, source, fitted, at, wheels, tuple(warnings))
@@ -190,9 +195,8 @@ def _lead(phones: list[Phone], plan: Plan, speed: float, arrivals: list[float]) 
     available = min(arrival - phone.begin for phone, arrival in zip(phones, arrivals, strict=True))
     if plan.lead is not None:
         if not LEAST_LEAD * speed <= plan.lead <= available * speed:
-            raise InputError(
-                f"the lead must be {LEAST_LEAD * speed:.2f} to {available * speed:.2f} m in this recording, found {plan.lead:g} m"
-            )
+            reach = f"{LEAST_LEAD * speed:.2f} to {available * speed:.2f} m"
+            raise ArgumentError(f"`lead`: the lead must be {reach} in this recording, found {plan.lead:g} m", "lead")
         return plan.lead
     lead = float(np.floor(10 * min(LEAD_TIME, available - 0.05) * speed) / 10)
     if lead < LEAST_LEAD * speed:

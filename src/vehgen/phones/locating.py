@@ -9,8 +9,8 @@ from vehgen.errors import InputError
 from vehgen.phones.clocks import COARSE_SCALES, TRUSTED, Match, epoch_disagreement, match, predictor
 from vehgen.phones.gps import CrossingSpeed, crossing_speed
 from vehgen.phones.hump_event import HumpEvent, expected_onset, find_hump
-from vehgen.phones.options import Plan
 from vehgen.phones.phone import Phone, speed_stream
+from vehgen.phones.plan import Plan
 from vehgen.road import ConstantSpeed, Track
 from vehgen.simulate import Scenario, Simulator
 

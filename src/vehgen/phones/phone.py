@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.errors import InputError
+from vehgen.errors import ArgumentError, InputError
 from vehgen.phones.export import (
     ACCELERATION_STREAM,
     GRAVITY_STREAM,
@@ -19,8 +19,8 @@ from vehgen.phones.export import (
     PhoneExport,
     Stream,
 )
-from vehgen.phones.options import PhoneSensor
 from vehgen.phones.orientation import Orientation, find_orientation
+from vehgen.phones.plan import PhoneSensor
 from vehgen.phones.resampling import check_rate, clean, gaps, resample, sampling_rate
 
 Array = NDArray[np.float64]
@@ -71,9 +71,10 @@ class Phone:
         """Return how it lay, by its gravity from `start` to `end` [s]; raises InputError where that leaves a sign open."""
         sensor = self.sensor
         if self.rotation is not None and sensor.forward is None:
-            raise InputError(
-                f"{self.name}: say which of its axes pointed forward, e.g. forward=y where its top edge did; without that the "
-                "pitch rate has no sign"
+            raise ArgumentError(
+                f"{self.name}: say with `forward` which of its axes pointed forward, e.g. y where its top edge did; without that the "
+                "pitch rate has no sign",
+                "forward",
             )
         sign = sensor.acceleration_sign if sensor.acceleration_sign is not None else self.export.acceleration_sign
         if self.gravity is None:
@@ -100,9 +101,11 @@ class Phone:
             return float(self.sensor.acceleration_sign)
         part = self.acceleration.between(start, end).values
         if len(part) and float(part.mean()) < -4.0:
-            raise InputError(
-                f"{self.name}: at rest its acceleration reads {part.mean():.2f} m/s^2, so it points down; write its column as -COLUMN, or "
-                "acceleration_sign=1 for its sensor if it is upwards all the same"
+            raise ArgumentError(
+                f"{self.name}: at rest its acceleration reads {part.mean():.2f} m/s^2, so it points down; write -COLUMN in `columns`, or "
+                "acceleration_sign=1 in `sensors` if it is upwards all the same",
+                "columns",
+                "sensors",
             )
         return 1.0
 

@@ -8,15 +8,17 @@ import os
 from pathlib import Path
 from typing import Any
 
-from vehgen.errors import InputError, shown
+from vehgen.errors import ArgumentError, shown
 from vehgen.files import write_text
 from vehgen.files.yaml_writer import Commented, OneLine, yaml_document
 from vehgen.phones.importing import Imported, ImportedPhone, clock_difference
 from vehgen.simulate import load_run
+from vehgen.vehicle import Vehicle, VehicleLike
 from vehgen.vehicle.loading import find_vehicle_file, models_folder
+from vehgen.vehicle.writing import base_reference
 
 
-def write_import(imported: Imported, vehicle: str, out: Path) -> tuple[Path, Path]:
+def write_import(imported: Imported, vehicle: VehicleLike, out: Path) -> tuple[Path, Path]:
     """Write the run file `out` and its recording beside it, and read the run file back.
 
     Parameters
@@ -24,7 +26,7 @@ def write_import(imported: Imported, vehicle: str, out: Path) -> tuple[Path, Pat
     imported
         What the phones recorded.
     vehicle
-        The vehicle file as it was given: a path, or the name of a bundled model.
+        The vehicle as it was given: a path, the name of a bundled model, or one that was read from a file.
     out
         The run file.
 
@@ -53,7 +55,7 @@ def import_files(out: Path) -> tuple[Path, Path]:
         When `out` is not the name of a run file.
     """
     if out.suffix.lower() not in (".yaml", ".yml"):
-        raise InputError(f"the run file to write has a name such as run.yaml; found {shown(out.name)}")
+        raise ArgumentError(f"`out` names the run file to write, e.g. run.yaml; found {shown(out.name)}", "out")
     return out, out.with_name(f"{out.stem}_recording.csv")
 
 
@@ -67,7 +69,7 @@ def recording_text(imported: Imported) -> str:
     return text.getvalue()
 
 
-def run_text(imported: Imported, vehicle: str, out: Path) -> str:
+def run_text(imported: Imported, vehicle: VehicleLike, out: Path) -> str:
     """Return the run file of an import."""
     plan, folder = imported.plan, out.parent
     comments = ["Made by `vehgen import`; what was found and assumed stands beside what it led to."]
@@ -143,8 +145,10 @@ def first_name(imported: Imported) -> str:
     return imported.phones[0].phone.name
 
 
-def _vehicle(given: str, folder: Path) -> str:
-    path = find_vehicle_file(given)
+def _vehicle(given: VehicleLike, folder: Path) -> str:
+    if isinstance(given, Vehicle):
+        return base_reference(given, folder)
+    path = find_vehicle_file(Path(given))
     return Path(given).name if path.parent == models_folder() else _relative(path, folder)
 
 

@@ -2,54 +2,76 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
 
-from vehgen.calibrate.result import CalibrationSummary
-from vehgen.calibrate.sensitivity import SensitivityIndices
-from vehgen.calibrate.validation import Validation
-from vehgen.diagnose.result import Diagnosis
-from vehgen.errors import InputError
+from vehgen.calibrate import CalibrationSummary, SensitivityIndices, SensorAdvice, Validation
+from vehgen.diagnose import Diagnosis
+from vehgen.diagnose.verdict import Verdict
+from vehgen.errors import ArgumentError, InputError
 from vehgen.files.results import Result, kind_of, read_json
+from vehgen.mechanics import StaticLoads
+from vehgen.phones import PhoneImport
 from vehgen.report.pages.build_page import redraw_build
 from vehgen.report.pages.diagnosis_page import write_diagnosis_page
 from vehgen.report.plots.calibration_plots import save_calibration_figures
 from vehgen.report.plots.sensitivity_plots import save_sensitivity_figures
 from vehgen.report.plots.validation_plots import save_validation_figures
+from vehgen.simulate import FrequencyResponse, Modes, Response, StateSpace
 from vehgen.simulate.build import Build
 
-RESULTS: dict[str, type[Result]] = {item.KIND: item for item in (Diagnosis, CalibrationSummary, Validation, SensitivityIndices, Build)}
-"""What can be drawn again."""
+PAGES = (Diagnosis, CalibrationSummary, Validation, SensitivityIndices, Build)
+"""Results with a page or several figures."""
+SINGLE_FIGURES = (Modes, StaticLoads, Response, StateSpace, FrequencyResponse, SensorAdvice, PhoneImport, Verdict)
+"""Results with one figure."""
+RESULTS: dict[str, type[Result]] = {item.KIND: item for item in (*PAGES, *SINGLE_FIGURES)}
+"""What a file can hold the result of."""
 
 
-def read_result(path: Path) -> Result:
-    """Return the result that a JSON file holds.
+def read_result(path: str | os.PathLike[str]) -> Result:
+    """Return the result that a JSON file holds: what a command wrote, or the JSON of a result's `to_dict()`.
 
     Raises
     ------
     InputError
-        For a file that is damaged, or of no result with a page.
+        For a file that is damaged, or of no result of vehgen.
     """
-    data = read_json(path)
+    data = read_json(Path(path))
     return RESULTS[kind_of(data, str(path), tuple(RESULTS))].from_dict(data, str(path))
 
 
-def redraw(path: Path, folder: Path) -> list[Path]:
-    """Write the page or figures of a result's JSON file into a folder, as the command that made it did; returns the files.
+def report(result: Result | str | os.PathLike[str], folder: str | os.PathLike[str]) -> list[Path]:
+    """Write the page or figures of a result into a folder, as the command that made it does.
+
+    Parameters
+    ----------
+    result
+        A diagnosis, calibration, validation, sensitivity or build, or its JSON file.
+    folder
+        Where they go.
+
+    Returns
+    -------
+    The files written.
 
     Raises
     ------
     InputError
-        For a file that is damaged, or whose numbers no figure can show.
+        For a file that is damaged, numbers that no figure can show, and a result of one figure: that is drawn by `plot()`.
     """
-    result = read_result(path)
+    source = "the result" if isinstance(result, Result) else str(result)
+    found = result if isinstance(result, Result) else read_result(result)
+    if not isinstance(found, PAGES):
+        kinds = ", ".join(item.KIND for item in PAGES)
+        raise ArgumentError(f"{source} is of a {found.KIND}, which has no page (plot() draws it); results with pages: {kinds}", "result")
     try:
         with np.errstate(over="raise"):
-            return _draw(result, folder, str(path))
+            return _draw(found, Path(folder), source)
     except (ArithmeticError, LookupError, ValueError) as error:
         said = " ".join(str(error).split())[:200] or type(error).__name__
-        raise InputError(f"{path}: its numbers cannot be drawn: {said}") from error
+        raise InputError(f"{source}: its numbers cannot be drawn: {said}") from error
 
 
 def _draw(result: Result, folder: Path, source: str) -> list[Path]:

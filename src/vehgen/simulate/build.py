@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from dataclasses import dataclass, field
+from typing import Annotated, Any, ClassVar
 
+from vehgen.codegen import Kernel
 from vehgen.errors import InputError
 from vehgen.files.document import MAX_DOCUMENT_BYTES
 from vehgen.files.provenance import file_hashes, versions
+from vehgen.files.result_fields import IN_MEMORY
 from vehgen.files.results import Result, Table
 from vehgen.mechanics import EquationsOfMotion, Place, PointOutput, StaticLoads
 from vehgen.simulate.modes import Mode, Modes
@@ -51,6 +53,8 @@ class Build(Result):
         Of packages; names of its files with their SHA-256 (empty where a file was gone).
     plots
         Whether the page has drawings.
+    model, kernel
+        Its equations of motion and its compiled kernel, None in a build that was read from a file.
     """
 
     KIND: ClassVar[str] = "build"
@@ -67,6 +71,8 @@ class Build(Result):
     versions: dict[str, str]
     inputs: dict[str, str]
     plots: bool = True
+    model: Annotated[EquationsOfMotion | None, IN_MEMORY] = field(default=None, repr=False)
+    kernel: Annotated[Kernel | None, IN_MEMORY] = field(default=None, repr=False)
 
     def read_vehicle(self, source: str) -> Vehicle:
         """Return the vehicle, checked as a file is; `source` is what errors call it.
@@ -110,6 +116,7 @@ def summarise_build(
         versions={**{name: text for name, text in known.items() if name != "python"}, "Python": known["python"]},
         inputs={path.name: hashes.get(path.name, "") for path in vehicle.files},
         plots=plots,
+        model=model,
     )
 
 

@@ -34,9 +34,7 @@ def exact_response(
     numeric = model.numeric(values)
     n, width = model.n_dof, len(model.inputs)
     inverse = np.linalg.inv(numeric.M)
-    A = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ numeric.K, -inverse @ numeric.C]])
-    loads = np.hstack([numeric.P, numeric.Q, numeric.F])
-    B = np.vstack([np.zeros((n, loads.shape[1])), inverse @ loads])
+    A, B = numeric.state_matrices()
     m = B.shape[1]
     big = np.zeros((2 * n + 2 * m, 2 * n + 2 * m))
     big[: 2 * n, : 2 * n], big[: 2 * n, 2 * n : 2 * n + m] = A * excitation.dt, B * excitation.dt

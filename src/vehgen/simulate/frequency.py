@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
-def frequency_response(numeric: NumericModel, frequency: Array) -> tuple[Complex, Complex]:
+def transfer_functions(numeric: NumericModel, frequency: Array) -> tuple[Complex, Complex]:
     """Return the channels per unit of every displacement input and of every force.
 
     Force laws are not in it.
@@ -70,7 +70,7 @@ def _loads(numeric: NumericModel, omega: Array) -> tuple[Complex, Complex]:
 
 
 def response_derivatives(model: EquationsOfMotion, values: Mapping[str, float], names: tuple[str, ...], frequency: Array) -> Complex:
-    """Return the derivatives of the road part of :func:`frequency_response` by parameters, exact.
+    """Return the derivatives of the road part of :func:`transfer_functions` by parameters, exact.
 
     With D X = E and H = R X + W, a parameter moves H by dR X + R D^-1 (dE - dD X) + dW.
 

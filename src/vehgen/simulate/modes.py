@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from vehgen.errors import InputError
 from vehgen.files.result_fields import Array1D
 from vehgen.files.results import Result, Table
-from vehgen.mechanics.equations_of_motion import EquationsOfMotion, NumericModel
+from vehgen.mechanics import EquationsOfMotion, ModelLike, NumericModel, all_values, as_model
 
 Array = NDArray[np.float64]
 _SHARED = 0.6
@@ -66,8 +66,17 @@ class Modes(Result, Sequence[Mode]):
         return columns, [(mode.name, mode.undamped_hz, mode.damped_hz, mode.damping_ratio) for mode in self.modes]
 
 
-def natural_modes(model: EquationsOfMotion, values: Mapping[str, float] | None = None) -> Modes:
-    """Return all modes, by ascending undamped frequency.
+def natural_modes(model: ModelLike, values: Mapping[str, float] | None = None, *, parameter_set: str | None = None) -> Modes:
+    """Return all modes, by ascending undamped frequency; force laws are not in them.
+
+    Parameters
+    ----------
+    model
+        Equations of motion, or a vehicle: itself, its file, or the name of a bundled model.
+    values
+        Parameters [SI] by name; what is not named keeps the value of the set, or the file's.
+    parameter_set
+        One of the vehicle's sets.
 
     An overdamped pair of real eigenvalues -a, -b has the frequency sqrt(a b)/2 pi and the damping ratio (a + b)/(2 sqrt(a b)) > 1.
 
@@ -77,7 +86,8 @@ def natural_modes(model: EquationsOfMotion, values: Mapping[str, float] | None =
         When M is not positive definite at these values.
 
     """
-    numeric = model.numeric(values)
+    model = as_model(model)
+    numeric = model.numeric(all_values(model, values, parameter_set))
     try:
         squares, shapes = scipy.linalg.eigh(numeric.K, numeric.M)
     except np.linalg.LinAlgError as error:
@@ -101,9 +111,7 @@ def _energy(M: Array, shape: Array) -> Array:
 def _damped_pairs(numeric: NumericModel) -> list[tuple[complex, complex, NDArray[np.complex128]]]:
     """Return the eigenvalue pairs of the state matrix with the displacement shape of each."""
     n = numeric.M.shape[0]
-    inverse = np.linalg.inv(numeric.M)
-    state = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ numeric.K, -inverse @ numeric.C]])
-    eigenvalues, vectors = np.linalg.eig(state)
+    eigenvalues, vectors = np.linalg.eig(numeric.state_matrices()[0])
     tolerance = 1e-9 * max(np.abs(eigenvalues).max(), 1.0)
     pairs = [(eigenvalues[i], np.conj(eigenvalues[i]), vectors[:n, i]) for i in range(2 * n) if eigenvalues[i].imag > tolerance]
     real = sorted((i for i in range(2 * n) if abs(eigenvalues[i].imag) <= tolerance), key=lambda i: eigenvalues[i].real)

@@ -22,10 +22,10 @@ from vehgen.files.result_fields import Array1D, Array3D
 from vehgen.files.results import Cell, Result, Table
 from vehgen.mechanics import ElementOutput, EquationsOfMotion, Output, Place, derive, static_loads
 from vehgen.simulate.budgets import check_population
-from vehgen.simulate.run_file import Run
+from vehgen.simulate.given import RunLike, as_run
 from vehgen.simulate.scenario import Scenario, make_scenario
 from vehgen.simulate.warnings import lift_off, spectral_nulls, step_too_coarse
-from vehgen.vehicle import Vehicle
+from vehgen.vehicle import VehicleLike
 
 Array = NDArray[np.float64]
 REMEMBERED = 1000
@@ -76,14 +76,14 @@ class Simulator:
     Parameters
     ----------
     vehicle
-        A checked vehicle.
+        A vehicle, its file, or the name of a bundled model.
     outputs
         The channels to compute.
     forces
         Where forces act.
     """
 
-    def __init__(self, vehicle: Vehicle, outputs: Iterable[Output], forces: Iterable[Place] = ()) -> None:
+    def __init__(self, vehicle: VehicleLike, outputs: Iterable[Output], forces: Iterable[Place] = ()) -> None:
         self.model: EquationsOfMotion = derive(vehicle, outputs, forces)
         self.kernel = Kernel(self.model)
         self._known_offsets: dict[tuple[float, ...], Array] = {}
@@ -222,14 +222,22 @@ def _warn_of(failures: Mapping[int, str], n_individuals: int) -> None:
         warnings.warn(ModelWarning(text), stacklevel=3)
 
 
-def simulate(run: Run) -> Response:
-    """Simulate a run file's vehicle and look for what makes the answer doubtful.
+def simulate(run: RunLike, *, vehicle: VehicleLike | None = None) -> Response:
+    """Simulate a run and look for what makes the answer doubtful.
+
+    Parameters
+    ----------
+    run
+        A run or its file.
+    vehicle
+        In place of the one that the run names: itself, its file, or the name of a bundled model.
 
     Raises
     ------
     InputError
         When the response is not finite.
     """
+    run = as_run(run, vehicle)
     wanted = run.outputs()
     tyres = [ElementOutput(f"tyre force of {name}", name, "tyre_force") for name in run.vehicle.axles]
     simulator = Simulator(run.vehicle, (*wanted, *tyres), run.forces())

@@ -3,6 +3,7 @@
 Bodies, hinges, axles, links and parameters, `extends`, parameter sets, bundled models; all checks of names, units and values.
 """
 
+from vehgen.vehicle.given import VehicleLike, as_vehicle
 from vehgen.vehicle.loading import bundled_models, find_vehicle_file, load_vehicle, parse_vehicle
 from vehgen.vehicle.model import Vehicle
 from vehgen.vehicle.parts import Axle, Bending, Body, CarriedBy, Hinge, Link, Parameter, Point, Size, Spring
@@ -19,6 +20,8 @@ __all__ = [
     "Size",
     "Spring",
     "Vehicle",
+    "VehicleLike",
+    "as_vehicle",
     "bundled_models",
     "find_vehicle_file",
     "load_vehicle",

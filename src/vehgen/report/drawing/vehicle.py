@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyBboxPatch, Rectangle
 
 from vehgen.files.expressions import Expression
-from vehgen.mechanics import EquationsOfMotion
+from vehgen.mechanics import EquationsOfMotion, ModelLike, all_values, as_model
 from vehgen.mechanics.symbols import to_sympy
 from vehgen.report.drawing.canvas import ACCENT, FAINT, FILLS, INK, Canvas, Spot, text_size, within, wrap
 from vehgen.report.drawing.dimensions import Chain, draw_chains, draw_hinge_heights
@@ -23,13 +23,25 @@ _ROW, _TILT = 25.0, 35.0
 """Height of a row of dimensions in points; slope of crowded names in degrees."""
 
 
-def draw_vehicle(model: EquationsOfMotion, values: Mapping[str, float] | None = None) -> Figure:
+def draw_vehicle(model: ModelLike, values: Mapping[str, float] | None = None, *, parameter_set: str | None = None) -> Figure:
     """Draw a side view to scale: bodies, axles, hinges, links, COGs, and their distances [m].
 
+    Parameters
+    ----------
+    model
+        Equations of motion, or a vehicle: itself, its file, or the name of a bundled model.
+    values
+        Parameters [SI] by name; what is not named keeps the value of the set, or the file's.
+    parameter_set
+        One of the vehicle's sets.
+
+    Notes
+    -----
     Outlines that the file does not give (`size`) are dashed, and so are heights above the road: it gives heights only relative to
     each other.
     """
-    values = values or model.values()
+    model = as_model(model)
+    values = all_values(model, values, parameter_set)
     sketch = make_sketch(model, values)
     names = {name: axle.title or name for name, axle in model.vehicle.axles.items()}
     canvas, depth, chains = _canvas(model, sketch, names)

@@ -45,8 +45,7 @@ def write_build_folder(
     `kernel.py`, `kernel_legend.txt` (what the numbers in it mean), `equations.txt`, `equations.tex`, `build.json`, `index.html` and, with
     `plots`, `drawing.svg` and `modes.svg`. Each file appears whole or not at all.
     """
-    build = summarise_build(model, values, modes, loads, warnings, plots)
-    return _write(folder, build, model, kernel)
+    return write_build(summarise_build(model, values, modes, loads, warnings, plots), folder, model, kernel)
 
 
 def build_files(folder: Path, plots: bool = True) -> list[Path]:
@@ -63,7 +62,7 @@ def redraw_build(build: Build, folder: Path, source: str) -> list[Path]:
     """
     vehicle = build.read_vehicle(source)
     model = derive(vehicle, body_channels(vehicle))
-    return _write(folder, build, model, write_kernel(model), again=True)
+    return write_build(build, folder, model, write_kernel(model), again=True)
 
 
 def draw_built_vehicle(build: Build) -> Figure:
@@ -71,7 +70,8 @@ def draw_built_vehicle(build: Build) -> Figure:
     return draw_vehicle(derive(build.read_vehicle("the build")), build.values)
 
 
-def _write(folder: Path, build: Build, model: EquationsOfMotion, kernel: KernelSource, again: bool = False) -> list[Path]:
+def write_build(build: Build, folder: Path, model: EquationsOfMotion, kernel: KernelSource, again: bool = False) -> list[Path]:
+    """Write the folder of a built vehicle from its equations and kernel; `again` leaves its result as it is."""
     texts = {
         "kernel.py": kernel.text,
         "kernel_legend.txt": kernel.legend,

@@ -2,63 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-
-import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from vehgen.phones import PhoneImport
 from vehgen.report.drawing.canvas import INK
 
-Array = NDArray[np.float64]
 
-
-@dataclass(frozen=True)
-class ImportPanel:
-    """One channel: raw samples and the even channel on the run's clock [s], the noise sigma, the quiet stretch, and where energy set in."""
-
-    name: str
-    unit: str
-    raw_time: Array
-    raw: Array
-    time: Array
-    values: Array
-    quiet: tuple[float, float]
-    onset: float | None = None
-    sigma: float | None = None
-
-
-def plot_import(panels: Sequence[ImportPanel], arrival: float | None, crossings: Sequence[tuple[str, float]], title: str) -> Figure:
-    """Draw an import.
-
-    Parameters
-    ----------
-    panels
-        The channels, one panel each.
-    arrival
-        When the front wheel reached the hump [s], None for a measured road.
-    crossings
-        When every axle reached it: its name and the moment [s].
-    title
-        Stands above.
-    """
-    figure = Figure(figsize=(11.0, 1.1 + 2.1 * len(panels)), layout="constrained")
-    rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
-    for axes, panel in zip(rows, panels, strict=True):
+def plot_import(found: PhoneImport) -> Figure:
+    """Draw an import: a panel a channel, with the phone's samples, the even channel, the quiet stretch, and when the axles crossed."""
+    crossings = [] if found.at is None else [(name, (found.at + offset) / found.speed) for name, offset in found.wheels.items()]
+    arrival = None if found.at is None else found.at / found.speed
+    figure = Figure(figsize=(11.0, 1.1 + 2.1 * len(found.samples)), layout="constrained")
+    rows = figure.subplots(len(found.samples), 1, sharex=True, squeeze=False)[:, 0]
+    for column, (axes, panel) in enumerate(zip(rows, found.samples, strict=True)):
         if panel.quiet[1] > panel.quiet[0]:
             axes.axvspan(*panel.quiet, color="#e8f0e4", lw=0, label="quiet stretch")
-        axes.plot(panel.raw_time, panel.raw, ".", color="#d55e00", ms=2.2, label="samples of the phone, turned upright")
-        axes.plot(panel.time, panel.values, color="#0b5fa5", lw=0.9, label="recording of the run")
+        axes.plot(panel.time, panel.values, ".", color="#d55e00", ms=2.2, label="samples of the phone, turned upright")
+        axes.plot(found.time, found.values[:, column], color="#0b5fa5", lw=0.9, label="recording of the run")
         for _, moment in crossings:
             axes.axvline(moment, color="#8a949c", lw=0.7, ls=(0, (2, 2)))
         if arrival is not None:
             axes.axvline(arrival, color=INK, lw=1.2, label="front wheel at the hump")
         if panel.onset is not None:
             axes.axvline(panel.onset, color="#7b3294", lw=1.0, ls=(0, (5, 2)), label="energy sets in")
-        axes.set_ylabel(f"{panel.name}\n[{panel.unit}]", color=INK, parse_math=False)
-        if panel.sigma is not None:
-            axes.text(0.995, 0.95, f"noise sigma {panel.sigma:.2g}", transform=axes.transAxes, ha="right", va="top", fontsize=8, color=INK)
+        axes.set_ylabel(f"{panel.channel}\n[{panel.unit}]", color=INK, parse_math=False)
+        if panel.channel in found.noise:
+            sigma = found.noise[panel.channel].sigma
+            axes.text(0.995, 0.95, f"noise sigma {sigma:.2g}", transform=axes.transAxes, ha="right", va="top", fontsize=8, color=INK)
         axes.grid(color="#e3e7ea", lw=0.6)
         axes.spines[["top", "right"]].set_visible(False)
         axes.margins(x=0)
@@ -75,5 +45,5 @@ def plot_import(panels: Sequence[ImportPanel], arrival: float | None, crossings:
     figure.legend(*rows[0].get_legend_handles_labels(), loc="outside lower left", fontsize=8.5, frameon=False, ncols=5)
     rows[-1].set_xlabel("time of the run [s]", color=INK)
     figure.align_ylabels()
-    figure.suptitle(title, x=0.01, ha="left", fontsize=11, color=INK, parse_math=False)
+    figure.suptitle(found.title, x=0.01, ha="left", fontsize=11, color=INK, parse_math=False)
     return figure

@@ -1,7 +1,8 @@
-"""Small pictures of results that have no page of their own: modes, static loads, responses, advice on sensors."""
+"""Small pictures of results that have no page of their own: modes, static loads, responses, poles, advice on sensors."""
 
 from __future__ import annotations
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -11,7 +12,9 @@ from vehgen.report.drawing.canvas import INK
 from vehgen.report.plots.comparison import SIMULATED
 from vehgen.report.plots.response_plot import plot_response
 from vehgen.simulate import Response
+from vehgen.simulate.frequency_response import FrequencyResponse
 from vehgen.simulate.modes import Modes
+from vehgen.simulate.state_space import StateSpace
 
 
 def plot_simulation(response: Response) -> Figure:
@@ -52,6 +55,35 @@ def plot_sensor_advice(advice: SensorAdvice) -> Figure:
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("sensors", color=INK)
     axes.set_ylabel("mean error of a parameter [%]", color=INK)
+    return figure
+
+
+def plot_poles(system: StateSpace) -> Figure:
+    """Plot the poles in the complex plane."""
+    figure, axes = _panel(5.2, 4.4)
+    poles = system.poles
+    axes.plot(poles.real, poles.imag, "x", color=SIMULATED, ms=6)
+    axes.axvline(0.0, color="#c3ccd3", lw=0.8, zorder=0)
+    axes.set_xlabel("real part [1/s]", color=INK)
+    axes.set_ylabel("imaginary part [rad/s]", color=INK)
+    return figure
+
+
+def plot_frequency_response(response: FrequencyResponse) -> Figure:
+    """Plot every output's amplitude per unit of each input, a panel an output."""
+    count = len(response.outputs)
+    figure = Figure(figsize=(8.0, 0.8 + 1.9 * count), layout="constrained")
+    amplitude = np.abs(response.values)
+    for i, axes in enumerate(figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]):
+        for j, name in enumerate(response.inputs):
+            axes.plot(response.frequency, amplitude[:, i, j], lw=1.1, label=f" {name}")
+        axes.set_ylabel(f"{response.outputs[i]}\n[{response.units[i]} per unit]", color=INK, parse_math=False, fontsize=8.5)
+        axes.grid(color="#e3e7ea", lw=0.6)
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.margins(x=0)
+    for text in axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8.5).get_texts():
+        text.set_parse_math(False)
+    axes.set_xlabel("frequency [Hz]", color=INK)
     return figure
 
 

@@ -1,0 +1,138 @@
+"""Frequency responses as a result: from the road or the inputs under each axle, and from forces, to channels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from vehgen.errors import ArgumentError
+from vehgen.files.limits import FREQUENCY_LIMIT, SPEED_LIMIT
+from vehgen.files.result_fields import Array1D, Array3D
+from vehgen.files.results import Cell, Result, Table
+from vehgen.mechanics import ModelLike, Output, Place, all_values
+from vehgen.simulate.frequency import transfer_functions
+from vehgen.simulate.state_space import linear_model
+
+DEFAULT_FREQUENCY_HZ = (0.1, 30.0, 0.05)
+"""Where responses are computed unless told: first, last, step [Hz]."""
+ROAD = "road"
+"""The one input of all axles that follow each other over a road."""
+
+
+@dataclass(frozen=True, eq=False)
+class FrequencyResponse(Result):
+    """Outputs per unit of each input over frequency, complex: amplitude, and phase of the output over the input's.
+
+    `frequency shape (n,)` [Hz]; `real` and `imaginary` `shape (n, n_outputs, n_inputs)`, in the outputs' `units` per m or N; `speed` [m/s]
+    of the vehicle where the axles follow each other over one road, else None.
+    """
+
+    KIND: ClassVar[str] = "frequency response"
+    DRAWING: ClassVar[str] = "vehgen.report.plots.result_plots:plot_frequency_response"
+
+    frequency: Array1D
+    real: Array3D
+    imaginary: Array3D
+    outputs: tuple[str, ...]
+    units: tuple[str, ...]
+    inputs: tuple[str, ...]
+    speed: float | None = None
+
+    def __post_init__(self) -> None:
+        shape = len(self.frequency), len(self.outputs), len(self.inputs)
+        if self.real.shape != shape or self.imaginary.shape != shape or len(self.units) != shape[1]:
+            raise ValueError("a number for every frequency, output and input was expected")
+
+    @property
+    def values(self) -> NDArray[np.complex128]:
+        """The response, `shape (n, n_outputs, n_inputs)`."""
+        return np.asarray(self.real + 1j * self.imaginary, dtype=np.complex128)
+
+    def table(self) -> Table:
+        """Return amplitudes, a row a frequency and a column an output and input."""
+        names = [f"{output} per {name}" for output in self.outputs for name in self.inputs]
+        amplitude = np.abs(self.values).reshape(len(self.frequency), -1).tolist()
+        rows: list[tuple[Cell, ...]] = [(float(f), *row) for f, row in zip(self.frequency, amplitude, strict=True)]
+        return ("frequency [Hz]", *names), rows
+
+
+def frequency_response(
+    model: ModelLike,
+    frequency: ArrayLike | None = None,
+    *,
+    outputs: Iterable[Output] = (),
+    forces: Iterable[Place] = (),
+    values: Mapping[str, float] | None = None,
+    parameter_set: str | None = None,
+    speed: float | None = None,
+) -> FrequencyResponse:
+    """Return the linear response of channels to inputs at frequencies.
+
+    Parameters
+    ----------
+    model
+        Equations of motion, or a vehicle: itself, its file, or the name of a bundled model.
+    frequency
+        `shape (n,)` [Hz] (default: 0.1 to 30 Hz, every 0.05 Hz).
+    outputs
+        What comes out (default: the model's channels; those of a vehicle are acceleration and pitch rate of every body).
+    forces
+        Where vertical forces act (default: the model's).
+    values
+        Parameters [SI] by name; what is not named keeps the value of the set, or the file's.
+    parameter_set
+        One of the vehicle's sets.
+    speed
+        Of the vehicle [m/s]: every axle then meets the same road, later by its distance behind the first, and `road` is one input in place
+        of the axles'. Without it each axle has an input of its own.
+
+    Returns
+    -------
+    The response. Force laws are not in it: a ModelWarning says so.
+
+    Raises
+    ------
+    InputError
+        For names that the vehicle lacks, frequencies that are none, a speed for a vehicle without axles, and one that cannot be.
+    """
+    f = _frequencies(frequency)
+    found = linear_model(model, outputs, forces)
+    known = all_values(found, values, parameter_set)
+    displaced, pushed = transfer_functions(found.numeric(known), f)
+    inputs = found.inputs
+    if speed is not None:
+        n_axles = len(found.vehicle.axles)
+        if not n_axles:
+            raise ArgumentError(f"`speed`: {found.vehicle.name} has no axles", "speed")
+        if not speed > 0 or (reason := SPEED_LIMIT.refusal(speed)) is not None:
+            raise ArgumentError(f"`speed`: {'must be above 0, found ' + format(speed, 'g') if not speed > 0 else reason}", "speed")
+        delay = found.wheel_offsets(known) / speed
+        road = displaced[:, :, :n_axles] @ np.exp(-2j * np.pi * f[:, None] * delay)[:, :, None]
+        displaced, inputs = np.concatenate([road, displaced[:, :, n_axles:]], axis=2), (ROAD, *inputs[n_axles:])
+    response = np.concatenate([displaced, pushed], axis=2)
+    return FrequencyResponse(
+        f,
+        response.real.copy(),
+        response.imag.copy(),
+        outputs=tuple(channel.name for channel in found.channels),
+        units=tuple(channel.unit for channel in found.channels),
+        inputs=(*inputs, *(f"force.{name}" for name in found.forces)),
+        speed=speed,
+    )
+
+
+def _frequencies(frequency: ArrayLike | None) -> NDArray[np.float64]:
+    if frequency is None:
+        low, high, step = DEFAULT_FREQUENCY_HZ
+        return np.linspace(low, high, round((high - low) / step) + 1)
+    try:
+        found = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
+    except (TypeError, ValueError) as error:
+        raise ArgumentError("`frequency`: numbers in Hz were expected", "frequency") from error
+    if found.ndim != 1 or not found.size or not (np.isfinite(found) & (found >= 0)).all() or found.max() > FREQUENCY_LIMIT.high:
+        raise ArgumentError(f"`frequency`: a list of numbers from 0 to {FREQUENCY_LIMIT.high:g} Hz was expected", "frequency")
+    return found

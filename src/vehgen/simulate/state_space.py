@@ -1,0 +1,166 @@
+"""The linear equations of motion in state space, x' = A x + B u and y = C x + D u, with the names of states, inputs and outputs."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.errors import ArgumentError, ModelWarning, did_you_mean
+from vehgen.files.result_fields import Array2D
+from vehgen.files.results import Cell, Result, Table
+from vehgen.mechanics import EquationsOfMotion, ModelLike, NumericModel, Output, Place, all_values, derive
+from vehgen.simulate.build import body_channels
+from vehgen.vehicle import as_vehicle
+
+Array = NDArray[np.float64]
+InputRates = Literal["inputs", "states"]
+ROUNDING = 1e-12
+"""Below this share of its terms a sum is zero."""
+
+
+@dataclass(frozen=True, eq=False)
+class StateSpace(Result):
+    """A vehicle in state space: `A`, `B`, `C`, `D` in SI units, n states, m inputs, p outputs.
+
+    `A shape (n, n)`, `B shape (n, m)`, `C shape (p, n)`, `D shape (p, m)`: scipy.signal.StateSpace(A, B, C, D) takes them as they are.
+    `states`, `inputs` and `outputs` name their rows and columns, `units` gives the outputs' units.
+    """
+
+    KIND: ClassVar[str] = "state space"
+    DRAWING: ClassVar[str] = "vehgen.report.plots.result_plots:plot_poles"
+
+    A: Array2D
+    B: Array2D
+    C: Array2D
+    D: Array2D
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    units: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        n, m, p = len(self.states), len(self.inputs), len(self.outputs)
+        if [self.A.shape, self.B.shape, self.C.shape, self.D.shape, len(self.units)] != [(n, n), (n, m), (p, n), (p, m), p]:
+            raise ValueError("matrices of as many rows and columns as states, inputs and outputs were expected")
+
+    @property
+    def poles(self) -> NDArray[np.complex128]:
+        """The eigenvalues of A, `shape (n,)` [1/s], by ascending magnitude."""
+        found = np.linalg.eigvals(self.A).astype(np.complex128)
+        return found[np.lexsort((found.imag, np.round(np.abs(found), 9)))]
+
+    def table(self) -> Table:
+        """Return the poles, a row each: real and imaginary part, frequency and damping ratio."""
+        rows: list[tuple[Cell, ...]] = []
+        for pole in self.poles:
+            radius = float(abs(pole))
+            rows.append((float(pole.real), float(pole.imag), radius / (2 * np.pi), float(-pole.real) / radius if radius else None))
+        return ("real [1/s]", "imaginary [rad/s]", "frequency [Hz]", "damping ratio"), rows
+
+
+def state_space(
+    model: ModelLike,
+    *,
+    outputs: Iterable[Output] = (),
+    forces: Iterable[Place] = (),
+    values: Mapping[str, float] | None = None,
+    parameter_set: str | None = None,
+    input_rates: InputRates = "inputs",
+) -> StateSpace:
+    """Return the linear equations of motion in state space.
+
+    Parameters
+    ----------
+    model
+        Equations of motion, or a vehicle: itself, its file, or the name of a bundled model.
+    outputs
+        What comes out (default: the model's channels; those of a vehicle are acceleration and pitch rate of every body).
+    forces
+        Where vertical forces act (default: the model's).
+    values
+        Parameters [SI] by name; what is not named keeps the value of the set, or the file's.
+    parameter_set
+        One of the vehicle's sets.
+    input_rates
+        What becomes of the rates of the inputs, which damped tyres and damped ground links feel. `inputs`: they are inputs of their own,
+        NAME.rate [m/s]. `states`: none are needed, since the states of the velocities are then q' less what the inputs' jumps give
+        them; this works where no output feels a rate directly, as the acceleration of an axle on a damped tyre does.
+
+    Returns
+    -------
+    The matrices with their names. States are the coordinates, then their rates; inputs the displacements under the axles and at ground
+    links [m], their rates [m/s], the forces [N]. Force laws are not in it: a ModelWarning says so.
+
+    Raises
+    ------
+    InputError
+        For names that the vehicle lacks, and for rates that the states cannot take up.
+    """
+    if input_rates not in get_args(InputRates):
+        known = did_you_mean(str(input_rates), get_args(InputRates))
+        raise ArgumentError(f"`input_rates`: unknown choice {input_rates!r}; {known}", "input_rates")
+    found = linear_model(model, outputs, forces)
+    numeric = found.numeric(all_values(found, values, parameter_set))
+    A, B = numeric.state_matrices()
+    C, D, felt = _output_matrices(numeric, A, B)
+    width = len(found.inputs)
+    rates = [width + i for i in range(width) if B[:, width + i].any() or felt[:, i].any()]
+    if input_rates == "states":
+        _refuse_felt_rates(found, felt)
+        lift = B[:, width : 2 * width]
+        B, D = B.copy(), D.copy()
+        B[:, :width] += A @ lift
+        D[:, :width] += C @ lift
+        rates = []
+    columns = [*range(width), *rates, *range(2 * width, 2 * width + len(found.forces))]
+    names = [*found.inputs, *(f"{name}.rate" for name in found.inputs), *(f"force.{name}" for name in found.forces)]
+    coordinates = [item.name for item in found.coordinates]
+    return StateSpace(
+        A,
+        B[:, columns],
+        C,
+        D[:, columns],
+        states=(*coordinates, *(f"{name}.rate" for name in coordinates)),
+        inputs=tuple(names[i] for i in columns),
+        outputs=tuple(channel.name for channel in found.channels),
+        units=tuple(channel.unit for channel in found.channels),
+    )
+
+
+def linear_model(model: ModelLike, outputs: Iterable[Output], forces: Iterable[Place]) -> EquationsOfMotion:
+    """Return equations of motion with channels; warn of force laws, which no linear result holds."""
+    outputs, forces = tuple(outputs), tuple(forces)
+    if isinstance(model, EquationsOfMotion) and model.channels and not outputs and not forces:
+        found = model
+    else:
+        vehicle = model.vehicle if isinstance(model, EquationsOfMotion) else as_vehicle(model)
+        found = derive(vehicle, outputs or body_channels(vehicle), forces)
+    if any(element.laws for element in found.elements):
+        warnings.warn(ModelWarning(f"the force laws of {found.vehicle.name} are left out: these equations are linear"), stacklevel=3)
+    return found
+
+
+def _output_matrices(numeric: NumericModel, A: Array, B: Array) -> tuple[Array, Array, Array]:
+    """Return C, D, and the part of D that input rates have, with what is mere rounding set to zero."""
+    n, width = len(numeric.M), numeric.P.shape[1]
+    rows = numeric.outputs
+    C = rows["acceleration"] @ A[n:] + np.hstack([rows["displacement"], rows["velocity"]])
+    direct = np.hstack([rows["input"], rows["input_rate"], np.zeros((len(C), numeric.F.shape[1]))])
+    D = rows["acceleration"] @ B[n:] + direct
+    D[np.abs(D) <= ROUNDING * (np.abs(rows["acceleration"]) @ np.abs(B[n:]) + np.abs(direct))] = 0.0
+    return C, D, D[:, width : 2 * width]
+
+
+def _refuse_felt_rates(model: EquationsOfMotion, felt: Array) -> None:
+    if felt.any():
+        channel, column = np.argwhere(felt)[0]
+        raise ArgumentError(
+            f"{model.channels[channel].name} feels the rate of {model.inputs[column]} directly, so that no state can take it up: "
+            "`input_rates` must be 'inputs'",
+            "input_rates",
+        )
