@@ -52,7 +52,7 @@ def test_a_run_is_an_object_or_a_path(hump):
     for name in ("simulate", "sensitivity"):
         function = getattr(vehgen, name)
         assert function(run) == function(hump) == function(str(hump), vehicle="sedan2")
-    assert vehgen.advise_sensors(run, 1) == vehgen.advise_sensors(hump, 1)
+    assert vehgen.advise_sensors(run, 1, parameters=["kf"]) == vehgen.advise_sensors(hump, 1, parameters=["kf"])
     assert vehgen.validate("sedan2", run) == vehgen.validate("sedan2", [str(hump)])
 
 

@@ -128,7 +128,7 @@ calibrated = vehgen.calibrate("sedan2", humps, size=20, generations=5, starts=2)
 print(calibrated.to_dataframe())
 print(vehgen.validate("sedan2", "hidden/high_2ms.yaml").worst)
 print(vehgen.sensitivity(humps[0], ["kf", "kr"]).to_dataframe())
-print(vehgen.advise_sensors(humps[0], 2).to_dataframe())
+print(vehgen.advise_sensors(humps[0], 2, parameters=["kf", "kr"]).to_dataframe())
 """,
     ),
     Section(
