@@ -13,7 +13,7 @@ from vehgen.errors import ArgumentError
 from vehgen.files.limits import FREQUENCY_LIMIT, SPEED_LIMIT
 from vehgen.files.result_fields import Array1D, Array3D
 from vehgen.files.results import Cell, Result, Table
-from vehgen.mechanics import ModelLike, Output, Place, all_values
+from vehgen.mechanics import EquationsOfMotion, ModelLike, Output, Place, all_values
 from vehgen.simulate.frequency import transfer_functions
 from vehgen.simulate.state_space import linear_model
 
@@ -105,12 +105,8 @@ def frequency_response(
     displaced, pushed = transfer_functions(found.numeric(known), f)
     inputs = found.inputs
     if speed is not None:
-        n_axles = len(found.vehicle.axles)
-        if not n_axles:
-            raise ArgumentError(f"`speed`: {found.vehicle.name} has no axles", "speed")
-        if not speed > 0 or (reason := SPEED_LIMIT.refusal(speed)) is not None:
-            raise ArgumentError(f"`speed`: {'must be above 0, found ' + format(speed, 'g') if not speed > 0 else reason}", "speed")
-        delay = found.wheel_offsets(known) / speed
+        delay = _delays(found, known, speed)
+        n_axles = len(delay)
         road = displaced[:, :, :n_axles] @ np.exp(-2j * np.pi * f[:, None] * delay)[:, :, None]
         displaced, inputs = np.concatenate([road, displaced[:, :, n_axles:]], axis=2), (ROAD, *inputs[n_axles:])
     response = np.concatenate([displaced, pushed], axis=2)
@@ -123,6 +119,17 @@ def frequency_response(
         inputs=(*inputs, *(f"force.{name}" for name in found.forces)),
         speed=speed,
     )
+
+
+def _delays(model: EquationsOfMotion, values: Mapping[str, float], speed: float) -> NDArray[np.float64]:
+    """Return how much later than the first each axle meets the road [s], `shape (n_axles,)`."""
+    if not model.vehicle.axles:
+        raise ArgumentError(f"`speed`: {model.vehicle.name} has no axles", "speed")
+    if not speed > 0:
+        raise ArgumentError(f"`speed`: must be above 0, found {speed:g}", "speed")
+    if (reason := SPEED_LIMIT.refusal(speed)) is not None:
+        raise ArgumentError(f"`speed`: {reason}", "speed")
+    return model.wheel_offsets(values) / speed
 
 
 def _frequencies(frequency: ArrayLike | None) -> NDArray[np.float64]:

@@ -118,8 +118,13 @@ def state_space(
         D[:, :width] += C @ lift
         rates = []
     columns = [*range(width), *rates, *range(2 * width, 2 * width + len(found.forces))]
-    names = [*found.inputs, *(f"{name}.rate" for name in found.inputs), *(f"force.{name}" for name in found.forces)]
-    coordinates = [item.name for item in found.coordinates]
+    return _named(found, A, B, C, D, columns)
+
+
+def _named(model: EquationsOfMotion, A: Array, B: Array, C: Array, D: Array, columns: list[int]) -> StateSpace:
+    """Return matrices with the names of a model; `columns` of displacements, rates and forces are its inputs."""
+    names = [*model.inputs, *(f"{name}.rate" for name in model.inputs), *(f"force.{name}" for name in model.forces)]
+    coordinates = [item.name for item in model.coordinates]
     return StateSpace(
         A,
         B[:, columns],
@@ -127,8 +132,8 @@ def state_space(
         D[:, columns],
         states=(*coordinates, *(f"{name}.rate" for name in coordinates)),
         inputs=tuple(names[i] for i in columns),
-        outputs=tuple(channel.name for channel in found.channels),
-        units=tuple(channel.unit for channel in found.channels),
+        outputs=tuple(channel.name for channel in model.channels),
+        units=tuple(channel.unit for channel in model.channels),
     )
 
 
