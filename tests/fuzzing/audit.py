@@ -81,6 +81,8 @@ class Audit:
             return self._opened(*arguments)
         if event.startswith(STARTING) or (event.startswith("socket.") and event not in IGNORED):
             return f"{event} {arguments!r}"[:300]
+        if event in ("os.remove", "os.rmdir") and isinstance(arguments[1], int) and arguments[1] >= 0:
+            arguments = (os.path.join(os.readlink(f"/proc/self/fd/{arguments[1]}"), os.fsdecode(str(arguments[0]))), -1)
         if event.startswith(CHANGING):
             outside = [item for item in arguments[:2] if isinstance(item, (str, bytes, os.PathLike)) and not self._allowed(item)]
             return f"{event} outside --out: {os.fspath(outside[0])!r}"[:300] if outside else None

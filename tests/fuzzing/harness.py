@@ -122,10 +122,11 @@ def checked_for_name(case: Case, verdict: Verdict) -> Verdict:
 
 def new_files(case: Case, folder: Path) -> list[str]:
     """Return, as faults, the files of a folder that the case did not bring, outside its folder `out`."""
-    brought = {*case.files, *case.special}
+    files = {Path(name).as_posix(): data for name, data in case.files.items()}  # a name may hold `//`
+    brought = {*files, *case.special}
     present = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_symlink() or not path.is_dir()}
     stray = sorted(name for name in present - brought if not name.startswith("out/"))
-    changed = [name for name, data in case.files.items() if name in present - set(case.special) and (folder / name).read_bytes() != data]
+    changed = [name for name, data in files.items() if name in present - set(case.special) and (folder / name).read_bytes() != data]
     gone = sorted(brought - present - {name for name, kind in case.special.items() if kind == "folder"})
     words = {"written": stray, "changed": changed, "removed": gone}
     return [f"a file was {word}: {name[:80]}" for word, names in words.items() for name in names]
