@@ -13,7 +13,7 @@ SOURCE = Path(__file__).parents[1] / "src" / "vehgen"
 MAX_FILE_LINES, MAX_FUNCTION_LINES = 300, 60
 WAITING_FLAGS = {"files/outputs.py"}
 """Files of the library that still speak of options of the command line; the list may only shrink."""
-COMMAND_CONSTANTS = {"NAME", "EXAMPLE"}
+COMMAND_CONSTANTS = {"NAME", "EXAMPLE", "ARGUMENT_OPTIONS"}
 """What every command declares of itself."""
 FORMER_NAMES = {
     "Noun", "LinearModel", "Columns", "Entries", "Motion", "_Joint", "Printer", "straight", "cut", "Drive", "rests", "keep", "doubts",
@@ -40,6 +40,13 @@ def sources():
 
 def functions(tree):
     return [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)]
+
+
+def lines_of(function):
+    """Return how many lines a function has, its docstring aside: what it explains of many arguments is no code to follow."""
+    first = function.body[0]
+    is_docstring = isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant) and isinstance(first.value.value, str)
+    return function.end_lineno - function.lineno + 1 - (first.end_lineno - first.lineno + 1 if is_docstring else 0)
 
 
 def constants(tree):
@@ -88,7 +95,7 @@ def test_no_file_is_longer_than_one_reads_at_once():
 def test_no_function_is_longer_than_a_screen():
     long = set()
     for place, _, tree in sources():
-        long |= {(place, node.name) for node in functions(tree) if node.end_lineno - node.lineno + 1 > MAX_FUNCTION_LINES}
+        long |= {(place, node.name) for node in functions(tree) if lines_of(node) > MAX_FUNCTION_LINES}
     assert long == set()
 
 

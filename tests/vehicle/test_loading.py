@@ -46,7 +46,7 @@ def test_aliases_that_multiply_are_refused():
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"#" * 10_000_000, "large.yaml has 10000000 bytes"),
+        (b"#" * 10_000_000, "10000000 bytes; a YAML file of at most 1000000 bytes was expected"),
         (b"name: \xff\xfe", "large.yaml:1:7: not UTF-8 text"),
         (b"", "large.yaml:1:1: the file is empty"),
     ],

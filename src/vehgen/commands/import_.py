@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.vehicle import load_vehicle
 
     load_vehicle(options.vehicle)  # so that no result may replace what it was read from
-    profile = read_profile(options.profile) if options.profile else None
+    profile = read_profile(options.profile) if options.profile is not None else None
     out = file_named(options.out)
     written = [*import_files(out), out.with_suffix(".png")]
     for path in (*options.exports, *([profile["file"]] if profile else [])):
@@ -70,7 +70,7 @@ def run(options: argparse.Namespace) -> None:
         options.exports,
         vehicle=options.vehicle,
         sensors=[read_sensor(text) for text in options.sensor],
-        hump=read_hump(options.hump) if options.hump else None,
+        hump=read_hump(options.hump) if options.hump is not None else None,
         profile=profile,
         out=out,
         parameter_set=options.parameter_set,

@@ -23,7 +23,7 @@ LARGEST_MEASURED = 1e12
 
 
 @dataclass(frozen=True)
-class Columns:
+class TableColumns:
     """Columns of a table: `values`, one `shape (n_rows,)` each, and where they stand.
 
     `cells` are the numbers of their cells in a row, `lines shape (n_rows,)` the file's lines; both count from 1.
@@ -61,7 +61,7 @@ class Columns:
                 raise InputError(reason, self.place(int(row), column))
 
 
-def read_columns(path: Path, names: tuple[str, ...]) -> Columns:
+def read_columns(path: Path, names: tuple[str, ...]) -> TableColumns:
     """Read columns of a CSV file with a header line; the file is read row by row and never held as text.
 
     Raises
@@ -95,7 +95,7 @@ def read_columns(path: Path, names: tuple[str, ...]) -> Columns:
     if not places:
         raise InputError("a header line and at least one line of numbers were expected", Position(path, 1, 1))
     cells = tuple(place + 1 for place in places)
-    return Columns(path, names, tuple(np.array(column) for column in columns), cells, np.array(lines, dtype=np.int64))
+    return TableColumns(path, names, tuple(np.array(column) for column in columns), cells, np.array(lines, dtype=np.int64))
 
 
 def _place(path: Path, header: list[str], name: str) -> int:

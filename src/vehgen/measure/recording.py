@@ -10,7 +10,7 @@ from pydantic_core import PydanticCustomError
 
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.quantities import read_quantity
-from vehgen.files.tables import Columns, read_columns
+from vehgen.files.tables import TableColumns, read_columns
 from vehgen.files.units import UNITS, read_unit
 from vehgen.measure.quality import find_clipping
 from vehgen.mechanics.outputs import POINT_QUANTITIES, PointOutput
@@ -133,7 +133,7 @@ def _factor(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> 
     return factor
 
 
-def _check_clock(table: Columns) -> None:
+def _check_clock(table: TableColumns) -> None:
     table.check_ascending(least=FEWEST_SAMPLES)
     time = table.values[0]
     steps = np.diff(time)
@@ -150,7 +150,7 @@ def _check_clock(table: Columns) -> None:
         )
 
 
-def _check_samples(table: Columns, column: int, values: Array, channel: RecordedChannel) -> None:
+def _check_samples(table: TableColumns, column: int, values: Array, channel: RecordedChannel) -> None:
     if np.ptp(values) == 0:
         raise InputError(f"{channel.name} is constant; the sensor recorded nothing", table.heading(column))
     for item in find_clipping(values, REFUSED_IN_A_ROW):

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vehgen.codegen import Excitation
 from vehgen.errors import InputError
 from vehgen.files.limits import HUMP_HEIGHT, HUMP_LENGTH, SPEED_LIMIT
-from vehgen.files.tables import Columns, read_columns
+from vehgen.files.tables import TableColumns, read_columns
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.road import (
     AdjustedSpeed,
@@ -238,12 +238,12 @@ def _measured(run: Run, file: str, time: str, column: str, place: tuple[str, ...
     return Signal(time=found.values[0], values=found.values[1])
 
 
-def _columns(run: Run, file: str, names: tuple[str, str], place: tuple[str | int, ...]) -> Columns:
+def _columns(run: Run, file: str, names: tuple[str, str], place: tuple[str | int, ...]) -> TableColumns:
     with placed(run, *place):
         return read_columns(Path(run.folder) / file, names)
 
 
-def check_hump_points(points: Columns) -> None:
+def check_hump_points(points: TableColumns) -> None:
     """Check the points of a hump, distance and height [m]; raises InputError at the row that is wrong."""
     points.check_ascending()
     points.check_limit(1, HUMP_HEIGHT)
