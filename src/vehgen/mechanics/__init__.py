@@ -5,8 +5,8 @@ Layout, kinematics, energies, Lagrange's equations, sensor rows, static loads an
 
 from vehgen.mechanics.derivation import derive
 from vehgen.mechanics.equations_of_motion import GRAVITY, Channel, EquationsOfMotion, NumericModel
-from vehgen.mechanics.given import ModelLike, all_values, as_model
 from vehgen.mechanics.kinematics import Coordinate
+from vehgen.mechanics.model_like import ModelLike, all_values, as_model
 from vehgen.mechanics.outputs import ElementOutput, Output, Place, PointOutput
 from vehgen.mechanics.static_loads import StaticLoads, static_loads
 

@@ -15,7 +15,7 @@ from vehgen.files.result_fields import Array1D, PairKeys
 from vehgen.files.results import Result, Table
 from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
-from vehgen.mechanics.given import ModelLike, all_values, as_model
+from vehgen.mechanics.model_like import ModelLike, all_values, as_model
 from vehgen.vehicle.parts import GROUND
 
 

@@ -5,11 +5,11 @@ Run files, scenarios, the simulator, frequency responses, exact references, and 
 
 from vehgen.simulate.exact import exact_response, newmark_response
 from vehgen.simulate.frequency_response import FrequencyResponse, frequency_response
-from vehgen.simulate.given import RunLike, as_run
 from vehgen.simulate.lint import lint
 from vehgen.simulate.modes import Mode, Modes, natural_modes
 from vehgen.simulate.pool import SimulatorPool
 from vehgen.simulate.run_file import Run, load_run
+from vehgen.simulate.run_like import RunLike, as_run
 from vehgen.simulate.scenario import Scenario, Signal, make_scenario
 from vehgen.simulate.simulator import Response, Simulator, simulate, write_csv
 from vehgen.simulate.state_space import StateSpace, state_space

@@ -22,7 +22,7 @@ from vehgen.files.result_fields import Array1D, Array3D
 from vehgen.files.results import Cell, Result, Table
 from vehgen.mechanics import ElementOutput, EquationsOfMotion, Output, Place, derive, static_loads
 from vehgen.simulate.budgets import check_population
-from vehgen.simulate.given import RunLike, as_run
+from vehgen.simulate.run_like import RunLike, as_run
 from vehgen.simulate.scenario import Scenario, make_scenario
 from vehgen.simulate.warnings import lift_off, spectral_nulls, step_too_coarse
 from vehgen.vehicle import VehicleLike
