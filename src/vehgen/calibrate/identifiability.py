@@ -84,10 +84,10 @@ def find_structure(problem: Problem, values: Array) -> Structure:
     null, singular = null_space(np.concatenate(found, axis=0))
     if not len(null):
         return Structure(problem.space, null, (), singular)
-    pivots = scipy.linalg.qr(null, pivoting=True, mode="r")[1][: len(null)]
-    reduced = np.asarray(np.linalg.solve(null[:, pivots], null), dtype=np.float64)
+    fixed = scipy.linalg.qr(null, pivoting=True, mode="r")[1][: len(null)]
+    reduced = np.asarray(np.linalg.solve(null[:, fixed], null), dtype=np.float64)
     reduced[np.abs(reduced) < 1e-8 * np.abs(reduced).max()] = 0.0
-    return Structure(problem.space, reduced, tuple(int(i) for i in pivots), singular)
+    return Structure(problem.space, reduced, tuple(int(i) for i in fixed), singular)
 
 
 def null_space(derivatives: Array) -> tuple[Array, Array]:

@@ -32,8 +32,8 @@ def diagnose(
     vehicle
         Whose `range`s say what may be refitted: itself, its file, or the name of a bundled model.
     runs
-        Runs with recordings: their files, runs, or trials. At least three are needed to name anything: one in three stays untouched by
-        all fits.
+        Runs with recordings: their files, runs, or trials. At least three are needed to name anything: one in three is kept from
+        all fits, for validation.
     effects
         Those to try, by name or themselves (default: the whole library).
     library

@@ -29,7 +29,7 @@ def diagnose_trials(
     Parameters
     ----------
     trials
-        Runs with recordings, of one vehicle. At least three are needed to name anything: one in three stays untouched by all fits.
+        Runs with recordings, of one vehicle. At least three are needed to name anything: one in three is kept for validation.
     effects
         The library to try (default: all effects known).
     everywhere

@@ -14,7 +14,7 @@ PLACE_SHARE = 0.10
 PLACE_CLEAR = 0.01
 """A place that leaves no more than this share of the excess needs no second one."""
 LAW_PASSES = 0.10
-"""A law passes when it leaves no more than this share of the excess, on the training runs and on untouched ones."""
+"""A law passes when it leaves no more than this share of the excess, on the training runs and on validation runs."""
 LAW_CHI = 1.15
 """A law also passes below this chi."""
 AT_LEAST = 0.5

@@ -120,7 +120,7 @@ class FittedModel:
 
     @cached_property
     def information(self) -> Array:
-        """What the runs so far and the springs of the fit say of parameters and adjustments, `shape (n, n)`."""
+        """What the runs so far and the priors of the fit say of parameters and adjustments, `shape (n, n)`."""
         misfit = self.fit.least_squares.misfit
         n = misfit.n_parameters
         own = sum(len(item.parameters) for item in self.fit.effects)

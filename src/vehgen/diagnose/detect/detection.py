@@ -25,8 +25,8 @@ BAND_EDGES_HZ = (0.0, 3.0, 8.0, 15.0, np.inf)
 class Detection:
     """What the first stage finds: the noise floor and how far the base model is above it.
 
-    `base` is recalibrated; `as_filed` and `as_filed_untouched` are the mean squares of the file's parameters, on the training runs and on
-    the untouched ones (not a number where there are none).
+    `base` is recalibrated; `as_filed` and `as_filed_validation` are the mean squares of the file's parameters, on the training runs and on
+    the validation runs (not a number where there are none).
     """
 
     problem: Problem
@@ -59,7 +59,7 @@ class BandGap:
 
 
 def split_runs(trials: Sequence[Trial]) -> tuple[list[Trial], list[Trial]]:
-    """Return training runs and untouched ones: of three runs or more, every second one between the gentlest and the roughest."""
+    """Return training runs and validation runs: of three runs or more, every second one between the gentlest and the roughest."""
     ordered = sorted(trials, key=kind_of_run)
     held = ordered[1:-1:2]
     apart = {id(trial) for trial in held}
@@ -79,13 +79,13 @@ def hump_height(trial: Trial) -> float:
 def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> Detection:
     """Find the noise floor, recalibrate the base model on the training runs, measure the gap in a band [Hz] (default: that of the runs)."""
     _refuse_copies(trials)
-    training, held_out = split_runs(trials)
+    training, validation_runs = split_runs(trials)
     band = band or compared_band(trials)
     floor = find_noise_floor(trials, band)
     problem = narrow(make_problem(training))
-    base = fit_base(problem, held_out, floor.noises, band)
-    filed = [mean_square_as_filed(part, floor.noises, band) for part in (training, held_out)]
-    return Detection(problem, tuple(held_out), floor, base, filed[0], filed[1], band)
+    base = fit_base(problem, validation_runs, floor.noises, band)
+    filed = [mean_square_as_filed(part, floor.noises, band) for part in (training, validation_runs)]
+    return Detection(problem, tuple(validation_runs), floor, base, filed[0], filed[1], band)
 
 
 def band_gaps(detection: Detection, fit: ModelFit | None = None) -> list[BandGap]:

@@ -55,7 +55,7 @@ def list_candidates(vehicle: Vehicle, trials: Sequence[Trial], effects: Sequence
     ]
 
 
-def build_problem(candidate: Candidate, base: Problem, surveyor: EffectLocator, simulators: SimulatorPool) -> Problem:
+def build_problem(candidate: Candidate, base: Problem, locator: EffectLocator, simulators: SimulatorPool) -> Problem:
     """Return the base problem with the candidate's effect added to its trials and its parameters to the search.
 
     Parameters
@@ -64,13 +64,13 @@ def build_problem(candidate: Candidate, base: Problem, surveyor: EffectLocator, 
         What to add.
     base
         The base problem; its space's `start` is where the base parameters begin.
-    surveyor
+    locator
         Knows the sizes of places.
     simulators
         Simulators to share.
     """
-    trials = candidate.effect.change_trials(base.trials, candidate.place, surveyor, simulators)
-    added = candidate.effect.search_dimensions(candidate.place, surveyor)
+    trials = candidate.effect.change_trials(base.trials, candidate.place, locator, simulators)
+    added = candidate.effect.search_dimensions(candidate.place, locator)
     space = SearchSpace(
         (*base.space.names, *(item.name for item in added)),
         np.concatenate([base.space.lower, [item.low for item in added]]),

@@ -1,4 +1,4 @@
-"""Fits of the base and of what is added to it, on the training runs, judged on untouched ones."""
+"""Fits of the base and of what is added to it, on the training runs, judged on validation runs."""
 
 from __future__ import annotations
 
@@ -153,7 +153,7 @@ def refine(problem: Problem, fit: LeastSquaresFit, x: Array, n_effect_parameters
 
 
 def evaluate_fit(effects: tuple[Candidate, ...], fit: LeastSquaresFit, validation_runs: Sequence[Trial], noises: Noises) -> ModelFit:
-    """Simulate a fitted model on untouched runs, of which only the clock, speed and road height are fitted, and the phase of a line."""
+    """Simulate a fitted model on validation runs, of which only the clock, speed and road height are fitted, and the phase of a line."""
     powers = _powers(fit)
     runs, counts = _by_run(powers)
     train = _pooled(runs, counts)

@@ -44,7 +44,7 @@ def fit_candidate(
     validation_runs: Sequence[Trial],
     noises: Noises,
     band: tuple[float, float],
-    surveyor: EffectLocator,
+    locator: EffectLocator,
     simulators: SimulatorPool,
     origins: Sequence[StartingPoint],
     begin: Sequence[tuple[float, ...]] | None = None,
@@ -53,9 +53,9 @@ def fit_candidate(
 
     Parameters
     ----------
-    candidate, footing
-        What to add, and to what. A candidate that leaves HOPELESS of the footing's excess after the rough fits is not refined.
-    held_out, noises, band, surveyor, simulators
+    candidate, current
+        What to add, and to what. A candidate that leaves HOPELESS of the current model's excess after the rough fits is not refined.
+    validation_runs, noises, band, locator, simulators
         As elsewhere.
     origins
         Where the base begins: each is tried with each start of the effect.
@@ -66,9 +66,9 @@ def fit_candidate(
     -------
     None where the simulation fails at every start.
     """
-    problem = build_problem(candidate, current.problem, surveyor, simulators)
+    problem = build_problem(candidate, current.problem, locator, simulators)
     rough = _Rough(candidate, current, problem, noises, band)
-    best = rough.search(origins, begin or candidate.effect.starts(candidate.place, surveyor))
+    best = rough.search(origins, begin or candidate.effect.starts(candidate.place, locator))
     if best is None:
         return None
     effects = (*current.effects, candidate)

@@ -30,16 +30,16 @@ def screen(
     candidates: Sequence[Candidate],
     base: ModelFit,
     current: CurrentModel,
-    surveyor: EffectLocator,
+    locator: EffectLocator,
     simulators: SimulatorPool,
 ) -> list[Candidate]:
     """Return the candidates worth fitting: all that leave the vehicle alone, of the others the MOST with the largest first-order gain.
 
     Parameters
     ----------
-    candidates, base, footing
-        What to choose from, the fit they are added to, and the same fit as a footing.
-    surveyor, simulators
+    candidates, base, current
+        What to choose from, the fit they are added to, and the same fit as the current model.
+    locator, simulators
         As for :func:`vehgen.diagnose.fits.candidate.pose`.
     """
     always = [item for item in candidates if not item.effect.changes_vehicle]
@@ -51,10 +51,10 @@ def screen(
     lines = np.concatenate([flatten(item) for item in misfit.whitened_spectrum(x)])
     gains = []
     for candidate in forces:
-        problem = build_problem(candidate, current.problem, surveyor, simulators)
+        problem = build_problem(candidate, current.problem, locator, simulators)
         exact: Misfit | None = None
         best = 0.0
-        for combination in candidate.effect.starts(candidate.place, surveyor):
+        for combination in candidate.effect.starts(candidate.place, locator):
             point = problem.space.start.copy()
             point[len(current.unit) :] = combination[: len(candidate.parameters)]
             unit = np.concatenate([current.unit, problem.space.unit(point)[len(current.unit) :]])

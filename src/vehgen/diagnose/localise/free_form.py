@@ -72,7 +72,7 @@ class FreeForm:
     travel, rate
         f and g. They add to the base model's own `stiffness` and `damping` there, from which no recording can tell their straight parts.
     explained
-        Share of the recovered force's variance beyond its noise, within the band, that f + g explain on the untouched runs.
+        Share of the recovered force's variance beyond its noise, within the band, that f + g explain on the validation runs.
     beyond
         Share that they explain of what no straight spring and damper explain; unlike `explained` it does not hang on the base fit's own.
     coupled
@@ -114,7 +114,7 @@ class FreeForm:
         if self.hysteresis > 1 - POOR:
             more += f", and {_percent(self.hysteresis)} of what is not straight is no matter of travel and rate"
         return (
-            f"{' and '.join(parts)}; it explains {poor}{_percent(self.explained)} of the unknown force at {self.place} on untouched runs"
+            f"{' and '.join(parts)}; it explains {poor}{_percent(self.explained)} of the unknown force at {self.place} on validation runs"
             f"{more} (a description, not a physical law)"
         )
 
@@ -137,7 +137,7 @@ class FreeForm:
 
 
 def fit_free_form(recovered: Sequence[RecoveredForce], seed: int = 11) -> FreeForm | None:
-    """Fit a free-form law to the force recovered in the training runs, and judge it on the untouched ones.
+    """Fit a free-form law to the force recovered in the training runs, and judge it on the validation runs.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def fit_free_form(recovered: Sequence[RecoveredForce], seed: int = 11) -> FreeFo
 
 
 def _judge(fitted: FittedLaw) -> float:
-    """Return the share that a law explains on the untouched runs; where there are none, on the training runs."""
+    """Return the share that a law explains on the validation runs; where there are none, on the training runs."""
     judged = [run for run in fitted.runs if run.validation] or fitted.runs
     return explained_share(judged, [fitted.force(run.travel, run.rate) for run in judged])
 

@@ -39,7 +39,7 @@ class RecoveredForce:
 
     Attributes
     ----------
-    run, untouched
+    run, validation
         Name of the run; whether no fit has seen it.
     place
         Where the force acts.

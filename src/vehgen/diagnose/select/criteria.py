@@ -1,4 +1,4 @@
-"""When an effect counts as found: enough of the gap closed, on untouched runs too, not by chance, and alone in that."""
+"""When an effect counts as found: enough of the gap closed, on validation runs too, not by chance, and alone in that."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def excess(mean_square: float) -> float:
 
 
 def passes(fit: ModelFit, base: ModelFit) -> bool:
-    """Return whether a fit closes the gap of the base, on the training runs and on untouched ones, however small the gap is."""
+    """Return whether a fit closes the gap of the base, on the training runs and on validation runs, however small the gap is."""
     return excess(fit.training) <= limit.AT_LEAST * excess(base.training) and all(
         after <= limit.LAW_PASSES * max(before, 1e-9) or after <= limit.LAW_CHI**2 - 1
         for after, before in ((excess(fit.training), excess(base.training)), (excess(fit.validation), excess(base.validation)))
@@ -63,7 +63,7 @@ def unfinished(fit: ModelFit, base: ModelFit) -> bool:
 def adds(found: SearchRound, fit: ModelFit) -> bool:
     """Return whether a further effect is needed and enough.
 
-    It leaves FURTHER of what was left, or noise, on untouched runs too. At the place of an effect found before it must leave noise and
+    It leaves FURTHER of what was left, or noise, on validation runs too. At the place of an effect found before it must leave noise and
     attach to another part (a tyre, a suspension): two laws of one suspension can imitate a third. One with which more than CROWD others
     tie says nothing.
     """

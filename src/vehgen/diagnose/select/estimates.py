@@ -1,4 +1,4 @@
-"""How large an effect is and how sure: intervals, gains on untouched runs, and whether every run asks for the same numbers."""
+"""How large an effect is and how sure: intervals, gains on validation runs, and whether every run asks for the same numbers."""
 
 from __future__ import annotations
 
@@ -233,7 +233,7 @@ def unstable(fit: ModelFit, candidate: Candidate | None = None) -> list[str]:
 
 
 def validation_gain(base: ModelFit, fit: ModelFit) -> float | None:
-    """Return the share of the excess on untouched runs that a fit closes; None where those runs show no gap, or were not simulated."""
+    """Return the share of the excess on validation runs that a fit closes; None where those runs show no gap, or were not simulated."""
     if not (np.isfinite(fit.validation) and base.validation > limit.NOISE_FLOOR**2):
         return None
     return float(1 - max(fit.validation - 1, 0.0) / (base.validation - 1))

@@ -30,7 +30,7 @@ SEED = 20240
 def decoy_shares(
     base: ModelFit, place: PlaceResult, motion: Mapping[str, tuple[Array, Array]], numbers: int, count: int = COUNT, seed: int = SEED
 ) -> Array:
-    """Return the share of the base's excess on the training runs that each of `count` decoys closes, `shape (count,)`.
+    """Return the share of the base's excess on the training runs that each of `count` placebo laws closes, `shape (count,)`.
 
     Parameters
     ----------
