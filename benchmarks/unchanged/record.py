@@ -171,7 +171,8 @@ def phones(bench: Bench) -> dict[str, Any]:
     shutil.copytree(bench.examples / "phones", bench.folder, dirs_exist_ok=True)
     found = {f"import {name}": bench.json("import hump", crossing=name) for name in ("hump_2ms", "hump_3ms")}
     found["import road"] = bench.json("import road")
-    found["recordings"] = bench.hashes("*ms.csv")
+    recordings = bench.hashes("*ms.csv") | bench.hashes("*ms_recording.csv")  # as 0.1.0 called them, and as they are called since
+    found["recordings"] = {name.replace("_recording", ""): digest for name, digest in recordings.items()}
     found["calibrate"] = bench.json("calibrate")
     found["modes"] = bench.json("modes", vehicle="calibrated/tractor5_calibrated.yaml")
     found["validate"] = bench.json("validate")
