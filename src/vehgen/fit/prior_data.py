@@ -50,7 +50,7 @@ class Known(FileModel):
     uncertainty: Expression
 
 
-class FactsFile(FileModel):
+class PriorDataFile(FileModel):
     """A facts file as it is written."""
 
     parameters: dict[Name, Known] = Field(default_factory=dict)
@@ -99,7 +99,7 @@ def load_prior_data(path: str | Path, problem: Problem) -> PriorData:
     InputError
         With its place, for a name the vehicle lacks, a wrong unit, or an uncertainty that is not positive.
     """
-    file, document = read_entries(FactsFile, path)
+    file, document = read_entries(PriorDataFile, path)
     vehicle = problem.trials[0].run.vehicle
     facts = [_parameter_fact(vehicle, name, known, document) for name, known in file.parameters.items()]
     groups: list[tuple[tuple[str, ...], Vehicle, str, dict[str, Weight]]] = [(("axle_weights",), vehicle, "", file.axle_weights)]
