@@ -37,8 +37,15 @@ def read_tree(case: Case) -> Node:
 
 def write_tree(case: Case, data: Node, word: str, random: Random) -> Case:
     """Return the case with other data: YAML holds JSON, an entry a line."""
-    text = json.dumps(data, indent=1, ensure_ascii=random.random() < 0.3, default=str)
+    text = json.dumps(_with_text_keys(data), indent=1, ensure_ascii=random.random() < 0.3, default=str)
     return case.with_text(text, (word,))
+
+
+def _with_text_keys(node: Node) -> Node:
+    """Return data whose keys JSON can write: YAML may make dates, pairs or bytes of them."""
+    if isinstance(node, dict):
+        return {key if isinstance(key, str | int | float | None) else str(key): _with_text_keys(item) for key, item in node.items()}
+    return [_with_text_keys(item) for item in node] if isinstance(node, list) else node
 
 
 def places(node: Node, depth: int = 0) -> Iterator[tuple[Node, Any]]:
