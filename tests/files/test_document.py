@@ -277,3 +277,9 @@ def test_no_place_lies_beyond_the_end(text: str):
         assert place is not None
         assert 1 <= place.line <= len(lines)
         assert 1 <= place.column <= len(lines[place.line - 1]) + 1
+
+
+def test_what_the_reader_of_yaml_quotes_is_cut():
+    with pytest.raises(InputError, match="not valid YAML: found undefined alias") as caught:
+        read_text(f"a: *{'1+' * 5000}\n", "a.yaml")
+    assert len(str(caught.value)) < 300

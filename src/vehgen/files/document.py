@@ -20,6 +20,8 @@ from vehgen.files.names import unprintable
 MAX_DOCUMENT_BYTES = 1_000_000
 MAX_VALUES = 20_000
 MAX_NESTING = 20
+MAX_PROBLEM = 200
+"""So many characters of what the YAML reader says are told: it quotes the file."""
 MAX_DIGITS = 400
 """A longer whole number stays text: Python refuses to write it again, and no float holds it."""
 _PLAIN_KEYS = {"str", "int", "float", "bool", "null", "timestamp", "merge", "value"}
@@ -142,13 +144,13 @@ def read_text(text: str, path: Path | str) -> Located:
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         place = _within(lines, path, mark.line, mark.column) if mark else Position(path, 1, 1)
-        raise InputError(f"not valid YAML: {error.problem or error.context}", place) from error
+        raise InputError(f"not valid YAML: {shortened(str(error.problem or error.context), MAX_PROBLEM)}", place) from error
     except ReaderError as error:
         before = text[: error.position]
         place = _within(lines, path, before.count("\n"), len(before) - before.rfind("\n") - 1)
-        raise InputError(f"not valid YAML: {str(error).splitlines()[0]}", place) from error
+        raise InputError(f"not valid YAML: {shortened(str(error).splitlines()[0], MAX_PROBLEM)}", place) from error
     except (YAMLError, ValueError) as error:
-        raise InputError(f"not valid YAML: {str(error).splitlines()[0]}", Position(path, 1, 1)) from error
+        raise InputError(f"not valid YAML: {shortened(str(error).splitlines()[0], MAX_PROBLEM)}", Position(path, 1, 1)) from error
     except RecursionError as error:
         raise InputError("nested too deeply", Position(path, 1, 1)) from error
     if root is None:
