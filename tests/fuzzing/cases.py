@@ -13,6 +13,10 @@ FORMATS = ("vehicle", "run", "cargo", "frame", "facts", "effects", "table", "exp
 """The six formats of YAML, the tables (CSV) that runs name, and phone exports."""
 
 
+LONGEST_NAME = 255
+"""Bytes of a file's name that file systems hold."""
+
+
 @dataclass(frozen=True)
 class Case:
     """Files of one folder, and what is done with them.
@@ -44,6 +48,8 @@ class Case:
         """Write the case's files into an empty folder, and an empty folder `out` beside them."""
         (folder / "out").mkdir(parents=True)
         for name, data in self.files.items():
+            if max(len(os.fsencode(part)) for part in name.split("/")) > LONGEST_NAME:
+                continue  # no file system holds such a file: nobody has it
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(data)
         for name, kind in self.special.items():
