@@ -20,7 +20,8 @@ from vehgen.files.entry import FileModel, read_entries
 from vehgen.files.names import FreeText, Identifier, Name
 from vehgen.files.quantities import Frequency
 
-MIN_SIDE, MAX_SIDE = 0.1, 100.0
+MIN_SIDE, MAX_SIDE = 0.1, 30.0
+"""Sides of what a road vehicle can carry [m]: nothing longer turns at a junction, and its mesh would outgrow the memory."""
 
 
 class BoxSize(FileModel):

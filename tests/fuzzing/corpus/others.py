@@ -62,6 +62,7 @@ OTHERS: tuple[Nasty, ...] = (
     changed("frame", "fine mesh", FRAME, "0.7 m", "§1e-9 m"),
     changed("frame", "mesh of 1e300 m", FRAME, "0.7 m", "1e300 m", refused=False),
     changed("frame", "1e9 m long", FRAME, "length: 8.7 m", "length: §1e9 m"),
+    changed("frame", "100 m long", FRAME, "length: 8.7 m", "length: §100 m"),
     changed("frame", "1e-9 m wide", FRAME, "width: 3.0 m", "width: 1e-9 m", refused=False),
     changed("frame", "layer of 1e-300 m", FRAME, "22 mm", "§1e-300 m"),
     changed("frame", "1e-300 Pa", FRAME, "200 GPa", "§1e-300 Pa"),
