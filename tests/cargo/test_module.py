@@ -162,7 +162,7 @@ def test_a_mesh_that_does_not_fit_into_memory(read):
         InputError, match=r"frame\.yaml:24:14: a mesh size of 0\.01 m makes about \d+ nodes, and \d+ fit in the memory; choose"
     ):
         module_model(
-            read(FRAME.replace("size: 0.2 m", "size: 0.01 m").replace("length: 2.4", "length: 50").replace("width: 1.2", "width: 9"))
+            read(FRAME.replace("size: 0.2 m", "size: 0.01 m").replace("length: 2.4", "length: 30").replace("width: 1.2", "width: 9"))
         )
     assert 1000 < node_limit() <= 50_000
 
