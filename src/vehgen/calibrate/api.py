@@ -13,7 +13,7 @@ from vehgen.calibrate.summary import summarise
 from vehgen.errors import ArgumentError, did_you_mean
 from vehgen.files.limits import check_count, check_seed, check_share
 from vehgen.fit.band import CALIBRATION_BAND_HZ
-from vehgen.fit.misfit import Nuisances
+from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.parallel import runner_at
 from vehgen.fit.prior_data import load_prior_data
 from vehgen.fit.problem import make_problem

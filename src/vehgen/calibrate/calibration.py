@@ -21,7 +21,7 @@ from vehgen.files.reading import read_text
 from vehgen.files.tables import MAX_TABLE_BYTES
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.least_squares import FitOptions, LeastSquaresFit, fit_least_squares
-from vehgen.fit.misfit import Nuisances
+from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.parallel import Runner
 from vehgen.fit.prior_data import PriorData
 from vehgen.fit.problem import Problem

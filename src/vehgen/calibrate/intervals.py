@@ -227,7 +227,7 @@ def refit(fit: LeastSquaresFit, seed: int, facts: PriorData | None = None) -> Ar
         unit,
         FitOptions(misfit.nuisances, misfit.band),
         noises=misfit.noises,
-        start=misfit.split(fit.x)[1].ravel(),
+        start=misfit.split(fit.x)[1],
         shared=misfit.shared,
         numbers=tuple(misfit.adjusted(fit.x)),
         prior_data=facts,

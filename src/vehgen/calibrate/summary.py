@@ -174,13 +174,10 @@ def _spread(result: StepResult) -> dict[str, tuple[float, float]]:
 def _nuisances(result: StepResult) -> dict[str, dict[str, float]]:
     if not result.fits:
         return {}
-    fit = result.fits[0]
-    names = fit.misfit.nuisances.names
-    rows = fit.misfit.split(fit.x)[1]
-    return {
-        trial.name: {name: float(value) * getattr(fit.misfit.nuisances, name) for name, value in zip(names, row, strict=True)}
-        for trial, row in zip(result.problem.trials, rows, strict=True)
-    }
+    found: dict[str, dict[str, float]] = {trial.name: {} for trial in result.problem.trials}
+    for item in result.fits[0].conditions():
+        found.setdefault(item.run, {})[f"{item.name} {item.place}".strip()] = item.value
+    return found
 
 
 def _noise(result: StepResult) -> tuple[NoiseSummary, ...]:

@@ -117,10 +117,8 @@ def _conditions(fit: ModelFit) -> Iterator[RunConditions]:
     for part in (fit.least_squares, fit.validation_fit):
         if part is None:
             continue
-        _, errors = part.misfit.split(part.x)
-        spread = part.misfit.nuisances
-        for trial, error in zip(part.misfit.problem.trials, errors, strict=True):
-            known = {name: float(value) * getattr(spread, name) for name, value in zip(spread.names, error, strict=True)}
+        for trial in part.misfit.problem.trials:
+            known = {item.name: item.value for item in part.conditions() if item.run == trial.name and item.name != "wander"}
             yield RunConditions(trial.name, *(known.get(name, 0.0) for name in ("delay", "speed", "height")))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
@@ -77,3 +78,52 @@ Force = Annotated[float, *_any(limits.FORCE_LIMIT)]
 PositiveForce = Annotated[float, *_positive(limits.FORCE_LIMIT)]
 Angle = Annotated[float, *_any(limits.ANGLE)]
 FileName = Annotated[str, Field(max_length=limits.LONGEST_PATH)]
+
+
+@dataclass(frozen=True)
+class Spread:
+    """A standard deviation: a share of what it is of, or in the SI unit of it."""
+
+    value: float
+    is_share: bool
+
+    def share_of(self, size: float) -> float:
+        """Return it as a share of a size in the SI unit."""
+        return self.value if self.is_share else self.value / size
+
+
+def _spread(value: Any, dimension: Dimension) -> Spread:
+    """Read a standard deviation, a plain share up to 1 or a quantity; raises a pydantic error for what is neither."""
+    try:
+        return Spread(_from(value, NONE, 1.0), True)
+    except PydanticCustomError:
+        if dimension == NONE:
+            raise
+        return Spread(_from(value, dimension, math.inf), False)
+
+
+def _from(value: Any, dimension: Dimension, most: float) -> float:
+    number = read_quantity(value, dimension)
+    if not 0 <= number <= most or not math.isfinite(number):
+        bound = f" up to {most:g}" if math.isfinite(most) else ""
+        raise PydanticCustomError(
+            "quantity", "expected a standard deviation from 0{bound}, found {value}", {"bound": bound, "value": number}
+        )
+    return number
+
+
+def _spread_of(dimension: Dimension) -> tuple[BeforeValidator, WithJsonSchema]:
+    text = "a share up to 1" + ("" if dimension == NONE else f", or a number in {dimension} with its unit")
+    return BeforeValidator(lambda value: _spread(value, dimension)), WithJsonSchema({"type": ["string", "number"], "description": text})
+
+
+ShareSpread = Annotated[Spread, *_spread_of(NONE)]
+SpeedSpread = Annotated[Spread, *_spread_of(limits.SPEED_LIMIT.dimension)]
+LengthSpread = Annotated[Spread, *_spread_of(limits.HUMP_LENGTH.dimension)]
+TimeDeviation = Annotated[
+    float, BeforeValidator(lambda value: _from(value, limits.DURATION.dimension, 10.0)), _schema(limits.DURATION.dimension)
+]
+LengthDeviation = Annotated[
+    float, BeforeValidator(lambda value: _from(value, limits.VEHICLE_LENGTH.dimension, 1.0)), _schema(limits.VEHICLE_LENGTH.dimension)
+]
+AngleDeviation = Annotated[float, BeforeValidator(lambda value: _from(value, NONE, 1.0)), _schema(NONE)]

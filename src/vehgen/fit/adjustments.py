@@ -57,7 +57,7 @@ class SpeedScale(Adjustment):
 
     def scenario(self, scenario: Scenario, value: float) -> Scenario:
         """Return the scenario at `value` times its speed."""
-        return scenario.adjusted(speed=value)
+        return scenario.adjusted(speed=value, anchor=scenario.first_arrival)
 
 
 class Footprint(Adjustment):

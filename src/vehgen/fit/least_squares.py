@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import scipy.optimize
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.band import CALIBRATION_BAND_HZ
-from vehgen.fit.linearisation import lineariser
-from vehgen.fit.misfit import Misfit, Noises, Nuisances
+from vehgen.fit.bounded import LinearisedPoint, minimise
+from vehgen.fit.linearisation import Linearisation, lineariser
+from vehgen.fit.misfit import Misfit, Noises, flatten
 from vehgen.fit.noise import EVEN, Noise, estimate_noise, transform
+from vehgen.fit.nuisances import Condition, Nuisances
 from vehgen.fit.prior_data import PriorData
 from vehgen.fit.problem import Problem
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 AT_BOUND = 1e-3
 """Nearer than this to 0 or 1 in the unit cube, a parameter counts as on its bound."""
 WEAK_PRIOR_SIGMA = 2.0
@@ -30,21 +32,29 @@ FIRST_NOISE = 0.03
 """White noise assumed before any is estimated, as a share of each channel's RMS."""
 FIRST_LEVEL = 1e-6
 """Roughness from which the estimate of the road starts [m^3]."""
+MOST_SIGMAS = 4.0
+"""No error of a run or a sensor is larger than so many standard deviations: what needs more is no small error."""
 LATEST = 1.0
 """Largest delay of a recording looked for [s]."""
 
 
 @dataclass(frozen=True)
 class LeastSquaresFit:
-    """A fit: `x` the unknowns of `misfit` (parameters in the unit cube, nuisances).
+    """A fit: `x` the unknowns of `misfit` (parameters in the unit cube, adjustments, errors of sensors and runs).
 
-    `chi2` is the mean square of its whitened residuals; `loss` is -2 ln of the likelihood, less a constant, by which fits are compared.
+    `chi2` is the mean square of its whitened residuals; `loss` is -2 ln of the likelihood, less a constant, by which fits are compared;
+    `linearisation` the last one that it took.
     """
 
     misfit: Misfit
     x: Array
     chi2: float
     loss: float
+    linearisation: Linearisation
+
+    def conditions(self) -> tuple[Condition, ...]:
+        """Return what it supposes of sensors and runs."""
+        return self.misfit.conditions(self.x)
 
     @property
     def values(self) -> Array:
@@ -93,8 +103,10 @@ def fit_least_squares(
     prior_data: PriorData | None = None,
     shared: Sequence[Adjustment] = (),
     numbers: Sequence[float] = (),
+    known: Mapping[tuple[str, str], float] | None = None,
+    nearby: Linearisation | None = None,
 ) -> LeastSquaresFit:
-    """Fit parameters and nuisances by least squares, from a point of the unit cube.
+    """Fit parameters and errors by least squares, from a point of the unit cube.
 
     Parameters
     ----------
@@ -107,69 +119,77 @@ def fit_least_squares(
     noises
         Known noise; it is then not estimated.
     start
-        Where the nuisances begin, `shape (n_unknowns - n_parameters,)`; by default delays come from cross-correlation.
+        Where the errors begin, `shape (n_errors,)`; by default delays come from cross-correlation.
     prior_data
         What is known from elsewhere.
     shared, numbers
         Adjustments fitted along, and the numbers at which they begin (default: neutral).
+    known
+        Errors of sensors that stand, as in :class:`Misfit`.
+    nearby
+        A linearisation of a fit to the same runs, whose derivatives by the runs' errors serve first.
     """
     options = options or FitOptions()
-    known = noises is not None
+    given = noises is not None
     noises = noises or first_noises(problem)
-    misfit = Misfit(problem, noises, problem.space.values(unit), options.nuisances, options.band, shared)
+    misfit = Misfit(problem, noises, problem.space.values(unit), options.nuisances, options.band, shared, known)
     begun = [(value - item.neutral) / item.scale for item, value in zip(shared, numbers, strict=True)] if numbers else [0.0] * len(shared)
     x = np.concatenate([np.clip(unit, 0.0, 1.0), begun, first_delays(misfit, unit, begun) if start is None else start])
-    result = _fit(misfit, x, prior_data, options, options.tolerance if known else COARSE_TOLERANCE)
-    for left in reversed(range(0 if known else options.noise_rounds - 1)):
+    result, last = _fit(misfit, x, prior_data, options, options.tolerance if given else COARSE_TOLERANCE, nearby)
+    for left in reversed(range(0 if given else options.noise_rounds - 1)):
         noises = estimate_noises(misfit, result)
-        misfit = Misfit(problem, noises, problem.space.values(misfit.split(result)[0]), options.nuisances, options.band, shared)
-        result = _fit(misfit, result, prior_data, options, COARSE_TOLERANCE if left else options.tolerance)
-    residuals = misfit.residuals(result)
-    prior = float((misfit.split(result)[1] ** 2).sum())
-    lines = zip(misfit.problem.trials, misfit.residual_spectrum(result), strict=True)
-    loss = prior + sum(misfit.noises[trial.name].loss(own, answer) for trial, (own, answer) in lines)
+        misfit = Misfit(problem, noises, problem.space.values(misfit.split(result)[0]), options.nuisances, options.band, shared, known)
+        result, last = _fit(misfit, result, prior_data, options, COARSE_TOLERANCE if left else options.tolerance, last)
+    values, errors = problem.space.values(misfit.split(result)[0]), misfit.split(result)[1]
+    spectrum = misfit.residual_spectrum(result)
+    loss = float((errors**2).sum())
+    loss += sum(misfit.noises[trial.name].loss(*own) for trial, own in zip(misfit.problem.trials, spectrum, strict=True))
     if prior_data is not None:
-        loss += float((prior_data.residuals(misfit.problem.space.values(misfit.split(result)[0])) ** 2).sum())
-    return LeastSquaresFit(misfit, result, float(np.mean(residuals**2)), loss)
+        loss += float((prior_data.residuals(values) ** 2).sum())
+    residuals = np.concatenate([*(flatten(misfit.whiten(t, lines)) for t, (lines, _) in enumerate(spectrum)), errors])
+    return LeastSquaresFit(misfit, result, float(np.mean(residuals**2)), loss, last)
 
 
-def _fit(misfit: Misfit, x: Array, prior_data: PriorData | None, options: FitOptions, tolerance: float) -> Array:
-    n, rest = misfit.n_parameters, misfit.n_unknowns - misfit.n_parameters
-    low = np.concatenate([np.zeros(n), np.full(rest, -np.inf)])
-    high = np.concatenate([np.ones(n), np.full(rest, np.inf)])
-    for i, item in enumerate(misfit.shared):
-        low[n + i], high[n + i] = item.bounds
-    inside = np.clip(x, low + 1e-6, high - 1e-6)
-    space = misfit.problem.space
-    middle, priors = space.unit(space.start), options.priors(n)
-    inverse_priors = np.hstack([np.diag(1 / priors), np.zeros((n, rest))])
-    derive = lineariser(misfit, options.jacobian_refresh)
+def _fit(
+    misfit: Misfit, x: Array, prior_data: PriorData | None, options: FitOptions, tolerance: float, nearby: Linearisation | None
+) -> tuple[Array, Linearisation]:
+    n, space = misfit.n_parameters, misfit.problem.space
+    middle, weights = space.unit(space.start), options.priors(n) ** -2.0
+    derive = lineariser(misfit, options.jacobian_refresh, nearby)
+    last: list[tuple[Array, list[Complex]]] = []
+    kept: list[Linearisation] = []
 
-    def residuals(x: Array) -> Array:
-        own = np.concatenate([misfit.residuals(x), (x[:n] - middle) / priors])
-        return own if prior_data is None else np.concatenate([own, prior_data.residuals(space.values(x[:n]))])
+    def square(x: Array) -> float:
+        lines = misfit.whitened_spectrum(x)
+        last[:] = [*last[-1:], (x, lines)]
+        errors = misfit.split(x)[1]
+        total = sum(float(np.vdot(line, line).real) * 2 for line in lines) + float(errors @ errors + weights @ (x[:n] - middle) ** 2)
+        return total if prior_data is None else total + float((prior_data.residuals(space.values(x[:n])) ** 2).sum())
 
-    def jacobian(x: Array) -> Array:
-        own = np.vstack([derive(x).jacobian, inverse_priors])
-        if prior_data is None:
-            return own
-        values = space.values(x[:n])
-        return np.vstack([own, np.hstack([prior_data.jacobian(values) * space.slopes(values), np.zeros((len(prior_data.facts), rest))])])
+    def linearised(x: Array) -> LinearisedPoint:
+        lines = next((own for at, own in last if at is x), None) or misfit.whitened_spectrum(x)
+        kept[:] = [derive(x)]
+        information, gradient = kept[0].normal(lines, x)
+        information[:n, :n] += np.diag(weights)
+        gradient[:n] += weights * (x[:n] - middle)
+        if prior_data is not None:
+            values = space.values(x[:n])
+            slopes = prior_data.jacobian(values) * space.slopes(values)
+            information[:n, :n] += slopes.T @ slopes
+            gradient[:n] += slopes.T @ prior_data.residuals(values)
+        return LinearisedPoint(information, gradient)
 
-    with threadpool_limits(1, user_api="blas"):  # tall and thin matrices: more threads only wait for one another
-        found = scipy.optimize.least_squares(
-            residuals,
-            inside,
-            jacobian,
-            (low, high),
-            method="trf",
-            x_scale="jac",
-            xtol=1e-7,
-            ftol=tolerance,
-            gtol=1e-8,
-            max_nfev=options.max_steps,
-        )
-    return np.asarray(found.x)
+    with threadpool_limits(1, user_api="blas"):  # small matrices: more threads only wait for one another
+        found = minimise(square, linearised, x, _bounds(misfit), tolerance, options.max_steps)
+    return found, kept[0]
+
+
+def _bounds(misfit: Misfit) -> tuple[Array, Array]:
+    """Return the least and the largest values of a misfit's unknowns, each `shape (n_unknowns,)`."""
+    n, rest = misfit.n_parameters, misfit.n_errors
+    shared = np.reshape([item.bounds for item in misfit.shared], (-1, 2))
+    low = np.concatenate([np.zeros(n), shared[:, 0], np.full(rest, -MOST_SIGMAS)])
+    return low, np.concatenate([np.ones(n), shared[:, 1], np.full(rest, MOST_SIGMAS)])
 
 
 def first_noises(problem: Problem) -> Noises:
@@ -194,19 +214,20 @@ def estimate_noises(misfit: Misfit, x: Array) -> Noises:
 
 
 def first_delays(misfit: Misfit, unit: Array, begun: Sequence[float] = ()) -> Array:
-    """Return nuisances whose delays make measured and simulated correlate best: least squares alone may lock onto a wrong cycle.
+    """Return errors whose delays make measured and simulated correlate best: least squares alone may lock onto a wrong cycle.
 
     `begun` are the shared adjustments in units of their scales (default: neutral).
     """
-    names = misfit.nuisances.names
-    found = np.zeros((len(misfit.problem.trials), len(names)))
-    if "delay" in names:
-        x = np.concatenate([unit, begun or np.zeros(len(misfit.shared)), found.ravel()])
-        for t, (trial, simulated) in enumerate(zip(misfit.problem.trials, misfit.simulate(x), strict=True)):
-            found[t, names.index("delay")] = (
-                best_delay(trial.recording.values, simulated, trial.recording.dt, misfit.band) / misfit.nuisances.delay
-            )
-    return found.ravel()
+    found = np.zeros(misfit.n_errors)
+    places = [misfit.error_position(t, "delay") for t in range(len(misfit.problem.trials))]
+    if any(place is not None for place in places):
+        x = np.concatenate([unit, begun or np.zeros(len(misfit.shared)), found])
+        for t, (trial, simulated, place) in enumerate(zip(misfit.problem.trials, misfit.motions(x), places, strict=True)):
+            if place is not None:
+                sigma = next(item.sigma for item in misfit.errors[t].own if item.name == "delay")
+                late = best_delay(trial.recording.values, simulated, trial.recording.dt, misfit.band)
+                found[place] = np.clip(late / sigma, -MOST_SIGMAS, MOST_SIGMAS)
+    return found
 
 
 def best_delay(measured: Array, simulated: Array, dt: float, band: tuple[float, float]) -> float:

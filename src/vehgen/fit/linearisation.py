@@ -1,7 +1,7 @@
 """A misfit linearised at a point: the derivatives of its whitened spectra, as a value that may serve again nearby.
 
-Derivatives are differences of simulated responses. Those by the nuisances of runs (clock, speed, height) cost a simulation each and change
-little along a fit, so that one linearisation may take them from another.
+Derivatives are differences of simulated responses. Those by the errors of runs (clock, speed, hump) cost a simulation each and change
+little along a fit, so that one linearisation may take them from another; those by the errors of sensors cost next to nothing.
 """
 
 from __future__ import annotations
@@ -10,41 +10,71 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vehgen.fit.misfit import Array, Complex, Misfit, flatten
-from vehgen.fit.trial import Trial
 
 UNIT_DIFFERENCE = 1e-6
-"""Step of the differences to each side, in the unit cube and in units of a nuisance's uncertainty: so short that jumps of a response
+"""Step of the differences to each side, in the unit cube and in units of an error's uncertainty: so short that jumps of a response
 seldom cross a sample."""
+READING_DIFFERENCE = 1e-3
+"""The same for what only changes readings."""
+Slopes = dict[int, Array]
+"""Derivatives of a run's motions `shape (n_samples, n_channels)` by its own errors, by their number."""
 
 
 @dataclass(frozen=True)
 class Linearisation:
     """Derivatives of a misfit's whitened spectra at a point.
 
-    `spectra` holds a trial's derivatives each, `shape (n_unknowns, n_lines, n_channels)`; `nuisance_slopes` those of its response by its
-    nuisances, `shape (n_nuisances, n_samples, n_channels)`, before whitening; `n_priors` counts the nuisances of all trials.
+    `blocks` holds a trial's derivatives each, `shape (n_columns, n_lines, n_channels)`, by the unknowns that it depends on (`columns`);
+    `slopes` those of its motions by its own errors; `n_priors` counts the errors of sensors and runs.
     """
 
-    spectra: tuple[Complex, ...]
-    nuisance_slopes: tuple[Array, ...]
+    blocks: tuple[Complex, ...]
+    columns: tuple[NDArray[np.intp], ...]
+    slopes: tuple[Slopes, ...]
+    n_unknowns: int
     n_priors: int
 
     @property
+    def spectra(self) -> tuple[Complex, ...]:
+        """A trial's derivatives each by all unknowns, `shape (n_unknowns, n_lines, n_channels)`."""
+        found = []
+        for block, columns in zip(self.blocks, self.columns, strict=True):
+            whole = np.zeros((self.n_unknowns, *block.shape[1:]), dtype=np.complex128)
+            whole[columns] = block
+            found.append(whole)
+        return tuple(found)
+
+    @property
     def jacobian(self) -> Array:
-        """The derivatives of :meth:`Misfit.residuals`, `shape (n_residuals, n_unknowns)`, the nuisances' priors last."""
-        n_unknowns = self.spectra[0].shape[0]
-        prior = np.zeros((self.n_priors, n_unknowns))
-        prior[:, n_unknowns - self.n_priors :] = np.eye(self.n_priors)
+        """The derivatives of :meth:`Misfit.residuals`, `shape (n_residuals, n_unknowns)`, the errors' priors last."""
+        prior = np.zeros((self.n_priors, self.n_unknowns))
+        prior[:, self.n_unknowns - self.n_priors :] = np.eye(self.n_priors)
         return np.vstack([*(flatten(lines, first=1).T for lines in self.spectra), prior])
+
+    def normal(self, lines: list[Complex], x: Array) -> tuple[Array, Array]:
+        """Return J'J `shape (n_unknowns, n_unknowns)` and J'r `shape (n_unknowns,)`, priors of the errors included.
+
+        `lines` are each trial's whitened residuals at the unknowns x.
+        """
+        information, gradient = np.zeros((self.n_unknowns, self.n_unknowns)), np.zeros(self.n_unknowns)
+        for block, columns, line in zip(self.blocks, self.columns, lines, strict=True):
+            flat = flatten(block, first=1)
+            information[np.ix_(columns, columns)] += flat @ flat.T
+            gradient[columns] += flat @ flatten(line)
+        held = np.arange(self.n_unknowns - self.n_priors, self.n_unknowns)
+        information[held, held] += 1.0
+        gradient[held] += x[held]
+        return information, gradient
 
 
 Lineariser = Callable[[Array], Linearisation]
 """Linearises one misfit at unknowns x."""
 
 
-def linearise(misfit: Misfit, x: Array, *, one_sided: bool = False, nuisances_of: Linearisation | None = None) -> Linearisation:
+def linearise(misfit: Misfit, x: Array, *, one_sided: bool = False, slopes_of: Linearisation | None = None) -> Linearisation:
     """Return a misfit's linearisation at x, by differences.
 
     Parameters
@@ -53,39 +83,67 @@ def linearise(misfit: Misfit, x: Array, *, one_sided: bool = False, nuisances_of
         The misfit, and its unknowns `shape (n_unknowns,)`.
     one_sided
         Take differences to one side, which takes half of the time.
-    nuisances_of
-        A linearisation of the same misfit nearby whose derivatives by nuisances serve again (default: compute them).
+    slopes_of
+        A linearisation nearby, with the same runs and errors, whose derivatives by the runs' errors serve again (default: compute them).
     """
-    unit, errors = misfit.split(x)
-    numbers, n, s, k = misfit.adjusted(x), misfit.n_parameters, len(misfit.shared), len(misfit.nuisances.names)
-    moved = np.vstack([np.eye(n), np.zeros((1, n)) if one_sided else -np.eye(n)])
-    values = misfit.problem.space.values(unit + moved * UNIT_DIFFERENCE)
-    middle = misfit.problem.space.values(unit)[None]
-    spectra, kept = [], []
-    for t, (trial, error) in enumerate(zip(misfit.problem.trials, errors, strict=True)):
-        derived = np.zeros((misfit.n_unknowns, len(trial.recording.time), len(trial.channels)))
-        responses = misfit.respond(trial, values, numbers, error) if len(values) else np.zeros((0, *derived.shape[1:]))
-        centre = responses[n] if one_sided else None
-        if n and one_sided:
-            derived[:n] = (responses[:n] - responses[n]) / UNIT_DIFFERENCE
-        elif n:
-            derived[:n] = (responses[:n] - responses[n:]) / (2 * UNIT_DIFFERENCE)
-        for j, item in enumerate(misfit.shared):
-            step = UNIT_DIFFERENCE * item.scale * np.eye(s)[j]
-            derived[n + j] = _slope(misfit, trial, middle, (numbers, step), (error, np.zeros(k)), centre)
-        if nuisances_of is None:
-            slopes = np.zeros((k, *derived.shape[1:]))
-            for j, step in enumerate(UNIT_DIFFERENCE * np.eye(k)):
-                slopes[j] = _slope(misfit, trial, middle, (numbers, np.zeros(s)), (error, step), centre)
+    found = [_Trial(misfit, x, t, one_sided).block(None if slopes_of is None else slopes_of.slopes[t]) for t in range(len(misfit.errors))]
+    columns = tuple(misfit.columns(t) for t in range(len(misfit.errors)))
+    return Linearisation(tuple(block for block, _ in found), columns, tuple(own for _, own in found), misfit.n_unknowns, misfit.n_errors)
+
+
+class _Trial:
+    """One trial of a misfit at unknowns x, for its derivatives."""
+
+    def __init__(self, misfit: Misfit, x: Array, number: int, one_sided: bool) -> None:
+        self.misfit, self.number, self.one_sided = misfit, number, one_sided
+        self.numbers, self.error = misfit.adjusted(x), misfit.errors_of(x, number)
+        space, unit, n = misfit.problem.space, misfit.split(x)[0], misfit.n_parameters
+        self.middle = space.values(unit)[None]
+        if one_sided:
+            moved = space.values(unit + np.vstack([np.eye(n), np.zeros((1, n))]) * UNIT_DIFFERENCE)
+            responses = misfit.respond(number, moved, self.numbers, self.error)
+            self.centre, self.by_parameter = responses[n], (responses[:n] - responses[n]) / UNIT_DIFFERENCE
         else:
-            slopes = nuisances_of.nuisance_slopes[t]
-        kept.append(slopes)
-        derived[n + s + t * k : n + s + (t + 1) * k] = slopes
-        spectra.append(-misfit.whitened_signal(t, derived))
-    return Linearisation(tuple(spectra), tuple(kept), len(misfit.problem.trials) * k)
+            moved = space.values(unit + np.vstack([np.eye(n), -np.eye(n), np.zeros((1, n))]) * UNIT_DIFFERENCE)
+            responses = misfit.respond(number, moved, self.numbers, self.error)
+            self.centre, self.by_parameter = responses[2 * n], (responses[:n] - responses[n : 2 * n]) / (2 * UNIT_DIFFERENCE)
+
+    def block(self, known: Slopes | None) -> tuple[Complex, Slopes]:
+        """Return the trial's whitened derivatives by its columns, and those of its motions by its own errors."""
+        misfit, shared, sensors = self.misfit, self.misfit.shared, self.misfit.sensors
+        items = misfit.errors[self.number].items
+        steps = UNIT_DIFFERENCE * np.eye(len(shared))
+        by_shared = [self._moved(step * item.scale, np.zeros(len(items))) for item, step in zip(shared, steps, strict=True)]
+        slopes: Slopes = dict(known or {})
+        for i, item in enumerate(items):
+            if item.moves_vehicle and i - len(sensors) not in slopes:
+                slopes[i - len(sensors)] = self._moved(np.zeros(len(shared)), UNIT_DIFFERENCE * np.eye(len(items))[i])
+        motions = np.concatenate(
+            [self.by_parameter, np.reshape(by_shared, (-1, *self.centre.shape)), *(own[None] for own in slopes.values())]
+        )
+        lines = misfit.lines(self.number, motions, self.error)
+        n = len(self.by_parameter) + len(shared)
+        by_error = dict(zip(slopes, lines[n:], strict=True))
+        rows = [by_error[i - len(sensors)] if item.moves_vehicle else self._read(i) for i, item in enumerate(items)]
+        return -misfit.whiten(self.number, np.concatenate([lines[:n], np.reshape(rows, (-1, *lines.shape[1:]))])), slopes
+
+    def _moved(self, number: Array, error: Array) -> Array:
+        """Return the change of the motions per UNIT_DIFFERENCE, when adjustments and errors are moved by these steps."""
+        misfit, t = self.misfit, self.number
+        ahead = misfit.respond(t, self.middle, self.numbers + number, self.error + error)[0]
+        if self.one_sided:
+            return np.asarray((ahead - self.centre) / UNIT_DIFFERENCE)
+        behind = misfit.respond(t, self.middle, self.numbers - number, self.error - error)[0]
+        return np.asarray((ahead - behind) / (2 * UNIT_DIFFERENCE))
+
+    def _read(self, i: int) -> Complex:
+        """Return the derivative of the lines by an error that only changes readings."""
+        step = READING_DIFFERENCE * np.eye(len(self.error))[i]
+        ahead, behind = (self.misfit.lines(self.number, self.centre, self.error + sign * step) for sign in (1, -1))
+        return np.asarray((ahead - behind) / (2 * READING_DIFFERENCE))
 
 
-def lineariser(misfit: Misfit, refresh: int = 1) -> Lineariser:
+def lineariser(misfit: Misfit, refresh: int = 1, nearby: Linearisation | None = None) -> Lineariser:
     """Return what linearises a misfit again and again, as a fit asks for it.
 
     Parameters
@@ -93,26 +151,17 @@ def lineariser(misfit: Misfit, refresh: int = 1) -> Lineariser:
     misfit
         What is linearised.
     refresh
-        Every how many linearisations the derivatives by nuisances are computed anew; beyond 1 all derivatives are one-sided, too.
+        Every how many linearisations the derivatives by the runs' errors are computed anew; beyond 1 all derivatives are one-sided, too.
+    nearby
+        A linearisation whose derivatives by the runs' errors serve first.
     """
-    fresh: Linearisation | None = None
-    count = 0
+    fresh = nearby
+    count = 1 if nearby is not None else 0
 
     def linearise_again(x: Array) -> Linearisation:
         nonlocal fresh, count
-        found = linearise(misfit, x, one_sided=refresh > 1, nuisances_of=fresh if count % refresh else None)
+        found = linearise(misfit, x, one_sided=refresh > 1, slopes_of=fresh if count % refresh else None)
         fresh, count = found, count + 1
         return found
 
     return linearise_again
-
-
-def _slope(
-    misfit: Misfit, trial: Trial, values: Array, numbers: tuple[Array, Array], error: tuple[Array, Array], centre: Array | None
-) -> Array:
-    """Return the change of a trial's response per UNIT_DIFFERENCE, when numbers and errors (value, step) are moved by their steps."""
-    ahead = misfit.respond(trial, values, numbers[0] + numbers[1], error[0] + error[1])[0]
-    if centre is not None:
-        return np.asarray((ahead - centre) / UNIT_DIFFERENCE)
-    behind = misfit.respond(trial, values, numbers[0] - numbers[1], error[0] - error[1])[0]
-    return np.asarray((ahead - behind) / (2 * UNIT_DIFFERENCE))

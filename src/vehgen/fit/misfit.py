@@ -1,8 +1,8 @@
 """The misfit that uses phase: whitened residuals of all channels, for least squares.
 
 Residuals are compared line by line within a band (by Parseval's theorem the same as in time, for what lies within the band) and whitened
-by the noise's cross spectral density, so that their sum of squares is -2 ln of the likelihood. What a run does not know of itself exactly
-is fitted along with the parameters: its delay, the scales of its speed and of its hump's height.
+by the noise's cross spectral density, so that their sum of squares is -2 ln of the likelihood. What runs and sensors do not know of
+themselves exactly is fitted along with the parameters (see :mod:`vehgen.fit.nuisances`).
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.noise import Noise, RoadAnswer, road_answer, transform
+from vehgen.fit.nuisances import Condition, Nuisances, RunErrors
 from vehgen.fit.problem import Problem
 from vehgen.fit.trial import Trial
 from vehgen.simulate import Scenario
@@ -27,32 +28,11 @@ Noises = dict[str, Noise]
 
 
 @dataclass(frozen=True)
-class Nuisances:
-    """Standard deviations of what a run does not know of itself; 0 leaves it out.
-
-    `delay` of the recording's clock [s]; `speed` and `height` relative errors of the speed and of the road's height.
-    """
-
-    delay: float = 0.2
-    speed: float = 0.01
-    height: float = 0.0
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Those that are fitted."""
-        return tuple(name for name in ("delay", "speed", "height") if getattr(self, name) > 0)
-
-    def adjust(self, scenario: Scenario, values: Array) -> Scenario:
-        """Return a scenario with errors `values shape (len(names),)`, in units of their standard deviations."""
-        found = {name: float(value) * getattr(self, name) for name, value in zip(self.names, values, strict=True)}
-        return scenario.adjusted(found.get("delay", 0.0), 1.0 + found.get("speed", 0.0), 1.0 + found.get("height", 0.0))
-
-
-@dataclass(frozen=True)
 class _Weight:
-    """A trial's spectral lines within the band, the road's way into them, and the matrices that whiten it."""
+    """A trial's spectral lines within the band, those measured, the road's way into them, and the matrices that whiten it."""
 
     inside: NDArray[np.bool_]
+    measured: Complex
     answer: RoadAnswer
     whitener: Complex
 
@@ -60,8 +40,8 @@ class _Weight:
 class Misfit:
     """Whitened residuals.
 
-    The unknowns x are the searched parameters in the unit cube, then the shared adjustments in units of their scales, then each trial's
-    nuisances in units of their standard deviations (which also enter as residuals, their prior).
+    The unknowns x are the searched parameters in the unit cube, then the shared adjustments in units of their scales, then the errors of
+    sensors and of each trial in units of their standard deviations (which also enter as residuals, their prior).
 
     Parameters
     ----------
@@ -77,6 +57,8 @@ class Misfit:
         Frequencies compared [Hz].
     shared
         What may be wrong with runs or sensors, fitted along.
+    known
+        Errors of sensors that stand, by name and place.
     """
 
     def __init__(
@@ -87,12 +69,16 @@ class Misfit:
         nuisances: Nuisances | None = None,
         band: tuple[float, float] = CALIBRATION_BAND_HZ,
         shared: Sequence[Adjustment] = (),
+        known: Mapping[tuple[str, str], float] | None = None,
     ) -> None:
         self.problem = problem
         self.noises = noises
         self.nuisances = nuisances or Nuisances()
         self.band = band
         self.shared = tuple(shared)
+        self.known = dict(known or {})
+        self.sensors = tuple(item for item in self.nuisances.of_sensors(problem.trials) if (item.name, item.place) not in self.known)
+        self.errors = tuple(RunErrors.of(trial, self.sensors, self.nuisances.of_run(trial), self.known) for trial in problem.trials)
         self._weights = [self._weight(trial, problem.best_values(reference)) for trial in problem.trials]
 
     def _weight(self, trial: Trial, reference: Mapping[str, float]) -> _Weight:
@@ -101,7 +87,7 @@ class Misfit:
         inside = (frequency >= self.band[0]) & (frequency <= self.band[1])
         own = {name: value for name, value in reference.items() if name not in trial.fixed}
         answer = road_answer(trial, frequency[inside], trial.values | own)
-        return _Weight(inside, answer, self.noises[trial.name].whitener(answer))
+        return _Weight(inside, transform(trial.recording.values, dt, inside), answer, self.noises[trial.name].whitener(answer))
 
     @property
     def n_parameters(self) -> int:
@@ -109,23 +95,74 @@ class Misfit:
         return self.problem.space.size
 
     @property
+    def n_errors(self) -> int:
+        """Number of errors of sensors and runs."""
+        return len(self.sensors) + sum(len(item.own) for item in self.errors)
+
+    @property
     def n_unknowns(self) -> int:
-        """Number of unknowns: parameters, shared adjustments, nuisances."""
-        return self.n_parameters + len(self.shared) + len(self.problem.trials) * len(self.nuisances.names)
+        """Number of unknowns: parameters, shared adjustments, errors."""
+        return self.n_parameters + len(self.shared) + self.n_errors
 
     def split(self, x: Array) -> tuple[Array, Array]:
-        """Return the parameters `shape (n_parameters,)` in the unit cube and the nuisances `shape (n_trials, len(names))`."""
+        """Return the parameters `shape (n_parameters,)` in the unit cube and the errors `shape (n_errors,)`."""
+        return x[: self.n_parameters], x[self.n_parameters + len(self.shared) :]
+
+    def own_columns(self, number: int) -> slice:
+        """Return where the errors of trial `number` alone stand among the unknowns."""
+        start = self.n_parameters + len(self.shared) + len(self.sensors) + sum(len(item.own) for item in self.errors[:number])
+        return slice(start, start + len(self.errors[number].own))
+
+    def columns(self, number: int) -> NDArray[np.intp]:
+        """Return which unknowns trial `number` depends on: parameters, adjustments, errors of the sensors, its own."""
+        own = self.own_columns(number)
+        return np.concatenate([np.arange(self.n_parameters + len(self.shared) + len(self.sensors)), np.arange(own.start, own.stop)])
+
+    def errors_of(self, x: Array, number: int) -> Array:
+        """Return the errors of trial `number`, the sensors' first, `shape (n_sensors + n_own,)`."""
+        return np.asarray(x[self.columns(number)[self.n_parameters + len(self.shared) :]])
+
+    def error_position(self, number: int, name: str) -> int | None:
+        """Return where an error of trial `number` stands among all `n_errors`; None where it is left out."""
+        names = [item.name for item in self.errors[number].own]
+        before = self.n_parameters + len(self.shared)
+        return self.own_columns(number).start - before + names.index(name) if name in names else None
+
+    def scenario(self, x: Array, number: int) -> Scenario:
+        """Return what trial `number` drives through, with its errors and the adjustments."""
+        scenario = self.errors[number].scenario(self.problem.trials[number].scenario, self.errors_of(x, number))
+        for item, value in zip(self.shared, self.adjusted(x), strict=True):
+            scenario = item.scenario(scenario, float(value))
+        return scenario
+
+    def conditions(self, x: Array) -> tuple[Condition, ...]:
+        """Return what the unknowns say of sensors and runs."""
         start = self.n_parameters + len(self.shared)
-        return x[: self.n_parameters], x[start:].reshape(len(self.problem.trials), len(self.nuisances.names))
+        found = [("", item) for item in self.sensors]
+        found += [(trial.name, item) for trial, errors in zip(self.problem.trials, self.errors, strict=True) for item in errors.own]
+        return tuple(
+            Condition(run, item.name, item.place, float(number) * item.sigma, item.unit, float(number))
+            for (run, item), number in zip(found, x[start:], strict=True)
+        )
+
+    def sensor_errors(self, x: Array) -> dict[tuple[str, str], float]:
+        """Return the errors of sensors that hold in all runs, by name and place, those that stand included."""
+        found = {(item.name, item.place): item.value for item in self.conditions(x) if not item.run}
+        return {**self.known, **found}
 
     def adjusted(self, x: Array) -> Array:
         """Return the numbers of the shared adjustments, `shape (len(shared),)`."""
         own = x[self.n_parameters : self.n_parameters + len(self.shared)]
         return np.array([item.neutral + item.scale * value for item, value in zip(self.shared, own, strict=True)])
 
-    def respond(self, trial: Trial, values: Array, numbers: Array, error: Array) -> Array:
-        """Return what a trial's sensors read at searched values `shape (n, n_parameters)` [SI], adjustments and nuisances."""
-        scenario = self.nuisances.adjust(trial.scenario, error)
+    def respond(self, number: int, values: Array, numbers: Array, error: Array, trial: Trial | None = None) -> Array:
+        """Return how the places of trial `number`'s sensors move, `shape (n, n_samples, n_channels)`.
+
+        At searched values `shape (n, n_parameters)` [SI], adjustments and the trial's errors; what the sensors' own errors make of it is
+        left to :meth:`lines`. `trial` stands in for the trial itself, with another step.
+        """
+        trial = trial or self.problem.trials[number]
+        scenario = self.errors[number].scenario(trial.scenario, error)
         for item, value in zip(self.shared, numbers, strict=True):
             scenario = item.scenario(scenario, float(value))
         response = self.problem.respond(values, trial, scenario)[0]
@@ -133,18 +170,41 @@ class Misfit:
             response = item.response(trial, response, numbers[i:])
         return response
 
+    def lines(self, number: int, response: Array, error: Array) -> Complex:
+        """Return the spectral lines of what trial `number`'s sensors read of motions `shape (..., n_samples, n_channels)`."""
+        errors, dt = self.errors[number], self.problem.trials[number].recording.dt
+        found = transform(response, dt, self._weights[number].inside, errors.clocks(error))
+        reading = errors.reading(self.frequency(number), error)
+        return found if reading is None else _apply(reading, found)
+
+    def seen(self, number: int, lines: Complex, x: Array) -> Complex:
+        """Return what trial `number`'s sensors make of spectral lines of motions `shape (..., n_lines, n_channels)`."""
+        reading = self.errors[number].reading(self.frequency(number), self.errors_of(x, number))
+        return lines if reading is None else _apply(reading, lines)
+
+    def motions(self, x: Array) -> list[Array]:
+        """Return how the places of the sensors move in each trial, `shape (n_samples, n_channels)`."""
+        values, numbers = self.problem.space.values(self.split(x)[0])[None], self.adjusted(x)
+        return [self.respond(t, values, numbers, self.errors_of(x, t))[0] for t in range(len(self.problem.trials))]
+
     def simulate(self, x: Array) -> list[Array]:
-        """Return each trial's response, `shape (n_samples, n_channels)`."""
-        unit, errors = self.split(x)
-        values, numbers = self.problem.space.values(unit)[None], self.adjusted(x)
-        return [self.respond(trial, values, numbers, error)[0] for trial, error in zip(self.problem.trials, errors, strict=True)]
+        """Return what the sensors read in each trial, `shape (n_samples, n_channels)`."""
+        found = []
+        for t, (trial, motion) in enumerate(zip(self.problem.trials, self.motions(x), strict=True)):
+            length = 2 * len(motion)
+            frequency = np.asarray(np.fft.rfftfreq(length, trial.recording.dt), dtype=np.float64)
+            reading = self.errors[t].reading(frequency, self.errors_of(x, t))
+            if reading is not None:
+                motion = np.fft.irfft(_apply(reading, np.fft.rfft(motion, length, axis=0)), length, axis=0)[: len(motion)]
+            found.append(np.asarray(motion))
+        return found
 
     def residual_spectrum(self, x: Array) -> list[tuple[Complex, RoadAnswer]]:
         """Return each trial's residual, measured minus simulated, as spectral lines, with the road's way into them."""
-        found = []
-        for trial, weight, simulated in zip(self.problem.trials, self._weights, self.simulate(x), strict=True):
-            found.append((transform(trial.recording.values - simulated, trial.recording.dt, weight.inside), weight.answer))
-        return found
+        return [
+            (weight.measured - self.lines(t, motion, self.errors_of(x, t)), weight.answer)
+            for t, (weight, motion) in enumerate(zip(self._weights, self.motions(x), strict=True))
+        ]
 
     def whitened_spectrum(self, x: Array) -> list[Complex]:
         """Return each trial's whitened residual lines, `shape (n_lines, n_channels)`, E|line|^2 = 1 where model and noise are right."""
@@ -163,7 +223,7 @@ class Misfit:
         return self._weights[number].answer.frequency
 
     def residuals(self, x: Array) -> Array:
-        """Return the whitened residuals, the nuisances' priors last: each of unit variance where model and noise are right."""
+        """Return the whitened residuals, the errors' priors last: each of unit variance where model and noise are right."""
         return np.concatenate([*(flatten(lines) for lines in self.whitened_spectrum(x)), x[self.n_parameters + len(self.shared) :]])
 
     def draw(self, x: Array, random: np.random.Generator) -> list[Array]:

@@ -152,10 +152,19 @@ def taper(n_samples: int, dt: float) -> Array:
     return np.asarray(scipy.signal.windows.tukey(n_samples, share))
 
 
-def transform(values: Array, dt: float, inside: NDArray[np.bool_]) -> Complex:
-    """Return spectral lines of tapered histories `shape (..., n_samples, n_channels)`, scaled so that |line|^2 is a one-sided PSD."""
+def transform(values: Array, dt: float, inside: NDArray[np.bool_], late: Array | None = None) -> Complex:
+    """Return spectral lines of tapered histories `shape (..., n_samples, n_channels)`, scaled so that |line|^2 is a one-sided PSD.
+
+    `late shape (n_channels,)` [s] moves each channel's window so much earlier: lines turned by that delay are then those of the delayed
+    channel under the window as it is.
+    """
     window = taper(values.shape[-2], dt)
-    return np.asarray(np.fft.rfft(values * window[:, None], axis=-2)[..., inside, :] * np.sqrt(2 * dt / (window**2).sum()))
+    scale = np.sqrt(2 * dt / (window**2).sum())
+    windows = window[:, None]
+    if late is not None and late.any():
+        time = np.arange(len(window)) * dt
+        windows = np.column_stack([np.interp(time + item, time, window, left=0.0, right=0.0) for item in late])
+    return np.asarray(np.fft.rfft(values * windows, axis=-2)[..., inside, :] * scale)
 
 
 def road_answer(trial: Trial, frequency: Array, values: dict[str, float]) -> RoadAnswer:

@@ -27,15 +27,15 @@ SMOOTH_RATIO = 1 / 6
 
 def resolve(misfit: Misfit, x: Array) -> Problem:
     """Return the problem of a misfit with every trial's step halved as often as its response at `x` asks, and marked where it jumps."""
-    unit, errors = misfit.split(x)
-    values, numbers = misfit.problem.space.values(unit)[None], misfit.adjusted(x)
+    values, numbers = misfit.problem.space.values(misfit.split(x)[0])[None], misfit.adjusted(x)
     found = []
-    for number, (trial, error) in enumerate(zip(misfit.problem.trials, errors, strict=True)):
+    for number, trial in enumerate(misfit.problem.trials):
+        error = misfit.errors_of(x, number)
         most = samples_kept(trial.run, trial.recording.dt) * 2**HALVINGS
-        coarse, before, jumps = misfit.respond(trial, values, numbers, error)[0], 0.0, trial.jumps
+        coarse, before, jumps = misfit.respond(number, values, numbers, error, trial)[0], 0.0, trial.jumps
         while trial.scenario.decimation < most:
             finer = _halved(trial)
-            fine = misfit.respond(finer, values, numbers, error)[0]
+            fine = misfit.respond(number, values, numbers, error, finer)[0]
             moved = float(np.mean(np.abs(misfit.whitened_signal(number, fine - coarse)) ** 2))
             jumps = jumps or moved > SMOOTH_RATIO * before > 0.0
             if not moved > RESOLVED_SHARE:

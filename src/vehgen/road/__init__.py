@@ -2,12 +2,13 @@
 
 from vehgen.road.humps import Hump
 from vehgen.road.iso8608 import CLASSES, Iso8608Road, check_length, displacement_psd
-from vehgen.road.speed import AdjustedSpeed, ConstantSpeed, SpeedHistory, SpeedLaw
-from vehgen.road.track import MeasuredProfile, Profile, Track
+from vehgen.road.speed import AdjustedSpeed, ConstantSpeed, SpeedHistory, SpeedLaw, Wander
+from vehgen.road.track import UNDEFORMED, MeasuredProfile, Profile, Track
 from vehgen.road.wheels import WheelInputs, pass_time, wheel_inputs
 
 __all__ = [
     "CLASSES",
+    "UNDEFORMED",
     "AdjustedSpeed",
     "ConstantSpeed",
     "Hump",
@@ -17,6 +18,7 @@ __all__ = [
     "SpeedHistory",
     "SpeedLaw",
     "Track",
+    "Wander",
     "WheelInputs",
     "check_length",
     "displacement_psd",

@@ -70,6 +70,20 @@ class Hump:
         start = distance - distance[0]
         return cls(at, float(start[-1]), partial(_points, distance=start, height=height))
 
+    def deformed(self, length: float = 1.0, form: float = 1.0, skew: float = 0.0) -> Hump:
+        """Return the hump as it may really be, starting where it starts.
+
+        Parameters
+        ----------
+        length
+            Its length over that of the drawing.
+        form
+            Exponent of its height over its highest: below 1 it is fuller, above 1 more pointed (a half sine of form 2 is a versine).
+        skew
+            How far its middle lies before (above 0) or behind the drawing's, as four times the share of the length.
+        """
+        return Hump(self.at, length * self.length, partial(_deformed, shape=self.shape, whole=self.length, change=(length, form, skew)))
+
     def spectral_nulls(self, speed: float, f_max: float) -> Array:
         """Return the frequencies up to `f_max` [Hz] at which the hump, crossed at `speed` [m/s], excites nothing.
 
@@ -138,6 +152,16 @@ def rectangle(length: float, height: float, radius: float) -> Shape:
         raise InputError(f"the rounded edges take {4 * run:.3f} m of a hump of {length} m; make it longer or the radius smaller")
 
     return partial(_rectangle, length=length, height=height, radius=radius, run=float(run))
+
+
+def _deformed(s: Array, shape: Shape, whole: float, change: tuple[float, float, float]) -> Array:
+    length, form, skew = change
+    share = s / (whole * length)
+    heights = shape(whole * (share + skew * share * (1 - share)))
+    if form == 1.0:
+        return heights
+    highest = float(np.abs(shape(np.linspace(0.0, whole, 201))).max())
+    return np.asarray(np.copysign(highest * (np.abs(heights) / highest) ** form, heights))
 
 
 def _points(s: Array, distance: Array, height: Array) -> Array:

@@ -7,10 +7,13 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
 from vehgen.errors import InputError
 
 Array = NDArray[np.float64]
+_WANDER_GRID_S = 5e-3
+"""Spacing of the times at which a driver's wander is added up [s]: it changes over seconds."""
 
 
 class SpeedLaw(Protocol):
@@ -62,13 +65,51 @@ class SpeedHistory:
 
 
 @dataclass(frozen=True)
+class Wander:
+    """How a driver strays about a speed: its relative error `values` at the times `knots` [s], both `shape (n,)`, ascending.
+
+    Between the knots runs a natural cubic spline, outside the error stays as it is at the nearest knot.
+    """
+
+    knots: tuple[float, ...]
+    values: tuple[float, ...]
+
+    def at(self, t: Array) -> Array:
+        """Return the relative error of the speed at times t [s]."""
+        inside = np.clip(t, self.knots[0], self.knots[-1])
+        if len(self.knots) == 1:
+            return np.full_like(inside, self.values[0])
+        return np.asarray(CubicSpline(self.knots, self.values, bc_type="natural")(inside))
+
+
+@dataclass(frozen=True)
 class AdjustedSpeed:
-    """A speed law with its errors: `delay` [s] by which everything happens later, and `scale` by which the speed is multiplied."""
+    """A speed law with its errors.
+
+    Everything happens `delay` [s] later, at `scale` times the speed and, where there is a `wander`, at 1 more times that. Where the vehicle
+    is at the time `anchor` of the law [s], neither scale nor wander change: they are seen from there.
+    """
 
     law: SpeedLaw
     delay: float = 0.0
     scale: float = 1.0
+    anchor: float = 0.0
+    wander: Wander | None = None
 
     def distance(self, t: Array) -> Array:
         """Return the distance travelled [m]."""
-        return np.asarray(self.scale * self.law.distance(np.asarray(t, dtype=np.float64) - self.delay))
+        own = np.asarray(t, dtype=np.float64) - self.delay
+        along = self.law.distance(own)
+        if self.scale != 1.0:
+            fixed = self.law.distance(np.array([self.anchor]))[0]
+            along = fixed + self.scale * (along - fixed)
+        return np.asarray(along if self.wander is None else along + self._strayed(own, self.wander))
+
+    def _strayed(self, t: Array, wander: Wander) -> Array:
+        """Return how much farther than without it the wander has brought the vehicle since the anchor [m]."""
+        first, last = min(float(t.min()), self.anchor), max(float(t.max()), self.anchor)
+        grid = np.arange(first, last + 2 * _WANDER_GRID_S, _WANDER_GRID_S)
+        share = wander.at(grid)
+        steps = np.diff(self.law.distance(grid)) * (share[1:] + share[:-1]) / 2
+        farther = np.concatenate([[0.0], np.cumsum(steps)])
+        return np.asarray(np.interp(t, grid, farther) - np.interp(self.anchor, grid, farther))

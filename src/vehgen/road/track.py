@@ -9,12 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
+from vehgen.road.humps import Hump
 
 Array = NDArray[np.float64]
 _PIECE_LENGTH_M = 500.0
 """Longer stretches are integrated piece by piece [m]: a piece has a million points."""
 GRID = 5e-4
 """Spacing of the grid on which the road is integrated [m]."""
+UNDEFORMED = (1.0, 1.0, 0.0)
+"""Length, form and skew of a hump as it was drawn."""
 
 
 class Profile(Protocol):
@@ -58,6 +61,8 @@ class MeasuredProfile:
 class Track:
     """The sum of profiles, times `scale`, averaged over a footprint [m] (0: a point contact).
 
+    `deformation` is what its humps are deformed by: length, form and skew (see :meth:`Hump.deformed`).
+
     The moving average is the difference of the road's integral between the edges of the contact, taken from a grid of half a
     millimetre: a hump shorter than the footprint still counts in full.
     """
@@ -65,6 +70,7 @@ class Track:
     parts: tuple[Profile, ...]
     footprint: float = 0.0
     scale: float = 1.0
+    deformation: tuple[float, float, float] = UNDEFORMED
 
     @property
     def end(self) -> float:
@@ -98,5 +104,7 @@ class Track:
     def _raw(self, s: Array) -> Array:
         total = np.zeros_like(s)
         for part in self.parts:
+            if isinstance(part, Hump) and self.deformation != UNDEFORMED:
+                part = part.deformed(*self.deformation)
             total += part.height(s)
         return self.scale * total

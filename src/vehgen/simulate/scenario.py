@@ -24,6 +24,7 @@ from vehgen.road import (
     SpeedHistory,
     SpeedLaw,
     Track,
+    Wander,
     check_length,
     pass_time,
     wheel_inputs,
@@ -102,10 +103,34 @@ class Scenario:
         """The highest speed of the run [m/s]."""
         return float(np.max(np.diff(self.speed.distance(self.time)) / self.dt)) if len(self.time) > 1 else 0.0
 
-    def adjusted(self, delay: float = 0.0, speed: float = 1.0, height: float = 1.0) -> Scenario:
-        """Return the same run, `delay` [s] later, at `speed` times the speed, on a road `height` times as high."""
-        law = self.speed if (delay, speed) == (0.0, 1.0) else AdjustedSpeed(self.speed, delay, speed)
-        return replace(self, speed=law, track=replace(self.track, scale=self.track.scale * height))
+    @cached_property
+    def first_arrival(self) -> float:
+        """When the first axle meets the first hump [s]; the start of the run where there is none."""
+        if not self.humps:
+            return self.start
+        first = min(hump.at for hump in self.humps)
+        along = self.speed.distance(self.time)
+        return float(np.interp(first, along, self.time))
+
+    def adjusted(
+        self,
+        delay: float = 0.0,
+        speed: float = 1.0,
+        height: float = 1.0,
+        *,
+        anchor: float = 0.0,
+        wander: Wander | None = None,
+        deformation: tuple[float, float, float] | None = None,
+    ) -> Scenario:
+        """Return the same run, `delay` [s] later, at `speed` times the speed, on a road `height` times as high.
+
+        Speed and `wander` are seen from where the vehicle is at the time `anchor` [s]; `deformation` is that of the humps
+        (length, form, skew; default: as it is).
+        """
+        same = (delay, speed, wander) == (0.0, 1.0, None)
+        law = self.speed if same else AdjustedSpeed(self.speed, delay, speed, anchor, wander)
+        track = replace(self.track, scale=self.track.scale * height, deformation=deformation or self.track.deformation)
+        return replace(self, speed=law, track=track)
 
     def excitation(self, offsets: Array) -> Excitation:
         """Return the inputs of a vehicle whose axles run `offsets shape (n_axles,)` [m] behind the first to arrive.
@@ -113,11 +138,12 @@ class Scenario:
         Neither they nor the arrays of the scenario are to be written to: the last excitations are remembered.
         """
         law: SpeedLaw = self.speed
-        errors: tuple[float, ...] = ()
+        errors: tuple[object, ...] = ()
         while isinstance(law, AdjustedSpeed):
-            errors = (*errors, law.delay, law.scale)
+            errors = (*errors, law.delay, law.scale, law.anchor, law.wander)
             law = law.law
-        road = (id(self.track.parts), self.track.footprint, self.track.scale, id(law), errors, np.asarray(offsets, dtype=float).tobytes())
+        track = (id(self.track.parts), self.track.footprint, self.track.scale, self.track.deformation)
+        road = (*track, id(law), errors, np.asarray(offsets, dtype=float).tobytes())
         key = (*road, self.start, self.dt, len(self.time), id(self.ground), id(self.forces))
         return _EXCITATIONS.find(key, (self.track, self.speed, self.ground, self.forces), lambda: self._excitation(offsets))
 

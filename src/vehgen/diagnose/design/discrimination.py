@@ -19,11 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.design.candidate_runs import CandidateRun
-from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, NUISANCES, ModelFit
-from vehgen.fit.least_squares import best_delay
+from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, ModelFit
+from vehgen.fit.least_squares import MOST_SIGMAS, best_delay
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.fit.noise import Noise, transform
+from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.problem import Problem
 from vehgen.fit.trial import Trial
 from vehgen.measure import RecordedChannel
@@ -42,6 +43,8 @@ ABSENT = 1e6
 """A channel with so many times its noise counts as not there."""
 
 
+OF_NEW_RUNS = Nuisances(delay=0.05, speed=0.005, height=0.02, wander=0, length=0, form=0, skew=0, clock=0, gain=0, tilt=0, position=0)
+"""What a new run, driven with care, does not know of itself."""
 PHONE = {"acceleration": 0.0125, "pitch_rate": 5e-4}
 """Noise of a phone where the runs do not tell [m/s^2, rad/s]."""
 
@@ -99,8 +102,8 @@ class FittedModel:
         measurement = replace(self.trial.recording, time=time, values=np.zeros((len(time), len(self.trial.channels))))
         trial = replace(self.trial, name=run.name, scenario=run.scenario, recording=measurement)
         problem = Problem((trial,), fitted.problem.space)
-        noises = {run.name: noise or self.noise}
-        return Misfit(problem, noises, self.fit.least_squares.values, NUISANCES, fitted.band, fitted.shared)
+        noises, known = {run.name: noise or self.noise}, fitted.sensor_errors(self.fit.least_squares.x)
+        return Misfit(problem, noises, self.fit.least_squares.values, OF_NEW_RUNS, fitted.band, fitted.shared, known)
 
     def local(self, run: CandidateRun, channels: tuple[str, ...]) -> tuple[Misfit, Array]:
         """Return the misfit over a run with some channels only, and its derivatives at the fit."""
@@ -108,15 +111,13 @@ class FittedModel:
         if key not in self._locals:
             kept = np.isin(self.trial.channels, channels)
             misfit = self.misfit(run, replace(self.noise, sigma=np.where(kept, 1.0, ABSENT) * self.noise.sigma))
-            self._locals[key] = misfit, linearise(misfit, self.x).jacobian
+            self._locals[key] = misfit, linearise(misfit, self.begin(misfit)).jacobian
         return self._locals[key]
 
-    @cached_property
-    def x(self) -> Array:
-        """The fitted parameters and adjustments, then the new run's errors, none."""
-        misfit = self.fit.least_squares.misfit
-        own = misfit.n_parameters + len(misfit.shared)
-        return np.concatenate([self.fit.least_squares.x[:own], np.zeros(len(NUISANCES.names))])
+    def begin(self, misfit: Misfit) -> Array:
+        """Return the fitted parameters and adjustments, then the errors of a new run's misfit, none."""
+        fitted = self.fit.least_squares.misfit
+        return np.concatenate([self.fit.least_squares.x[: fitted.n_parameters + len(fitted.shared)], np.zeros(misfit.n_errors)])
 
     @cached_property
     def information(self) -> Array:
@@ -133,7 +134,8 @@ class FittedModel:
     def predict(self, run: CandidateRun) -> Array:
         """Return what its channels would read, `shape (n_samples, n_channels)`."""
         if run.name not in self._answers:
-            self._answers[run.name] = self.misfit(run).simulate(self.x)[0]
+            misfit = self.misfit(run)
+            self._answers[run.name] = misfit.simulate(self.begin(misfit))[0]
         return self._answers[run.name]
 
     def travels(self, run: CandidateRun, axles: Sequence[str]) -> Array:
@@ -151,7 +153,7 @@ def at_most(truth: FittedModel, fitted: FittedModel, run: CandidateRun, channels
     lines, dt = _difference(truth, fitted, run), fitted.trial.recording.dt
     kept = np.isin(fitted.trial.channels, channels)
     distance = float(((np.abs(lines) ** 2).sum(axis=0) / (dt * fitted.noise.sigma**2))[kept].sum())
-    return Separation(distance if np.isfinite(distance) else 0.0, 2 * len(lines) * len(channels), fitted.x)
+    return Separation(distance if np.isfinite(distance) else 0.0, 2 * len(lines) * len(channels), fitted.begin(fitted.misfit(run)))
 
 
 def separate(truth: FittedModel, fitted: FittedModel, run: CandidateRun, channels: tuple[str, ...]) -> Separation:
@@ -161,22 +163,25 @@ def separate(truth: FittedModel, fitted: FittedModel, run: CandidateRun, channel
     """
     misfit, jacobian = fitted.local(run, channels)
     wanted = misfit.whitened_signal(0, truth.predict(run))
+    start = fitted.begin(misfit)
     count, k = 2 * wanted.size * len(channels) // wanted.shape[1], len(fitted.information)
 
     def left(x: Array) -> tuple[float, Array]:
         residuals = np.concatenate([flatten(wanted + misfit.whitened_spectrum(x)[0]), x[k:]])
-        away = x[:k] - fitted.x[:k]
+        away = x[:k] - start[:k]
         return float(residuals @ residuals + away @ fitted.information @ away), residuals
 
-    late = fitted.x.copy()
-    late[k + NUISANCES.names.index("delay")] = _later(truth, fitted, run) / NUISANCES.delay
-    x, (distance, residuals) = min(((item, left(item)) for item in (fitted.x, late)), key=lambda item: item[1][0])
+    late = start.copy()
+    place = misfit.error_position(0, "delay")
+    if place is not None:
+        late[k + place] = np.clip(_later(truth, fitted, run) / OF_NEW_RUNS.delay, -MOST_SIGMAS, MOST_SIGMAS)
+    x, (distance, residuals) = min(((item, left(item)) for item in (start, late)), key=lambda item: item[1][0])
     if x is late:
         jacobian = linearise(misfit, x).jacobian
     for turn in range(REFITS):
         normal, slope = jacobian.T @ jacobian, jacobian.T @ residuals
         normal[:k, :k] += fitted.information
-        slope[:k] += fitted.information @ (x[:k] - fitted.x[:k])
+        slope[:k] += fitted.information @ (x[:k] - start[:k])
         new = x - np.linalg.lstsq(normal, slope, rcond=1e-12)[0]
         new[: misfit.n_parameters] = np.clip(new[: misfit.n_parameters], 0.0, 1.0)
         nearer, residuals_there = left(new)

@@ -38,22 +38,19 @@ class ProbeMotion:
     """
 
     def __init__(self, misfit: Misfit, x: Array) -> None:
-        self.misfit = misfit
-        unit, errors = misfit.split(x)
-        values, numbers = misfit.problem.space.values(unit), misfit.adjusted(x)
+        self.misfit, self.x = misfit, x
+        values = misfit.problem.space.values(misfit.split(x)[0])
         kernels: dict[int, tuple[EquationsOfMotion, Kernel]] = {}
         self.values = [misfit.problem.values_of(values, trial) for trial in misfit.problem.trials]
         self.motions: list[Array] = []
         self._responses: dict[tuple[int, int], Complex] = {}
-        for trial, error, known in zip(misfit.problem.trials, errors, self.values, strict=True):
+        for t, (trial, known) in enumerate(zip(misfit.problem.trials, self.values, strict=True)):
             model = trial.simulator.model
             if id(model) not in kernels:
                 probe = _probe(model)
                 kernels[id(model)] = probe, Kernel(probe)
             probe, kernel = kernels[id(model)]
-            scenario = misfit.nuisances.adjust(trial.scenario, error)
-            for item, value in zip(misfit.shared, numbers, strict=True):
-                scenario = item.scenario(scenario, float(value))
+            scenario = misfit.scenario(x, t)
             population = np.array([[known[name] for name in probe.parameters]])
             run = kernel.run(population, scenario.excitation(probe.wheel_offsets(known)), scenario.decimation)
             self.motions.append(np.asarray(run.responses[0].T.reshape(len(model.elements), 2, -1)))
@@ -82,7 +79,7 @@ class ProbeMotion:
             inside = np.isin(np.fft.rfftfreq(len(trial.recording.time), trial.recording.dt), self.misfit.frequency(t))
             for number, force in forces.items():
                 lines += transform(force[:, None], trial.recording.dt, inside) * self._response(t, number)
-            parts.append(flatten(self.misfit.whiten(t, lines)))
+            parts.append(flatten(self.misfit.whiten(t, self.misfit.seen(t, lines, self.x))))
         return np.concatenate(parts)
 
     def _forces(self, t: int, model: EquationsOfMotion, values: Mapping[str, float]) -> dict[int, Array] | None:

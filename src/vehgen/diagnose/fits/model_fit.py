@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.least_squares import COARSE_TOLERANCE, FitOptions, LeastSquaresFit, fit_least_squares
-from vehgen.fit.misfit import Misfit, Noises, Nuisances
+from vehgen.fit.linearisation import Linearisation
+from vehgen.fit.misfit import Misfit, Noises
+from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.problem import Problem
 from vehgen.fit.resolution import resolve
 from vehgen.fit.space import SearchSpace
@@ -19,8 +21,8 @@ from vehgen.fit.trial import Trial
 from vehgen.simulate import SimulatorPool
 
 Array = NDArray[np.float64]
-NUISANCES = Nuisances(delay=0.05, speed=0.005, height=0.02)
-"""What a run may not know of itself: its clock, 0.5 % of its speed, 2 % of its road's height."""
+NUISANCES = Nuisances()
+"""What runs and sensors may not know of themselves."""
 BASE_RANGE = 0.3
 """The base may move its parameters by this share of a logarithm about the file's values: looser, it absorbs the effect."""
 BASE_PRIOR_SIGMA = 0.17
@@ -81,7 +83,8 @@ class CurrentModel:
     """What candidates are added to: the base or what has been found so far.
 
     `problem` begins at that fit's parameters, of which the last `free` are the effects'; `shared` are its adjustments, whose neutral
-    numbers are the fitted ones; `unit` and `errors` are where parameters and nuisances begin; `train` is the mean square it leaves.
+    numbers are the fitted ones; `unit` and `errors` are where parameters and errors begin; `training` is the mean square it leaves;
+    `nearby` the last linearisation of the fit.
     """
 
     effects: tuple[Candidate, ...]
@@ -91,6 +94,7 @@ class CurrentModel:
     unit: Array
     errors: Array
     training: float
+    nearby: Linearisation | None = None
 
     @classmethod
     def of(cls, fit: ModelFit) -> CurrentModel:
@@ -104,7 +108,8 @@ class CurrentModel:
         if free:
             start = np.concatenate([space.start[: space.size - free], fit.least_squares.values[space.size - free :]])
             space = replace(space, start=start)
-        return cls(fit.effects, Problem(misfit.problem.trials, space), shared, free, unit, errors.ravel(), fit.training)
+        nearby = fit.least_squares.linearisation
+        return cls(fit.effects, Problem(misfit.problem.trials, space), shared, free, unit, errors, fit.training, nearby)
 
 
 def narrow(problem: Problem) -> Problem:
@@ -149,7 +154,9 @@ def refine(problem: Problem, fit: LeastSquaresFit, x: Array, n_effect_parameters
         n_effect_parameters=n_effect_parameters,
     )
     numbers = tuple(misfit.adjusted(x))
-    return fit_least_squares(problem, unit, options, noises=misfit.noises, start=errors.ravel(), shared=misfit.shared, numbers=numbers)
+    return fit_least_squares(
+        problem, unit, options, noises=misfit.noises, start=errors, shared=misfit.shared, numbers=numbers, known=misfit.known
+    )
 
 
 def evaluate_fit(effects: tuple[Candidate, ...], fit: LeastSquaresFit, validation_runs: Sequence[Trial], noises: Noises) -> ModelFit:
@@ -176,7 +183,8 @@ def evaluate_fit(effects: tuple[Candidate, ...], fit: LeastSquaresFit, validatio
         )
         frozen = resolve(*_begin(frozen, noises, fit.misfit.band, frozen_shared))
         options = FitOptions(NUISANCES, fit.misfit.band, tolerance=DIAGNOSIS_TOLERANCE, jacobian_refresh=JACOBIAN_REFRESH)
-        again = fit_least_squares(frozen, np.zeros(0), options, noises=noises, shared=frozen_shared)
+        known = fit.misfit.sensor_errors(fit.x)
+        again = fit_least_squares(frozen, np.zeros(0), options, noises=noises, shared=frozen_shared, known=known)
         checked = _powers(again)
         own, own_counts = _by_run(checked)
         later = _pooled(own, own_counts)

@@ -83,6 +83,7 @@ class _Rough:
     def __init__(self, candidate: Candidate, current: CurrentModel, problem: Problem, noises: Noises, band: tuple[float, float]) -> None:
         self.candidate, self.current, self.problem, self.noises, self.band = candidate, current, problem, noises, band
         self.shared = (*current.shared, *candidate.shared)
+        self.nearby = current.nearby
         self.n_effect_parameters = current.n_effect_parameters + len(candidate.parameters)
 
     def search(self, origins: Sequence[StartingPoint], begin: Sequence[tuple[float, ...]]) -> LeastSquaresFit | None:
@@ -96,7 +97,7 @@ class _Rough:
         followed = []
         for fit in fits[:FOLLOWED_STARTS]:
             unit, errors = fit.misfit.split(fit.x)
-            followed.append(self._fit(unit, errors.ravel(), tuple(fit.misfit.adjusted(fit.x)), MORE))
+            followed.append(self._fit(unit, errors, tuple(fit.misfit.adjusted(fit.x)), MORE))
             if self._closed(followed[-1]):
                 break
         return min(followed, key=lambda item: item.loss, default=None)
@@ -114,7 +115,9 @@ class _Rough:
             prior_sigma=BASE_PRIOR_SIGMA,
             n_effect_parameters=self.n_effect_parameters,
         )
-        return fit_least_squares(self.problem, unit, options, noises=self.noises, start=errors, shared=self.shared, numbers=numbers)
+        return fit_least_squares(
+            self.problem, unit, options, noises=self.noises, start=errors, shared=self.shared, numbers=numbers, nearby=self.nearby
+        )
 
     def _starts(self, origins: Sequence[StartingPoint], begin: Sequence[tuple[float, ...]]) -> list[tuple[Array, Array, tuple[float, ...]]]:
         """Return the points at which fits may begin, the lowest first: parameters, nuisances, numbers of adjustments."""

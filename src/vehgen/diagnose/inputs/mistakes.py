@@ -22,7 +22,8 @@ from vehgen.diagnose.inputs.finding import Finding
 from vehgen.diagnose.inputs.labels import correlate, relabelled, true_labels
 from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.fit.adjustments import Adjustment, SpeedScale
-from vehgen.fit.least_squares import COARSE_TOLERANCE, WEAK_PRIOR_SIGMA, FitOptions, LeastSquaresFit, fit_least_squares
+from vehgen.fit.least_squares import COARSE_TOLERANCE, MOST_SIGMAS, WEAK_PRIOR_SIGMA, FitOptions, LeastSquaresFit, fit_least_squares
+from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import transform
 from vehgen.fit.problem import Problem, make_problem
 from vehgen.fit.trial import Trial
@@ -109,9 +110,7 @@ class _BaseRefits:
         """Fit the base model and return the fit with the share of the excess that it leaves."""
         start = None
         if lags is not None:
-            errors = np.zeros((len(lags), len(NUISANCES.names)))
-            errors[:, NUISANCES.names.index("delay")] = lags / NUISANCES.delay
-            start = errors.ravel()
+            start = self.errors_at(problem, lags)
         same = all(one is other for one, other in zip(problem.trials, self.trials, strict=True))
         options = FitOptions(
             NUISANCES,
@@ -132,6 +131,16 @@ class _BaseRefits:
         )
         lines = np.concatenate([item.ravel() for item in fit.misfit.whitened_spectrum(fit.x)])
         return fit, float((np.mean(np.abs(lines) ** 2) - 1) / self.excess)
+
+    def errors_at(self, problem: Problem, lags: Array) -> Array:
+        """Return errors of sensors and runs, none but the delays `lags shape (n_trials,)` [s]."""
+        misfit = Misfit(problem, self.noises, problem.space.start, NUISANCES, self.band)
+        start = np.zeros(misfit.n_errors)
+        for t, lag in enumerate(lags):
+            place = misfit.error_position(t, "delay")
+            if place is not None:
+                start[place] = np.clip(lag / NUISANCES.delay, -MOST_SIGMAS, MOST_SIGMAS)
+        return start
 
     def best(self, change: Adjustment, values: Sequence[float]) -> tuple[float, float, Array]:
         """Return the mean correlation of all runs at the best of `values`, that value, and each run's lag there [s]."""

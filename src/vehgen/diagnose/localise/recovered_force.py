@@ -135,13 +135,15 @@ def recover(detection: Detection, result: PlaceResult, component: int = 0) -> tu
     misfit = detection.base.least_squares.misfit
     directions = np.asarray(np.linalg.cholesky(posterior(misfit, result)), dtype=np.float64)
     found = _recover(misfit, result, directions, component, False)
-    n = misfit.n_parameters
+    n, known = misfit.n_parameters, misfit.sensor_errors(result.x)
     values = misfit.problem.space.values(result.x[:n])
     for trial in detection.validation_runs:
         alone = misfit.problem.with_trials([trial])
-        frozen = Misfit(alone.searching((), alone.best_values(values)), misfit.noises, np.zeros(0), misfit.nuisances, misfit.band)
+        frozen = Misfit(
+            alone.searching((), alone.best_values(values)), misfit.noises, np.zeros(0), misfit.nuisances, misfit.band, known=known
+        )
         for item in score_locations(frozen, first_delays(frozen, np.zeros(0)), [result.place]):
-            own = Misfit(alone, misfit.noises, values, misfit.nuisances, misfit.band)
+            own = Misfit(alone, misfit.noises, values, misfit.nuisances, misfit.band, known=known)
             moved = replace(item, x=np.concatenate([result.x[:n], item.x]))
             found += _recover(own, moved, block_diag(directions[:n], np.linalg.cholesky(posterior(frozen, item))), component, True)
     return tuple(found)
@@ -195,21 +197,20 @@ def _recover(misfit: Misfit, result: PlaceResult, directions: Array, component: 
 
 def _raw(misfit: Misfit, place: Place, component: int, x: Array, kernels: dict[int, tuple[EquationsOfMotion, Kernel]]) -> list[_Raw]:
     """Least squares line by line in every run: F = (H* H)^-1 H* r with whitened H."""
-    unit, errors = misfit.split(x)
-    known = misfit.problem.best_values(misfit.problem.space.values(unit))
+    known = misfit.problem.best_values(misfit.problem.space.values(misfit.split(x)[0]))
     found = []
     for t, (trial, lines) in enumerate(zip(misfit.problem.trials, misfit.whitened_spectrum(x), strict=True)):
         model = trial.simulator.model
         values = trial.values | {name: value for name, value in known.items() if name not in trial.fixed}
         response = force_response(model, values, place.rows, misfit.frequency(t))
-        white = np.stack([misfit.whiten(t, response[:, :, j]) for j in range(len(place.rows))], axis=2)
+        white = np.stack([misfit.whiten(t, misfit.seen(t, response[:, :, j], x)) for j in range(len(place.rows))], axis=2)
         adjoint = white.conj().transpose(0, 2, 1)
         inverse = np.linalg.pinv(adjoint @ white, hermitian=True)
         if id(model) not in kernels:
             probe = _probe(model, place, component)
             kernels[id(model)] = probe, Kernel(probe)
         probe, kernel = kernels[id(model)]
-        scenario = misfit.nuisances.adjust(trial.scenario, errors[t])
+        scenario = misfit.scenario(x, t)
         population = np.array([[values[name] for name in probe.parameters]])
         motion = kernel.run(population, scenario.excitation(probe.wheel_offsets(values)), scenario.decimation).responses[0]
         frequency = np.asarray(np.fft.rfftfreq(len(motion), trial.recording.dt), dtype=np.float64)

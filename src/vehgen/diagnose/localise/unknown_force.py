@@ -190,7 +190,9 @@ def _basis(misfit: Misfit, x: Array, place: Place, t: int) -> Complex | None:
         raw = force_response(trial.simulator.model, known, place.rows, frequency)
     else:
         return None
-    white = np.stack([misfit.whiten(t, raw[:, :, j]) for j in range(raw.shape[2])], axis=2)
+    white = np.stack(
+        [misfit.whiten(t, misfit.seen(t, raw[:, :, j], x) if place.rows else raw[:, :, j]) for j in range(raw.shape[2])], axis=2
+    )
     return np.asarray(np.linalg.qr(white)[0])
 
 

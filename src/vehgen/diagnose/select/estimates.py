@@ -157,13 +157,14 @@ def _solved(fit: ModelFit, candidate: Candidate, covariance: Array) -> dict[str,
         return {}
     numbers = misfit.adjusted(x)
     adjustments = [replace(item, neutral=float(numbers[_index(misfit, item)])) for item in candidate.shared]
-    unit, errors = misfit.split(x)
+    unit = misfit.split(x)[0]
 
     def by_run(at: Array) -> Array:
         values = misfit.problem.space.values(at)
         found = []
-        for trial, error in zip(misfit.problem.trials, errors, strict=True):
-            without = misfit.problem.respond(values[None], trial, misfit.nuisances.adjust(trial.scenario, error))[0][0]
+        for t, trial in enumerate(misfit.problem.trials):
+            scenario = misfit.errors[t].scenario(trial.scenario, misfit.errors_of(x, t))
+            without = misfit.problem.respond(values[None], trial, scenario)[0][0]
             found.append(effect.solve(candidate.place, adjustments, trial, without, misfit.problem.values_of(values, trial)))
         return np.array(found)
 
@@ -195,13 +196,13 @@ def estimates_by_run(fit: ModelFit, candidate: Candidate | None = None) -> list[
     pulls = {t: jacobian.T @ flatten(lines[t]) for t, jacobian in jacobians.items()}
     blocks = misfit.n_parameters + len(misfit.shared)
     gradient = np.concatenate([np.zeros(blocks), x[blocks:]]) + sum(pulls.values())
-    each, seen = len(misfit.nuisances.names), _seen(misfit)
+    seen, shared = _seen(misfit), blocks + len(misfit.sensors)
     found = []
     for t, jacobian in jacobians.items():
         trial, slope = misfit.problem.trials[t], pulls[t]
         information = jacobian.T @ jacobian
-        own_block = np.arange(blocks + t * each, blocks + (t + 1) * each)
-        kept = np.array([i for i in range(blocks) if i not in own] + list(own_block))
+        own_block = np.arange(*misfit.own_columns(t).indices(misfit.n_unknowns)[:2])
+        kept = np.array([i for i in range(shared) if i not in own] + list(own_block))
         dropped = np.setdiff1d(np.arange(len(whole)), kept)
         rest, pull = whole - information, gradient - slope
         through = rest[np.ix_(kept, dropped)] @ np.linalg.pinv(rest[np.ix_(dropped, dropped)], hermitian=True)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from vehgen.codegen import compile_all
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, build_problem
-from vehgen.diagnose.fits.model_fit import NUISANCES, CurrentModel, ModelFit
+from vehgen.diagnose.fits.model_fit import CurrentModel, ModelFit
 from vehgen.diagnose.fits.multi_start import fit_candidate
 from vehgen.diagnose.fits.restarts import restart
 from vehgen.diagnose.fits.screening import screen
@@ -121,12 +121,11 @@ def _origins(base: ModelFit, current: CurrentModel, passed: Sequence[PlaceResult
     """Return where base parameters and nuisances may begin: at the file's values, where the place test leaves them, where they are."""
     space = current.problem.space
     fitted: StartingPoint = current.unit, current.errors
-    nuisances = np.zeros(len(current.problem.trials) * len(NUISANCES.names))
-    begun = fitted if base.effects else (space.unit(space.start), nuisances)
+    begun = fitted if base.effects else (space.unit(space.start), np.zeros_like(current.errors))
     placed = begun
     if one_force(passed):
         unit, errors = base.least_squares.misfit.split(passed[0].x)
-        placed = unit, errors.ravel()
+        placed = unit, errors
     return Origins(begun, placed, fitted)
 
 

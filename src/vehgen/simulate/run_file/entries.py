@@ -13,6 +13,7 @@ from vehgen.files.limits import LARGEST_SEED, MOST_ROADS
 from vehgen.files.names import Column, FreeText, Name, is_name
 from vehgen.files.quantities import (
     Angle,
+    AngleDeviation,
     Displacement,
     Duration,
     EdgeRadius,
@@ -22,12 +23,17 @@ from vehgen.files.quantities import (
     Frequency,
     HumpHeight,
     HumpLength,
+    LengthDeviation,
+    LengthSpread,
     PlaceLength,
     PositiveForce,
     RoadPosition,
     Sample,
+    ShareSpread,
     Speed,
+    SpeedSpread,
     Step,
+    TimeDeviation,
 )
 from vehgen.mechanics.outputs import Place
 
@@ -207,6 +213,26 @@ class OutputEntry(FileModel):
         return self
 
 
+class UncertaintyEntry(FileModel):
+    """How well a run knows itself and its sensors: standard deviations, those of a fit's errors (docs/measurement.md).
+
+    Of the recording's begin (`delay`), the speed and how it changes along the run, the height of the road, the form of the hump, the
+    sensors' clocks against the first one's, their gains, tilts and places.
+    """
+
+    delay: TimeDeviation | None = None
+    speed: SpeedSpread | None = None
+    wander: SpeedSpread | None = None
+    height: LengthSpread | None = None
+    length: LengthSpread | None = None
+    form: ShareSpread | None = None
+    skew: ShareSpread | None = None
+    clock: TimeDeviation | None = None
+    gain: ShareSpread | None = None
+    tilt: AngleDeviation | None = None
+    position: LengthDeviation | None = None
+
+
 class RunFile(FileModel):
     """A run as its file declares it, quantities in SI units."""
 
@@ -226,3 +252,4 @@ class RunFile(FileModel):
     outputs: dict[Name, OutputEntry] = Field(default_factory=dict)
     recording: FileName | None = None
     band: tuple[Frequency, Frequency] | None = None
+    uncertainty: UncertaintyEntry | None = None

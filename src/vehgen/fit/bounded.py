@@ -1,0 +1,108 @@
+"""Bounded least squares by Levenberg's and Marquardt's method, on normal equations.
+
+A fit has ten thousand residuals and more, but each run's residuals depend on few of the unknowns: their normal equations are summed up run
+by run in a tenth of the time that a factorisation of the whole Jacobian takes. Bounds hold by projection: an unknown on its bound that the
+gradient pushes outwards stands still (C. T. Kelley, Iterative Methods for Optimization, 1999, Sect. 5.4, doi:10.1137/1.9781611970920).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+FIRST_DAMPING = 1e-3
+"""Damping of the first step, as a share of the diagonal of the normal equations."""
+LARGEST_DAMPING = 1e8
+SMALLEST_STEP = 1e-7
+"""A step that changes no unknown by more than this ends a fit: unknowns count in the unit cube or in standard deviations."""
+
+
+@dataclass(frozen=True)
+class LinearisedPoint:
+    """A sum of squares at a point: its `information` J'J `shape (n, n)` and `gradient` J'r `shape (n,)`."""
+
+    information: Array
+    gradient: Array
+
+
+def minimise(
+    square: Callable[[Array], float],
+    linearise: Callable[[Array], LinearisedPoint],
+    x: Array,
+    bounds: tuple[Array, Array],
+    tolerance: float,
+    max_steps: int,
+) -> Array:
+    """Return where a sum of squares is least within bounds.
+
+    Parameters
+    ----------
+    square, linearise
+        Return the sum of squares, and its normal equations, at unknowns.
+    x
+        Where to begin, `shape (n,)`.
+    bounds
+        Lower and upper bounds, `shape (n,)` each.
+    tolerance
+        Relative change of the sum of squares at which the fit ends.
+    max_steps
+        So many evaluations of `square` at most.
+    """
+    low, high = bounds
+    x = np.clip(x, low, high)
+    now, damping, growth = square(x), FIRST_DAMPING, 2.0
+    if not np.isfinite(now):
+        return x
+    point, steps = linearise(x), 1
+    while steps < max_steps:
+        step = _step(point, x, bounds, damping)
+        if np.abs(step).max(initial=0.0) < SMALLEST_STEP:
+            break
+        moved = x + step
+        then, steps = square(moved), steps + 1
+        expected = -2 * float(point.gradient @ step) - float(step @ point.information @ step)
+        if np.isfinite(then) and then < now:
+            gained = now - then
+            x, now = moved, then
+            damping *= max(1 / 3, 1 - (2 * gained / max(expected, 1e-300) - 1) ** 3)
+            growth = 2.0
+            if gained <= tolerance * now:
+                break
+            point = linearise(x)
+        else:
+            if expected <= tolerance * now or damping > LARGEST_DAMPING:
+                break
+            damping, growth = damping * growth, growth * 2
+    return x
+
+
+def _step(point: LinearisedPoint, x: Array, bounds: tuple[Array, Array], damping: float) -> Array:
+    """Return a damped Gauss-Newton step that stays within the bounds; what would leave them stops there, and the others follow."""
+    low, high = bounds
+    free = ~(((x <= low) & (point.gradient > 0)) | ((x >= high) & (point.gradient < 0)))
+    step = np.zeros_like(x)
+    scale = np.maximum(np.diagonal(point.information), 1e-12)
+    for _ in range(len(x)):
+        held = ~free
+        right = -point.gradient[free] - point.information[np.ix_(free, held)] @ step[held]
+        matrix = point.information[np.ix_(free, free)] + damping * np.diag(scale[free])
+        step[free] = _solve(matrix, right)
+        inside = np.clip(x + step, low, high) - x
+        out = free & (np.abs(inside - step) > 1e-15)
+        if not out.any():
+            return step
+        step[out] = inside[out]
+        free &= ~out
+    return step
+
+
+def _solve(matrix: Array, right: Array) -> Array:
+    try:
+        return np.asarray(scipy.linalg.solve(matrix, right, assume_a="pos"))
+    except (np.linalg.LinAlgError, scipy.linalg.LinAlgWarning):
+        return np.asarray(np.linalg.lstsq(matrix, right, rcond=None)[0])
