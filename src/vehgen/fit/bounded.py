@@ -69,7 +69,7 @@ def minimise(
         if np.isfinite(then) and then < now:
             gained = now - then
             x, now = moved, then
-            damping *= max(1 / 3, 1 - (2 * gained / max(expected, 1e-300) - 1) ** 3)
+            damping *= max(1 / 3, 1 - (2 * min(gained / max(expected, 1e-300), 1.0) - 1) ** 3)
             growth = 2.0
             if gained <= tolerance * now:
                 break
