@@ -38,7 +38,7 @@ def calibrate(
     polish: bool = True,
     seed: int = 1,
     band: tuple[float, float] = CALIBRATION_BAND_HZ,
-    height_error: float = 0.0,
+    height_error: float = 0.03,
     speed_error: float = 0.01,
     facts: str | os.PathLike[str] | None = None,
     combinations: Sequence[str] = (),

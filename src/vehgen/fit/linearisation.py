@@ -124,7 +124,8 @@ class _Trial:
         lines = misfit.lines(self.number, motions, self.error)
         n = len(self.by_parameter) + len(shared)
         by_error = dict(zip(slopes, lines[n:], strict=True))
-        rows = [by_error[i - len(sensors)] if item.moves_vehicle else self._read(i) for i, item in enumerate(items)]
+        still = misfit.unread(self.number, self.centre, self.error)
+        rows = [by_error[i - len(sensors)] if item.moves_vehicle else self._read(still, i) for i, item in enumerate(items)]
         return -misfit.whiten(self.number, np.concatenate([lines[:n], np.reshape(rows, (-1, *lines.shape[1:]))])), slopes
 
     def _moved(self, number: Array, error: Array) -> Array:
@@ -136,10 +137,10 @@ class _Trial:
         behind = misfit.respond(t, self.middle, self.numbers - number, self.error - error)[0]
         return np.asarray((ahead - behind) / (2 * UNIT_DIFFERENCE))
 
-    def _read(self, i: int) -> Complex:
-        """Return the derivative of the lines by an error that only changes readings."""
+    def _read(self, still: Complex, i: int) -> Complex:
+        """Return the derivative of the lines by an error that only changes readings, `still` the lines before they are read."""
         step = READING_DIFFERENCE * np.eye(len(self.error))[i]
-        ahead, behind = (self.misfit.lines(self.number, self.centre, self.error + sign * step) for sign in (1, -1))
+        ahead, behind = (self.misfit.read(self.number, still, self.error + sign * step) for sign in (1, -1))
         return np.asarray((ahead - behind) / (2 * READING_DIFFERENCE))
 
 

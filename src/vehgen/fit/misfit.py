@@ -172,15 +172,21 @@ class Misfit:
 
     def lines(self, number: int, response: Array, error: Array) -> Complex:
         """Return the spectral lines of what trial `number`'s sensors read of motions `shape (..., n_samples, n_channels)`."""
-        errors, dt = self.errors[number], self.problem.trials[number].recording.dt
-        found = transform(response, dt, self._weights[number].inside, errors.clocks(error))
-        reading = errors.reading(self.frequency(number), error)
-        return found if reading is None else _apply(reading, found)
+        return self.read(number, self.unread(number, response, error), error)
+
+    def unread(self, number: int, response: Array, error: Array) -> Complex:
+        """Return the spectral lines of motions under the windows of late clocks, which :meth:`read` then turns."""
+        dt = self.problem.trials[number].recording.dt
+        return transform(response, dt, self._weights[number].inside, self.errors[number].clocks(error))
+
+    def read(self, number: int, lines: Complex, error: Array) -> Complex:
+        """Return what trial `number`'s sensors make of spectral lines of motions `shape (..., n_lines, n_channels)`."""
+        reading = self.errors[number].reading(self.frequency(number), error)
+        return lines if reading is None else _apply(reading, lines)
 
     def seen(self, number: int, lines: Complex, x: Array) -> Complex:
-        """Return what trial `number`'s sensors make of spectral lines of motions `shape (..., n_lines, n_channels)`."""
-        reading = self.errors[number].reading(self.frequency(number), self.errors_of(x, number))
-        return lines if reading is None else _apply(reading, lines)
+        """Return :meth:`read` of lines at all unknowns x."""
+        return self.read(number, lines, self.errors_of(x, number))
 
     def motions(self, x: Array) -> list[Array]:
         """Return how the places of the sensors move in each trial, `shape (n_samples, n_channels)`."""

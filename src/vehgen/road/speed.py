@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -76,10 +77,20 @@ class Wander:
 
     def at(self, t: Array) -> Array:
         """Return the relative error of the speed at times t [s]."""
-        inside = np.clip(t, self.knots[0], self.knots[-1])
-        if len(self.knots) == 1:
-            return np.full_like(inside, self.values[0])
-        return np.asarray(CubicSpline(self.knots, self.values, bc_type="natural")(inside))
+        return np.asarray(_hats(self.knots)(np.clip(t, self.knots[0], self.knots[-1])) @ np.array(self.values))
+
+
+@lru_cache(maxsize=64)
+def _hats(knots: tuple[float, ...]) -> CubicSpline:
+    """Return the natural splines that are 1 at one knot and 0 at the others, one after another."""
+    return CubicSpline(knots, np.eye(len(knots)), bc_type="natural")
+
+
+@lru_cache(maxsize=64)
+def _on_grid(knots: tuple[float, ...], start: int, end: int) -> tuple[Array, Array]:
+    """Return evenly spaced times from number `start` to `end` [s], and :func:`_hats` there `shape (n_times, n_knots)`."""
+    grid = np.arange(start, end + 1, dtype=np.float64) * _WANDER_GRID_S
+    return grid, np.asarray(_hats(knots)(np.clip(grid, knots[0], knots[-1])), dtype=np.float64)
 
 
 @dataclass(frozen=True)
@@ -108,8 +119,9 @@ class AdjustedSpeed:
     def _strayed(self, t: Array, wander: Wander) -> Array:
         """Return how much farther than without it the wander has brought the vehicle since the anchor [m]."""
         first, last = min(float(t.min()), self.anchor), max(float(t.max()), self.anchor)
-        grid = np.arange(first, last + 2 * _WANDER_GRID_S, _WANDER_GRID_S)
-        share = wander.at(grid)
+        start, end = int(np.floor(first / _WANDER_GRID_S)), int(np.ceil(last / _WANDER_GRID_S)) + 1
+        grid, hats = _on_grid(wander.knots, start, end)
+        share = hats @ np.array(wander.values)
         steps = np.diff(self.law.distance(grid)) * (share[1:] + share[:-1]) / 2
         farther = np.concatenate([[0.0], np.cumsum(steps)])
         return np.asarray(np.interp(t, grid, farther) - np.interp(self.anchor, grid, farther))

@@ -155,7 +155,15 @@ def refine(problem: Problem, fit: LeastSquaresFit, x: Array, n_effect_parameters
     )
     numbers = tuple(misfit.adjusted(x))
     return fit_least_squares(
-        problem, unit, options, noises=misfit.noises, start=errors, shared=misfit.shared, numbers=numbers, known=misfit.known
+        problem,
+        unit,
+        options,
+        noises=misfit.noises,
+        start=errors,
+        shared=misfit.shared,
+        numbers=numbers,
+        known=misfit.known,
+        nearby=fit.linearisation,
     )
 
 
