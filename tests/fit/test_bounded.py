@@ -1,0 +1,59 @@
+"""Bounded least squares against scipy's."""
+
+import numpy as np
+import pytest
+import scipy.optimize
+
+from vehgen.fit.bounded import LinearisedPoint, minimise
+
+
+def problem(seed, n=6):
+    random = np.random.default_rng(seed)
+    matrix, wanted = random.normal(size=(40, n)), random.normal(size=40)
+
+    def residuals(x):
+        return matrix @ (x + 0.3 * np.sin(x)) - wanted
+
+    def jacobian(x):
+        return matrix * (1 + 0.3 * np.cos(x))
+
+    return residuals, jacobian
+
+
+def ours(residuals, jacobian, x, bounds, max_steps=100):
+    def linearise(at):
+        slopes, left = jacobian(at), residuals(at)
+        return LinearisedPoint(slopes.T @ slopes, slopes.T @ left)
+
+    return minimise(lambda at: float(residuals(at) @ residuals(at)), linearise, x, bounds, 1e-14, max_steps)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_it_ends_where_scipy_ends_whether_bounds_hold_or_not(seed):
+    residuals, jacobian = problem(seed)
+    tight = 0.15 if seed % 2 else 10.0
+    bounds = np.full(6, -tight), np.full(6, tight)
+    found = ours(residuals, jacobian, np.zeros(6), bounds)
+    wanted = scipy.optimize.least_squares(residuals, np.zeros(6), jacobian, bounds, xtol=1e-14, ftol=1e-14, gtol=1e-14).x
+    assert found == pytest.approx(wanted, abs=1e-5)
+    assert np.all(np.abs(found) <= tight)
+
+
+def test_a_direction_that_nothing_tells_is_left_where_it_was():
+    residuals, jacobian = (lambda x: np.array([x[0] + x[1] - 1.0])), (lambda x: np.array([[1.0, 1.0]]))
+    found = ours(residuals, jacobian, np.array([0.2, 0.2]), (np.full(2, -5.0), np.full(2, 5.0)))
+    assert found == pytest.approx([0.5, 0.5], abs=1e-4)
+
+
+def test_few_steps_never_end_higher_than_they_began():
+    residuals, jacobian = problem(3)
+    start = np.full(6, 2.0)
+    ends = [ours(residuals, jacobian, start, (np.full(6, -5.0), np.full(6, 5.0)), steps) for steps in (1, 2, 3, 5)]
+    losses = [float(residuals(x) @ residuals(x)) for x in (start, *ends)]
+    assert losses == sorted(losses, reverse=True)
+
+
+def test_where_nothing_can_be_computed_it_stays():
+    nothing = LinearisedPoint(np.full((2, 2), np.nan), np.full(2, np.nan))
+    found = minimise(lambda x: float("nan"), lambda x: nothing, np.array([0.3, 0.4]), (np.zeros(2), np.ones(2)), 1e-8, 20)
+    assert found.tolist() == [0.3, 0.4]

@@ -1,0 +1,124 @@
+"""Errors of runs and sensors: each is found in recordings that another program made with it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.signal
+
+from tests.fit.recordings import DT, sedan_truth, write_run
+from vehgen.fit.least_squares import MOST_SIGMAS, FitOptions, fit_least_squares
+from vehgen.fit.linearisation import linearise
+from vehgen.fit.misfit import Misfit
+from vehgen.fit.noise import EVEN, Noise
+from vehgen.fit.nuisances import Nuisances, wander_knots
+from vehgen.fit.problem import make_problem
+from vehgen.fit.trial import load_trials
+
+TRUTH = sedan_truth()
+SIGMA = np.array([0.02, 1e-3, 0.02, 1e-3])
+CHANNELS = ("F_az", "F_q", "R_az", "R_q")
+
+
+def changed(tmp_path, change, speed=2.5, text=lambda text: text, noise=1.0):
+    """Return a trial whose recording `change` has gone over, `shape (n, 4)`, with noise of `noise` times SIGMA."""
+    path = write_run(tmp_path, "run", TRUTH, speed, noise=0.0)
+    rows = np.loadtxt(tmp_path / "run.csv", delimiter=",", skiprows=1)
+    rows[:, 1:] = change(rows[:, 1:]) + noise * SIGMA * np.random.default_rng(3).normal(size=rows[:, 1:].shape)
+    np.savetxt(tmp_path / "run.csv", rows, delimiter=",", header="t,F_az,F_q,R_az,R_q", comments="")
+    path.write_text(text(path.read_text(encoding="utf-8")), encoding="utf-8")
+    return load_trials([path])[0]
+
+
+def fitted(trial, noise=1.0, **deviations):
+    """Return what a fit finds beside the parameters named, all others true."""
+    problem = make_problem([trial], ("kf",))
+    problem = problem.with_trials([replace(trial, values={**trial.values, **TRUTH})])
+    noises = {trial.name: Noise(EVEN, noise * SIGMA)}
+    start = problem.space.unit(np.array([TRUTH[name] for name in problem.space.names]))
+    fit = fit_least_squares(problem, start, FitOptions(Nuisances(**deviations)), noises=noises)
+    return fit, {(item.name, item.place): item.value for item in fit.conditions()}
+
+
+def late(values, seconds):
+    """Return channels that come later, by their Fourier transform."""
+    padded = np.vstack([values, np.zeros_like(values)])
+    turned = np.fft.rfft(padded, axis=0) * np.exp(-2j * np.pi * np.fft.rfftfreq(len(padded), DT) * seconds)[:, None]
+    return np.fft.irfft(turned, len(padded), axis=0)[: len(values)]
+
+
+def test_a_late_clock_of_one_sensor_is_found(tmp_path):
+    fit, found = fitted(changed(tmp_path, lambda v: np.hstack([v[:, :2], late(v[:, 2:], 0.017)])))
+    assert found["clock", "R"] == pytest.approx(0.017, abs=1e-3)
+    assert fit.chi2 == pytest.approx(1.0, abs=0.1)
+
+
+def test_a_gain_is_found(tmp_path):
+    _, found = fitted(changed(tmp_path, lambda v: v * [1.0, 1.0, 1.025, 1.0]))
+    assert found["gain", "R_az"] == pytest.approx(0.025, abs=8e-3)
+    assert abs(found["gain", "F_az"]) < 8e-3
+
+
+def test_a_place_off_along_the_body_is_found(tmp_path):
+    def shifted(values):
+        acceleration = scipy.signal.resample(values[:, 3], 8 * len(values))
+        return values - np.column_stack([np.zeros((len(values), 2)), 0.05 * np.gradient(acceleration, DT / 8)[::8], np.zeros(len(values))])
+
+    fit, found = fitted(changed(tmp_path, shifted), gain=0.0, tilt=0.0)
+    assert found["position", "R"] == pytest.approx(0.05, abs=5e-3)
+    assert fit.chi2 == pytest.approx(1.0, abs=0.1)
+
+
+def test_a_tilted_sensor_reads_its_share_of_gravity(tmp_path):
+    def tilted(values):
+        pitch = np.cumsum(values[:, 1]) * DT
+        return values * [np.cos(0.05), 1, 1, 1] + np.column_stack([-9.81 * np.sin(0.05) * pitch, *np.zeros((3, len(values)))])
+
+    _, found = fitted(changed(tmp_path, tilted, noise=0.1), 0.1, gain=0.0, position=0.0, tilt=0.2)
+    assert found["tilt", "F"] == pytest.approx(0.05, abs=5e-3)
+
+
+def test_a_hump_as_long_as_it_is(tmp_path):
+    trial = changed(tmp_path, lambda v: v, text=lambda text: text.replace("length: 0.5 m", "length: 0.49 m"))
+    _, found = fitted(trial)
+    assert trial.scenario.humps[0].length * (1 + found["length", ""]) == pytest.approx(0.5, rel=6e-3)
+
+
+def test_no_error_exceeds_its_bound(tmp_path):
+    fit, found = fitted(changed(tmp_path, lambda v: v * [1.0, 1.0, 1.3, 1.0]))
+    assert found["gain", "R_az"] == pytest.approx(MOST_SIGMAS * 0.01, rel=1e-6)
+    assert fit.chi2 > 3
+
+
+def test_a_run_file_says_how_well_it_knows_itself(tmp_path):
+    stated = "uncertainty: {speed: 0.05 m/s, clock: 0 s, gain: 0.03, position: 5 cm}\n"
+    trial = changed(tmp_path, lambda v: v, text=lambda text: text + stated)
+    sigmas = {(item.name, item.place): item.sigma for item in (*Nuisances().of_run(trial), *Nuisances().of_sensors([trial]))}
+    assert sigmas["speed", ""] == pytest.approx(0.05 / 2.5)
+    assert ("clock", "R") not in sigmas
+    assert sigmas["gain", "F_q"] == 0.03
+    assert sigmas["position", "F"] == pytest.approx(0.05)
+
+
+def test_a_wander_has_knots_while_wheels_are_on_the_hump(tmp_path):
+    trial = changed(tmp_path, lambda v: v, speed=1.0)
+    knots = wander_knots(trial)
+    met = trial.scenario.first_arrival
+    assert knots[0] == pytest.approx(met - 0.3, abs=0.01)
+    assert knots[-1] == pytest.approx(met + (2.8 + trial.scenario.humps[0].length) / 1.0 + 0.3, abs=0.01)
+    assert wander_knots(replace(trial, scenario=trial.scenario.adjusted(speed=20.0))) == []
+
+
+def test_derivatives_are_those_of_the_residuals(tmp_path):
+    trial = changed(tmp_path, lambda v: v)
+    problem = make_problem([trial], ("kf", "cr"))
+    misfit = Misfit(problem, {trial.name: Noise(EVEN, SIGMA)}, problem.space.start)
+    random = np.random.default_rng(5)
+    x = np.concatenate([problem.space.unit(problem.space.start), 0.5 * random.normal(size=misfit.n_errors)])
+    found = linearise(misfit, x)
+    numerical = np.column_stack([(misfit.residuals(x + step) - misfit.residuals(x - step)) / 2e-4 for step in 1e-4 * np.eye(len(x))])
+    scale = np.abs(numerical).max(axis=0)
+    assert np.all(np.abs(found.jacobian - numerical).max(axis=0) < 0.02 * scale + 1e-6)
+    information, gradient = found.normal(misfit.whitened_spectrum(x), x)
+    assert information == pytest.approx(found.jacobian.T @ found.jacobian, rel=1e-9, abs=1e-6)
+    assert gradient == pytest.approx(found.jacobian.T @ misfit.residuals(x), rel=1e-9, abs=1e-6)
