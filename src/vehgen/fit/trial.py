@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
-from vehgen.measure import Recording, read_recording
+from vehgen.fit.recording import Recording, read_recording
 from vehgen.simulate import Run, RunLike, Scenario, Simulator, SimulatorPool, as_run, make_scenario
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 

@@ -25,8 +25,8 @@ from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.fit.noise import Noise, transform
 from vehgen.fit.problem import Problem
+from vehgen.fit.recording import RecordedChannel
 from vehgen.fit.trial import Trial
-from vehgen.measure import RecordedChannel
 from vehgen.mechanics import Output
 from vehgen.mechanics.outputs import ElementOutput, PointOutput
 from vehgen.simulate import Simulator
