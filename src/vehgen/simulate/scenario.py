@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -13,6 +14,7 @@ from vehgen.codegen import Excitation
 from vehgen.errors import InputError
 from vehgen.files.limits import HUMP_HEIGHT, HUMP_LENGTH, SPEED_LIMIT
 from vehgen.files.tables import TableColumns, read_columns
+from vehgen.measure.acquisition import POINT_SAMPLES, AcquisitionChain
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.road import (
     AdjustedSpeed,
@@ -67,7 +69,8 @@ class Signal:
 class Scenario:
     """What happens to a vehicle from `start` [s]: a track at a speed, signals at ground links and forces, step and samples.
 
-    `ground` and `forces` are in the order of the model's inputs and forces.
+    `ground` and `forces` are in the order of the model's inputs and forces; `chains` says by a channel's name what acquires it: channels
+    without one are sampled at their instants.
     """
 
     track: Track
@@ -78,11 +81,16 @@ class Scenario:
     ground: tuple[Signal | None, ...] = ()
     forces: tuple[Signal, ...] = ()
     start: float = 0.0
+    chains: Mapping[str, AcquisitionChain] = field(default_factory=dict)
     time: Array = field(init=False)
 
     def __post_init__(self) -> None:
         steps = round(self.duration / (self.dt * self.decimation)) * self.decimation
         object.__setattr__(self, "time", self.start + np.arange(steps + 1) * self.dt)
+
+    def chain(self, channel: str) -> AcquisitionChain:
+        """Return what acquires a channel."""
+        return self.chains.get(channel, POINT_SAMPLES)
 
     @property
     def humps(self) -> tuple[Hump, ...]:
