@@ -27,7 +27,7 @@ LEAST_RATIO = 5
 """Kept steps per sample, at least, of what a FIR filter decimates ..."""
 LEAST_RATE = 500.0
 """... and kept steps per second [Hz], where the internal step is as short."""
-BLOCK_SAMPLES = 25
+PRODUCT_SAMPLES = 25
 """Samples that one product of matrices filters: more take in more zeros, fewer more calls."""
 BLOCK_INDIVIDUALS = 64
 """Individuals filtered together: their kept steps stay near the processor."""
@@ -157,14 +157,17 @@ def _decimated(fine: Array, first: int, taps: Array, ratio: int, count: int) -> 
     after = max((count - 1) * ratio - first + 1 - n_fine, 0)
     signals = np.zeros((before + n_fine + after, n * k))
     signals[before : before + n_fine] = fine.transpose(1, 0, 2).reshape(n_fine, -1)
-    band = np.zeros((BLOCK_SAMPLES, (BLOCK_SAMPLES - 1) * ratio + len(taps)))
-    for row in range(BLOCK_SAMPLES):
+    band = np.zeros((PRODUCT_SAMPLES, (PRODUCT_SAMPLES - 1) * ratio + len(taps)))
+    for row in range(PRODUCT_SAMPLES):
         band[row, row * ratio : row * ratio + len(taps)] = taps[::-1]
     found = np.empty((count, n * k))
     begin = before - first - len(taps) + 1
-    with _POOLS.limit(limits=1, user_api="blas"), np.errstate(invalid="ignore", over="ignore"):  # individuals that failed stay failed, the others as they are
-        for row in range(0, count, BLOCK_SAMPLES):
-            rows = min(BLOCK_SAMPLES, count - row)
+    with (
+        _POOLS.limit(limits=1, user_api="blas"),
+        np.errstate(invalid="ignore", over="ignore"),
+    ):  # individuals that failed stay failed, the others as they are
+        for row in range(0, count, PRODUCT_SAMPLES):
+            rows = min(PRODUCT_SAMPLES, count - row)
             start, width = begin + row * ratio, (rows - 1) * ratio + len(taps)
             np.matmul(band[:rows, :width], signals[start : start + width], out=found[row : row + rows])
     return found.reshape(count, n, k).transpose(1, 0, 2)

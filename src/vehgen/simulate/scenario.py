@@ -33,6 +33,7 @@ from vehgen.road import (
 from vehgen.simulate.budgets import check_run, placed
 from vehgen.simulate.excitation_cache import ExcitationCache
 from vehgen.simulate.run_file import Run
+from vehgen.simulate.run_file.acquisition import channel_chains
 from vehgen.simulate.run_file.entries import DisplacementHarmonic, ForceHarmonic, HumpEntry
 
 Array = NDArray[np.float64]
@@ -173,7 +174,8 @@ def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) 
         Signal(harmonic=entry.harmonic) if entry.harmonic else _measured(run, entry.file or "", entry.time, entry.force, ("forces", name))
         for name, entry in file.forces.items()
     )
-    return Scenario(track, speed, duration, file.step, run.decimation, ground, forces)
+    chains = channel_chains(run, 1 / (file.step * run.decimation))
+    return Scenario(track, speed, duration, file.step, run.decimation, ground, forces, chains=chains)
 
 
 def _check_cost(run: Run, duration: float, speed: SpeedLaw, model: EquationsOfMotion) -> None:
