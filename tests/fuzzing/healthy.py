@@ -62,6 +62,8 @@ sensors:
     behind: front
     distance: -0.29 m
     channels: {acceleration: L1_az, pitch_rate: {column: L1_q, unit: deg/s, sign: -1, noise: 0.1 deg/s}}
+    acquisition: {filter: butterworth, order: 4, cut_off: 45 Hz, delay: 5 ms, range: 100 m/s^2, rate: 200 Hz}
+acquisition: unknown
 recording: recording.csv
 band: [0.5 Hz, 40 Hz]
 outputs:

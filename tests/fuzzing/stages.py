@@ -21,8 +21,8 @@ from vehgen.effects import effects as all_effects
 from vehgen.errors import InputError
 from vehgen.fit.prior_data import load_prior_data
 from vehgen.fit.problem import Problem, make_problem
+from vehgen.fit.recording import read_recording
 from vehgen.fit.trial import load_trials
-from vehgen.measure import read_recording
 from vehgen.mechanics import ElementOutput, EquationsOfMotion, derive, static_loads
 from vehgen.phones import read_export
 from vehgen.simulate import lint, load_run, make_scenario, natural_modes

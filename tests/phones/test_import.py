@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from vehgen.commands import main
-from vehgen.measure import read_recording
+from vehgen.fit.recording import read_recording
 from vehgen.simulate import Simulator, load_run, make_scenario
 
 from .exports import write_zip

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from vehgen.errors import InputError
-from vehgen.measure import read_recording
+from vehgen.fit.recording import read_recording
 from vehgen.mechanics import derive
 from vehgen.road import ConstantSpeed, Hump, Iso8608Road, SpeedHistory, Track, pass_time
 from vehgen.simulate import load_run

@@ -76,6 +76,7 @@ Speed = Annotated[float, *_positive(limits.SPEED_LIMIT)]
 Frequency = Annotated[float, *_positive(limits.FREQUENCY_LIMIT)]
 Force = Annotated[float, *_any(limits.FORCE_LIMIT)]
 PositiveForce = Annotated[float, *_positive(limits.FORCE_LIMIT)]
+RecorderDelay = Annotated[float, *_any(limits.RECORDER_DELAY)]
 Angle = Annotated[float, *_any(limits.ANGLE)]
 FileName = Annotated[str, Field(max_length=limits.LONGEST_PATH)]
 

@@ -1,1 +1,1 @@
-"""How well does it fit? Trials, searched parameters, noise, whitened residuals and least squares."""
+"""How well does it fit? Recordings, trials, searched parameters, noise, whitened residuals and least squares."""

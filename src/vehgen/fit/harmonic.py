@@ -61,7 +61,7 @@ class Harmonic(Adjustment):
         time = trial.recording.time
         duration = max(float(time[-1]), 1e-9)
         ends = np.array([frequency, frequency * (1.0 + drift)])
-        answers = force_response(trial.simulator.model, values, _rows(trial, self.place), ends)
+        answers = force_response(trial.simulator.model, values, _rows(trial, self.place), ends) * trial.channel_factors(ends)[:, :, None]
         share = (time / duration)[:, None, None]
         answer = answers[0] * (1 - share) + answers[1] * share
         turning = answer * np.exp(1j * _phase(time, frequency, drift))[:, None, None]

@@ -170,7 +170,8 @@ def transform(values: Array, dt: float, inside: NDArray[np.bool_], late: Array |
 def road_answer(trial: Trial, frequency: Array, values: dict[str, float]) -> RoadAnswer:
     """Return the channels' answer to a road of level 1 that all axles follow, at frequencies `shape (n,)` [Hz]."""
     model = trial.simulator.model
-    displaced, pushed = transfer_functions(model.numeric(values), frequency)
+    acquired = trial.channel_factors(frequency)[:, :, None]
+    displaced, pushed = (item * acquired for item in transfer_functions(model.numeric(values), frequency))
     response = displaced[:, :, : len(trial.run.vehicle.axles)]
     speed, dt = trial.scenario.top_speed, trial.recording.dt
     late = model.wheel_offsets(values) / speed

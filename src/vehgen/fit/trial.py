@@ -11,11 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
-from vehgen.measure import Recording, read_recording
+from vehgen.fit.recording import Recording, read_recording
 from vehgen.simulate import Run, RunLike, Scenario, Simulator, SimulatorPool, as_run, make_scenario
+from vehgen.simulate.acquired import channel_factors
+from vehgen.simulate.run_file.acquisition import channel_chains
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 LONGEST_STEP_S = 1e-3
 """Longest internal step [s]: through 10 ms steps a stiffness comes out 17 % wrong at 15 Hz (Newmark's period error)."""
 
@@ -42,6 +45,10 @@ class Trial:
     def channels(self) -> tuple[str, ...]:
         """Names of the measured channels."""
         return tuple(channel.name for channel in self.recording.channels)
+
+    def channel_factors(self, frequency: Array) -> Complex:
+        """Return what the recorders make of spectral lines of the channels: factors `shape (n, n_channels)` at frequencies [Hz]."""
+        return channel_factors(self.scenario, self.channels, frequency)
 
     def of_sensors(self, sensors: Sequence[str], simulators: SimulatorPool) -> Trial:
         """Return the trial with some of its sensors only.
@@ -130,6 +137,7 @@ def make_trial(run: Run, name: str, simulators: SimulatorPool | None = None) -> 
     scenario = replace(
         make_scenario(timed, simulator.model, values), duration=length, dt=step, decimation=decimation, start=float(measurement.time[0])
     )
+    scenario = replace(scenario, chains=channel_chains(run, 1 / dt))
     _check_length(run, scenario, simulator, values, name)
     return Trial(name, run, measurement, simulator, scenario, values, tuple(run.file.parameters))
 

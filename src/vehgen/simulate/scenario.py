@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -13,6 +14,7 @@ from vehgen.codegen import Excitation
 from vehgen.errors import InputError
 from vehgen.files.limits import HUMP_HEIGHT, HUMP_LENGTH, SPEED_LIMIT
 from vehgen.files.tables import TableColumns, read_columns
+from vehgen.measure.acquisition import POINT_SAMPLES, AcquisitionChain
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.road import (
     AdjustedSpeed,
@@ -32,6 +34,7 @@ from vehgen.road import (
 from vehgen.simulate.budgets import check_run, placed
 from vehgen.simulate.excitation_cache import ExcitationCache
 from vehgen.simulate.run_file import Run
+from vehgen.simulate.run_file.acquisition import channel_chains
 from vehgen.simulate.run_file.entries import DisplacementHarmonic, ForceHarmonic, HumpEntry
 
 Array = NDArray[np.float64]
@@ -68,7 +71,8 @@ class Signal:
 class Scenario:
     """What happens to a vehicle from `start` [s]: a track at a speed, signals at ground links and forces, step and samples.
 
-    `ground` and `forces` are in the order of the model's inputs and forces.
+    `ground` and `forces` are in the order of the model's inputs and forces; `chains` says by a channel's name what acquires it: channels
+    without one are sampled at their instants.
     """
 
     track: Track
@@ -79,11 +83,16 @@ class Scenario:
     ground: tuple[Signal | None, ...] = ()
     forces: tuple[Signal, ...] = ()
     start: float = 0.0
+    chains: Mapping[str, AcquisitionChain] = field(default_factory=dict)
     time: Array = field(init=False)
 
     def __post_init__(self) -> None:
         steps = round(self.duration / (self.dt * self.decimation)) * self.decimation
         object.__setattr__(self, "time", self.start + np.arange(steps + 1) * self.dt)
+
+    def chain(self, channel: str) -> AcquisitionChain:
+        """Return what acquires a channel."""
+        return self.chains.get(channel, POINT_SAMPLES)
 
     @property
     def humps(self) -> tuple[Hump, ...]:
@@ -191,7 +200,8 @@ def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) 
         Signal(harmonic=entry.harmonic) if entry.harmonic else _measured(run, entry.file or "", entry.time, entry.force, ("forces", name))
         for name, entry in file.forces.items()
     )
-    return Scenario(track, speed, duration, file.step, run.decimation, ground, forces)
+    chains = channel_chains(run, 1 / (file.step * run.decimation))
+    return Scenario(track, speed, duration, file.step, run.decimation, ground, forces, chains=chains)
 
 
 def _check_cost(run: Run, duration: float, speed: SpeedLaw, model: EquationsOfMotion) -> None:

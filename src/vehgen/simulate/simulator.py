@@ -15,12 +15,13 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from vehgen.codegen import Excitation, Kernel, KernelResult
+from vehgen.codegen import Kernel, KernelResult
 from vehgen.errors import InputError, ModelWarning, did_you_mean, shown
 from vehgen.files import write_text
 from vehgen.files.result_fields import Array1D, Array3D
 from vehgen.files.results import Cell, Result, Table
 from vehgen.mechanics import ElementOutput, EquationsOfMotion, Output, Place, derive, static_loads
+from vehgen.simulate.acquired import acquire, kept_samples
 from vehgen.simulate.budgets import check_population
 from vehgen.simulate.run_like import RunLike, as_run
 from vehgen.simulate.scenario import Scenario, make_scenario
@@ -109,7 +110,7 @@ class Simulator:
         parameters
             `shape (n_individuals, n_parameters)`.
         scenario
-            Road, speed and other inputs.
+            Road, speed and other inputs, and the chains that acquire the channels.
         threads
             How many cores to use (default: all).
 
@@ -117,7 +118,8 @@ class Simulator:
         -------
         Responses and failures; a failed individual raises a ModelWarning and leaves the others unharmed.
         """
-        check_population(len(parameters), len(scenario.time) / scenario.decimation, len(self.model.channels))
+        names = [channel.name for channel in self.model.channels]
+        check_population(len(parameters), kept_samples(scenario, names, self.kernel.source.nonlinear), len(names))
         offsets = np.round(self.wheel_offsets(parameters), 12)
         distinct, group = np.unique(offsets, axis=0, return_inverse=True)
         group = group.ravel()
@@ -126,8 +128,7 @@ class Simulator:
         residuals = np.zeros(len(parameters))
         for index, layout in enumerate(distinct):
             members = np.flatnonzero(group == index)
-            excitation: Excitation = scenario.excitation(layout)
-            result = self.kernel.run(parameters[members], excitation, scenario.decimation, threads=threads)
+            result = acquire(self.kernel, parameters[members], scenario, layout, threads)
             failures.update({int(members[i]): reason for i, reason in result.failures.items()})
             residuals[members] = result.residuals
             part = result.responses

@@ -26,8 +26,9 @@ from vehgen.fit.misfit import Misfit, flatten
 from vehgen.fit.noise import Noise, transform
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.problem import Problem
+from vehgen.fit.recording import RecordedChannel
 from vehgen.fit.trial import Trial
-from vehgen.measure import RecordedChannel
+from vehgen.measure.acquisition import POINT_SAMPLES
 from vehgen.mechanics import Output
 from vehgen.mechanics.outputs import ElementOutput, PointOutput
 from vehgen.simulate import Simulator
@@ -77,7 +78,7 @@ class FittedModel:
         return cls(fit, group[0], replace(noises[0], sigma=np.max([item.sigma for item in noises], axis=0)))
 
     def with_outputs(self, outputs: Sequence[PointOutput]) -> FittedModel:
-        """Return the rival with more channels, as noisy as its own of the same quantity; compiles a simulator."""
+        """Return the rival with more channels, as noisy as its own of the same quantity, on its first recorder; compiles a simulator."""
         known: dict[str, list[float]] = {}
         for channel, own in zip(self.trial.recording.channels, self.noise.sigma, strict=True):
             known.setdefault(channel.quantity, []).append(float(own))
@@ -88,7 +89,11 @@ class FittedModel:
         simulator = self.simulator(tuple(channel.output for channel in channels))
         values = simulator.model.values(overrides=self.trial.run.values())
         blank = np.zeros((len(measurement.time), len(channels)))
-        trial = replace(self.trial, simulator=simulator, values=values, recording=replace(measurement, values=blank, channels=channels))
+        own = self.trial.scenario
+        like = next((own.chain(name) for name in self.trial.channels), POINT_SAMPLES)
+        scenario = replace(own, chains={**own.chains, **dict.fromkeys((item.name for item in outputs), like)})
+        recording = replace(measurement, values=blank, channels=channels)
+        trial = replace(self.trial, simulator=simulator, scenario=scenario, values=values, recording=recording)
         return FittedModel(self.fit, trial, replace(self.noise, sigma=np.concatenate([self.noise.sigma, sigma])))
 
     def simulator(self, outputs: Sequence[Output]) -> Simulator:
@@ -100,7 +105,8 @@ class FittedModel:
         fitted = self.fit.least_squares.misfit
         time = run.scenario.time[:: run.scenario.decimation]
         measurement = replace(self.trial.recording, time=time, values=np.zeros((len(time), len(self.trial.channels))))
-        trial = replace(self.trial, name=run.name, scenario=run.scenario, recording=measurement)
+        scenario = replace(run.scenario, chains=self.trial.scenario.chains)
+        trial = replace(self.trial, name=run.name, scenario=scenario, recording=measurement)
         problem = Problem((trial,), fitted.problem.space)
         noises, known = {run.name: noise or self.noise}, fitted.sensor_errors(self.fit.least_squares.x)
         return Misfit(problem, noises, self.fit.least_squares.values, OF_NEW_RUNS, fitted.band, fitted.shared, known)

@@ -21,8 +21,8 @@ from vehgen.diagnose.design.proposal import Proposal, drive, sensor_text
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.search import DiagnosisProgress
 from vehgen.diagnose.wording import join_names
+from vehgen.fit.recording import RecordedChannel
 from vehgen.fit.trial import Trial
-from vehgen.measure import RecordedChannel
 
 if TYPE_CHECKING:
     from vehgen.diagnose.detect.detection import Detection

@@ -109,9 +109,10 @@ class ProbeMotion:
     def _response(self, t: int, number: int) -> Complex:
         """Return the channels per unit of force that resists the travel of an element, `shape (n_lines, n_channels)`."""
         if (t, number) not in self._responses:
-            model = self.misfit.problem.trials[t].simulator.model
-            row = model.elements[number].row
-            self._responses[t, number] = force_response(model, self.values[t], (row,), self.misfit.frequency(t))[:, :, 0]
+            trial, frequency = self.misfit.problem.trials[t], self.misfit.frequency(t)
+            model = trial.simulator.model
+            answer = force_response(model, self.values[t], (model.elements[number].row,), frequency)[:, :, 0]
+            self._responses[t, number] = answer * trial.channel_factors(frequency)
         return self._responses[t, number]
 
 

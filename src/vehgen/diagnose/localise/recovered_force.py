@@ -202,7 +202,8 @@ def _raw(misfit: Misfit, place: Place, component: int, x: Array, kernels: dict[i
     for t, (trial, lines) in enumerate(zip(misfit.problem.trials, misfit.whitened_spectrum(x), strict=True)):
         model = trial.simulator.model
         values = trial.values | {name: value for name, value in known.items() if name not in trial.fixed}
-        response = force_response(model, values, place.rows, misfit.frequency(t))
+        lined = misfit.frequency(t)
+        response = force_response(model, values, place.rows, lined) * trial.channel_factors(lined)[:, :, None]
         white = np.stack([misfit.whiten(t, misfit.seen(t, response[:, :, j], x)) for j in range(len(place.rows))], axis=2)
         adjoint = white.conj().transpose(0, 2, 1)
         inverse = np.linalg.pinv(adjoint @ white, hermitian=True)

@@ -187,7 +187,7 @@ def _basis(misfit: Misfit, x: Array, place: Place, t: int) -> Complex | None:
             raw[:, column, j] = 1.0
     elif place.rows:
         known = misfit.problem.values_of(misfit.problem.space.values(misfit.split(x)[0]), trial)
-        raw = force_response(trial.simulator.model, known, place.rows, frequency)
+        raw = force_response(trial.simulator.model, known, place.rows, frequency) * trial.channel_factors(frequency)[:, :, None]
     else:
         return None
     white = np.stack(

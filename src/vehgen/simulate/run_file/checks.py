@@ -9,6 +9,7 @@ from vehgen.files.checks import check_dimension, check_known, plain_quantity, va
 from vehgen.files.limits import MOST_CHANNELS, VEHICLE_LENGTH
 from vehgen.files.units import LENGTH
 from vehgen.mechanics.outputs import AXLE_QUANTITIES, LINK_QUANTITIES, POINT_QUANTITIES
+from vehgen.simulate.run_file.acquisition import check_acquisition
 from vehgen.simulate.run_file.entries import OutputEntry, PlaceEntry
 from vehgen.vehicle.checks import check_values
 from vehgen.vehicle.parts import GROUND
@@ -31,6 +32,7 @@ def check_run(run: Run) -> None:
             _check_place(run, entry, kind, name)
     _check_displacements(run)
     _check_sensors(run)
+    check_acquisition(run)
     for name, output in run.file.outputs.items():
         _check_output(run, name, output)
     _check_channel_names(run)

@@ -36,6 +36,7 @@ from vehgen.files.quantities import (
     TimeDeviation,
 )
 from vehgen.mechanics.outputs import Place
+from vehgen.simulate.run_file.acquisition import AcquisitionEntry
 
 DEFAULT_STEP = 1e-3
 DEFAULT_SPEED = 1.0
@@ -171,12 +172,13 @@ class DisplacementEntry(FileModel):
 
 
 class ChannelEntry(FileModel):
-    """A recorded column: its unit where it is not SI, its sign where its axis is reversed, the standard deviation of its white noise."""
+    """A recorded column: its unit where it is not SI, its sign where its axis is reversed, the deviation of its noise, its recorder."""
 
     column: Column
     unit: str | None = None
     sign: Literal[1, -1] = 1
     noise: str | float | None = None
+    acquisition: str | AcquisitionEntry | None = None
 
 
 def _default_channels() -> dict[str, Column | ChannelEntry]:
@@ -184,9 +186,10 @@ def _default_channels() -> dict[str, Column | ChannelEntry]:
 
 
 class SensorEntry(PlaceEntry):
-    """A sensor: a place, and the column of each quantity it records."""
+    """A sensor: a place, the column of each quantity it records, and what acquires them."""
 
     channels: dict[Name, Column | ChannelEntry] = Field(default_factory=_default_channels)
+    acquisition: str | AcquisitionEntry | None = None
 
     def column(self, name: str, quantity: str) -> str:
         """Return the column that holds a quantity; `name` is the sensor's."""
@@ -249,6 +252,7 @@ class RunFile(FileModel):
     forces: dict[Name, ForceEntry] = Field(default_factory=dict)
     displacements: dict[Name, DisplacementEntry] = Field(default_factory=dict)
     sensors: dict[Name, SensorEntry] = Field(default_factory=dict)
+    acquisition: str | AcquisitionEntry | None = None
     outputs: dict[Name, OutputEntry] = Field(default_factory=dict)
     recording: FileName | None = None
     band: tuple[Frequency, Frequency] | None = None

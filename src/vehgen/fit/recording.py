@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,9 +13,12 @@ from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.quantities import read_quantity
 from vehgen.files.tables import TableColumns, read_columns
 from vehgen.files.units import UNITS, read_unit
+from vehgen.measure.acquisition import AcquisitionChain
 from vehgen.measure.quality import find_clipping
+from vehgen.mechanics import GRAVITY
 from vehgen.mechanics.outputs import POINT_QUANTITIES, PointOutput
 from vehgen.simulate import Run
+from vehgen.simulate.run_file.acquisition import channel_chains, check_nyquist
 from vehgen.simulate.run_file.checks import TIME_COLUMN
 from vehgen.simulate.run_file.entries import ChannelEntry, SensorEntry
 
@@ -23,6 +27,8 @@ FEWEST_SAMPLES = 16
 """Fewer samples are no recording: a run has hundreds."""
 LOWEST_RATE = 50.0
 """Below this sampling rate [Hz] a recording cannot show the axles' hop."""
+FINE_STEPS_SHARE, FINEST_STEP = 0.25, 0.5
+"""A recording is finer than its recorder where so many of the steps between its values are below so much of the resolution."""
 REFUSED_IN_A_ROW = 5
 """So many equal samples in a row at a channel's extreme are refused as clipped: nothing but clipping does that at any resolution in use."""
 
@@ -89,8 +95,12 @@ def read_recording(run: Run) -> Recording:
         raise InputError(error.message, error.position or place) from error
     values = np.column_stack(table.values[1:]) * np.array(factors)
     _check_clock(table)
+    rate = 1 / float(np.median(np.diff(table.values[0])))
+    check_nyquist(run, rate)
+    chains = channel_chains(run, rate)
     for i, channel in enumerate(channels):
         _check_samples(table, i + 1, values[:, i], channel)
+        _check_recorder(table, i + 1, values[:, i], channel, chains[channel.name])
     return Recording(table.values[0], values, tuple(channels))
 
 
@@ -158,4 +168,23 @@ def _check_samples(table: TableColumns, column: int, values: Array, channel: Rec
             f"{channel.name} is clipped at {item.level:.4g} from t = {table.values[0][item.first]:.4g} s: use a sensor with a larger "
             "range, a lower speed or a lower hump",
             table.place(item.first, column),
+        )
+
+
+def _check_recorder(table: TableColumns, column: int, values: Array, channel: RecordedChannel, chain: AcquisitionChain) -> None:
+    """Refuse a recording that its recorder cannot have made: beyond its range, gravity taken off, or in steps finer than its resolution."""
+    reach = math.inf if chain.range is None else chain.range + (GRAVITY if channel.quantity == "acceleration" else 0.0)
+    if np.abs(values).max() > reach:
+        worst = int(np.argmax(np.abs(values)))
+        raise InputError(
+            f"{channel.name} is {values[worst]:.4g}, beyond the range of {chain.range:.4g} that `acquisition` states (SI units): "
+            "state the recorder's true range",
+            table.place(worst, column),
+        )
+    steps = np.diff(np.unique(values))
+    if chain.resolution is not None and np.quantile(steps, FINE_STEPS_SHARE) < FINEST_STEP * chain.resolution:
+        raise InputError(
+            f"{channel.name} has steps of {np.quantile(steps, FINE_STEPS_SHARE):.3g}, finer than the resolution of {chain.resolution:.4g} "
+            "that `acquisition` states (SI units): state the recorder's true resolution, none where the recording was resampled",
+            table.heading(column),
         )

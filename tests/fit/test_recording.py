@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from vehgen.errors import InputError
-from vehgen.measure import read_recording
+from vehgen.fit.recording import read_recording
 from vehgen.simulate import load_run
 
 RUN = """vehicle: sedan2.yaml

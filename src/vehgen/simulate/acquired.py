@@ -1,0 +1,173 @@
+"""Responses as a recorder keeps them: every channel passes its chain of acquisition before it is sampled.
+
+A linear vehicle whose channels share one chain answers a filtered excitation as the chain filters its answer: the excitation is filtered,
+once for a whole population. Otherwise the kernel keeps enough of its steps, and a decimating FIR filter is applied to every channel. The
+vehicle rests before the run begins; a chain that looks ahead sees the excitation go on beyond the run's end.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import scipy.fft
+from numpy.typing import NDArray
+from threadpoolctl import ThreadpoolController
+
+from vehgen.codegen import Excitation, Kernel, KernelResult
+from vehgen.measure.acquisition import AcquisitionChain
+from vehgen.simulate.excitation_cache import ExcitationCache
+from vehgen.simulate.scenario import Scenario
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+LEAST_RATIO = 5
+"""Kept steps per sample, at least, of what a FIR filter decimates ..."""
+LEAST_RATE = 500.0
+"""... and kept steps per second [Hz], where the internal step is as short."""
+PRODUCT_SAMPLES = 25
+"""Samples that one product of matrices filters: more take in more zeros, fewer more calls."""
+BLOCK_INDIVIDUALS = 64
+"""Individuals filtered together: their kept steps stay near the processor."""
+DIRECT_PRODUCTS = 400_000
+"""Products up to which a column is convolved directly: a hump is short."""
+_FILTERED = ExcitationCache()
+_POOLS = ThreadpoolController()
+
+
+def assumed_chains(scenario: Scenario, channels: Sequence[str]) -> tuple[AcquisitionChain, ...]:
+    """Return the chain of each channel by name at the scenario's sampling rate, an unknown one as it is assumed to be."""
+    rate = 1 / (scenario.dt * scenario.decimation)
+    return tuple(scenario.chain(name).assumed(rate) for name in channels)
+
+
+def channel_factors(scenario: Scenario, channels: Sequence[str], frequency: Array) -> Complex:
+    """Return what the chains make of spectral lines: complex factors `shape (n, n_channels)` at frequencies `shape (n,)` [Hz]."""
+    chains = assumed_chains(scenario, channels)
+    known = {chain: chain.response(frequency) for chain in dict.fromkeys(item.filtering() for item in chains)}
+    return np.column_stack([known[chain.filtering()] for chain in chains]) if chains else np.ones((len(frequency), 0), dtype=np.complex128)
+
+
+def kept_samples(scenario: Scenario, channels: Sequence[str], nonlinear: bool) -> int:
+    """Return how many samples of every channel a run holds in memory."""
+    chains = {chain.filtering() for chain in assumed_chains(scenario, channels)}
+    fine = any(not chain.is_point_sample for chain in chains) and (nonlinear or len(chains) > 1)
+    return len(scenario.time) // (_stride(scenario) if fine else scenario.decimation) + 1
+
+
+def acquire(kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, threads: int | None = None) -> KernelResult:
+    """Run a population whose axles stand alike and return what its recorders keep.
+
+    Parameters
+    ----------
+    kernel
+        The vehicle's; its channels find their chains in the scenario by their names.
+    parameters
+        `shape (n_individuals, n_parameters)`.
+    scenario
+        The run.
+    offsets
+        Each axle's distance behind the first to arrive `shape (n_axles,)` [m].
+    threads
+        How many cores to use (default: all).
+    """
+    chains = [chain.filtering() for chain in assumed_chains(scenario, [channel.name for channel in kernel.model.channels])]
+    distinct = set(chains)
+    if all(chain.is_point_sample for chain in distinct):
+        return kernel.run(parameters, scenario.excitation(offsets), scenario.decimation, threads=threads)
+    if len(distinct) == 1 and not kernel.source.nonlinear:
+        return _filtered_input(kernel, parameters, scenario, offsets, chains[0], threads)
+    return _filtered_output(kernel, parameters, scenario, offsets, chains, threads)
+
+
+def _extended(scenario: Scenario, samples: int) -> Scenario:
+    return replace(scenario, duration=scenario.duration + samples * scenario.decimation * scenario.dt) if samples else scenario
+
+
+def _filtered_input(
+    kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, chain: AcquisitionChain, threads: int | None
+) -> KernelResult:
+    """Run over the filtered excitation, from as many samples before the run as the chain looks ahead."""
+    ahead = math.ceil(max(-chain.taps(scenario.dt)[0], 0) / scenario.decimation)
+    raw = _extended(scenario, ahead).excitation(offsets)
+    lead, last = ahead * scenario.decimation, len(scenario.time)
+    excitation = _FILTERED.find((id(raw), chain, lead, last), raw, lambda: _filtered(raw, chain, lead, last))
+    result = kernel.run(parameters, excitation, scenario.decimation, threads=threads)
+    return replace(result, responses=result.responses[:, ahead:]) if ahead else result
+
+
+def _filtered(raw: Excitation, chain: AcquisitionChain, lead: int, last: int) -> Excitation:
+    first, taps = chain.taps(raw.dt)
+    columns = (_convolved(item, taps, -lead - first, lead + last) for item in (raw.inputs, raw.rates, raw.forces))
+    return Excitation(raw.dt, *columns)
+
+
+def _convolved(signal: Array, taps: Array, start: int, count: int) -> Array:
+    """Return numbers `start` to `start + count` of the convolution of signals `shape (n, k)`, zero before their beginning."""
+    found = np.zeros((count, signal.shape[1]))
+    moving = [np.flatnonzero(column) for column in signal.T]
+    spans = [(int(own[0]), int(own[-1]) + 1) if len(own) else (0, 0) for own in moving]
+    if sum(end - begin for begin, end in spans) * len(taps) <= DIRECT_PRODUCTS:
+        parts = [(begin, np.convolve(signal[begin:end, k], taps)) for k, (begin, end) in enumerate(spans) if end]
+        columns = [k for k, (_, end) in enumerate(spans) if end]
+    else:
+        n = len(signal) + len(taps) - 1
+        size = scipy.fft.next_fast_len(n, real=True)
+        lines = scipy.fft.rfft(signal, size, axis=0) * scipy.fft.rfft(taps, size)[:, None]
+        parts, columns = [(0, column) for column in scipy.fft.irfft(lines, size, axis=0)[:n].T], list(range(signal.shape[1]))
+    for k, (begin, part) in zip(columns, parts, strict=True):
+        low, high = max(begin, start), min(begin + len(part), start + count)
+        if low < high:
+            found[low - start : high - start, k] = part[low - begin : high - begin]
+    return found
+
+
+def _stride(scenario: Scenario) -> int:
+    """Return every how many steps must be kept for a FIR filter to decimate: few enough, and a whole number of them a sample."""
+    most = min(scenario.decimation / LEAST_RATIO, 1 / (LEAST_RATE * scenario.dt) * (1 + 1e-9))
+    fitting = [stride for stride in range(1, scenario.decimation + 1) if scenario.decimation % stride == 0 and stride <= most]
+    return max(fitting, default=1)
+
+
+def _filtered_output(
+    kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, chains: Sequence[AcquisitionChain], threads: int | None
+) -> KernelResult:
+    """Run with kept steps between the samples and decimate every channel by its own chain."""
+    stride = _stride(scenario)
+    ratio = scenario.decimation // stride
+    filters = {chain: chain.taps(scenario.dt * stride) for chain in dict.fromkeys(chains)}
+    ahead = math.ceil(max(0, *(-first for first, _ in filters.values())) / ratio)
+    result = kernel.run(parameters, _extended(scenario, ahead).excitation(offsets), stride, threads=threads)
+    fine = result.responses
+    found = np.empty((len(fine), (len(scenario.time) - 1) // scenario.decimation + 1, len(chains)))
+    for chain, (first, taps) in filters.items():
+        own = [i for i, item in enumerate(chains) if item == chain]
+        for begin in range(0, len(fine), BLOCK_INDIVIDUALS):
+            part = slice(begin, begin + BLOCK_INDIVIDUALS)
+            found[part, :, own] = _decimated(fine[part][:, :, own], first, taps, ratio, found.shape[1])
+    return replace(result, responses=found)
+
+
+def _decimated(fine: Array, first: int, taps: Array, ratio: int, count: int) -> Array:
+    """Return every `ratio`-th number of the filtered signals `shape (n, n_fine, k)`, at rest before their beginning, `count` of them."""
+    n, n_fine, k = fine.shape
+    before = max(first + len(taps) - 1, 0)
+    after = max((count - 1) * ratio - first + 1 - n_fine, 0)
+    signals = np.zeros((before + n_fine + after, n * k))
+    signals[before : before + n_fine] = fine.transpose(1, 0, 2).reshape(n_fine, -1)
+    band = np.zeros((PRODUCT_SAMPLES, (PRODUCT_SAMPLES - 1) * ratio + len(taps)))
+    for row in range(PRODUCT_SAMPLES):
+        band[row, row * ratio : row * ratio + len(taps)] = taps[::-1]
+    found = np.empty((count, n * k))
+    begin = before - first - len(taps) + 1
+    with (
+        _POOLS.limit(limits=1, user_api="blas"),
+        np.errstate(invalid="ignore", over="ignore"),
+    ):  # individuals that failed stay failed, the others as they are
+        for row in range(0, count, PRODUCT_SAMPLES):
+            rows = min(PRODUCT_SAMPLES, count - row)
+            start, width = begin + row * ratio, (rows - 1) * ratio + len(taps)
+            np.matmul(band[:rows, :width], signals[start : start + width], out=found[row : row + rows])
+    return found.reshape(count, n, k).transpose(1, 0, 2)
