@@ -43,12 +43,17 @@ def prepared(case: Case, run: Run) -> Setup:
     return prepare(Mechanics(case.vehicle, parameters, case.effects, seed=case.seed))
 
 
+def true_lead(run: Run) -> float:
+    """Return how long before the hump or the measured road the recording truly begins, at the mean speed [s]."""
+    return run.lead if run.timed else run.lead * run.speed / run.true_speed
+
+
 def duration_of(run: Run, length: float) -> float:
-    """Return how long a run's recording is [s] for a vehicle whose axles are `length` [m] apart."""
+    """Return how long a run's recording is [s] for a vehicle whose axles are `length` [m] apart, to a tenth of a second."""
     if run.road is not None:
-        return run.lead + run.road.duration
-    assert run.stated_hump is not None
-    return run.lead + (length + run.stated_hump.length) / run.speed + AFTER
+        return round(true_lead(run) + run.road.duration, 1)
+    assert run.hump is not None
+    return round(true_lead(run) + (length + run.hump.length) / run.true_speed + AFTER, 1)
 
 
 def drive_past(case: Case, run: Run) -> Pass:
@@ -58,7 +63,7 @@ def drive_past(case: Case, run: Run) -> Pass:
     length = max(setup.layout.distances.values())
     duration = duration_of(run, length)
     mean = run.true_speed * (1.0 + setup.speed_error)
-    first, last = -run.lead * 1.5 - BEFORE - 1.0, 1.5 * duration + 3.0
+    first, last = -1.5 * true_lead(run) - BEFORE - 1.0, 1.5 * duration + 3.0
     drive = wandering(mean, run.wander, run.correlation, first, last, way)
     beginning, end = 1.2 * run.true_speed * first - length - 5.0, 1.2 * run.true_speed * last + 5.0
     level = random_road(run.hidden_roughness, beginning, end, land, run.hidden_scale)
