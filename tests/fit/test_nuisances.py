@@ -7,7 +7,8 @@ import pytest
 import scipy.signal
 
 from tests.fit.recordings import DT, sedan_truth, write_run
-from vehgen.fit.least_squares import MOST_SIGMAS, FitOptions, fit_least_squares
+from vehgen.fit.alignment import MOST_SIGMAS
+from vehgen.fit.least_squares import FitOptions, fit_least_squares
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import EVEN, Noise

@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from vehgen.fit.adjustments import Adjustment
+from vehgen.fit.alignment import MOST_SIGMAS, align
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.bounded import LinearisedPoint, minimise
 from vehgen.fit.linearisation import Linearisation, lineariser
 from vehgen.fit.misfit import Misfit, Noises, flatten
-from vehgen.fit.noise import EVEN, Noise, estimate_noise, transform
+from vehgen.fit.noise import EVEN, Noise, estimate_noise
 from vehgen.fit.nuisances import Condition, Nuisances
 from vehgen.fit.prior_data import PriorData
 from vehgen.fit.problem import Problem
@@ -32,10 +33,6 @@ FIRST_NOISE = 0.03
 """White noise assumed before any is estimated, as a share of each channel's RMS."""
 FIRST_LEVEL = 1e-6
 """Roughness from which the estimate of the road starts [m^3]."""
-MOST_SIGMAS = 4.0
-"""No error of a run or a sensor is larger than so many standard deviations: what needs more is no small error."""
-LATEST = 1.0
-"""Largest delay of a recording looked for [s]."""
 
 
 @dataclass(frozen=True)
@@ -119,7 +116,7 @@ def fit_least_squares(
     noises
         Known noise; it is then not estimated.
     start
-        Where the errors begin, `shape (n_errors,)`; by default delays come from cross-correlation.
+        Where the errors begin, `shape (n_errors,)`; by default every run is laid over its recording.
     prior_data
         What is known from elsewhere.
     shared, numbers
@@ -134,7 +131,7 @@ def fit_least_squares(
     noises = noises or first_noises(problem)
     misfit = Misfit(problem, noises, problem.space.values(unit), options.nuisances, options.band, shared, known)
     begun = [(value - item.neutral) / item.scale for item, value in zip(shared, numbers, strict=True)] if numbers else [0.0] * len(shared)
-    x = np.concatenate([np.clip(unit, 0.0, 1.0), begun, first_delays(misfit, unit, begun) if start is None else start])
+    x = np.concatenate([np.clip(unit, 0.0, 1.0), begun, align(misfit, unit, begun) if start is None else start])
     result, last = _fit(misfit, x, prior_data, options, options.tolerance if given else COARSE_TOLERANCE, nearby)
     for left in reversed(range(0 if given else options.noise_rounds - 1)):
         noises = estimate_noises(misfit, result)
@@ -211,35 +208,3 @@ def estimate_noises(misfit: Misfit, x: Array) -> Noises:
         shared = estimate_noise([lines[name] for name in names], Noise(np.maximum(old.levels, FIRST_LEVEL), old.sigma / 2))
         found |= dict.fromkeys(names, shared)
     return found
-
-
-def first_delays(misfit: Misfit, unit: Array, begun: Sequence[float] = ()) -> Array:
-    """Return errors whose delays make measured and simulated correlate best: least squares alone may lock onto a wrong cycle.
-
-    `begun` are the shared adjustments in units of their scales (default: neutral).
-    """
-    found = np.zeros(misfit.n_errors)
-    places = [misfit.error_position(t, "delay") for t in range(len(misfit.problem.trials))]
-    if any(place is not None for place in places):
-        x = np.concatenate([unit, begun or np.zeros(len(misfit.shared)), found])
-        for t, (trial, simulated, place) in enumerate(zip(misfit.problem.trials, misfit.motions(x), places, strict=True)):
-            if place is not None:
-                sigma = next(item.sigma for item in misfit.errors[t].own if item.name == "delay")
-                late = best_delay(trial.recording.values, simulated, trial.recording.dt, misfit.band)
-                found[place] = np.clip(late / sigma, -MOST_SIGMAS, MOST_SIGMAS)
-    return found
-
-
-def best_delay(measured: Array, simulated: Array, dt: float, band: tuple[float, float]) -> float:
-    """Return by how much later [s] the simulated channels `shape (n_samples, n_channels)` must come to correlate best with the measured."""
-    n = len(simulated)
-    frequency = np.fft.rfftfreq(n, dt)
-    inside = (frequency >= band[0]) & (frequency <= band[1])
-    scale = np.maximum(np.sqrt(np.mean(measured**2, axis=0)), 1e-300)
-    one, other = (transform(item / scale, dt, inside) for item in (measured, simulated))
-    cross = np.zeros(len(frequency), dtype=np.complex128)
-    cross[inside] = (one * other.conj()).sum(axis=1)
-    lags = np.fft.irfft(cross, n)
-    reach = min(int(LATEST / dt), n // 2 - 1)
-    index = np.arange(-reach, reach + 1)
-    return float(index[np.argmax(lags[index])] * dt)

@@ -8,7 +8,7 @@ themselves exactly is fitted along with the parameters (see :mod:`vehgen.fit.nui
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,6 +80,13 @@ class Misfit:
         self.sensors = tuple(item for item in self.nuisances.of_sensors(problem.trials) if (item.name, item.place) not in self.known)
         self.errors = tuple(RunErrors.of(trial, self.sensors, self.nuisances.of_run(trial), self.known) for trial in problem.trials)
         self._weights = [self._weight(trial, problem.best_values(reference)) for trial in problem.trials]
+
+    def alone(self, number: int, x: Array, band: tuple[float, float] | None = None) -> Misfit:
+        """Return the misfit of one trial by its own errors only, all else as the unknowns x have it, within another band [Hz]."""
+        values = self.problem.best_values(self.problem.space.values(self.split(x)[0]))
+        problem = self.problem.with_trials([self.problem.trials[number]]).searching((), values)
+        shared = [replace(item, neutral=float(value), scale=0.0) for item, value in zip(self.shared, self.adjusted(x), strict=True)]
+        return Misfit(problem, self.noises, np.zeros(0), self.nuisances, band or self.band, shared, self.sensor_errors(x))
 
     def _weight(self, trial: Trial, reference: Mapping[str, float]) -> _Weight:
         dt = trial.recording.dt

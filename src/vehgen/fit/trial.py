@@ -12,13 +12,20 @@ from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
 from vehgen.fit.recording import Recording, read_recording
-from vehgen.simulate import Run, RunLike, Scenario, Simulator, SimulatorPool, as_run, make_scenario
+from vehgen.road import Hump
+from vehgen.simulate import Run, RunLike, Scenario, Simulator, SimulatorPool, as_run, make_scenario, natural_modes
 from vehgen.simulate.acquired import channel_factors
 from vehgen.simulate.run_file.acquisition import channel_chains
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+AT_REST_S, AT_REST_SHARE = 0.1, 0.2
+"""A vehicle rests that moves less than this share of what it does later for so long at the begin of its recording [s]."""
+FORGOTTEN = 4.0
+"""After so many decay times 2 % of a motion are left."""
+MOST_SKIPPED = 0.5
+"""No more than this share of a recording is left out."""
 LONGEST_STEP_S = 1e-3
 """Longest internal step [s]: through 10 ms steps a stiffness comes out 17 % wrong at 15 Hz (Newmark's period error)."""
 
@@ -139,7 +146,29 @@ def make_trial(run: Run, name: str, simulators: SimulatorPool | None = None) -> 
     )
     scenario = replace(scenario, chains=channel_chains(run, 1 / dt))
     _check_length(run, scenario, simulator, values, name)
-    return Trial(name, run, measurement, simulator, scenario, values, tuple(run.file.parameters))
+    return _from_known_road(Trial(name, run, measurement, simulator, scenario, values, tuple(run.file.parameters)))
+
+
+def _from_known_road(trial: Trial) -> Trial:
+    """Return a run over a road that continues one that nobody measured from when the vehicle has forgotten that one.
+
+    That is so many decay times of its slowest motion after its last axle has come to the known road. A recording that begins at rest is
+    left as it is, and so is one over humps alone: they stand on a road that is even but for what the noise holds.
+    """
+    scenario, recording = trial.scenario, trial.recording
+    rough = [part for part in scenario.track.parts if not isinstance(part, Hump)]
+    first = max(1, round(AT_REST_S / recording.dt))
+    size = np.sqrt(np.mean(recording.values**2, axis=0))
+    if not rough or np.all(np.sqrt(np.mean(recording.values[:first] ** 2, axis=0)) < AT_REST_SHARE * size):
+        return trial
+    offsets = trial.simulator.model.wheel_offsets(trial.values)
+    known = float(scenario.speed.distance(np.array([scenario.first_arrival]))[0]) + float(offsets.max(initial=0.0))
+    arrived = float(np.interp(known, scenario.speed.distance(scenario.time), scenario.time))
+    decays = [1 / (2 * np.pi * mode.undamped_hz * mode.damping_ratio) for mode in natural_modes(trial.simulator.model, trial.values)]
+    settled = arrived - float(recording.time[0]) + FORGOTTEN * max((item for item in decays if item > 0), default=0.0)
+    skipped = min(round(settled / recording.dt), round(MOST_SKIPPED * len(recording.time)))
+    kept = replace(recording, time=recording.time[skipped:], values=recording.values[skipped:])
+    return replace(trial, recording=kept, scenario=replace(scenario, skipped=skipped))
 
 
 def samples_kept(run: Run, dt: float) -> int:

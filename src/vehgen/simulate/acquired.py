@@ -73,6 +73,11 @@ def acquire(kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Arra
     threads
         How many cores to use (default: all).
     """
+    found = _acquired(kernel, parameters, scenario, offsets, threads)
+    return replace(found, responses=found.responses[:, scenario.skipped :]) if scenario.skipped else found
+
+
+def _acquired(kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, threads: int | None) -> KernelResult:
     chains = [chain.filtering() for chain in assumed_chains(scenario, [channel.name for channel in kernel.model.channels])]
     distinct = set(chains)
     if all(chain.is_point_sample for chain in distinct):

@@ -72,7 +72,7 @@ class Scenario:
     """What happens to a vehicle from `start` [s]: a track at a speed, signals at ground links and forces, step and samples.
 
     `ground` and `forces` are in the order of the model's inputs and forces; `chains` says by a channel's name what acquires it: channels
-    without one are sampled at their instants.
+    without one are sampled at their instants. The first `skipped` samples are simulated but not kept.
     """
 
     track: Track
@@ -84,6 +84,7 @@ class Scenario:
     forces: tuple[Signal, ...] = ()
     start: float = 0.0
     chains: Mapping[str, AcquisitionChain] = field(default_factory=dict)
+    skipped: int = 0
     time: Array = field(init=False)
 
     def __post_init__(self) -> None:
@@ -114,12 +115,11 @@ class Scenario:
 
     @cached_property
     def first_arrival(self) -> float:
-        """When the first axle meets the first hump [s]; the start of the run where there is none."""
-        if not self.humps:
-            return self.start
-        first = min(hump.at for hump in self.humps)
+        """When the first axle meets the first hump, or a profile that begins ahead [s]; the start of the run where there is neither."""
         along = self.speed.distance(self.time)
-        return float(np.interp(first, along, self.time))
+        ahead = [part.distance[0] for part in self.track.parts if isinstance(part, MeasuredProfile)]
+        starts = [place for place in (*(hump.at for hump in self.humps), *ahead) if place > along[0]]
+        return float(np.interp(min(starts), along, self.time)) if starts else self.start
 
     def adjusted(
         self,

@@ -84,7 +84,7 @@ def _scenario(trial: Trial, hump: Hump, scale: float, speed: float) -> Scenario:
     behind = float(trial.simulator.model.wheel_offsets(trial.values).max(initial=0.0))
     track = Track((replace(hump, at=at),), old.track.footprint, scale)
     duration = (at + hump.length + behind) / speed + AFTER_LAST_AXLE_S
-    return replace(old, track=track, speed=ConstantSpeed(speed), duration=duration, start=0.0)
+    return replace(old, track=track, speed=ConstantSpeed(speed), duration=duration, start=0.0, skipped=0)
 
 
 def free_places(trial: Trial) -> list[PointOutput]:

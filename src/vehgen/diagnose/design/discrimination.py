@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.design.candidate_runs import CandidateRun
 from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, ModelFit
-from vehgen.fit.least_squares import MOST_SIGMAS, best_delay
+from vehgen.fit.alignment import MOST_SIGMAS, best_delay
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.fit.noise import Noise, transform
@@ -203,7 +203,7 @@ def separate(truth: FittedModel, fitted: FittedModel, run: CandidateRun, channel
 
 def _later(truth: FittedModel, fitted: FittedModel, run: CandidateRun) -> float:
     """Return by how much later [s] the prediction of `fitted` must come to correlate best with that of `truth`."""
-    return best_delay(truth.predict(run), fitted.predict(run), fitted.trial.recording.dt, fitted.fit.least_squares.misfit.band)
+    return best_delay(truth.predict(run), fitted.predict(run), fitted.trial.recording.dt, fitted.fit.least_squares.misfit.band)[0]
 
 
 def peak(truth: FittedModel, fitted: FittedModel, run: CandidateRun, channels: Sequence[str], x: Array) -> tuple[str, float]:

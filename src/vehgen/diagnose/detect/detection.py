@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.detect.noise_floor import NoiseFloor, find_noise_floor
+from vehgen.diagnose.detect.profile_error import measured_profiles, profile_noises
 from vehgen.diagnose.fits.model_fit import ModelFit, fit_base, mean_square_as_filed, narrow
 from vehgen.errors import InputError
 from vehgen.fit.band import DIAGNOSIS_BAND_HZ, compared_band
@@ -17,6 +18,8 @@ from vehgen.fit.problem import Problem, make_problem
 from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
+PROFILE_ROUNDS = 2
+"""So often are the errors of measured profiles found, and the base model refitted with them."""
 BAND_EDGES_HZ = (0.0, 3.0, 8.0, 15.0, np.inf)
 """Bands of the table of gaps [Hz]: rigid-body motion, between, wheel hop, above."""
 
@@ -84,6 +87,9 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
     floor = find_noise_floor(trials, band)
     problem = narrow(make_problem(training))
     base = fit_base(problem, validation_runs, floor.noises, band)
+    for _ in range(PROFILE_ROUNDS if any(measured_profiles(trial) for trial in trials) else 0):
+        floor = replace(floor, noises=profile_noises(base, floor.noises))
+        base = fit_base(problem, validation_runs, floor.noises, band, base)
     filed = [mean_square_as_filed(part, floor.noises, band) for part in (training, validation_runs)]
     return Detection(problem, tuple(validation_runs), floor, base, filed[0], filed[1], band)
 

@@ -53,7 +53,7 @@ class ProbeMotion:
             scenario = misfit.scenario(x, t)
             population = np.array([[known[name] for name in probe.parameters]])
             run = kernel.run(population, scenario.excitation(probe.wheel_offsets(known)), scenario.decimation)
-            self.motions.append(np.asarray(run.responses[0].T.reshape(len(model.elements), 2, -1)))
+            self.motions.append(np.asarray(run.responses[0, scenario.skipped :].T.reshape(len(model.elements), 2, -1)))
 
     def moved(self, problem: Problem, values: Array) -> Array | None:
         """Return by how much a candidate's residuals differ from the fit's, without the nuisances' priors.

@@ -122,11 +122,18 @@ def narrow(problem: Problem) -> Problem:
     return Problem(problem.trials, SearchSpace(space.names, low, high, space.start))
 
 
-def fit_base(problem: Problem, validation_runs: Sequence[Trial], noises: Noises, band: tuple[float, float]) -> ModelFit:
-    """Fit the base model."""
-    problem = resolve(*_begin(problem, noises, band))
+def fit_base(
+    problem: Problem, validation_runs: Sequence[Trial], noises: Noises, band: tuple[float, float], begin: ModelFit | None = None
+) -> ModelFit:
+    """Fit the base model, from another fit of it or from the file's values."""
     options = FitOptions(NUISANCES, band, tolerance=DIAGNOSIS_TOLERANCE, jacobian_refresh=JACOBIAN_REFRESH, prior_sigma=BASE_PRIOR_SIGMA)
-    fit = fit_least_squares(problem, problem.space.unit(problem.space.start), options, noises=noises)
+    if begin is None:
+        problem = resolve(*_begin(problem, noises, band))
+        fit = fit_least_squares(problem, problem.space.unit(problem.space.start), options, noises=noises)
+    else:
+        old = begin.least_squares
+        unit, errors = old.misfit.split(old.x)
+        fit = fit_least_squares(old.misfit.problem, unit, options, noises=noises, start=errors, nearby=old.linearisation)
     return evaluate_fit((), fit, validation_runs, noises)
 
 

@@ -22,7 +22,8 @@ from vehgen.diagnose.inputs.finding import Finding
 from vehgen.diagnose.inputs.labels import correlate, relabelled, true_labels
 from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.fit.adjustments import Adjustment, SpeedScale
-from vehgen.fit.least_squares import COARSE_TOLERANCE, MOST_SIGMAS, WEAK_PRIOR_SIGMA, FitOptions, LeastSquaresFit, fit_least_squares
+from vehgen.fit.alignment import MOST_SIGMAS
+from vehgen.fit.least_squares import COARSE_TOLERANCE, WEAK_PRIOR_SIGMA, FitOptions, LeastSquaresFit, fit_least_squares
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import transform
 from vehgen.fit.problem import Problem, make_problem

@@ -16,7 +16,7 @@ from scipy.linalg import block_diag
 from vehgen.codegen import Kernel
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.localise.unknown_force import Place, PlaceResult, posterior, score_locations
-from vehgen.fit.least_squares import first_delays
+from vehgen.fit.alignment import align
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import taper
 from vehgen.mechanics.equations_of_motion import Channel, EquationsOfMotion
@@ -142,7 +142,7 @@ def recover(detection: Detection, result: PlaceResult, component: int = 0) -> tu
         frozen = Misfit(
             alone.searching((), alone.best_values(values)), misfit.noises, np.zeros(0), misfit.nuisances, misfit.band, known=known
         )
-        for item in score_locations(frozen, first_delays(frozen, np.zeros(0)), [result.place]):
+        for item in score_locations(frozen, align(frozen, np.zeros(0)), [result.place]):
             own = Misfit(alone, misfit.noises, values, misfit.nuisances, misfit.band, known=known)
             moved = replace(item, x=np.concatenate([result.x[:n], item.x]))
             found += _recover(own, moved, block_diag(directions[:n], np.linalg.cholesky(posterior(frozen, item))), component, True)
@@ -213,7 +213,8 @@ def _raw(misfit: Misfit, place: Place, component: int, x: Array, kernels: dict[i
         probe, kernel = kernels[id(model)]
         scenario = misfit.scenario(x, t)
         population = np.array([[values[name] for name in probe.parameters]])
-        motion = kernel.run(population, scenario.excitation(probe.wheel_offsets(values)), scenario.decimation).responses[0]
+        run = kernel.run(population, scenario.excitation(probe.wheel_offsets(values)), scenario.decimation)
+        motion = run.responses[0, scenario.skipped :]
         frequency = np.asarray(np.fft.rfftfreq(len(motion), trial.recording.dt), dtype=np.float64)
         found.append(
             _Raw(

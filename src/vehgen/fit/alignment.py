@@ -1,0 +1,108 @@
+"""Where the errors of runs begin in a fit: each run laid over its recording, slow motions first.
+
+How a speed and its wander are off turns the phase of fast motions by whole cycles, and least squares would lock onto a wrong one. So speeds
+are tried with the delay at which measured and simulated correlate best; from the best of them each run's own errors are fitted to slow
+motions, then to faster and faster ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.fit.bounded import LinearisedPoint, minimise
+from vehgen.fit.linearisation import linearise
+from vehgen.fit.misfit import Misfit
+from vehgen.fit.noise import transform
+
+Array = NDArray[np.float64]
+SPEEDS = tuple(0.5 * i for i in range(-7, 8))
+"""Errors of the speed that are tried, in standard deviations."""
+BANDS_HZ = (3.0, 8.0, 20.0)
+"""Highest frequencies of the motions that are laid over one another, the slow ones first [Hz]."""
+MOST_SIGMAS = 4.0
+"""No error of a run or a sensor is larger than so many standard deviations: what needs more is no small error."""
+LATEST = 1.0
+"""Largest delay of a recording looked for [s]."""
+STEPS = 10
+"""So many steps at most in each band."""
+TOLERANCE = 1e-3
+
+
+def align(misfit: Misfit, unit: Array, begun: Sequence[float] = ()) -> Array:
+    """Return errors `shape (n_errors,)` at which each run lies over its recording; those of sensors are none.
+
+    Parameters
+    ----------
+    misfit
+        Whose errors begin.
+    unit
+        Parameters in the unit cube, `shape (n_parameters,)`.
+    begun
+        Shared adjustments in units of their scales (default: neutral).
+    """
+    x = np.concatenate([unit, begun or np.zeros(len(misfit.shared)), np.zeros(misfit.n_errors)])
+    for number in range(len(misfit.problem.trials)):
+        if misfit.error_position(number, "delay") is not None:
+            x[misfit.own_columns(number)] = _laid_over(misfit, x, number)
+    return x[misfit.n_parameters + len(misfit.shared) :]
+
+
+def _laid_over(misfit: Misfit, x: Array, number: int) -> Array:
+    """Return the own errors of one run, `shape (n_own,)`."""
+    trial = misfit.problem.trials[number]
+    alone = misfit.alone(number, x)
+    names = [item.name for item in alone.errors[0].own]
+    sigma = alone.errors[0].own[names.index("delay")].sigma
+    top = min(misfit.band[1], BANDS_HZ[1])
+    best, start = -np.inf, np.zeros(len(names))
+    for speed in SPEEDS if "speed" in names else (0.0,):
+        tried = np.zeros(len(names))
+        if "speed" in names:
+            tried[names.index("speed")] = speed
+        simulated = alone.motions(np.concatenate([np.zeros(len(alone.shared)), tried]))[0]
+        late, likeness = best_delay(trial.recording.values, simulated, trial.recording.dt, (misfit.band[0], top))
+        if likeness > best:
+            tried[names.index("delay")] = np.clip(late / sigma, -MOST_SIGMAS, MOST_SIGMAS)
+            best, start = likeness, tried
+    if "speed" not in names:
+        return start
+    for highest in BANDS_HZ:
+        if highest < misfit.band[1]:
+            start = _fitted(misfit.alone(number, x, (misfit.band[0], highest)), start)
+    return start
+
+
+def _fitted(alone: Misfit, start: Array) -> Array:
+    bound = np.full(alone.n_unknowns, MOST_SIGMAS)
+    begun = np.concatenate([np.zeros(len(alone.shared)), start])
+
+    def square(x: Array) -> float:
+        return float(np.sum(alone.residuals(x) ** 2))
+
+    def linearised(x: Array) -> LinearisedPoint:
+        return LinearisedPoint(*linearise(alone, x, one_sided=True).normal(alone.whitened_spectrum(x), x))
+
+    return minimise(square, linearised, begun, (-bound, bound), TOLERANCE, STEPS)[len(alone.shared) :]
+
+
+def best_delay(measured: Array, simulated: Array, dt: float, band: tuple[float, float]) -> tuple[float, float]:
+    """Return by how much later [s] simulated channels `shape (n_samples, n_channels)` must come to be most like the measured, and how like.
+
+    Likeness is the correlation of all channels together within the band [Hz], each in units of its measured size.
+    """
+    n = len(simulated)
+    frequency = np.fft.rfftfreq(n, dt)
+    inside = (frequency >= band[0]) & (frequency <= band[1])
+    scale = np.maximum(np.sqrt(np.mean(measured**2, axis=0)), 1e-300)
+    one, other = (transform(item / scale, dt, inside) for item in (measured, simulated))
+    cross = np.zeros(len(frequency), dtype=np.complex128)
+    cross[inside] = (one * other.conj()).sum(axis=1)
+    lags = np.fft.irfft(cross, n)
+    reach = min(int(LATEST / dt), n // 2 - 1)
+    index = np.arange(-reach, reach + 1)
+    size = float(np.sqrt((np.abs(one) ** 2).sum() * (np.abs(other) ** 2).sum()))
+    place = int(np.argmax(lags[index]))
+    return float(index[place] * dt), float(lags[index[place]] * n / 2 / max(size, 1e-300))
