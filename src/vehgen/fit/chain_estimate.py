@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
 from vehgen.fit.linearisation import linearise
@@ -34,6 +35,8 @@ REFINED_SHARE = 0.01
 """A cut-off is refined to this share of itself."""
 SAME_GAIN = 0.05
 """Chains whose gains differ by less throughout the band are the same."""
+UNSEEN = 1e-12
+"""A direction of the unknowns whose scaled curvature is below this share of the largest is left alone."""
 LOOK_AHEAD_S = 0.6
 """How far beyond the recording's end responses are computed, for chains that look ahead [s]."""
 MAX_FOLDED_SHARE = 0.1
@@ -137,8 +140,9 @@ def estimate_chain(
     unknown = [name for name in every if any(name in trial.channels and not trial.scenario.chain(name).is_known for trial in trials)]
     search = _Search.of(misfit, x, tuple(channels or unknown or every), prior_sigma)
     rate = min(1 / trial.recording.dt for trial in trials)
-    families = [search.fit(POINT_SAMPLES), search.fit(UNKNOWN.assumed(rate))]
-    families += [_best_cut_off(search, kind, order, rate) for kind, order in LOW_PASSES]
+    with threadpool_limits(1, user_api="blas"):  # tall and thin matrices: more threads only wait for one another
+        families = [search.fit(POINT_SAMPLES), search.fit(UNKNOWN.assumed(rate))]
+        families += [_best_cut_off(search, kind, order, rate) for kind, order in LOW_PASSES]
     best, *others = sorted(families, key=lambda item: item.loss)
     scale = max(1.0, best.loss / search.size)
     rivals = (item for item in others if item.loss - best.loss < CLEAR_LOSS * scale)
@@ -223,10 +227,16 @@ class _Search:
             factors = np.column_stack([item.response(frequency) for item in chains])
             residuals.append(flatten(self.misfit.whitened_signal(t, trial.recording.values - response[0])))
             slopes.append(flatten(self.misfit.whiten(t, self.slopes[t] * factors), first=1).T)
-        residual = np.concatenate([*residuals, np.zeros(len(self.priors))])
-        basis = np.linalg.qr(np.vstack([*slopes, self.priors]))[0]
-        left = residual - basis @ (basis.T @ residual)
-        return ChainFit(chain, float(left @ left))
+        return ChainFit(chain, _projected(np.concatenate(residuals), np.vstack(slopes), self.priors))
+
+
+def _projected(residual: Array, slopes: Array, priors: Array) -> float:
+    """Return the least |residual + slopes y|^2 + |priors y|^2 over y, by the normal equations in scaled unknowns."""
+    normal, pull = slopes.T @ slopes + priors.T @ priors, slopes.T @ residual
+    scale = 1 / np.sqrt(np.maximum(np.diag(normal), 1e-300))
+    values, vectors = np.linalg.eigh(normal * scale[:, None] * scale)
+    kept = values > UNSEEN * values[-1]
+    return float(residual @ residual - ((vectors.T @ (pull * scale))[kept] ** 2 / values[kept]).sum())
 
 
 def _whitener(misfit: Misfit, number: int) -> Complex:
