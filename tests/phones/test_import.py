@@ -12,6 +12,7 @@ import pytest
 from vehgen.commands import main
 from vehgen.fit.recording import read_recording
 from vehgen.simulate import Simulator, load_run, make_scenario
+from vehgen.simulate.run_file.acquisition import channel_chains
 
 from .exports import write_zip
 
@@ -235,3 +236,13 @@ def test_the_run_file_says_what_was_assumed(tmp_path, capsys):
         assert words in text
     assert (tmp_path / "deep" / "run.png").stat().st_size > 10_000
     assert "hump_2ms_phone2.zip (Sensor Logger)" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("rate", "kept"), [("100", "unknown"), ("50", "ideal")])
+def test_the_run_file_says_through_which_low_pass_the_phone_was_put_on_the_grid(tmp_path, capsys, rate, kept):
+    """Phones sampled at about 100 Hz: on 100 Hz nobody knows their low-pass, on 50 Hz the import's own stands before all others."""
+    assert command(tmp_path / "run.yaml", both("hump_2ms"), "--speed", "2.0", "--rate", rate, "--top", "20") == 0
+    capsys.readouterr()
+    chains = channel_chains(load_run(tmp_path / "run.yaml"), float(rate))
+    assert {chain.filter for chain in chains.values()} == {kept}
+    assert {chain.cut_off for chain in chains.values()} == {None if kept == "unknown" else 25.0}

@@ -212,3 +212,10 @@ def test_the_real_sample():
     assert len(acceleration.time) == 2000
     assert 1 / np.median(np.diff(acceleration.time)) == pytest.approx(100.7, abs=0.1)
     assert export.streams["speed"].values[0, 0] == -1.0
+
+
+def test_phyphox_tells_what_the_accelerometer_is(tmp_path):
+    device = '"property","value"\n"deviceModel","TA-1004"\n"accelerometer Name","BMI160 Accelerometer"\n"accelerometer Range","78.4532"\n'
+    path = write_zip(tmp_path / "a.zip", {**phyphox(*still()), "meta/device.csv": device})
+    assert read_export(path).accelerometer == "BMI160 Accelerometer"
+    assert read_export(write_zip(tmp_path / "b.zip", phyphox(*still()))).accelerometer is None

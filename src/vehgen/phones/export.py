@@ -87,6 +87,8 @@ class PhoneExport:
     acceleration_sign
         +1 where a phone that lies still, face up, is known to read +9.8 m/s^2 on z, -1 where it is known to read -9.8 m/s^2, None where the
         export does not say.
+    accelerometer
+        What the system calls the accelerometer, None where the export does not say.
     """
 
     app: str
@@ -94,6 +96,7 @@ class PhoneExport:
     epoch: EpochMap | None = None
     notes: tuple[str, ...] = field(default=())
     acceleration_sign: int | None = None
+    accelerometer: str | None = None
 
 
 def acceleration_kind(values: Array) -> str:

@@ -26,16 +26,21 @@ from vehgen.phones.export import (
 _COLUMN_HEAD = re.compile(r"(?P<words>.*?)\s*\((?P<unit>[^()]*)\)\s*\Z")
 _AXIS = re.compile(r"(?:.*\s)?([xyz])\Z", re.IGNORECASE)
 _PHYPHOX_UNITS = {"m/s^2": "m/s^2", "m/s²": "m/s^2", "rad/s": "rad/s", "m/s": "m/s", "s": "s", "°": "deg"}
+_DEVICE, _ACCELEROMETER = ("property", "value"), "accelerometer name"
 _EVENTS = ("event", "experiment time", "system time")
 
 
 def is_phyphox(table: Table) -> bool:
-    """Say whether a header is one that phyphox writes: all columns with units, the first a time."""
-    return _is_clock(table) or (
-        len(table.header) > 1
-        and (first := _COLUMN_HEAD.match(table.header[0])) is not None
-        and first["unit"] == "s"
-        and all(_COLUMN_HEAD.match(item) for item in table.header)
+    """Say whether a header is one that phyphox writes: of its clock, of the device, or columns with units, the first a time."""
+    return (
+        _is_clock(table)
+        or _is_device(table)
+        or (
+            len(table.header) > 1
+            and (first := _COLUMN_HEAD.match(table.header[0])) is not None
+            and first["unit"] == "s"
+            and all(_COLUMN_HEAD.match(item) for item in table.header)
+        )
     )
 
 
@@ -49,10 +54,12 @@ def read_phyphox(tables: list[Table]) -> PhoneExport:
     """
     streams: dict[str, Stream] = {}
     notes: list[str] = []
-    epoch = None
+    epoch = chip = None
     for table in tables:
         if _is_clock(table):
             epoch = _read_clock(table, notes)
+        elif _is_device(table):
+            chip = dict(zip((item.lower() for item in table.text(0)), table.text(1), strict=True)).get(_ACCELEROMETER)
         elif is_phyphox(table):
             for name, stream in _read_sensors(table):
                 if name in streams:
@@ -61,11 +68,15 @@ def read_phyphox(tables: list[Table]) -> PhoneExport:
                     streams[name] = stream
     if not {ACCELERATION_STREAM, LINEAR_ACCELERATION_STREAM} & set(streams):
         raise InputError(f"{tables[0].name}: this phyphox export holds no acceleration; record with the experiment 'Acceleration (with g)'")
-    return PhoneExport("phyphox", streams, epoch, tuple(notes), acceleration_sign=1)
+    return PhoneExport("phyphox", streams, epoch, tuple(notes), acceleration_sign=1, accelerometer=chip)
 
 
 def _is_clock(table: Table) -> bool:
     return tuple(item.lower() for item in table.header[:3]) == _EVENTS
+
+
+def _is_device(table: Table) -> bool:
+    return tuple(item.lower() for item in table.header) == _DEVICE
 
 
 def _read_clock(table: Table, notes: list[str]) -> EpochMap | None:

@@ -131,7 +131,7 @@ def resample(time: Array, values: Array, grid: Array) -> Array:
             f"samples from {time[0]:.3f} to {time[-1]:.3f} s were asked for values from {grid[0]:.3f} to {grid[-1]:.3f} s; "
             "a longer recording is needed"
         )
-    finer = int(np.ceil(rate * step / 1.04))
+    finer = _finer(rate, 1 / step)
     if finer < 2:
         return _predict(time, values, grid, rate)
     taps = _low_pass(1 / step, finer)
@@ -140,6 +140,16 @@ def resample(time: Array, values: Array, grid: Array) -> Array:
     inside = np.clip(inner, time[0], time[-1])  # beyond its ends the signal is held
     fine = _predict(time, values, inside, rate)
     return np.asarray(scipy.signal.oaconvolve(fine, taps[:, None], mode="valid", axes=0)[::finer])
+
+
+def is_low_passed(rate: float, grid_rate: float) -> bool:
+    """Whether samples at a median rate [Hz] pass the low-pass at half of `grid_rate` [Hz] on their way to an even grid."""
+    return _finer(rate, grid_rate) >= 2
+
+
+def _finer(rate: float, grid_rate: float) -> int:
+    """Return how many times finer than the grid samples are predicted."""
+    return int(np.ceil(rate / grid_rate / 1.04))
 
 
 def _low_pass(grid_rate: float, finer: int) -> Array:

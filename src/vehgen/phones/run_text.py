@@ -8,10 +8,11 @@ import os
 from pathlib import Path
 from typing import Any
 
-from vehgen.errors import ArgumentError, shown
+from vehgen.errors import ArgumentError, shortened, shown
 from vehgen.files import write_text
 from vehgen.files.yaml_writer import Commented, OneLine, yaml_document
 from vehgen.phones.importing import Imported, ImportedPhone, clock_difference
+from vehgen.phones.resampling import is_low_passed
 from vehgen.simulate import load_run
 from vehgen.vehicle import Vehicle, VehicleLike
 from vehgen.vehicle.loading import find_vehicle_file, models_folder
@@ -106,8 +107,19 @@ def _sensor(imported: Imported, item: ImportedPhone) -> Commented:
         place["x"] = sensor.place.x.text
     if sensor.place.behind is not None:
         place |= {"behind": sensor.place.behind, "distance": f"{sensor.place.distance:.6g} m"}
-    channels = {output.quantity: output.name for output in outputs}
+    filtered = [is_low_passed(rate, imported.plan.rate) for rate in item.phone.rates[: len(outputs)]]
+    channels: dict[str, Any] = {output.quantity: output.name for output in outputs}
+    if any(filtered) and not all(filtered):
+        recorders = zip(outputs, filtered, strict=True)
+        channels = {output.quantity: OneLine(column=output.name, acquisition=_recorder(own)) for output, own in recorders}
+    else:
+        place["acquisition"] = _recorder(all(filtered))
     return Commented(OneLine(**place, channels=channels), above=tuple(phone_notes(imported, item)))
+
+
+def _recorder(filtered: bool) -> str:
+    """Return what acquired a channel: the low-pass that put it on the grid, or a chip's that nobody knows."""
+    return "resampled" if filtered else "unknown"
 
 
 def phone_notes(imported: Imported, item: ImportedPhone) -> list[str]:
@@ -115,6 +127,8 @@ def phone_notes(imported: Imported, item: ImportedPhone) -> list[str]:
     phone = item.phone
     rates = " and ".join(f"{rate:.2f} Hz" for rate in phone.rates)
     notes = [f"{phone.name} ({phone.export.app}): sampled at {rates}, put on {imported.plan.rate:g} Hz"]
+    if phone.export.accelerometer is not None:
+        notes.append(f"its accelerometer is {shortened(phone.export.accelerometer)}")
     if item.orientation is not None:
         sensor, orientation = phone.sensor, item.orientation
         up = " {:+.4f} {:+.4f} {:+.4f}".format(*orientation.up)

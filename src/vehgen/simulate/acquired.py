@@ -54,7 +54,7 @@ def kept_samples(scenario: Scenario, channels: Sequence[str], nonlinear: bool) -
     """Return how many samples of every channel a run holds in memory."""
     chains = {chain.filtering() for chain in assumed_chains(scenario, channels)}
     fine = any(not chain.is_point_sample for chain in chains) and (nonlinear or len(chains) > 1)
-    return len(scenario.time) // (_stride(scenario) if fine else scenario.decimation) + 1
+    return len(scenario.time) // (kept_stride(scenario) if fine else scenario.decimation) + 1
 
 
 def acquire(kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, threads: int | None = None) -> KernelResult:
@@ -87,7 +87,8 @@ def _acquired(kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Ar
     return _filtered_output(kernel, parameters, scenario, offsets, chains, threads)
 
 
-def _extended(scenario: Scenario, samples: int) -> Scenario:
+def extended(scenario: Scenario, samples: int) -> Scenario:
+    """Return the scenario with so many samples more at its end."""
     return replace(scenario, duration=scenario.duration + samples * scenario.decimation * scenario.dt) if samples else scenario
 
 
@@ -96,7 +97,7 @@ def _filtered_input(
 ) -> KernelResult:
     """Run over the filtered excitation, from as many samples before the run as the chain looks ahead."""
     ahead = math.ceil(max(-chain.taps(scenario.dt)[0], 0) / scenario.decimation)
-    raw = _extended(scenario, ahead).excitation(offsets)
+    raw = extended(scenario, ahead).excitation(offsets)
     lead, last = ahead * scenario.decimation, len(scenario.time)
     excitation = _FILTERED.find((id(raw), chain, lead, last), raw, lambda: _filtered(raw, chain, lead, last))
     result = kernel.run(parameters, excitation, scenario.decimation, threads=threads)
@@ -129,7 +130,7 @@ def _convolved(signal: Array, taps: Array, start: int, count: int) -> Array:
     return found
 
 
-def _stride(scenario: Scenario) -> int:
+def kept_stride(scenario: Scenario) -> int:
     """Return every how many steps must be kept for a FIR filter to decimate: few enough, and a whole number of them a sample."""
     most = min(scenario.decimation / LEAST_RATIO, 1 / (LEAST_RATE * scenario.dt) * (1 + 1e-9))
     fitting = [stride for stride in range(1, scenario.decimation + 1) if scenario.decimation % stride == 0 and stride <= most]
@@ -140,22 +141,22 @@ def _filtered_output(
     kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, chains: Sequence[AcquisitionChain], threads: int | None
 ) -> KernelResult:
     """Run with kept steps between the samples and decimate every channel by its own chain."""
-    stride = _stride(scenario)
+    stride = kept_stride(scenario)
     ratio = scenario.decimation // stride
     filters = {chain: chain.taps(scenario.dt * stride) for chain in dict.fromkeys(chains)}
     ahead = math.ceil(max(0, *(-first for first, _ in filters.values())) / ratio)
-    result = kernel.run(parameters, _extended(scenario, ahead).excitation(offsets), stride, threads=threads)
+    result = kernel.run(parameters, extended(scenario, ahead).excitation(offsets), stride, threads=threads)
     fine = result.responses
     found = np.empty((len(fine), (len(scenario.time) - 1) // scenario.decimation + 1, len(chains)))
     for chain, (first, taps) in filters.items():
         own = [i for i, item in enumerate(chains) if item == chain]
         for begin in range(0, len(fine), BLOCK_INDIVIDUALS):
             part = slice(begin, begin + BLOCK_INDIVIDUALS)
-            found[part, :, own] = _decimated(fine[part][:, :, own], first, taps, ratio, found.shape[1])
+            found[part, :, own] = decimate(fine[part][:, :, own], first, taps, ratio, found.shape[1])
     return replace(result, responses=found)
 
 
-def _decimated(fine: Array, first: int, taps: Array, ratio: int, count: int) -> Array:
+def decimate(fine: Array, first: int, taps: Array, ratio: int, count: int) -> Array:
     """Return every `ratio`-th number of the filtered signals `shape (n, n_fine, k)`, at rest before their beginning, `count` of them."""
     n, n_fine, k = fine.shape
     before = max(first + len(taps) - 1, 0)

@@ -1,0 +1,276 @@
+"""Which low-pass was a recording made through? Chains tried on one stored response of a fitted model, and the band to trust without one.
+
+Every chain filters the finely sampled response of the base fit; what the fit's parameters and nuisances, held by their priors, can do about
+the whitened residual is projected out, and the sums of squares that are left are compared. A chain's group delay at low frequency is taken
+off it: the base fit's clock has found it already, and a delay of a clock says nothing about a filter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.optimize
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
+from vehgen.fit.linearisation import linearise
+from vehgen.fit.misfit import Misfit, flatten
+from vehgen.fit.noise import Noise, road_answer, taper
+from vehgen.fit.trial import Trial
+from vehgen.measure.acquisition import POINT_SAMPLES, UNKNOWN, AcquisitionChain, FilterKind
+from vehgen.simulate.acquired import decimate, extended, kept_stride
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+CLEAR_LOSS = 10.0
+"""A chain is clear where nothing that differs from it comes within this of its sum of squares, chi2 = 1."""
+LOW_PASSES: tuple[tuple[FilterKind, int], ...] = tuple((kind, order) for kind in ("butterworth", "bessel") for order in (2, 4, 8))
+"""Kinds and orders tried."""
+CUT_OFF_SHARES = np.geomspace(0.15, 0.5, 7)
+"""Cut-offs first tried, over the recording's rate."""
+REFINED_SHARE = 0.01
+"""A cut-off is refined to this share of itself."""
+SAME_GAIN = 0.05
+"""Chains whose gains differ by less throughout the band are the same."""
+UNSEEN = 1e-12
+"""A direction of the unknowns whose scaled curvature is below this share of the largest is left alone."""
+LOOK_AHEAD_S = 0.6
+"""How far beyond the recording's end responses are computed, for chains that look ahead [s]."""
+MAX_FOLDED_SHARE = 0.1
+"""Folded energy beyond this share of the noise's power spoils a spectral line: chi grows by 5 %."""
+SMOOTHED_HZ = 1.0
+"""Width over which folded energy is averaged [Hz]."""
+
+
+@dataclass(frozen=True)
+class FineResponse:
+    """A response between the samples of a recording.
+
+    Attributes
+    ----------
+    values
+        `shape (n_fine, n_channels)`, `ratio` of them a sample, beyond the recording's end.
+    dt
+        Their spacing [s].
+    ratio
+        How many of them lie from one sample to the next.
+    count
+        Number of the recording's samples.
+    """
+
+    values: Array
+    dt: float
+    ratio: int
+    count: int
+
+    def acquired(self, chains: Sequence[AcquisitionChain]) -> Array:
+        """Return the samples that chains, one a channel, make of it, `shape (count, n_channels)`."""
+        found = np.empty((self.count, self.values.shape[1]))
+        for chain in dict.fromkeys(chains):
+            own = [i for i, item in enumerate(chains) if item == chain]
+            first, taps = chain.taps(self.dt)
+            found[:, own] = decimate(self.values[None][:, :, own], first, taps, self.ratio, self.count)[0]
+        return found
+
+
+@dataclass(frozen=True)
+class ChainFit:
+    """A chain, and the sum of squares of the whitened residuals that it leaves."""
+
+    chain: AcquisitionChain
+    loss: float
+
+
+@dataclass(frozen=True)
+class ChainEstimate:
+    """The chain that fits best, and how well others do.
+
+    Attributes
+    ----------
+    best
+        Of all kinds tried, without its group delay at low frequency.
+    others
+        The best of every other kind and order, by their loss.
+    scale
+        The mean square that the best leaves, or 1 where it is less: differences of losses count in its unit.
+    is_clear
+        Whether no chain that differs from it does as well.
+    """
+
+    best: ChainFit
+    others: tuple[ChainFit, ...]
+    scale: float
+    is_clear: bool
+
+
+def fine_response(misfit: Misfit, x: Array, number: int) -> FineResponse:
+    """Return what the channels of trial `number` show at unknowns x before any recorder, its adjustments of sensors left out."""
+    trial = misfit.problem.trials[number]
+    unit, errors = misfit.split(x)
+    scenario = misfit.nuisances.adjust(trial.scenario, errors[number])
+    for item, value in zip(misfit.shared, misfit.adjusted(x), strict=True):
+        scenario = item.scenario(scenario, float(value))
+    stride = kept_stride(scenario)
+    ratio = scenario.decimation // stride
+    longer = extended(scenario, int(np.ceil(LOOK_AHEAD_S / (scenario.dt * scenario.decimation))))
+    fine = replace(longer, decimation=stride, chains={})
+    values = misfit.problem.respond(misfit.problem.space.values(unit)[None], trial, fine)[0][0]
+    return FineResponse(values, fine.dt * stride, ratio, len(trial.recording.time))
+
+
+def estimate_chain(
+    misfit: Misfit, x: Array, *, channels: Sequence[str] | None = None, prior_sigma: float = WEAK_PRIOR_SIGMA
+) -> ChainEstimate:
+    """Return the chain that explains the recordings best.
+
+    Parameters
+    ----------
+    misfit, x
+        The base fit, its recorders' unknown low-passes assumed ideal.
+    channels
+        Those that share the chain that is sought (default: those with an unknown one; where there is none, all).
+    prior_sigma
+        Standard deviation of the parameters' prior about x, in the unit cube.
+    """
+    trials = misfit.problem.trials
+    every = dict.fromkeys(name for trial in trials for name in trial.channels)
+    unknown = [name for name in every if any(name in trial.channels and not trial.scenario.chain(name).is_known for trial in trials)]
+    search = _Search.of(misfit, x, tuple(channels or unknown or every), prior_sigma)
+    rate = min(1 / trial.recording.dt for trial in trials)
+    with threadpool_limits(1, user_api="blas"):  # tall and thin matrices: more threads only wait for one another
+        families = [search.fit(POINT_SAMPLES), search.fit(UNKNOWN.assumed(rate))]
+        families += [_best_cut_off(search, kind, order, rate) for kind, order in LOW_PASSES]
+    best, *others = sorted(families, key=lambda item: item.loss)
+    scale = max(1.0, best.loss / search.size)
+    rivals = (item for item in others if item.loss - best.loss < CLEAR_LOSS * scale)
+    clear = all(_alike(item.chain, best.chain, misfit.band) for item in rivals)
+    return ChainEstimate(best, tuple(others), scale, clear)
+
+
+def trusted_band(trial: Trial, fine: FineResponse, noise: Noise) -> float:
+    """Return the frequency [Hz] up to which energy folded from above half the sampling rate stays under MAX_FOLDED_SHARE of the noise.
+
+    Parameters
+    ----------
+    trial
+        A trial, whose recorder may have let everything pass.
+    fine
+        Its response before any recorder, of :func:`fine_response`.
+    noise
+        Its noise.
+    """
+    dt, n = trial.recording.dt, fine.count
+    fine_n = n * fine.ratio
+    grid = np.arange(fine_n) / fine.ratio
+    window = np.interp(grid, np.arange(n), taper(n, dt))
+    values = np.zeros((fine_n, fine.values.shape[1]))
+    values[: min(fine_n, len(fine.values))] = fine.values[:fine_n]
+    tapered = values * window[:, None]
+    frequency = np.asarray(np.fft.rfftfreq(n, dt), dtype=np.float64)
+    inside = (frequency > 0) & (frequency < 0.5 / dt)
+    whole = np.fft.rfft(tapered, axis=0)[: len(frequency)] / fine.ratio
+    folded = (np.fft.rfft(tapered[:: fine.ratio], axis=0) - whole)[inside]
+    power = np.abs(folded) ** 2 * 2 * dt / float((window[:: fine.ratio] ** 2).sum())
+    answer = road_answer(trial, frequency[inside], trial.values)
+    density = np.diagonal(noise.density(answer), axis1=1, axis2=2).real
+    width = max(1, round(SMOOTHED_HZ / float(frequency[1])))
+    share = np.apply_along_axis(np.convolve, 0, power / density, np.ones(width) / width, "same").max(axis=1)
+    spoilt = np.flatnonzero(share > MAX_FOLDED_SHARE)
+    return float(frequency[inside][spoilt[0]]) if len(spoilt) else 0.5 / dt
+
+
+@dataclass(frozen=True)
+class _Search:
+    """What the trial of a chain needs: stored responses, derivatives without whitening, whiteners and priors."""
+
+    misfit: Misfit
+    numbers: Array
+    channels: tuple[str, ...]
+    responses: tuple[FineResponse, ...]
+    slopes: tuple[Complex, ...]
+    priors: Array
+
+    @classmethod
+    def of(cls, misfit: Misfit, x: Array, channels: tuple[str, ...], prior_sigma: float) -> _Search:
+        n, shared = misfit.n_parameters, len(misfit.shared)
+        weights = np.concatenate([np.full(n, 1 / prior_sigma), np.zeros(shared), np.ones(misfit.n_unknowns - n - shared)])
+        spectra = linearise(misfit, x).spectra
+        slopes = []
+        for t, (trial, white) in enumerate(zip(misfit.problem.trials, spectra, strict=True)):
+            inverse = np.linalg.inv(_whitener(misfit, t))
+            assumed = trial.channel_factors(misfit.frequency(t))
+            gain = np.where(np.abs(assumed) > SAME_GAIN, assumed, 1.0)
+            slopes.append(np.asarray((inverse @ white[..., None])[..., 0] / gain))
+        responses = tuple(fine_response(misfit, x, t) for t in range(len(misfit.problem.trials)))
+        return cls(misfit, misfit.adjusted(x), channels, responses, tuple(slopes), np.diag(weights))
+
+    @property
+    def size(self) -> int:
+        """Number of whitened residuals."""
+        return sum(2 * item.shape[1] * item.shape[2] for item in self.slopes)
+
+    def fit(self, chain: AcquisitionChain) -> ChainFit:
+        """Return the loss of a chain, its group delay taken off."""
+        chain = replace(chain, delay=chain.delay - group_delay(chain))
+        residuals, slopes = [], []
+        for t, trial in enumerate(self.misfit.problem.trials):
+            rate = 1 / trial.recording.dt
+            known: Mapping[str, AcquisitionChain] = trial.scenario.chains
+            chains = [chain if name in self.channels else known.get(name, POINT_SAMPLES).assumed(rate) for name in trial.channels]
+            response = self.responses[t].acquired(chains)[None]
+            for i, item in enumerate(self.misfit.shared):
+                response = item.response(trial, response, self.numbers[i:])
+            frequency = self.misfit.frequency(t)
+            factors = np.column_stack([item.response(frequency) for item in chains])
+            residuals.append(flatten(self.misfit.whitened_signal(t, trial.recording.values - response[0])))
+            slopes.append(flatten(self.misfit.whiten(t, self.slopes[t] * factors), first=1).T)
+        return ChainFit(chain, _projected(np.concatenate(residuals), np.vstack(slopes), self.priors))
+
+
+def _projected(residual: Array, slopes: Array, priors: Array) -> float:
+    """Return the least |residual + slopes y|^2 + |priors y|^2 over y, by the normal equations in scaled unknowns."""
+    normal, pull = slopes.T @ slopes + priors.T @ priors, slopes.T @ residual
+    scale = 1 / np.sqrt(np.maximum(np.diag(normal), 1e-300))
+    values, vectors = np.linalg.eigh(normal * scale[:, None] * scale)
+    kept = values > UNSEEN * values[-1]
+    return float(residual @ residual - ((vectors.T @ (pull * scale))[kept] ** 2 / values[kept]).sum())
+
+
+def _whitener(misfit: Misfit, number: int) -> Complex:
+    """Return the matrices that whiten a trial's lines, `shape (n_lines, n_channels, n_channels)`."""
+    n, width = len(misfit.frequency(number)), len(misfit.problem.trials[number].channels)
+    unit = np.broadcast_to(np.eye(width, dtype=np.complex128)[:, None], (width, n, width))
+    return np.asarray(misfit.whiten(number, unit).transpose(1, 2, 0))
+
+
+def group_delay(chain: AcquisitionChain) -> float:
+    """Return how late a chain's low-pass is at low frequency [s], its own delay left out."""
+    if chain.cut_off is None:
+        return 0.0
+    low = np.array([0.01 * chain.cut_off])
+    return float(-np.angle(replace(chain, delay=0.0).response(low))[0] / (2 * np.pi * low[0]))
+
+
+def _best_cut_off(search: _Search, kind: FilterKind, order: int, rate: float) -> ChainFit:
+    """Return the best cut-off of a kind of low-pass."""
+    tried: dict[float, ChainFit] = {}
+
+    def loss(log_share: float) -> float:
+        tried[log_share] = search.fit(AcquisitionChain(kind, order, float(np.exp(log_share)) * rate))
+        return tried[log_share].loss
+
+    grid = np.log(CUT_OFF_SHARES)
+    i = int(np.argmin([loss(float(item)) for item in grid]))
+    ends = float(grid[max(i - 1, 0)]), float(grid[min(i + 1, len(grid) - 1)])
+    scipy.optimize.minimize_scalar(loss, bounds=ends, method="bounded", options={"xatol": REFINED_SHARE, "maxiter": 8})
+    return min(tried.values(), key=lambda item: item.loss)
+
+
+def _alike(one: AcquisitionChain, other: AcquisitionChain, band: tuple[float, float]) -> bool:
+    """Whether two chains make the same of what lies within the band, and of what lies above it."""
+    frequency = np.linspace(*band, 50)
+    same = np.abs(np.abs(one.response(frequency)) - np.abs(other.response(frequency))).max() < SAME_GAIN
+    return bool(same) and (one.filter == "none") == (other.filter == "none")
