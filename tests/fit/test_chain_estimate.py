@@ -9,8 +9,9 @@ import scipy.signal
 
 from tests.fit.recordings import two_axle
 from vehgen.fit.chain_estimate import estimate_chain, fine_response, trusted_band
-from vehgen.fit.misfit import Misfit, Nuisances
+from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import EVEN, Noise
+from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
 
@@ -63,7 +64,7 @@ def recorded(folder, sampled, speed, road):
     problem = make_problem(load_trials([folder / "run.yaml"]), ["kf", "kr", "cf", "cr", "ktf", "ktr"])
     noise = Noise(EVEN, SIGMA)
     misfit = Misfit(problem, {"run": noise}, problem.space.start, Nuisances(0.05, 0.005), (0.5, 40.0))
-    x = np.concatenate([problem.space.unit(problem.space.start), np.zeros(2)])
+    x = np.concatenate([problem.space.unit(problem.space.start), np.zeros(misfit.n_errors)])
     return misfit, x
 
 

@@ -59,21 +59,24 @@ class FineResponse:
         How many of them lie from one sample to the next.
     count
         Number of the recording's samples.
+    skipped
+        Number of samples before the recording's first.
     """
 
     values: Array
     dt: float
     ratio: int
     count: int
+    skipped: int = 0
 
     def acquired(self, chains: Sequence[AcquisitionChain]) -> Array:
         """Return the samples that chains, one a channel, make of it, `shape (count, n_channels)`."""
-        found = np.empty((self.count, self.values.shape[1]))
+        found = np.empty((self.skipped + self.count, self.values.shape[1]))
         for chain in dict.fromkeys(chains):
             own = [i for i, item in enumerate(chains) if item == chain]
             first, taps = chain.taps(self.dt)
-            found[:, own] = decimate(self.values[None][:, :, own], first, taps, self.ratio, self.count)[0]
-        return found
+            found[:, own] = decimate(self.values[None][:, :, own], first, taps, self.ratio, len(found))[0]
+        return found[self.skipped :]
 
 
 @dataclass(frozen=True)
@@ -109,16 +112,13 @@ class ChainEstimate:
 def fine_response(misfit: Misfit, x: Array, number: int) -> FineResponse:
     """Return what the channels of trial `number` show at unknowns x before any recorder, its adjustments of sensors left out."""
     trial = misfit.problem.trials[number]
-    unit, errors = misfit.split(x)
-    scenario = misfit.nuisances.adjust(trial.scenario, errors[number])
-    for item, value in zip(misfit.shared, misfit.adjusted(x), strict=True):
-        scenario = item.scenario(scenario, float(value))
+    unit, scenario = misfit.split(x)[0], misfit.scenario(x, number)
     stride = kept_stride(scenario)
     ratio = scenario.decimation // stride
     longer = extended(scenario, int(np.ceil(LOOK_AHEAD_S / (scenario.dt * scenario.decimation))))
-    fine = replace(longer, decimation=stride, chains={})
+    fine = replace(longer, decimation=stride, chains={}, skipped=0)
     values = misfit.problem.respond(misfit.problem.space.values(unit)[None], trial, fine)[0][0]
-    return FineResponse(values, fine.dt * stride, ratio, len(trial.recording.time))
+    return FineResponse(values, fine.dt * stride, ratio, len(trial.recording.time), scenario.skipped)
 
 
 def estimate_chain(
@@ -167,7 +167,8 @@ def trusted_band(trial: Trial, fine: FineResponse, noise: Noise) -> float:
     grid = np.arange(fine_n) / fine.ratio
     window = np.interp(grid, np.arange(n), taper(n, dt))
     values = np.zeros((fine_n, fine.values.shape[1]))
-    values[: min(fine_n, len(fine.values))] = fine.values[:fine_n]
+    kept = fine.values[fine.skipped * fine.ratio :][:fine_n]
+    values[: len(kept)] = kept
     tapered = values * window[:, None]
     frequency = np.asarray(np.fft.rfftfreq(n, dt), dtype=np.float64)
     inside = (frequency > 0) & (frequency < 0.5 / dt)
@@ -187,7 +188,7 @@ class _Search:
     """What the trial of a chain needs: stored responses, derivatives without whitening, whiteners and priors."""
 
     misfit: Misfit
-    numbers: Array
+    x: Array
     channels: tuple[str, ...]
     responses: tuple[FineResponse, ...]
     slopes: tuple[Complex, ...]
@@ -205,7 +206,7 @@ class _Search:
             gain = np.where(np.abs(assumed) > SAME_GAIN, assumed, 1.0)
             slopes.append(np.asarray((inverse @ white[..., None])[..., 0] / gain))
         responses = tuple(fine_response(misfit, x, t) for t in range(len(misfit.problem.trials)))
-        return cls(misfit, misfit.adjusted(x), channels, responses, tuple(slopes), np.diag(weights))
+        return cls(misfit, x, channels, responses, tuple(slopes), np.diag(weights))
 
     @property
     def size(self) -> int:
@@ -222,10 +223,11 @@ class _Search:
             chains = [chain if name in self.channels else known.get(name, POINT_SAMPLES).assumed(rate) for name in trial.channels]
             response = self.responses[t].acquired(chains)[None]
             for i, item in enumerate(self.misfit.shared):
-                response = item.response(trial, response, self.numbers[i:])
+                response = item.response(trial, response, self.misfit.adjusted(self.x)[i:])
             frequency = self.misfit.frequency(t)
             factors = np.column_stack([item.response(frequency) for item in chains])
-            residuals.append(flatten(self.misfit.whitened_signal(t, trial.recording.values - response[0])))
+            left = self.misfit.measured(t) - self.misfit.lines(t, response[0], self.misfit.errors_of(self.x, t))
+            residuals.append(flatten(self.misfit.whiten(t, left)))
             slopes.append(flatten(self.misfit.whiten(t, self.slopes[t] * factors), first=1).T)
         return ChainFit(chain, _projected(np.concatenate(residuals), np.vstack(slopes), self.priors))
 

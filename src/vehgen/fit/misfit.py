@@ -231,6 +231,10 @@ class Misfit:
         """Return the whitened lines of a signal `shape (n_samples, n_channels)` in trial `number`."""
         return self.whiten(number, transform(signal, self.problem.trials[number].recording.dt, self._weights[number].inside))
 
+    def measured(self, number: int) -> Complex:
+        """Return the spectral lines that trial `number` recorded, `shape (n_lines, n_channels)`."""
+        return self._weights[number].measured
+
     def frequency(self, number: int) -> Array:
         """Return the frequencies of trial `number`'s lines [Hz]."""
         return self._weights[number].answer.frequency

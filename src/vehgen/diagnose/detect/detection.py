@@ -15,6 +15,7 @@ from vehgen.diagnose.fits.model_fit import ModelFit, fit_base, mean_square_as_fi
 from vehgen.errors import InputError
 from vehgen.fit.band import DIAGNOSIS_BAND_HZ, compared_band
 from vehgen.fit.problem import Problem, make_problem
+from vehgen.fit.recorders import FoundRecorder, find_recorder, has_unknown
 from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
@@ -29,7 +30,7 @@ class Detection:
     """What the first stage finds: the noise floor and how far the base model is above it.
 
     `base` is recalibrated; `as_filed` and `as_filed_validation` are the mean squares of the file's parameters, on the training runs and on
-    the validation runs (not a number where there are none).
+    the validation runs (not a number where there are none); `recorder` stands for recorders that no run file declares.
     """
 
     problem: Problem
@@ -39,6 +40,7 @@ class Detection:
     as_filed: float
     as_filed_validation: float
     band: tuple[float, float] = DIAGNOSIS_BAND_HZ
+    recorder: FoundRecorder | None = None
 
     @property
     def chi(self) -> float:
@@ -87,11 +89,17 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
     floor = find_noise_floor(trials, band)
     problem = narrow(make_problem(training))
     base = fit_base(problem, validation_runs, floor.noises, band)
+    recorder = None
+    if has_unknown(trials):
+        recorder = find_recorder(base.least_squares.misfit, base.least_squares.x)
+        training, validation_runs, band = recorder.applied(training), recorder.applied(validation_runs), recorder.band
+        problem = problem.with_trials(training)
+        base = fit_base(problem, validation_runs, floor.noises, band, base)
     for _ in range(PROFILE_ROUNDS if any(measured_profiles(trial) for trial in trials) else 0):
         floor = replace(floor, noises=profile_noises(base, floor.noises))
         base = fit_base(problem, validation_runs, floor.noises, band, base)
     filed = [mean_square_as_filed(part, floor.noises, band) for part in (training, validation_runs)]
-    return Detection(problem, tuple(validation_runs), floor, base, filed[0], filed[1], band)
+    return Detection(problem, tuple(validation_runs), floor, base, filed[0], filed[1], band, recorder)
 
 
 def band_gaps(detection: Detection, fit: ModelFit | None = None) -> list[BandGap]:

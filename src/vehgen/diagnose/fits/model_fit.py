@@ -133,8 +133,16 @@ def fit_base(
     else:
         old = begin.least_squares
         unit, errors = old.misfit.split(old.x)
-        fit = fit_least_squares(old.misfit.problem, unit, options, noises=noises, start=errors, nearby=old.linearisation)
+        steps = {trial.name: trial for trial in old.misfit.problem.trials}
+        resolved = problem.with_trials([_as_fine(trial, steps[trial.name]) for trial in problem.trials])
+        fit = fit_least_squares(resolved, unit, options, noises=noises, start=errors, nearby=old.linearisation)
     return evaluate_fit((), fit, validation_runs, noises)
+
+
+def _as_fine(trial: Trial, other: Trial) -> Trial:
+    """Return a trial with the step of another one."""
+    steps = replace(trial.scenario, dt=other.scenario.dt, decimation=other.scenario.decimation)
+    return replace(trial, scenario=steps, jumps=other.jumps)
 
 
 def mean_square_as_filed(trials: Sequence[Trial], noises: Noises, band: tuple[float, float]) -> float:
