@@ -75,6 +75,24 @@ class NoiseSummary:
     road_level_m3: Array1D
 
 
+@dataclass(frozen=True)
+class ConditionSummary:
+    """What a fit supposes of a run, e.g. that its `speed` was 1.5 % higher than stated.
+
+    `place` is the run as a whole or a sensor; `value` [unit; relative where there is none] lies `sigmas` of its `prior`, the standard
+    deviation of what was known, off what the run file states.
+    """
+
+    run: str
+    step: str
+    name: str
+    place: str
+    value: float
+    unit: str
+    prior: float
+    sigmas: float
+
+
 @dataclass(frozen=True, eq=False)
 class CalibrationSummary(Result):
     """Everything a calibration tells.
@@ -99,6 +117,9 @@ class CalibrationSummary(Result):
         Versions, settings, and hashes of the inputs.
     calibration
         The calibration itself, None in a summary that was read from a file.
+    conditions, run_chi2
+        What the fit supposes of each run's clock, speed and hump height, at which `objective`, `psds`, `histories` and `tyre_load_minimum`
+        are simulated; and each run's chi2.
     """
 
     KIND: ClassVar[str] = "calibration"
@@ -130,6 +151,8 @@ class CalibrationSummary(Result):
     histories: Annotated[tuple[ChannelCurves, ...], Field(max_length=MAX_CURVES)]
     provenance: dict[str, Any]
     calibration: Annotated[Calibration | None, IN_MEMORY] = field(default=None, repr=False)
+    conditions: tuple[ConditionSummary, ...] = ()
+    run_chi2: dict[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if len(self.steps) != len(self.history):
