@@ -14,7 +14,7 @@ import numpy as np
 import scipy.stats
 from numpy.typing import NDArray
 
-from vehgen.calibrate.identifiability import Structure
+from vehgen.calibrate.identifiability import Structure, remaining_directions
 from vehgen.errors import InputError, shown
 from vehgen.files.expressions import ExpressionError, parse
 from vehgen.fit.least_squares import FitOptions, LeastSquaresFit, fit_least_squares
@@ -204,12 +204,8 @@ def _reported(structure: Structure, facts: PriorData | None, values: Array) -> A
     """Return an orthonormal basis of what recordings and facts together determine."""
     if facts is None or not len(structure.null):
         return structure.row_space
-    known = facts.jacobian(values) * structure.space.slopes(values)
-    free = structure.null.T / np.linalg.norm(structure.null, axis=1)
-    _, singular, rows = np.linalg.svd(known @ free)
-    rank = int((singular > 1e-8 * max(float(np.abs(known).max(initial=0.0)), 1e-300)).sum())
-    null = (free @ rows[rank:].T).T
-    return Structure(structure.space, null, structure.fixed_parameters, structure.singular_values).row_space
+    null = remaining_directions(structure.null, facts.jacobian(values) * structure.space.slopes(values))
+    return replace(structure, null=null).row_space
 
 
 def refit(fit: LeastSquaresFit, seed: int, facts: PriorData | None = None) -> Array:
