@@ -26,6 +26,8 @@ FREQUENCIES = np.geomspace(0.4, 40.0, 40)
 """Where responses are compared [Hz]; the null space does not depend on the choice."""
 NULL_SHARE = 1e-9
 """Singular values below this share of the largest are zero: exact derivatives leave about 1e-14."""
+WEIGHABLE = 3.0
+"""By how much a body's mass is preferred to other parameters that could be held fixed as well."""
 SEEN_BY_FACTS = 1e-8
 """Facts whose derivative along a direction is below this share of the largest do not see it."""
 IN_NULL_SPACE = 1e-5
@@ -86,10 +88,16 @@ def find_structure(problem: Problem, values: Array) -> Structure:
     null, singular = null_space(np.concatenate(found, axis=0))
     if not len(null):
         return Structure(problem.space, null, (), singular)
-    fixed = scipy.linalg.qr(null, pivoting=True, mode="r")[1][: len(null)]
+    fixed = scipy.linalg.qr(null * _weighable(problem), pivoting=True, mode="r")[1][: len(null)]
     reduced = np.asarray(np.linalg.solve(null[:, fixed], null), dtype=np.float64)
     reduced[np.abs(reduced) < 1e-8 * np.abs(reduced).max()] = 0.0
     return Structure(problem.space, reduced, tuple(int(i) for i in fixed), singular)
+
+
+def _weighable(problem: Problem) -> Array:
+    """Return weights `shape (n_parameters,)` that let the masses of bodies be held fixed rather than others: a scale tells them."""
+    masses = {name for body in problem.trials[0].run.vehicle.bodies.values() for name in body.mass.names}
+    return np.array([WEIGHABLE if name in masses else 1.0 for name in problem.space.names])
 
 
 def distinct_trials(problem: Problem) -> list[Trial]:

@@ -40,10 +40,11 @@ class ParameterSummary:
 
 @dataclass(frozen=True)
 class CombinationSummary:
-    """A quantity with its interval, None where the data cannot tell it."""
+    """A quantity [unit, SI] with its interval, None where the data cannot tell it."""
 
     value: float
     interval: Interval | None
+    unit: str = ""
 
 
 @dataclass(frozen=True)
@@ -120,6 +121,8 @@ class CalibrationSummary(Result):
     conditions, run_chi2
         What the fit supposes of each run's clock, speed and hump height, at which `objective`, `psds`, `histories` and `tyre_load_minimum`
         are simulated; and each run's chi2.
+    interval_inflation
+        By which factor all intervals are wider than the noise alone would have them: the root of chi2 where it exceeds 1.
     """
 
     KIND: ClassVar[str] = "calibration"
@@ -153,6 +156,7 @@ class CalibrationSummary(Result):
     calibration: Annotated[Calibration | None, IN_MEMORY] = field(default=None, repr=False)
     conditions: tuple[ConditionSummary, ...] = ()
     run_chi2: dict[str, float] = field(default_factory=dict)
+    interval_inflation: float = 1.0
 
     def __post_init__(self) -> None:
         if len(self.steps) != len(self.history):

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from vehgen.calibrate.bootstrap import bootstrap_intervals
 from vehgen.calibrate.calibration import Calibration, StepResult
+from vehgen.calibrate.combinations import combination_unit, identifiable_ratios
 from vehgen.calibrate.fitted_runs import (
     fitted_responses,
     least_tyre_loads,
@@ -34,6 +35,7 @@ from vehgen.calibrate.result import (
 from vehgen.files.provenance import file_hashes, versions
 from vehgen.fit.parallel import Runner
 from vehgen.fit.prior_data import PriorData
+from vehgen.vehicle import Vehicle
 from vehgen.vehicle.writing import quantity
 
 Array = NDArray[np.float64]
@@ -66,7 +68,8 @@ def summarise(
     for result in calibration.steps:
         uncertainty = _uncertainty(result, prior_data)
         found |= _parameters(result, uncertainty)
-    ratios = () if uncertainty is None else (*uncertainty.ratios(), *(uncertainty.combination(text) for text in combinations))
+    asked = () if uncertainty is None else tuple(uncertainty.combination(text) for text in combinations)
+    ratios = () if uncertainty is None else (*asked, *identifiable_ratios(uncertainty))
     boot: list[Estimate] = []
     if uncertainty is not None and replicates:
         facts, seed = _facts_of(last, prior_data), calibration.settings.seed
@@ -83,7 +86,7 @@ def summarise(
         searched=structure.space.size,
         pivots=tuple(structure.space.names[i] for i in structure.fixed_parameters),
         null_directions=tuple(structure.directions(calibration.array)),
-        combinations=_combinations(ratios),
+        combinations=_combinations(ratios, problem.trials[0].run.vehicle),
         modes=() if uncertainty is None else _modes(uncertainty),
         bootstrap=_combinations(boot),
         objective=objective_terms(calibration, responses),
@@ -102,6 +105,7 @@ def summarise(
         calibration=calibration,
         conditions=run_conditions(calibration),
         run_chi2=run_chi2(calibration),
+        interval_inflation=1.0 if uncertainty is None else uncertainty.inflation,
     )
 
 
@@ -186,8 +190,10 @@ def _modes(uncertainty: Uncertainty) -> tuple[ModeSummary, ...]:
     return tuple(ModeSummary(hz.name, hz.value, _interval(hz), zeta.value, _interval(zeta)) for hz, zeta in pairs)
 
 
-def _combinations(estimates: Sequence[Estimate]) -> dict[str, CombinationSummary]:
-    return {item.name: CombinationSummary(item.value, _interval(item)) for item in estimates}
+def _combinations(estimates: Sequence[Estimate], vehicle: Vehicle | None = None) -> dict[str, CombinationSummary]:
+    """Return estimates by name, those that are named by an expression of the vehicle's parameters with its unit."""
+    units = {item.name: "" if vehicle is None else combination_unit(vehicle, item.name) for item in estimates}
+    return {item.name: CombinationSummary(item.value, _interval(item), units[item.name]) for item in estimates}
 
 
 def _interval(estimate: Estimate | None) -> Interval | None:
