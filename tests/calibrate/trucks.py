@@ -18,13 +18,14 @@ SENSORS = {
 }
 
 
-def truck_problem(folder: Path, sensors: str = "both") -> Problem:
-    """Return the problem of a run of tractor5 whose recording is noise alone."""
+def truck_problem(folder: Path, sensors: str = "both", vehicle: str = "tractor5.yaml") -> Problem:
+    """Return the problem of a run of a truck whose recording is noise alone."""
     t = np.arange(1400) * 0.01
     values = np.random.default_rng(0).standard_normal((1400, 4))
     np.savetxt(folder / "run.csv", np.column_stack([t, values]), delimiter=",", header="t,az,q,bz,r", comments="")
     (folder / "run.yaml").write_text(
-        "vehicle: tractor5.yaml\nspeed: 2 m/s\nroad: [{hump: {shape: half_sine, length: 0.5 m, height: 0.03 m, at: 4 m}}]\n"
+        f"vehicle: {vehicle}\nspeed: 2 m/s\n"
+        "road: [{hump: {shape: half_sine, length: 0.5 m, height: 0.03 m, at: 4 m}}]\n"
         f"sensors:\n{SENSORS[sensors]}\nrecording: run.csv\n",
         encoding="utf-8",
     )

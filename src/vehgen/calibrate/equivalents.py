@@ -33,7 +33,7 @@ SURFACE_WEIGHT = 1e4
 """How much more a step keeps to the surface than to the shortest way."""
 FACT_WEIGHT = 1e-3
 """A fact's deviation of one standard deviation counts as this relative difference of a response."""
-MARGIN = 1e-12
+SLACK_AT_BOUND = 1e-12
 """Width left to coordinates on their bounds: the solver takes no bounds that coincide."""
 
 
@@ -119,7 +119,7 @@ class _Surface:
         along = -np.linalg.solve(triangle, basis.T @ self._off(values))
         matrix = np.vstack([SURFACE_WEIGHT * across.T, np.eye(len(unit))])
         wanted = np.concatenate([SURFACE_WEIGHT * along, target - unit])
-        low, high = np.maximum(-unit, -length) - MARGIN, np.minimum(1.0 - unit, length) + MARGIN
+        low, high = np.maximum(-unit, -length) - SLACK_AT_BOUND, np.minimum(1.0 - unit, length) + SLACK_AT_BOUND
         moved = scipy.optimize.lsq_linear(matrix, wanted, (low, high), method="bvls").x
         return np.asarray(np.clip(unit + moved, 0.0, 1.0))
 

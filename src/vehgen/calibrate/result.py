@@ -94,6 +94,25 @@ class ConditionSummary:
     sigmas: float
 
 
+@dataclass(frozen=True)
+class FactAdvice:
+    """What measuring a fact would do for the intervals of the parameters.
+
+    `entry` is its place in a file of facts; `expected` what the fit makes of it and `uncertainty` how well it would be known [unit].
+    `width_left` is the mean share of the intervals' widths that would be left, `width_left_beside_best` that beside the best of all
+    facts; `narrows` names the parameters whose intervals would be less than half as wide, most helped first.
+    """
+
+    fact: str
+    entry: str
+    expected: float
+    uncertainty: float
+    unit: str
+    width_left: float
+    width_left_beside_best: float
+    narrows: tuple[str, ...]
+
+
 @dataclass(frozen=True, eq=False)
 class CalibrationSummary(Result):
     """Everything a calibration tells.
@@ -123,6 +142,8 @@ class CalibrationSummary(Result):
         are simulated; and each run's chi2.
     interval_inflation
         By which factor all intervals are wider than the noise alone would have them: the root of chi2 where it exceeds 1.
+    prior_data_advice
+        Facts that could be measured, best first: what each would do for the intervals.
     """
 
     KIND: ClassVar[str] = "calibration"
@@ -157,6 +178,7 @@ class CalibrationSummary(Result):
     conditions: tuple[ConditionSummary, ...] = ()
     run_chi2: dict[str, float] = field(default_factory=dict)
     interval_inflation: float = 1.0
+    prior_data_advice: tuple[FactAdvice, ...] = ()
 
     def __post_init__(self) -> None:
         if len(self.steps) != len(self.history):

@@ -23,6 +23,7 @@ from vehgen.calibrate.fitted_runs import (
 )
 from vehgen.calibrate.identifiability import find_structure
 from vehgen.calibrate.intervals import LEVEL, Estimate, Uncertainty
+from vehgen.calibrate.prior_data_advice import advise_prior_data
 from vehgen.calibrate.result import (
     CalibrationSummary,
     CombinationSummary,
@@ -106,6 +107,7 @@ def summarise(
         conditions=run_conditions(calibration),
         run_chi2=run_chi2(calibration),
         interval_inflation=1.0 if uncertainty is None else uncertainty.inflation,
+        prior_data_advice=() if uncertainty is None else advise_prior_data(uncertainty, _facts_of(last, prior_data)),
     )
 
 
