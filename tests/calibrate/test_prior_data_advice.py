@@ -65,6 +65,8 @@ def test_a_wheelbase_is_taken_with_a_tape(tmp_path):
 
 
 def test_a_vehicle_that_is_told_in_full_gains_little(tmp_path):
-    found = advise_prior_data(uncertainty(make_problem(load_trials([write_run(tmp_path, "hump", sedan_truth())]))))
+    problem = make_problem(load_trials([write_run(tmp_path, "hump", sedan_truth())]))
+    values = np.array([sedan_truth()[name] for name in problem.space.names])
+    found = advise_prior_data(Uncertainty(fit_at(problem, values), find_structure(problem, values)))
     assert {item.fact for item in found} == {"kerb mass", "load of front", "load of rear", "Lf"}
     assert all(item.width_left > 0.5 for item in found)

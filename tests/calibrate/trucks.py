@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from vehgen.fit.least_squares import LeastSquaresFit, first_noises
+from vehgen.fit.least_squares import FIRST_NOISE, LeastSquaresFit, first_noises
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.problem import Problem, make_problem
 from vehgen.fit.trial import load_trials
@@ -18,25 +19,29 @@ SENSORS = {
 }
 
 
-def truck_problem(folder: Path, sensors: str = "both", vehicle: str = "tractor5.yaml") -> Problem:
-    """Return the problem of a run of a truck whose recording is noise alone."""
+def truck_problem(folder: Path, sensors: str = "both", vehicle: str = "tractor5.yaml", noise: float = FIRST_NOISE) -> Problem:
+    """Return the problem of a run of a truck as its file has it, recorded with noise: a share of each channel's rms."""
     t = np.arange(1400) * 0.01
-    values = np.random.default_rng(0).standard_normal((1400, 4))
-    np.savetxt(folder / "run.csv", np.column_stack([t, values]), delimiter=",", header="t,az,q,bz,r", comments="")
+    random = np.random.default_rng(0).standard_normal((1400, 4))
+    np.savetxt(folder / "run.csv", np.column_stack([t, random]), delimiter=",", header="t,az,q,bz,r", comments="")
     (folder / "run.yaml").write_text(
         f"vehicle: {vehicle}\nspeed: 2 m/s\n"
         "road: [{hump: {shape: half_sine, length: 0.5 m, height: 0.03 m, at: 4 m}}]\n"
         f"sensors:\n{SENSORS[sensors]}\nrecording: run.csv\n",
         encoding="utf-8",
     )
-    return make_problem(load_trials([folder / "run.yaml"]))
+    problem = make_problem(load_trials([folder / "run.yaml"]))
+    trial = problem.trials[0]
+    values = problem.respond(problem.space.start[None], trial)[0][0]
+    values += noise * np.sqrt(np.mean(values**2, axis=0)) * random[:, : values.shape[1]]
+    return problem.with_trials([replace(trial, recording=replace(trial.recording, values=values))])
 
 
-def fit_at(problem: Problem, values: np.ndarray, chi2: float = 1.0) -> LeastSquaresFit:
+def fit_at(problem: Problem, values: np.ndarray) -> LeastSquaresFit:
     """Return what a fit would be that had ended at searched values, its runs as they are stated."""
     misfit = Misfit(problem, first_noises(problem), values)
     x = np.concatenate([problem.space.unit(values), np.zeros(misfit.n_unknowns - problem.space.size)])
-    return LeastSquaresFit(misfit, x, chi2, 0.0)
+    return LeastSquaresFit(misfit, x, float(np.mean(misfit.residuals(x) ** 2)), 0.0)
 
 
 def along_the_first_direction(p: dict[str, float], mS: float) -> dict[str, float]:

@@ -39,15 +39,6 @@ def run_conditions(calibration: Calibration) -> tuple[ConditionSummary, ...]:
     return tuple(found)
 
 
-def run_chi2(calibration: Calibration) -> dict[str, float]:
-    """Return the mean square of each run's whitened residuals in the last step (1 is noise alone); none without a polish."""
-    last = calibration.steps[-1]
-    if not last.fits:
-        return {}
-    white = last.fits[0].misfit.whitened_spectrum(last.fits[0].x)
-    return {trial.name: float(np.mean(np.abs(lines) ** 2)) for trial, lines in zip(last.problem.trials, white, strict=True)}
-
-
 def fitted_responses(calibration: Calibration) -> list[Array]:
     """Return what the result's sensors read in every run as it was fitted, `shape (n_samples, n_channels)` each.
 

@@ -2,8 +2,10 @@
 
 The information of a fit is J'J of its whitened residuals. Nuisances are marginalised. Along unidentifiable directions there is none, and
 what depends on them gets no interval; for all else the covariance is V (V' F V)^-1 V', V a basis of the identifiable combinations.
-Where the residuals are larger than the noise model says (chi2 above 1), the recordings' information is divided by chi2: intervals grow by
-its root. Intervals of positive quantities are symmetric on a logarithmic scale.
+Where the residuals of a run are larger than the noise model says (its chi2 above 1), the recordings' information is divided by chi2:
+intervals grow by its root. The noise is estimated from all runs together, so that chi2 of all is near 1 wherever a fit ends.
+
+Intervals of positive quantities are symmetric on a logarithmic scale.
 """
 
 from __future__ import annotations
@@ -47,6 +49,12 @@ class Estimate:
 
 Quantity = Callable[[Array], float]
 """Maps searched values `shape (n_parameters,)` [SI] to a number."""
+
+
+def run_chi2(fit: LeastSquaresFit) -> dict[str, float]:
+    """Return the mean square of each run's whitened residuals; 1 is noise alone."""
+    white = fit.misfit.whitened_spectrum(fit.x)
+    return {trial.name: float(np.mean(np.abs(lines) ** 2)) for trial, lines in zip(fit.misfit.problem.trials, white, strict=True)}
 
 
 def read_combination(vehicle: Vehicle, text: str) -> tuple[Expression, Dimension]:
@@ -93,7 +101,7 @@ class Uncertainty:
         n = fit.misfit.n_parameters
         cross, own = information[:n, n:], information[n:, n:]
         told = information[:n, :n] - cross @ np.linalg.solve(own, cross.T) if own.size else information[:n, :n]
-        self.inflation = max(1.0, fit.chi2) ** 0.5
+        self.inflation = max(1.0, *run_chi2(fit).values()) ** 0.5
         self.information = told / self.inflation**2
         if facts is not None:
             known = facts.jacobian(self.values) * space.slopes(self.values)

@@ -141,7 +141,8 @@ class CalibrationSummary(Result):
         What the fit supposes of each run's clock, speed and hump height, at which `objective`, `psds`, `histories` and `tyre_load_minimum`
         are simulated; and each run's chi2.
     interval_inflation
-        By which factor all intervals are wider than the noise alone would have them: the root of chi2 where it exceeds 1.
+        By which factor all intervals are wider than the noise alone would have them: the root of the largest chi2 of a run, where
+        it exceeds 1.
     prior_data_advice
         Facts that could be measured, best first: what each would do for the intervals.
     """

@@ -18,15 +18,15 @@ from vehgen.calibrate.fitted_runs import (
     least_tyre_loads,
     measured_and_simulated,
     objective_terms,
-    run_chi2,
     run_conditions,
 )
 from vehgen.calibrate.identifiability import find_structure
-from vehgen.calibrate.intervals import LEVEL, Estimate, Uncertainty
+from vehgen.calibrate.intervals import LEVEL, Estimate, Uncertainty, run_chi2
 from vehgen.calibrate.prior_data_advice import advise_prior_data
 from vehgen.calibrate.result import (
     CalibrationSummary,
     CombinationSummary,
+    ConditionSummary,
     FitSummary,
     Interval,
     ModeSummary,
@@ -75,7 +75,7 @@ def summarise(
     if uncertainty is not None and replicates:
         facts, seed = _facts_of(last, prior_data), calibration.settings.seed
         boot = bootstrap_intervals(last, uncertainty, facts, ratios, replicates, seed, runner or Runner())
-    responses = fitted_responses(calibration)
+    conditions, responses = run_conditions(calibration), fitted_responses(calibration)
     psds, histories = measured_and_simulated(calibration, responses)
     return CalibrationSummary(
         vehicle=problem.trials[0].run.vehicle.name,
@@ -94,7 +94,7 @@ def summarise(
         chi2=last.fits[0].chi2 if last.fits else None,
         fits=tuple(FitSummary(fit.loss, fit.chi2, tuple(fit.on_bound)) for fit in last.fits),
         spread=_spread(last),
-        nuisances=_nuisances(last),
+        nuisances=_nuisances(conditions, last.step.label),
         noise=_noise(last),
         tyre_load_minimum=least_tyre_loads(calibration),
         history=tuple(tuple(step.state.history) for step in calibration.steps),
@@ -104,8 +104,8 @@ def summarise(
         histories=histories,
         provenance=provenance(calibration),
         calibration=calibration,
-        conditions=run_conditions(calibration),
-        run_chi2=run_chi2(calibration),
+        conditions=conditions,
+        run_chi2=run_chi2(last.fits[0]) if last.fits else {},
         interval_inflation=1.0 if uncertainty is None else uncertainty.inflation,
         prior_data_advice=() if uncertainty is None else advise_prior_data(uncertainty, _facts_of(last, prior_data)),
     )
@@ -159,16 +159,10 @@ def _spread(result: StepResult) -> dict[str, tuple[float, float]]:
     return {name: (float(rows[:, i].min()), float(rows[:, i].max())) for i, name in enumerate(result.problem.space.names)}
 
 
-def _nuisances(result: StepResult) -> dict[str, dict[str, float]]:
-    if not result.fits:
-        return {}
-    fit = result.fits[0]
-    names = fit.misfit.nuisances.names
-    rows = fit.misfit.split(fit.x)[1]
-    return {
-        trial.name: {name: float(value) * getattr(fit.misfit.nuisances, name) for name, value in zip(names, row, strict=True)}
-        for trial, row in zip(result.problem.trials, rows, strict=True)
-    }
+def _nuisances(conditions: Sequence[ConditionSummary], step: str) -> dict[str, dict[str, float]]:
+    """Return what a step supposes of each run as a whole, by name."""
+    own = [item for item in conditions if item.step == step and item.place == "run"]
+    return {run: {item.name: item.value for item in own if item.run == run} for run in dict.fromkeys(item.run for item in own)}
 
 
 def _noise(result: StepResult) -> tuple[NoiseSummary, ...]:
