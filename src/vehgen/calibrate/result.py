@@ -208,9 +208,15 @@ class CalibrationSummary(Result):
             f"calibrated by vehgen {self.provenance['vehgen']}: {self.method} from {runs}, seed {self.provenance['seed']}",
             f"comments give {self.confidence:.0%} intervals; 'unidentifiable' marks what such recordings cannot determine one by one",
         ]
-        notes = {}
-        for key, item in self.parameters.items():
-            known = "" if item.interval is None else f" {item.interval[0]:.4g} to {item.interval[1]:.4g}"
-            notes[key] = f"{item.status}{known}"
+        notes = {key: self._note(key, item) for key, item in self.parameters.items()}
         title = f"{vehicle.title or vehicle.name}, calibrated"
         return variant_text(vehicle, folder, name, title, calibration.values, comments, notes)
+
+    def _note(self, name: str, item: ParameterSummary) -> str:
+        """Return what a parameter's comment in a vehicle file says."""
+        if item.interval is not None:
+            return f"{item.status} {item.interval[0]:.4g} to {item.interval[1]:.4g}"
+        if item.interval_given_pivots is None or name in self.pivots:
+            return item.status
+        low, high = item.interval_given_pivots
+        return f"{item.status}; {low:.4g} to {high:.4g} if {' and '.join(self.pivots)} were known"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from vehgen.commands.terminal import print_table, warn
+from vehgen.commands.terminal import print_table, say, warn
 
 if TYPE_CHECKING:
     from vehgen.calibrate.result import CalibrationSummary, ConditionSummary, FactAdvice
@@ -47,6 +47,8 @@ def show_calibration(outcome: CalibrationSummary) -> None:
         [(name, f"{value:.4f}") for name, value in outcome.objective.items()],
         right=(1,),
     )
+    for text in _advice(outcome.prior_data_advice):
+        say(text, "advice: ")
     warn(_warnings(outcome))
 
 
@@ -59,7 +61,7 @@ def _show_parameters(outcome: CalibrationSummary, level: str) -> None:
     for name, item in outcome.parameters.items():
         row = [name, f"{item.value:.5g}", item.unit, _to(item.interval, ".4g"), item.status]
         if given:
-            row.insert(4, "" if name in outcome.pivots else _to(item.interval_given_pivots, ".4g"))
+            row.insert(4, "held" if name in outcome.pivots else _to(item.interval_given_pivots, ".4g"))
         rows.append(row)
     print_table(f"{outcome.vehicle}: parameters, {outcome.method}", columns, rows, right=(1,))
 
@@ -96,13 +98,12 @@ def _listed(names: list[str]) -> str:
 def _warnings(outcome: CalibrationSummary) -> list[str]:
     found = []
     rank, searched = outcome.rank, outcome.searched
-    if rank < searched:
+    if any(item.status == "unidentifiable" for item in outcome.parameters.values()):
         moved = "; ".join(_listed(list(direction)) for direction in outcome.null_directions)
         found.append(
             f"recordings of these sensors can determine {rank} combinations of the {searched} parameters, whatever the run (what can "
             f"change together: {moved}); of the sets that fit alike this is the one nearest to the vehicle file's values"
         )
-    found += _advice(outcome.prior_data_advice)
     bound = [name for name, item in outcome.parameters.items() if item.status == "bound"]
     if bound:
         found.append(f"set by the search range, not by the data: {', '.join(bound)}")
@@ -131,12 +132,12 @@ def _advice(advice: tuple[FactAdvice, ...]) -> list[str]:
         return []
     best = advice[0]
     found = [
-        f"what would help most is the {_named(best)}: intervals would keep {best.width_left:.0%} of their width on average "
+        f"what would help most is the {_named(best)}: intervals would keep {100 * best.width_left:.0f} % of their width on average "
         f"(narrower by half: {_listed(list(best.narrows))}); write `{_entry(best)}` into a file and give it with --facts"
     ]
     second = min(advice, key=lambda item: item.width_left_beside_best)
     if second is not best and second.width_left_beside_best < WORTH_ASKING * best.width_left:
-        found.append(f"then the {_named(second)}, which would leave {second.width_left_beside_best:.0%}: `{_entry(second)}`")
+        found.append(f"then the {_named(second)}, which would leave {100 * second.width_left_beside_best:.0f} %: `{_entry(second)}`")
     return found
 
 
