@@ -3,33 +3,17 @@
 import numpy as np
 import pytest
 
+from tests.calibrate.trucks import along_the_first_direction, fit_at, truck_problem
 from tests.fit.recordings import sedan_truth, write_run
 from vehgen.calibrate.identifiability import find_structure
 from vehgen.calibrate.intervals import Uncertainty
-from vehgen.fit.least_squares import LeastSquaresFit, first_noises
-from vehgen.fit.misfit import Misfit
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
-
-SENSORS = {
-    "both": """  L1: {body: tractor, behind: axle1, distance: -0.29 m, channels: {acceleration: az, pitch_rate: q}}
-  L2: {body: semitrailer, behind: fifth_wheel, distance: 9.115 m, channels: {acceleration: bz, pitch_rate: r}}""",
-    "one": "  L1: {body: tractor, behind: axle1, distance: -0.29 m, channels: {acceleration: az, pitch_rate: q}}",
-}
 
 
 @pytest.fixture(scope="module")
 def truck(tmp_path_factory, request):
-    tmp_path = tmp_path_factory.mktemp("truck")
-    t = np.arange(1400) * 0.01
-    values = np.random.default_rng(0).standard_normal((1400, 4))
-    np.savetxt(tmp_path / "run.csv", np.column_stack([t, values]), delimiter=",", header="t,az,q,bz,r", comments="")
-    (tmp_path / "run.yaml").write_text(
-        "vehicle: tractor5.yaml\nspeed: 2 m/s\nroad: [{hump: {shape: half_sine, length: 0.5 m, height: 0.03 m, at: 4 m}}]\n"
-        f"sensors:\n{SENSORS[request.param]}\nrecording: run.csv\n",
-        encoding="utf-8",
-    )
-    return make_problem(load_trials([tmp_path / "run.yaml"]))
+    return truck_problem(tmp_path_factory.mktemp("truck"), request.param)
 
 
 @pytest.mark.parametrize("truck", ["both", "one"], indirect=True)
@@ -45,30 +29,10 @@ def test_a_tractor_semitrailer_has_two_unidentifiable_directions_whatever_the_se
 def test_frequencies_of_modes_that_almost_coincide_have_intervals_too(truck, kt3):
     values = truck.space.start.copy()
     values[truck.space.names.index("kt3")] = kt3 * 8000
-    noises = first_noises(truck)
-    misfit = Misfit(truck, noises, values)
-    fit = LeastSquaresFit(misfit, np.concatenate([truck.space.unit(values), np.zeros(2)]), 1.0, 0.0)
-    known = Uncertainty(fit, find_structure(truck, values))
+    known = Uncertainty(fit_at(truck, values), find_structure(truck, values))
     hertz = np.array([hz.value for hz, _ in known.frequencies()])
     assert np.diff(hertz).min() < 0.02
     assert all(hz.low is not None for hz, _ in known.frequencies())
-
-
-def along_the_first_direction(p: dict[str, float], mS: float) -> dict[str, float]:
-    """Return another set that answers alike: a point mass at the hinge may belong to either body (all over mT)."""
-    mT, old, new = 8000.0, p["mS"] / 8000.0, mS / 8000.0
-    lam = (1 + new) / (1 + old)
-    q = {name: value * lam for name, value in p.items() if name[0] in "mkc" and name not in ("mS", "mT")}
-    b7 = (3.75 - p["b1"]) * lam
-    q |= {"mS": mS, "b1": 3.75 - b7, "b6": p["b6"] * lam * old / new}
-    mu, mu_new = old / (1 + old), new / (1 + new)
-    q["a1"] = p["a1"]
-    q["a2"] = lam * mu * p["a1"] * p["a2"] / (mu_new * q["a1"])
-    JT = p["IT"] / mT + (3.75 - p["b1"]) ** 2 + mu * p["a1"] ** 2
-    JS = p["IS"] / mT + p["b6"] ** 2 * old + mu * p["a2"] ** 2
-    q["IT"] = mT * (lam * JT - b7**2 - mu_new * q["a1"] ** 2)
-    q["IS"] = mT * (lam * JS - q["b6"] ** 2 * new - mu_new * q["a2"] ** 2)
-    return q
 
 
 @pytest.mark.parametrize("truck", ["both"], indirect=True)

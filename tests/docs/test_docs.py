@@ -3,9 +3,12 @@
 import importlib.util
 import re
 
+import numpy as np
 import pytest
 
+from tests.calibrate.trucks import truck_problem
 from tests.docs.pages import PAGES, ROOT
+from vehgen.fit.prior_data import load_prior_data
 from vehgen.mechanics import derive
 from vehgen.simulate import load_run, simulate
 from vehgen.vehicle import bundled_models, load_vehicle
@@ -55,3 +58,15 @@ def test_the_tutorials_files_are_those_on_the_page():
     for name in ("my_truck.yaml", "two_humps.yaml"):
         assert (ROOT / "docs" / "examples" / name).read_text(encoding="utf-8") in text
     assert load_vehicle(ROOT / "docs" / "examples" / "my_truck.yaml").title == "My first truck"
+
+
+def test_the_calibration_walks_facts_agree_with_its_truck_and_stand_on_the_page(tmp_path):
+    specification = importlib.util.spec_from_file_location("calibrate_walk", ROOT / "docs" / "generate" / "calibrate_walk.py")
+    walk = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(walk)
+    problem = truck_problem(tmp_path)
+    true = walk.truth()
+    facts = load_prior_data(walk.PHONES / "facts.yaml", problem)
+    assert abs(facts.residuals(np.array([true[name] for name in problem.space.names]))).max() < 2.0
+    _, *lines = (walk.PHONES / "facts.yaml").read_text(encoding="utf-8").splitlines()
+    assert "\n".join(lines) in walk.PAGE.read_text(encoding="utf-8")

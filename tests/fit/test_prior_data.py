@@ -31,6 +31,8 @@ def test_facts_enter_the_fit(problem, tmp_path):
         ("parameters: {mf: {value: 95 kg, uncertainty: 0 kg}}", "above 0"),
         ("axle_weights: {middle: {value: 9 kN, uncertainty: 1 kN}}", "has no axle 'middle'"),
         ("uncoupled: {boddy: {front: {value: 9 kN, uncertainty: 1 kN}}}", "has no body 'boddy'"),
+        ("kerb_mass: {value: 9 kN, uncertainty: 1 kg}", "expected kg"),
+        ("kerb_mass: {value: 2 t, uncertainty: 0 kg}", "above 0"),
         ("{}", "no fact"),
     ],
 )
@@ -48,3 +50,11 @@ def test_axle_weights_are_those_of_a_lever(problem, tmp_path):
     start = dict(zip(problem.space.names, problem.space.start, strict=True))
     load = 9.81 * (1500.0 * (2.8 - start["Lf"]) / 2.8 + start["mf"])
     assert residual == pytest.approx(load / 1000 - 1, rel=1e-9)
+
+
+def test_the_kerb_mass_is_that_of_bodies_and_axles(problem, tmp_path):
+    path = tmp_path / "facts.yaml"
+    path.write_text("kerb_mass: {value: 1.5 t, uncertainty: 10 kg}", encoding="utf-8")
+    residual = load_prior_data(path, problem).residuals(problem.space.start)[0]
+    start = dict(zip(problem.space.names, problem.space.start, strict=True))
+    assert residual == pytest.approx((start["mf"] + start["mr"]) / 10, rel=1e-9)

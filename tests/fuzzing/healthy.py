@@ -79,6 +79,7 @@ ROADS = (
 )
 
 FACTS = """\
+kerb_mass: {value: 62.6 t, uncertainty: 0.3 t}
 axle_weights: {axle1: {value: 104 kN, uncertainty: 0.5 kN}}
 uncoupled: {tractor: {axle1: {value: 55 kN, uncertainty: 0.5 kN}}}
 parameters: {a1: {value: 1.0 m, uncertainty: 2 cm}}

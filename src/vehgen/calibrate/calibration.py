@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.calibrate.equivalents import nearest_equivalent
 from vehgen.calibrate.genetic import GeneticSearch, SearchState
 from vehgen.calibrate.methods import Step, plan
 from vehgen.calibrate.objective import PsdObjective
@@ -172,7 +173,8 @@ def _polish_all(
     for fit in runner.map(job, points):
         fits.append(fit)
         tell(f"{label}, polish", len(fits), len(points), min(item.loss for item in fits))
-    return tuple(sorted(fits, key=lambda fit: fit.loss))
+    best, *others = sorted(fits, key=lambda fit: fit.loss)
+    return (nearest_equivalent(best, own_facts), *others)
 
 
 def starting_points(problem: Problem, state: SearchState, settings: Settings) -> list[Array]:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from vehgen.fit.problem import Problem
 from vehgen.fit.space import SearchSpace
+from vehgen.fit.trial import Trial
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.simulate.frequency import response_derivatives
 
@@ -25,6 +26,10 @@ FREQUENCIES = np.geomspace(0.4, 40.0, 40)
 """Where responses are compared [Hz]; the null space does not depend on the choice."""
 NULL_SHARE = 1e-9
 """Singular values below this share of the largest are zero: exact derivatives leave about 1e-14."""
+WEIGHABLE = 3.0
+"""By how much a body's mass is preferred to other parameters that could be held fixed as well."""
+SEEN_BY_FACTS = 1e-8
+"""Facts whose derivative along a direction is below this share of the largest do not see it."""
 IN_NULL_SPACE = 1e-5
 """A quantity whose gradient has a larger share than this in the null space is not identifiable."""
 
@@ -78,16 +83,48 @@ def find_structure(problem: Problem, values: Array) -> Structure:
     which runs at several speeds separate. Force laws are not in it.
     """
     found = []
-    for trial in {(repr(item.simulator.model.channels), item.fixed): item for item in problem.trials}.values():
-        known = {name: float(v) for name, v in problem.best_values(values).items() if name not in trial.fixed}
-        found.append(_scaled_derivatives(problem, trial.simulator.model, trial.values | known, trial.fixed, values))
+    for trial in distinct_trials(problem):
+        found.append(_scaled_derivatives(problem, trial.simulator.model, problem.values_of(values, trial), trial.fixed, values))
     null, singular = null_space(np.concatenate(found, axis=0))
     if not len(null):
         return Structure(problem.space, null, (), singular)
-    fixed = scipy.linalg.qr(null, pivoting=True, mode="r")[1][: len(null)]
+    fixed = scipy.linalg.qr(null * _weighable(problem), pivoting=True, mode="r")[1][: len(null)]
     reduced = np.asarray(np.linalg.solve(null[:, fixed], null), dtype=np.float64)
     reduced[np.abs(reduced) < 1e-8 * np.abs(reduced).max()] = 0.0
     return Structure(problem.space, reduced, tuple(int(i) for i in fixed), singular)
+
+
+def _weighable(problem: Problem) -> Array:
+    """Return weights `shape (n_parameters,)` that let the masses of bodies be held fixed rather than others: a scale tells them."""
+    masses = {name for body in problem.trials[0].run.vehicle.bodies.values() for name in body.mass.names}
+    return np.array([WEIGHABLE if name in masses else 1.0 for name in problem.space.names])
+
+
+def distinct_trials(problem: Problem) -> list[Trial]:
+    """Return one trial of all those whose sensors and fixed parameters are the same: they show the same responses."""
+    return list({(repr(item.simulator.model.channels), item.fixed): item for item in problem.trials}.values())
+
+
+def remaining_directions(null: Array, known: Array) -> Array:
+    """Return what facts leave of unidentifiable directions.
+
+    Parameters
+    ----------
+    null
+        Directions in the unit cube, `shape (n_null, n_parameters)`.
+    known
+        The facts' derivatives by the unit cube's coordinates, `shape (n_facts, n_parameters)`.
+
+    Returns
+    -------
+    `shape (n_left, n_parameters)`.
+    """
+    if not len(null) or not len(known):
+        return null
+    free = null.T / np.linalg.norm(null, axis=1)
+    _, singular, rows = np.linalg.svd(known @ free)
+    rank = int((singular > SEEN_BY_FACTS * max(float(np.abs(known).max(initial=0.0)), 1e-300)).sum())
+    return np.asarray((free @ rows[rank:].T).T)
 
 
 def null_space(derivatives: Array) -> tuple[Array, Array]:
@@ -99,8 +136,8 @@ def null_space(derivatives: Array) -> tuple[Array, Array]:
     """
     norms = np.linalg.norm(derivatives, axis=0)
     scale = np.where(norms > 0, norms, 1.0)
-    _, found, rows = np.linalg.svd(derivatives / scale)
-    singular = np.asarray(found, dtype=np.float64)
+    _, found, rows = np.linalg.svd(np.linalg.qr(derivatives / scale, mode="r"))
+    singular = np.pad(np.asarray(found, dtype=np.float64), (0, len(rows) - len(found)))
     count = int((singular < NULL_SHARE * singular[0]).sum())
     null = rows[len(rows) - count :] / scale
     return np.asarray(null / np.linalg.norm(null, axis=1, keepdims=True)), singular

@@ -2,6 +2,9 @@
 
 The information of a fit is J'J of its whitened residuals. Nuisances are marginalised. Along unidentifiable directions there is none, and
 what depends on them gets no interval; for all else the covariance is V (V' F V)^-1 V', V a basis of the identifiable combinations.
+Where the residuals of a run are larger than the noise model says (its chi2 above 1), the recordings' information is divided by chi2:
+intervals grow by its root. The noise is estimated from all runs together, so that chi2 of all is near 1 wherever a fit ends.
+
 Intervals of positive quantities are symmetric on a logarithmic scale.
 """
 
@@ -14,13 +17,15 @@ import numpy as np
 import scipy.stats
 from numpy.typing import NDArray
 
-from vehgen.calibrate.identifiability import Structure
+from vehgen.calibrate.identifiability import Structure, remaining_directions
 from vehgen.errors import InputError, shown
-from vehgen.files.expressions import ExpressionError, parse
+from vehgen.files.expressions import Expression, ExpressionError, parse
+from vehgen.files.units import Dimension
 from vehgen.fit.least_squares import FitOptions, LeastSquaresFit, fit_least_squares
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.prior_data import PriorData
 from vehgen.simulate import Mode, natural_modes
+from vehgen.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 LEVEL = 0.90
@@ -46,6 +51,24 @@ Quantity = Callable[[Array], float]
 """Maps searched values `shape (n_parameters,)` [SI] to a number."""
 
 
+def run_chi2(fit: LeastSquaresFit) -> dict[str, float]:
+    """Return the mean square of each run's whitened residuals; 1 is noise alone."""
+    white = fit.misfit.whitened_spectrum(fit.x)
+    return {trial.name: float(np.mean(np.abs(lines) ** 2)) for trial, lines in zip(fit.misfit.problem.trials, white, strict=True)}
+
+
+def read_combination(vehicle: Vehicle, text: str) -> tuple[Expression, Dimension]:
+    """Return an expression of a vehicle's parameters and its dimension; raises InputError for text that is none."""
+    try:
+        expression = parse(text)
+        unknown = expression.names - set(vehicle.parameters)
+        if unknown:
+            raise InputError(f"the combination {shown(text)} names {', '.join(sorted(unknown))}, which {vehicle.name} does not have")
+        return expression, expression.dimension(vehicle.dimensions)
+    except ExpressionError as error:
+        raise InputError(f"{shown(text)}: {error}") from error
+
+
 class Uncertainty:
     """The covariance of a fit's parameters, and intervals of anything that depends on them.
 
@@ -57,6 +80,15 @@ class Uncertainty:
         Structural rank and unidentifiable directions.
     facts
         What else was known, as residuals.
+
+    Attributes
+    ----------
+    information, covariance
+        Of the searched parameters in the unit cube, `shape (n_parameters, n_parameters)`.
+    null
+        The directions that recordings and facts together leave open, `shape (n_null, n_parameters)`.
+    inflation
+        The factor by which intervals are wider than the noise model alone would have them.
     """
 
     def __init__(self, fit: LeastSquaresFit, structure: Structure, facts: PriorData | None = None) -> None:
@@ -68,11 +100,16 @@ class Uncertainty:
         information = jacobian.T @ jacobian
         n = fit.misfit.n_parameters
         cross, own = information[:n, n:], information[n:, n:]
-        self.information = information[:n, :n] - cross @ np.linalg.solve(own, cross.T) if own.size else information[:n, :n]
+        told = information[:n, :n] - cross @ np.linalg.solve(own, cross.T) if own.size else information[:n, :n]
+        self.inflation = max(1.0, *run_chi2(fit).values()) ** 0.5
+        self.information = told / self.inflation**2
         if facts is not None:
             known = facts.jacobian(self.values) * space.slopes(self.values)
             self.information = self.information + known.T @ known
-        self.basis = _reported(structure, facts, self.values)
+        self.null = structure.null
+        if facts is not None:
+            self.null = remaining_directions(structure.null, facts.jacobian(self.values) * space.slopes(self.values))
+        self.basis = replace(structure, null=self.null).row_space
         reduced = self.basis.T @ self.information @ self.basis
         self.covariance = self.basis @ np.linalg.pinv(reduced, hermitian=True) @ self.basis.T
 
@@ -127,33 +164,13 @@ class Uncertainty:
         trial = self.fit.misfit.problem.trials[0]
         vehicle = trial.run.vehicle
         names = self.structure.space.names
-        try:
-            expression = parse(text)
-            unknown = expression.names - set(vehicle.parameters)
-            if unknown:
-                raise InputError(f"the combination {shown(text)} names {', '.join(sorted(unknown))}, which {vehicle.name} does not have")
-            expression.dimension(vehicle.dimensions)
-        except ExpressionError as error:
-            raise InputError(f"{shown(text)}: {error}") from error
+        expression, _ = read_combination(vehicle, text)
 
         def quantity(values: Array) -> float:
             free = {name: trial.values[name] for name in vehicle.free_parameters} | dict(zip(names, values.tolist(), strict=True))
             return float(expression.evaluate(vehicle.all_values(free)))
 
         return quantity
-
-    def ratios(self) -> list[Estimate]:
-        """Return identifiable ratios of unidentifiable parameters: those that every unidentifiable direction scales alike."""
-        slopes = self.structure.space.slopes(self.values)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            relative = np.where(self.values == 0, np.nan, self.structure.null * slopes / self.values)
-        groups: dict[tuple[float, ...], list[int]] = {}
-        for i in range(self.structure.space.size):
-            key = tuple(float(f"{item:.5g}") for item in relative[:, i])
-            if np.isfinite(relative[:, i]).all() and any(key) and i not in self.structure.fixed_parameters:
-                groups.setdefault(key, []).append(i)
-        names = self.structure.space.names
-        return [self.combination(f"{names[i]}/{names[group[0]]}") for group in groups.values() for i in group[1:]]
 
     def frequencies(self) -> list[tuple[Estimate, Estimate]]:
         """Return each mode's undamped frequency [Hz] and damping ratio."""
@@ -198,18 +215,6 @@ class Uncertainty:
 
 def _component(i: int) -> Quantity:
     return lambda values: float(values[i])
-
-
-def _reported(structure: Structure, facts: PriorData | None, values: Array) -> Array:
-    """Return an orthonormal basis of what recordings and facts together determine."""
-    if facts is None or not len(structure.null):
-        return structure.row_space
-    known = facts.jacobian(values) * structure.space.slopes(values)
-    free = structure.null.T / np.linalg.norm(structure.null, axis=1)
-    _, singular, rows = np.linalg.svd(known @ free)
-    rank = int((singular > 1e-8 * max(float(np.abs(known).max(initial=0.0)), 1e-300)).sum())
-    null = (free @ rows[rank:].T).T
-    return Structure(structure.space, null, structure.fixed_parameters, structure.singular_values).row_space
 
 
 def refit(fit: LeastSquaresFit, seed: int, facts: PriorData | None = None) -> Array:

@@ -8,6 +8,8 @@ nor the recordings' clocks matter to it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -51,7 +53,17 @@ class PsdObjective:
         for trial, (inside, density) in zip(self.problem.trials, self._measured, strict=True):
             responses, failed = self.problem.respond(values, trial)
             responses[failed] = 0.0
-            simulated = record_psd(responses, trial.recording.dt, axis=1)[1][:, inside, :]
-            parts.append(np.abs(simulated - density).sum(axis=1) / density.sum(axis=0))
+            parts.append(_terms(responses, trial.recording.dt, inside, density))
             parts[-1][failed] = np.inf
         return np.concatenate(parts, axis=1)
+
+    def compare(self, responses: Sequence[Array]) -> Array:
+        """Return the terms `shape (channels of all trials,)` of responses of all trials, `shape (n_samples, n_channels)` each."""
+        pairs = zip(self.problem.trials, self._measured, responses, strict=True)
+        return np.concatenate([_terms(response[None], trial.recording.dt, *measured)[0] for trial, measured, response in pairs])
+
+
+def _terms(responses: Array, dt: float, inside: NDArray[np.bool_], measured: Array) -> Array:
+    """Return the terms `shape (n, n_channels)` of responses `shape (n, n_samples, n_channels)`, against measured PSDs in the band."""
+    simulated = record_psd(responses, dt, axis=1)[1][:, inside, :]
+    return np.asarray(np.abs(simulated - measured).sum(axis=1) / measured.sum(axis=0))

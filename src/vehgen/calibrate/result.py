@@ -40,10 +40,11 @@ class ParameterSummary:
 
 @dataclass(frozen=True)
 class CombinationSummary:
-    """A quantity with its interval, None where the data cannot tell it."""
+    """A quantity [unit, SI] with its interval, None where the data cannot tell it."""
 
     value: float
     interval: Interval | None
+    unit: str = ""
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,43 @@ class NoiseSummary:
     road_level_m3: Array1D
 
 
+@dataclass(frozen=True)
+class ConditionSummary:
+    """What a fit supposes of a run, e.g. that its `speed` was 1.5 % higher than stated.
+
+    `place` is the run as a whole or a sensor; `value` [unit; relative where there is none] lies `sigmas` of its `prior`, the standard
+    deviation of what was known, off what the run file states.
+    """
+
+    run: str
+    step: str
+    name: str
+    place: str
+    value: float
+    unit: str
+    prior: float
+    sigmas: float
+
+
+@dataclass(frozen=True)
+class FactAdvice:
+    """What measuring a fact would do for the intervals of the parameters.
+
+    `entry` is its place in a file of facts; `expected` what the fit makes of it and `uncertainty` how well it would be known [unit].
+    `width_left` is the mean share of the intervals' widths that would be left, `width_left_beside_best` that beside the best of all
+    facts; `narrows` names the parameters whose intervals would be less than half as wide, most helped first.
+    """
+
+    fact: str
+    entry: str
+    expected: float
+    uncertainty: float
+    unit: str
+    width_left: float
+    width_left_beside_best: float
+    narrows: tuple[str, ...]
+
+
 @dataclass(frozen=True, eq=False)
 class CalibrationSummary(Result):
     """Everything a calibration tells.
@@ -99,6 +137,14 @@ class CalibrationSummary(Result):
         Versions, settings, and hashes of the inputs.
     calibration
         The calibration itself, None in a summary that was read from a file.
+    conditions, run_chi2
+        What the fit supposes of each run's clock, speed and hump height, at which `objective`, `psds`, `histories` and `tyre_load_minimum`
+        are simulated; and each run's chi2.
+    interval_inflation
+        By which factor all intervals are wider than the noise alone would have them: the root of the largest chi2 of a run, where
+        it exceeds 1.
+    prior_data_advice
+        Facts that could be measured, best first: what each would do for the intervals.
     """
 
     KIND: ClassVar[str] = "calibration"
@@ -130,6 +176,10 @@ class CalibrationSummary(Result):
     histories: Annotated[tuple[ChannelCurves, ...], Field(max_length=MAX_CURVES)]
     provenance: dict[str, Any]
     calibration: Annotated[Calibration | None, IN_MEMORY] = field(default=None, repr=False)
+    conditions: tuple[ConditionSummary, ...] = ()
+    run_chi2: dict[str, float] = field(default_factory=dict)
+    interval_inflation: float = 1.0
+    prior_data_advice: tuple[FactAdvice, ...] = ()
 
     def __post_init__(self) -> None:
         if len(self.steps) != len(self.history):
@@ -158,9 +208,15 @@ class CalibrationSummary(Result):
             f"calibrated by vehgen {self.provenance['vehgen']}: {self.method} from {runs}, seed {self.provenance['seed']}",
             f"comments give {self.confidence:.0%} intervals; 'unidentifiable' marks what such recordings cannot determine one by one",
         ]
-        notes = {}
-        for key, item in self.parameters.items():
-            known = "" if item.interval is None else f" {item.interval[0]:.4g} to {item.interval[1]:.4g}"
-            notes[key] = f"{item.status}{known}"
+        notes = {key: self._note(key, item) for key, item in self.parameters.items()}
         title = f"{vehicle.title or vehicle.name}, calibrated"
         return variant_text(vehicle, folder, name, title, calibration.values, comments, notes)
+
+    def _note(self, name: str, item: ParameterSummary) -> str:
+        """Return what a parameter's comment in a vehicle file says."""
+        if item.interval is not None:
+            return f"{item.status} {item.interval[0]:.4g} to {item.interval[1]:.4g}"
+        if item.interval_given_pivots is None or name in self.pivots:
+            return item.status
+        low, high = item.interval_given_pivots
+        return f"{item.status}; {low:.4g} to {high:.4g} if {' and '.join(self.pivots)} were known"

@@ -12,12 +12,21 @@ from numpy.typing import NDArray
 
 from vehgen.calibrate.bootstrap import bootstrap_intervals
 from vehgen.calibrate.calibration import Calibration, StepResult
+from vehgen.calibrate.combinations import combination_unit, identifiable_ratios
+from vehgen.calibrate.fitted_runs import (
+    fitted_responses,
+    least_tyre_loads,
+    measured_and_simulated,
+    objective_terms,
+    run_conditions,
+)
 from vehgen.calibrate.identifiability import find_structure
-from vehgen.calibrate.intervals import LEVEL, Estimate, Uncertainty
-from vehgen.calibrate.objective import PsdObjective
+from vehgen.calibrate.intervals import LEVEL, Estimate, Uncertainty, run_chi2
+from vehgen.calibrate.prior_data_advice import advise_prior_data
 from vehgen.calibrate.result import (
     CalibrationSummary,
     CombinationSummary,
+    ConditionSummary,
     FitSummary,
     Interval,
     ModeSummary,
@@ -27,11 +36,7 @@ from vehgen.calibrate.result import (
 from vehgen.files.provenance import file_hashes, versions
 from vehgen.fit.parallel import Runner
 from vehgen.fit.prior_data import PriorData
-from vehgen.measure import record_psd
-from vehgen.measure.curves import ChannelCurves
-from vehgen.mechanics import static_loads
-from vehgen.mechanics.outputs import ElementOutput
-from vehgen.simulate import Simulator
+from vehgen.vehicle import Vehicle
 from vehgen.vehicle.writing import quantity
 
 Array = NDArray[np.float64]
@@ -64,12 +69,14 @@ def summarise(
     for result in calibration.steps:
         uncertainty = _uncertainty(result, prior_data)
         found |= _parameters(result, uncertainty)
-    ratios = () if uncertainty is None else (*uncertainty.ratios(), *(uncertainty.combination(text) for text in combinations))
+    asked = () if uncertainty is None else tuple(uncertainty.combination(text) for text in combinations)
+    ratios = () if uncertainty is None else (*asked, *identifiable_ratios(uncertainty))
     boot: list[Estimate] = []
     if uncertainty is not None and replicates:
         facts, seed = _facts_of(last, prior_data), calibration.settings.seed
         boot = bootstrap_intervals(last, uncertainty, facts, ratios, replicates, seed, runner or Runner())
-    psds, histories = _curves(calibration)
+    conditions, responses = run_conditions(calibration), fitted_responses(calibration)
+    psds, histories = measured_and_simulated(calibration, responses)
     return CalibrationSummary(
         vehicle=problem.trials[0].run.vehicle.name,
         method=calibration.settings.method,
@@ -80,14 +87,14 @@ def summarise(
         searched=structure.space.size,
         pivots=tuple(structure.space.names[i] for i in structure.fixed_parameters),
         null_directions=tuple(structure.directions(calibration.array)),
-        combinations=_combinations(ratios),
+        combinations=_combinations(ratios, problem.trials[0].run.vehicle),
         modes=() if uncertainty is None else _modes(uncertainty),
         bootstrap=_combinations(boot),
-        objective=_objective(calibration),
+        objective=objective_terms(calibration, responses),
         chi2=last.fits[0].chi2 if last.fits else None,
         fits=tuple(FitSummary(fit.loss, fit.chi2, tuple(fit.on_bound)) for fit in last.fits),
         spread=_spread(last),
-        nuisances=_nuisances(last),
+        nuisances=_nuisances(conditions, last.step.label),
         noise=_noise(last),
         tyre_load_minimum=least_tyre_loads(calibration),
         history=tuple(tuple(step.state.history) for step in calibration.steps),
@@ -97,6 +104,10 @@ def summarise(
         histories=histories,
         provenance=provenance(calibration),
         calibration=calibration,
+        conditions=conditions,
+        run_chi2=run_chi2(last.fits[0]) if last.fits else {},
+        interval_inflation=1.0 if uncertainty is None else uncertainty.inflation,
+        prior_data_advice=() if uncertainty is None else advise_prior_data(uncertainty, _facts_of(last, prior_data)),
     )
 
 
@@ -139,29 +150,6 @@ def _parameters(result: StepResult, uncertainty: Uncertainty | None) -> dict[str
     return found
 
 
-def _objective(calibration: Calibration) -> dict[str, float]:
-    """Return Eq. 5's term of every channel at the result."""
-    objective = PsdObjective(calibration.problem, calibration.settings.band)
-    terms = objective.terms(calibration.array[None])[0]
-    names = [f"{trial.name}: {channel}" for trial in calibration.problem.trials for channel in trial.channels]
-    return {name: float(value) for name, value in zip(names, terms, strict=True)}
-
-
-def least_tyre_loads(calibration: Calibration) -> dict[str, float]:
-    """Return each axle's least tyre load over the runs as a share of its static load; below 0 a real tyre would have left the road."""
-    found: dict[str, float] = {}
-    for trial in calibration.problem.trials:
-        vehicle = trial.run.vehicle
-        simulator = Simulator(vehicle, [ElementOutput(f"load {name}", name, "tyre_force") for name in vehicle.axles], trial.run.forces())
-        own = {name: value for name, value in calibration.values.items() if name not in trial.fixed}
-        values = {name: (trial.values | own).get(name, 0.0) for name in simulator.model.parameters}
-        response = simulator.run(np.array([list(values.values())]), trial.scenario).responses[0]
-        for (name, load), force in zip(static_loads(simulator.model, values).axles.items(), response.T, strict=True):
-            share = float((load + force.min()) / load) if load > 0 else float("nan")
-            found[name] = min(share, found.get(name, share))
-    return found
-
-
 def _spread(result: StepResult) -> dict[str, tuple[float, float]]:
     """Return each parameter's least and largest value among the starts that fit as well as the best (-2 ln L within 4)."""
     good = [fit.values for fit in result.fits if fit.loss < result.fits[0].loss + 4.0]
@@ -171,34 +159,15 @@ def _spread(result: StepResult) -> dict[str, tuple[float, float]]:
     return {name: (float(rows[:, i].min()), float(rows[:, i].max())) for i, name in enumerate(result.problem.space.names)}
 
 
-def _nuisances(result: StepResult) -> dict[str, dict[str, float]]:
-    if not result.fits:
-        return {}
-    found: dict[str, dict[str, float]] = {trial.name: {} for trial in result.problem.trials}
-    for item in result.fits[0].conditions():
-        found.setdefault(item.run, {})[f"{item.name} {item.place}".strip()] = item.value
-    return found
+def _nuisances(conditions: Sequence[ConditionSummary], step: str) -> dict[str, dict[str, float]]:
+    """Return what a step supposes of each run as a whole, by name."""
+    own = [item for item in conditions if item.step == step and item.place == "run"]
+    return {run: {item.name: item.value for item in own if item.run == run} for run in dict.fromkeys(item.run for item in own)}
 
 
 def _noise(result: StepResult) -> tuple[NoiseSummary, ...]:
     noises = result.fits[0].misfit.noises if result.fits else {}
     return tuple(NoiseSummary(name, noise.sigma, noise.levels) for name, noise in noises.items())
-
-
-def _curves(calibration: Calibration) -> tuple[tuple[ChannelCurves, ...], tuple[ChannelCurves, ...]]:
-    """Return PSDs and histories, measured beside simulated, at the delays of the runs' clocks that the last fit found."""
-    delays = {run: known.get("delay", 0.0) for run, known in _nuisances(calibration.steps[-1]).items()}
-    psds, histories = [], []
-    for trial in calibration.problem.trials:
-        scenario = trial.scenario.adjusted(delays.get(trial.name, 0.0))
-        simulated = calibration.problem.respond(calibration.array[None], trial, scenario)[0][0]
-        for i, channel in enumerate(trial.recording.channels):
-            pair = (trial.recording.values[:, i], simulated[:, i])
-            frequency = record_psd(pair[0], trial.recording.dt)[0]
-            name = trial.name, channel.name, channel.quantity
-            psds.append(ChannelCurves(*name, frequency, *(record_psd(item, trial.recording.dt)[1] for item in pair)))
-            histories.append(ChannelCurves(*name, trial.recording.time, *pair))
-    return tuple(psds), tuple(histories)
 
 
 def provenance(calibration: Calibration) -> dict[str, Any]:
@@ -217,12 +186,11 @@ def _modes(uncertainty: Uncertainty) -> tuple[ModeSummary, ...]:
     return tuple(ModeSummary(hz.name, hz.value, _interval(hz), zeta.value, _interval(zeta)) for hz, zeta in pairs)
 
 
-def _combinations(estimates: Sequence[Estimate]) -> dict[str, CombinationSummary]:
-    return {item.name: CombinationSummary(item.value, _interval(item)) for item in estimates}
+def _combinations(estimates: Sequence[Estimate], vehicle: Vehicle | None = None) -> dict[str, CombinationSummary]:
+    """Return estimates by name, those that are named by an expression of the vehicle's parameters with its unit."""
+    units = {item.name: "" if vehicle is None else combination_unit(vehicle, item.name) for item in estimates}
+    return {item.name: CombinationSummary(item.value, _interval(item), units[item.name]) for item in estimates}
 
 
 def _interval(estimate: Estimate | None) -> Interval | None:
     return None if estimate is None or estimate.low is None or estimate.high is None else (estimate.low, estimate.high)
-
-
-__all__ = ["CalibrationSummary", "least_tyre_loads", "provenance", "summarise"]

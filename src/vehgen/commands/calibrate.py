@@ -4,24 +4,19 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from vehgen.commands.calibration_tables import show_calibration
 from vehgen.commands.faults import STOPPED
 from vehgen.commands.option_strings import read_band, split_list
 from vehgen.commands.results import add_out, folder_named, tell_written
-from vehgen.commands.terminal import add_json, print_json, print_table, warn
+from vehgen.commands.terminal import add_json, print_json
 from vehgen.files import check_results, note_read, write_text
-
-if TYPE_CHECKING:
-    from vehgen.calibrate.result import CalibrationSummary
 
 EXAMPLE = "vehgen calibrate tractor5.yaml hump_2ms.yaml hump_3ms.yaml --method joint --out calibrated"
 
 
 CALIBRATION_CURVES = ("psds", "histories", "steps", "band")
 """What calibration.json holds and --json leaves out."""
-MAX_CHI2 = 1.2
-"""Above this the residuals are larger than the noise model allows."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -104,51 +99,6 @@ def run(options: argparse.Namespace) -> int | None:
         data = {key: value for key, value in outcome.to_dict().items() if key not in CALIBRATION_CURVES}
         print_json({**data, "files": [str(path) for path in files]})
     else:
-        _show(outcome, files)
+        show_calibration(outcome)
+        tell_written(files)
     return STOPPED if outcome.stopped else None
-
-
-def _show(outcome: CalibrationSummary, files: list[Path]) -> None:
-    rows = []
-    for name, item in outcome.parameters.items():
-        rows.append((name, f"{item.value:.5g}", item.unit, _to(item.interval, ".4g"), item.status))
-    print_table(f"{outcome.vehicle}: {outcome.method}", ("parameter", "value", "unit", "90 % interval", "status"), rows, right=(1,))
-    if outcome.modes:
-        modes = [(mode.name, f"{mode.undamped_hz:.3f}", _to(mode.interval, ".3f"), f"{mode.damping_ratio:.3f}") for mode in outcome.modes]
-        print_table("natural modes", ("mode", "undamped [Hz]", "90 % interval", "damping ratio"), modes, right=(1, 3))
-    print_table(
-        "objective (Eq. 5): area between the PSDs over the measured area",
-        ("channel", "term"),
-        [(name, f"{value:.4f}") for name, value in outcome.objective.items()],
-        right=(1,),
-    )
-    warn(_warnings(outcome))
-    tell_written(files)
-
-
-def _to(interval: tuple[float, float] | None, digits: str) -> str:
-    return "" if interval is None else f"{interval[0]:{digits}} to {interval[1]:{digits}}"
-
-
-def _warnings(outcome: CalibrationSummary) -> list[str]:
-    found = []
-    rank, searched = outcome.rank, outcome.searched
-    if rank < searched:
-        moved = "; ".join(", ".join(list(direction)[:8]) + (" ..." if len(direction) > 8 else "") for direction in outcome.null_directions)
-        found.append(
-            f"recordings of these sensors can determine {rank} combinations of the {searched} parameters, whatever the run: values marked "
-            f"unidentifiable are some of many that fit alike (what can change together: {moved}); axle weights (--facts) determine more"
-        )
-    bound = [name for name, item in outcome.parameters.items() if item.status == "bound"]
-    if bound:
-        found.append(f"set by the search range, not by the data: {', '.join(bound)}")
-    found += [
-        f"the tyre of {name} would have left the road (its load falls to {share:.2f} of the static load): the linear tyre does not hold"
-        for name, share in outcome.tyre_load_minimum.items()
-        if share < 0
-    ]
-    if outcome.chi2 is not None and outcome.chi2 > MAX_CHI2:
-        found.append(
-            f"the residuals are larger than the noise model allows (chi2 {outcome.chi2:.2f}): `diagnose` looks for what is missing"
-        )
-    return found

@@ -13,7 +13,7 @@ from vehgen.errors import shortened, shown
 from vehgen.files import limits
 from vehgen.files.expressions import ExpressionError, parse
 from vehgen.files.limits import Limit
-from vehgen.files.units import NONE, Dimension
+from vehgen.files.units import MASS, NONE, Dimension
 
 
 def read_quantity(value: Any, dimension: Dimension) -> float:
@@ -75,6 +75,7 @@ Sample = Annotated[float, *_positive(limits.SAMPLE)]
 Speed = Annotated[float, *_positive(limits.SPEED_LIMIT)]
 Frequency = Annotated[float, *_positive(limits.FREQUENCY_LIMIT)]
 Force = Annotated[float, *_any(limits.FORCE_LIMIT)]
+Mass = Annotated[float, *_positive(limits.VEHICLE_LIMITS[MASS])]
 PositiveForce = Annotated[float, *_positive(limits.FORCE_LIMIT)]
 RecorderDelay = Annotated[float, *_any(limits.RECORDER_DELAY)]
 Angle = Annotated[float, *_any(limits.ANGLE)]

@@ -148,7 +148,7 @@ class Misfit:
         found = [("", item) for item in self.sensors]
         found += [(trial.name, item) for trial, errors in zip(self.problem.trials, self.errors, strict=True) for item in errors.own]
         return tuple(
-            Condition(run, item.name, item.place, float(number) * item.sigma, item.unit, float(number))
+            Condition(run, item.name, item.place, float(number) * item.sigma, item.unit, item.sigma)
             for (run, item), number in zip(found, x[start:], strict=True)
         )
 
@@ -202,15 +202,10 @@ class Misfit:
 
     def simulate(self, x: Array) -> list[Array]:
         """Return what the sensors read in each trial, `shape (n_samples, n_channels)`."""
-        found = []
-        for t, (trial, motion) in enumerate(zip(self.problem.trials, self.motions(x), strict=True)):
-            length = 2 * len(motion)
-            frequency = np.asarray(np.fft.rfftfreq(length, trial.recording.dt), dtype=np.float64)
-            reading = self.errors[t].reading(frequency, self.errors_of(x, t))
-            if reading is not None:
-                motion = np.fft.irfft(_apply(reading, np.fft.rfft(motion, length, axis=0)), length, axis=0)[: len(motion)]
-            found.append(np.asarray(motion))
-        return found
+        return [
+            self.errors[t].read(motion, trial.recording.dt, self.errors_of(x, t))
+            for t, (trial, motion) in enumerate(zip(self.problem.trials, self.motions(x), strict=True))
+        ]
 
     def residual_spectrum(self, x: Array) -> list[tuple[Complex, RoadAnswer]]:
         """Return each trial's residual, measured minus simulated, as spectral lines, with the road's way into them."""

@@ -129,7 +129,7 @@ class Nuisance:
 
 @dataclass(frozen=True)
 class Condition:
-    """What a fit supposes of a run, a channel or a sensor: an error's `value` [unit], and that in standard deviations of its prior.
+    """What a fit supposes of a run, a channel or a sensor: an error's `value` [unit], and `sigma`, its prior's standard deviation.
 
     `run` is empty for what holds in all runs; `place` names a sensor or a channel, or says when.
     """
@@ -139,7 +139,12 @@ class Condition:
     place: str
     value: float
     unit: str
-    sigmas: float
+    sigma: float
+
+    @property
+    def sigmas(self) -> float:
+        """The value in standard deviations of its prior."""
+        return self.value / self.sigma
 
 
 def _size(trial: Trial, name: str) -> float:
@@ -222,6 +227,15 @@ class RunErrors:
         """Return how late every channel's clock is [s], `shape (n_channels,)`."""
         values = self._values(numbers)
         return np.array([values.get(("clock", sensor), 0.0) for _, sensor, _ in self.channels])
+
+    def read(self, motion: Array, dt: float, numbers: Array) -> Array:
+        """Return what the sensors read, `shape (n_samples, n_channels)`, where they should read `motion` at samples `dt` [s] apart."""
+        length = 2 * len(motion)
+        reading = self.reading(np.asarray(np.fft.rfftfreq(length, dt), dtype=np.float64), numbers)
+        if reading is None:
+            return motion
+        lines = (reading @ np.fft.rfft(motion, length, axis=0)[..., None])[..., 0]
+        return np.asarray(np.fft.irfft(lines, length, axis=0)[: len(motion)])
 
     def reading(self, frequency: Array, numbers: Array) -> Complex | None:
         """Return what the channels read of what they should, line by line, `shape (n_lines, n_channels, n_channels)`; None: all of it.

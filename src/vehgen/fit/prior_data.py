@@ -1,8 +1,9 @@
-"""Facts that are known from elsewhere and close what recordings leave open: axle weights, coupled and uncoupled, and single parameters.
+"""Facts that are known from elsewhere and close what recordings leave open: weights of axles and of the whole, and single parameters.
 
 A facts file:
 
     parameters:   {mS: {value: 22 t, uncertainty: 0.5 t}}
+    kerb_mass:    {value: 62.4 t, uncertainty: 0.3 t}                    # all axles together
     axle_weights: {axle1: {value: 71 kN, uncertainty: 0.5 kN}}           # on a scale, all coupled
     uncoupled:    {tractor: {axle1: {value: 50 kN, uncertainty: 0.5 kN}}}  # the body alone, its hinges opened
 
@@ -26,14 +27,18 @@ from vehgen.files.document import Located
 from vehgen.files.entry import FileModel, read_entries
 from vehgen.files.expressions import Expression
 from vehgen.files.names import Name
-from vehgen.files.quantities import Force
+from vehgen.files.quantities import Force, Mass
 from vehgen.fit.problem import Problem
-from vehgen.mechanics import EquationsOfMotion, derive, static_loads
+from vehgen.mechanics import GRAVITY, EquationsOfMotion, derive, static_loads
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.parts import GROUND
 
 Array = NDArray[np.float64]
 _JACOBIAN_STEP = 1e-6
+KERB_MASS = "kerb mass"
+"""What the fact of the whole vehicle's mass is called."""
+FactModel = Callable[[Mapping[str, float]], float]
+"""Computes what a fact tells of from all free parameters [SI]."""
 
 
 class Weight(FileModel):
@@ -41,6 +46,13 @@ class Weight(FileModel):
 
     value: Force
     uncertainty: Annotated[Force, Field(gt=0)]
+
+
+class WholeMass(FileModel):
+    """The mass of the vehicle with all that it carries, and how well that is known."""
+
+    value: Mass
+    uncertainty: Mass
 
 
 class Known(FileModel):
@@ -54,6 +66,7 @@ class PriorDataFile(FileModel):
     """A facts file as it is written."""
 
     parameters: dict[Name, Known] = Field(default_factory=dict)
+    kerb_mass: WholeMass | None = None
     axle_weights: dict[Name, Weight] = Field(default_factory=dict)
     uncoupled: dict[Name, dict[Name, Weight]] = Field(default_factory=dict)
 
@@ -63,7 +76,7 @@ class Fact:
     """One fact: how the model computes it from all free parameters, and what it is."""
 
     name: str
-    model: Callable[[Mapping[str, float]], float]
+    model: FactModel
     value: float
     uncertainty: float
 
@@ -102,6 +115,8 @@ def load_prior_data(path: str | Path, problem: Problem) -> PriorData:
     file, document = read_entries(PriorDataFile, path)
     vehicle = problem.trials[0].run.vehicle
     facts = [_parameter_fact(vehicle, name, known, document) for name, known in file.parameters.items()]
+    if (whole := file.kerb_mass) is not None:
+        facts.append(Fact(KERB_MASS, kerb_mass(derive(vehicle)), whole.value, whole.uncertainty))
     groups: list[tuple[tuple[str, ...], Vehicle, str, dict[str, Weight]]] = [(("axle_weights",), vehicle, "", file.axle_weights)]
     for body, weights in file.uncoupled.items():
         check_known(body, vehicle.bodies, f"{vehicle.name} has no body", document, "uncoupled", body, key=True)
@@ -111,9 +126,9 @@ def load_prior_data(path: str | Path, problem: Problem) -> PriorData:
         for axle, weight in weights.items():
             check_known(axle, part.axles, f"{part.name} has no axle", document, *place_of, axle, key=True)
             assert model is not None
-            facts.append(Fact(f"load of {axle}{suffix}", _axle_load(model, axle), weight.value, weight.uncertainty))
+            facts.append(Fact(f"load of {axle}{suffix}", axle_load(model, axle), weight.value, weight.uncertainty))
     if not facts:
-        raise InputError("no fact was found: parameters, axle_weights or uncoupled were expected", document.position)
+        raise InputError("no fact was found: parameters, kerb_mass, axle_weights or uncoupled were expected", document.position)
     return PriorData(problem, tuple(facts))
 
 
@@ -125,7 +140,7 @@ def _parameter_fact(vehicle: Vehicle, name: str, known: Known, document: Located
     uncertainty = plain_quantity(known.uncertainty, dimension, document, *path, "uncertainty", what=f"the uncertainty of {name}")
     if not uncertainty > 0:
         raise InputError("an uncertainty above 0 was expected", document.find((*path, "uncertainty")))
-    return Fact(name, _parameter(vehicle, name), value, uncertainty)
+    return Fact(name, parameter_value(vehicle, name), value, uncertainty)
 
 
 def uncouple(vehicle: Vehicle, body: str) -> Vehicle:
@@ -147,9 +162,20 @@ def uncouple(vehicle: Vehicle, body: str) -> Vehicle:
     )
 
 
-def _parameter(vehicle: Vehicle, name: str) -> Callable[[Mapping[str, float]], float]:
+def parameter_value(vehicle: Vehicle, name: str) -> FactModel:
+    """Return how a parameter's value follows from the free ones [SI]."""
     return lambda values: vehicle.all_values({key: values[key] for key in vehicle.free_parameters})[name]
 
 
-def _axle_load(model: EquationsOfMotion, axle: str) -> Callable[[Mapping[str, float]], float]:
-    return lambda values: static_loads(model, {name: values[name] for name in model.parameters}).axles[axle]
+def axle_load(model: EquationsOfMotion, axle: str) -> FactModel:
+    """Return how an axle's static load [N] follows from the parameters."""
+    return lambda values: _axle_loads(model, values)[axle]
+
+
+def kerb_mass(model: EquationsOfMotion) -> FactModel:
+    """Return how the mass that all axles carry together [kg] follows from the parameters."""
+    return lambda values: sum(_axle_loads(model, values).values()) / GRAVITY
+
+
+def _axle_loads(model: EquationsOfMotion, values: Mapping[str, float]) -> dict[str, float]:
+    return static_loads(model, {name: values[name] for name in model.parameters}).axles

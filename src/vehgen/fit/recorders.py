@@ -34,7 +34,7 @@ class FoundRecorder:
         if not self.estimate.is_clear:
             text += ", but others would do as well"
         if self.cut:
-            text += f"; what lies above {self.band[1]:.3g} Hz is not compared, as it may have been folded there: state `acquisition` in the run files"
+            text += f"; above {self.band[1]:.3g} Hz nothing is compared, as it may have been folded there: state `acquisition`"
         return text
 
     def applied(self, trials: Sequence[Trial]) -> list[Trial]:

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator
 
 from vehgen.calibrate.result import CalibrationSummary
 from vehgen.report.drawing.canvas import INK
@@ -18,7 +23,7 @@ WIDEST = 100.0
 
 def save_calibration_figures(outcome: CalibrationSummary, folder: Path) -> list[Path]:
     """Draw and save all figures of a calibration; returns their paths."""
-    figures = [plot_calibration(outcome), plot_histories(outcome.histories), plot_convergence(outcome)]
+    figures = [plot_calibration(outcome), plot_histories(outcome.histories, _labels(outcome)), plot_convergence(outcome)]
     if outcome.fits:
         figures.append(plot_intervals(outcome))
     paths = calibration_figure_files(folder)[: len(figures)]
@@ -34,7 +39,12 @@ def calibration_figure_files(folder: Path) -> list[Path]:
 
 def plot_calibration(outcome: CalibrationSummary) -> Figure:
     """Plot the PSDs of every channel, measured beside simulated."""
-    return plot_psds(outcome.psds, (outcome.band[0], HIGHEST_SHOWN_HZ))
+    return plot_psds(outcome.psds, (outcome.band[0], HIGHEST_SHOWN_HZ), labels=_labels(outcome))
+
+
+def _labels(outcome: CalibrationSummary) -> tuple[str, str]:
+    """Return what measured and simulated curves are called, and at which speed and clock they were simulated."""
+    return "measured", "simulated at the fitted speed and clock" if outcome.conditions else "simulated at the stated speed"
 
 
 def plot_convergence(outcome: CalibrationSummary) -> Figure:
@@ -43,8 +53,13 @@ def plot_convergence(outcome: CalibrationSummary) -> Figure:
     axes = figure.subplots()
     for i, (label, history) in enumerate(zip(outcome.steps, outcome.history, strict=True)):
         axes.semilogy(history, color=COLOURS[i % len(COLOURS)], linestyle=STYLES[i % len(STYLES)], lw=1.4, label=label)
+    if outcome.fits and len(outcome.steps) == 1:
+        axes.axhline(sum(outcome.objective.values()), color=INK, lw=1.0, ls=(0, (4, 2)), label="after the polish, at the fitted speeds")
+    axes.yaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
+    for set_formatter in (axes.yaxis.set_major_formatter, axes.yaxis.set_minor_formatter):
+        set_formatter("{x:g}")
     axes.set_xlabel("generation", color=INK)
-    axes.set_ylabel("objective of the best individual (Eq. 5)", color=INK)
+    axes.set_ylabel("objective of the best (Eq. 5)", color=INK)
     axes.grid(color="#e3e7ea", lw=0.6, which="both")
     axes.spines[["top", "right"]].set_visible(False)
     axes.legend(frameon=False, fontsize=9)
@@ -52,35 +67,55 @@ def plot_convergence(outcome: CalibrationSummary) -> Figure:
 
 
 def plot_intervals(outcome: CalibrationSummary) -> Figure:
-    """Plot every parameter's interval over its value; hollow marks with grey bars are known only if the fixed parameters are."""
-    items = {name: item for name, item in outcome.parameters.items() if item.value > 0}
-    figure = Figure(figsize=(7.2, 1.3 + 0.2 * len(items)), layout="constrained")
-    axes = figure.subplots()
-    shown: set[str] = set()
-    for row, (name, item) in enumerate(items.items()):
-        told = item.interval is not None
-        interval = item.interval or item.interval_given_pivots
-        if interval is None or name in outcome.pivots:
-            axes.plot([0.0], [row], marker="x", color="#b03030", ls="", ms=5, label=_once("held fixed", shown))
+    """Plot intervals over their values: modes and combinations that the recordings tell, beside single parameters.
+
+    Hollow marks with grey bars are parameters that are known only if the fixed ones are.
+    """
+    told = [_Bar(mode.name, mode.undamped_hz, mode.interval) for mode in outcome.modes]
+    told += [_Bar(name, item.value, item.interval) for name, item in outcome.combinations.items()]
+    single = [
+        _Bar(name, item.value, item.interval or (None if name in outcome.pivots else item.interval_given_pivots), item.interval is not None)
+        for name, item in outcome.parameters.items()
+    ]
+    panels = {"natural frequencies and combinations": told, "parameters": single}
+    shown = {title: bars for title, bars in panels.items() if any(bar.value > 0 for bar in bars)}
+    rows = max((len(bars) for bars in shown.values()), default=1)
+    figure = Figure(figsize=(5.2 * max(len(shown), 1), 1.5 + 0.2 * rows), layout="constrained")
+    labels: dict[str, Line2D] = {}
+    for axes, (title, bars) in zip(figure.subplots(1, max(len(shown), 1), squeeze=False)[0], shown.items(), strict=False):
+        labels |= _draw_bars(axes, [bar for bar in bars if bar.value > 0], ", ".join(outcome.pivots))
+        axes.set_title(title, fontsize=9.5, loc="left", color=INK)
+    figure.legend(list(labels.values()), list(labels), loc="outside upper right", frameon=False, fontsize=8.5, ncols=len(labels) or 1)
+    return figure
+
+
+@dataclass(frozen=True)
+class _Bar:
+    """A quantity's value and interval; `is_told` where it does not hang on parameters held fixed."""
+
+    name: str
+    value: float
+    interval: tuple[float, float] | None
+    is_told: bool = True
+
+
+def _draw_bars(axes: Axes, bars: Sequence[_Bar], fixed: str) -> dict[str, Line2D]:
+    """Draw a bar a row, in percent about its value; returns what to call the kinds of marks drawn."""
+    found: dict[str, Line2D] = {}
+    for row, bar in enumerate(bars):
+        if bar.interval is None:
+            (mark,) = axes.plot([0.0], [row], marker="x", color="#b03030", ls="", ms=5)
+            found.setdefault("held fixed", mark)
             continue
-        colour = SIMULATED if told else "#7d8a94"
-        label = "90 % interval" if told else f"90 % interval if {', '.join(outcome.pivots)} were known"
-        ends = [100 * (end / item.value - 1) for end in interval]
-        axes.plot(ends, [row, row], color=colour, lw=2.2, label=_once(label, shown))
-        axes.plot([0.0], [row], marker="o", color=colour, mfc=colour if told else "white", ls="", ms=4.5)
-    axes.set_yticks(range(len(items)), list(items), fontsize=8.5, parse_math=False)
-    axes.set_ylim(len(items) - 0.4, -0.6)
+        colour = SIMULATED if bar.is_told else "#7d8a94"
+        (line,) = axes.plot([100 * (end / bar.value - 1) for end in bar.interval], [row, row], color=colour, lw=2.2)
+        axes.plot([0.0], [row], marker="o", color=colour, mfc=colour if bar.is_told else "white", ls="", ms=4.5)
+        found.setdefault("90 % interval" if bar.is_told else f"90 % interval if {fixed} were known", line)
+    axes.set_yticks(range(len(bars)), [bar.name for bar in bars], fontsize=8.5, parse_math=False)
+    axes.set_ylim(len(bars) - 0.4, -0.6)
     reach = min(max(abs(end) for end in axes.get_xlim()), WIDEST)
     axes.set_xlim(-reach, reach)
     axes.set_xlabel("interval about the estimate [%]", color=INK)
     axes.grid(color="#e3e7ea", lw=0.6, axis="x")
     axes.spines[["top", "right"]].set_visible(False)
-    figure.legend(loc="outside upper right", frameon=False, fontsize=8.5, ncols=2)
-    return figure
-
-
-def _once(label: str, shown: set[str]) -> str:
-    if label in shown:
-        return "_nolegend_"
-    shown.add(label)
-    return label
+    return found

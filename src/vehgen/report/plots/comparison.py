@@ -25,8 +25,8 @@ QUANTITY_UNITS = {
 HIGHEST_SHOWN_HZ = 25.0
 """Frequencies shown [Hz]."""
 LABELS = ("measured", "simulated")
-HIGHEST_SHOWN_HZ = 25.0
-"""Frequencies shown [Hz]."""
+LOUD_OVER_MEDIAN, LOUD_SHARES = 5.0, (0.02, 0.2)
+"""A history is loud at so many times its median, as most of a run over a hump is quiet, but between these shares of its peak."""
 PSD_DECADES = 5
 """What lies further below the peak of a PSD is cut off."""
 
@@ -75,7 +75,7 @@ def plot_histories(curves: Sequence[ChannelCurves], labels: tuple[str, str] = LA
     for axes, curve in zip(panels, curves, strict=False):
         axes.plot(curve.x, curve.measured, color=MEASURED, lw=2.2, label=labels[0])
         axes.plot(curve.x, curve.simulated, color=SIMULATED, lw=0.9, label=labels[1])
-        axes.set_xlim(*_busy(curve))
+        axes.set_xlim(*_busy([item for item in curves if item.run == curve.run]))
         axes.set_ylabel(f"{curve.quantity.replace('_', ' ')} [{QUANTITY_UNITS.get(curve.quantity, '')}]", color=INK, parse_math=False)
         axes.set_xlabel("time [s]", color=INK)
         _finish(axes, curve)
@@ -90,7 +90,7 @@ def plot_pair(history: ChannelCurves, density: ChannelCurves, band: tuple[float,
     unit = QUANTITY_UNITS.get(history.quantity, "")
     left.plot(history.x, history.measured, color=MEASURED, lw=2.0, label=labels[0])
     left.plot(history.x, history.simulated, color=SIMULATED, lw=0.9, label=labels[1])
-    left.set_xlim(*_busy(history))
+    left.set_xlim(*_busy([history]))
     left.set_xlabel("time [s]", color=INK)
     left.set_ylabel(f"{history.channel} [{unit}]", color=INK, parse_math=False)
     inside = (density.x >= band[0]) & (density.x <= band[1])
@@ -107,11 +107,17 @@ def plot_pair(history: ChannelCurves, density: ChannelCurves, band: tuple[float,
     return figure
 
 
-def _busy(curve: ChannelCurves) -> tuple[float, float]:
-    """Return the part of the time in which something happens, a second around it."""
-    loud = np.flatnonzero(np.abs(curve.measured) > 0.02 * np.abs(curve.measured).max())
-    first, last = (loud[0], loud[-1]) if len(loud) else (0, len(curve.x) - 1)
-    return max(float(curve.x[0]), float(curve.x[first]) - 0.5), min(float(curve.x[-1]), float(curve.x[last]) + 0.5)
+def _busy(curves: Sequence[ChannelCurves]) -> tuple[float, float]:
+    """Return the part of a run's time in which any channel shows more than its noise, half a second around it."""
+    first, last = [], []
+    for curve in curves:
+        size = np.abs(curve.measured)
+        low, high = (share * size.max(initial=0.0) for share in LOUD_SHARES)
+        loud = np.flatnonzero(size > np.clip(LOUD_OVER_MEDIAN * np.median(size), low, high))
+        ends = (loud[0], loud[-1]) if len(loud) else (0, -1)
+        first.append(max(float(curve.x[0]), float(curve.x[ends[0]]) - 0.5))
+        last.append(min(float(curve.x[-1]), float(curve.x[ends[1]]) + 0.5))
+    return min(first), max(last)
 
 
 def _grid(count: int) -> tuple[Figure, list[Axes]]:

@@ -1,0 +1,154 @@
+"""What `calibrate` prints for people: what is told first, then single parameters, the runs, and what would help most."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+from vehgen.commands.terminal import print_table, say, warn
+
+if TYPE_CHECKING:
+    from vehgen.calibrate.result import CalibrationSummary, ConditionSummary, FactAdvice
+
+MAX_CHI2 = 1.2
+"""Above this the residuals are larger than the noise model allows."""
+FAR_OFF_SIGMAS = 3.0
+"""A run's condition this far off what was known is doubtful."""
+WORTH_ASKING = 0.8
+"""A fact that leaves more than this share of the intervals' widths is not asked for."""
+MOST_NAMES = 8
+"""So many parameters a message lists."""
+
+
+def show_calibration(outcome: CalibrationSummary) -> None:
+    """Print a calibration's tables, then what is to be known of them."""
+    level = f"{outcome.confidence:.0%}".replace("%", " %")
+    if outcome.modes:
+        modes = [
+            (
+                mode.name,
+                f"{mode.undamped_hz:.3f}",
+                _to(mode.interval, ".3f"),
+                f"{mode.damping_ratio:.3f}",
+                _to(mode.damping_interval, ".3f"),
+            )
+            for mode in outcome.modes
+        ]
+        columns = ("mode", "undamped [Hz]", f"{level} interval", "damping ratio", f"{level} interval")
+        print_table(f"{outcome.vehicle}: natural modes", columns, modes, right=(1, 3))
+    if outcome.combinations:
+        rows = [(name, f"{item.value:.5g}", item.unit, _to(item.interval, ".4g")) for name, item in outcome.combinations.items()]
+        print_table("combinations of parameters", ("combination", "value", "unit", f"{level} interval"), rows, right=(1,))
+    _show_parameters(outcome, level)
+    _show_runs(outcome)
+    print_table(
+        "objective (Eq. 5), the runs as they were fitted",
+        ("channel", "area between the PSDs over the measured one's"),
+        [(name, f"{value:.4f}") for name, value in outcome.objective.items()],
+        right=(1,),
+    )
+    for text in _advice(outcome.prior_data_advice):
+        say(text, "advice: ")
+    warn(_warnings(outcome))
+
+
+def _show_parameters(outcome: CalibrationSummary, level: str) -> None:
+    given = any(item.interval is None and item.interval_given_pivots is not None for item in outcome.parameters.values())
+    columns = ["parameter", "value", "unit", f"{level} interval", "status"]
+    if given:
+        columns.insert(4, f"if {' and '.join(outcome.pivots)} were known")
+    rows = []
+    for name, item in outcome.parameters.items():
+        row = [name, f"{item.value:.5g}", item.unit, _to(item.interval, ".4g"), item.status]
+        if given:
+            row.insert(4, "held" if name in outcome.pivots else _to(item.interval_given_pivots, ".4g"))
+        rows.append(row)
+    print_table(f"{outcome.vehicle}: parameters, {outcome.method}", columns, rows, right=(1,))
+
+
+def _show_runs(outcome: CalibrationSummary) -> None:
+    steps = {item.step for item in outcome.conditions}
+    rows: list[tuple[str, ...]] = []
+    for run, items in groupby(sorted(outcome.conditions, key=lambda item: item.run), key=lambda item: item.run):
+        for number, item in enumerate(items):
+            chi2 = f"{outcome.run_chi2[run]:.3f}" if run in outcome.run_chi2 and number == 0 else ""
+            what = f"{item.name}, {item.step}" if len(steps) > 1 else item.name
+            what += "" if item.place == "run" else f" of {item.place}"
+            rows.append(
+                (run if number == 0 else "", chi2, what, _size(item, item.value, "+"), _size(item, item.prior), f"{item.sigmas:+.2f}")
+            )
+    if rows:
+        columns = ("run", "chi2", "fitted along", "off what the run file states", "known to", "sigmas")
+        print_table("runs, as the fit found them", columns, rows, right=(1, 3, 4, 5))
+
+
+def _size(item: ConditionSummary, value: float, sign: str = "") -> str:
+    """Return a condition's size, a relative one in percent."""
+    return f"{100 * value:{sign}.2f} %" if not item.unit else f"{value:{sign}.4f} {item.unit}"
+
+
+def _to(interval: tuple[float, float] | None, digits: str) -> str:
+    return "" if interval is None else f"{interval[0]:{digits}} to {interval[1]:{digits}}"
+
+
+def _listed(names: list[str]) -> str:
+    return ", ".join(names[:MOST_NAMES]) + (" ..." if len(names) > MOST_NAMES else "")
+
+
+def _warnings(outcome: CalibrationSummary) -> list[str]:
+    found = []
+    rank, searched = outcome.rank, outcome.searched
+    if any(item.status == "unidentifiable" for item in outcome.parameters.values()):
+        moved = "; ".join(_listed(list(direction)) for direction in outcome.null_directions)
+        found.append(
+            f"recordings of these sensors can determine {rank} combinations of the {searched} parameters, whatever the run (what can "
+            f"change together: {moved}); of the sets that fit alike this is the one nearest to the vehicle file's values"
+        )
+    bound = [name for name, item in outcome.parameters.items() if item.status == "bound"]
+    if bound:
+        found.append(f"set by the search range, not by the data: {', '.join(bound)}")
+    found += [
+        f"{item.run}: its {item.name} was fitted {abs(item.sigmas):.1f} standard deviations off what was known of it: look at the run"
+        for item in outcome.conditions
+        if abs(item.sigmas) > FAR_OFF_SIGMAS
+    ]
+    found += [
+        f"the tyre of {name} would have left the road (its load falls to {share:.2f} of the static load): the linear tyre does not hold"
+        for name, share in outcome.tyre_load_minimum.items()
+        if share < 0
+    ]
+    worst = max([outcome.chi2 or 0.0, *outcome.run_chi2.values()])
+    if worst > MAX_CHI2:
+        found.append(
+            f"the residuals are larger than the noise model allows (chi2 {worst:.2f}): all intervals are wider by the factor "
+            f"{outcome.interval_inflation:.2f}; `diagnose` looks for what is missing"
+        )
+    return found
+
+
+def _advice(advice: tuple[FactAdvice, ...]) -> list[str]:
+    """Say which fact would help most, and which beside it."""
+    if not advice or advice[0].width_left > WORTH_ASKING:
+        return []
+    best = advice[0]
+    found = [
+        f"what would help most is the {_named(best)}: intervals would keep {100 * best.width_left:.0f} % of their width on average "
+        f"(narrower by half: {_listed(list(best.narrows))}); write `{_entry(best)}` into a file and give it with --facts"
+    ]
+    second = min(advice, key=lambda item: item.width_left_beside_best)
+    if second is not best and second.width_left_beside_best < WORTH_ASKING * best.width_left:
+        found.append(f"then the {_named(second)}, which would leave {100 * second.width_left_beside_best:.0f} %: `{_entry(second)}`")
+    return found
+
+
+def _named(item: FactAdvice) -> str:
+    return f"{item.fact}, known to {_rounded(item)}"
+
+
+def _entry(item: FactAdvice) -> str:
+    return item.entry.replace("...", f"{{value: ... {item.unit}, uncertainty: {_rounded(item)}}}")
+
+
+def _rounded(item: FactAdvice) -> str:
+    """Return how well a fact would be known, in two digits."""
+    return f"{float(f'{item.uncertainty:.2g}'):g} {item.unit}"

@@ -1,0 +1,74 @@
+"""What a calibration says of its runs: scored, drawn and warned of at the speed, clock and height that it found."""
+
+import numpy as np
+import pytest
+
+from tests.fit.recordings import sedan_truth, write_run
+from vehgen.calibrate.calibration import Settings, calibrate_problem
+from vehgen.calibrate.fitted_runs import fitted_responses, least_tyre_loads
+from vehgen.calibrate.genetic import GeneticSearch
+from vehgen.calibrate.result import CalibrationSummary
+from vehgen.calibrate.summary import summarise
+from vehgen.fit.problem import make_problem
+from vehgen.fit.trial import load_trials
+
+TRUE_SPEED, STATED_SPEED = 2.5, 2.45
+
+
+def misstated_run(folder):
+    """Write two runs; the speed of the second is stated 2 % too low."""
+    right, wrong = (write_run(folder, name, sedan_truth(), TRUE_SPEED, seed=i) for i, name in enumerate(("right", "wrong")))
+    wrong.write_text(wrong.read_text(encoding="utf-8").replace(f"speed: {TRUE_SPEED}", f"speed: {STATED_SPEED}"), encoding="utf-8")
+    return make_problem(load_trials([right, wrong]))
+
+
+@pytest.fixture(scope="module")
+def calibration(tmp_path_factory):
+    return calibrate_problem(misstated_run(tmp_path_factory.mktemp("runs")), Settings(search=GeneticSearch(1, 10, 0), starts=2))
+
+
+@pytest.fixture(scope="module")
+def summary(calibration):
+    return summarise(calibration)
+
+
+def test_a_good_fit_is_scored_and_drawn_as_one_where_the_speed_was_misstated(summary):
+    assert max(summary.objective.values()) < 0.03
+    for curve in summary.histories:
+        assert np.std(curve.measured - curve.simulated) < 0.02 * np.std(curve.measured), (curve.run, curve.channel)
+
+
+def test_tyre_loads_are_those_of_the_runs_as_they_were(calibration, tmp_path):
+    trials = load_trials([write_run(tmp_path, "right", sedan_truth(), TRUE_SPEED)])
+    right = calibrate_problem(make_problem(trials), Settings(search=GeneticSearch(1, 10, 0), starts=1))
+    alone = least_tyre_loads(right)
+    found = least_tyre_loads(calibration)
+    assert found == pytest.approx(alone, abs=0.01)
+
+
+def test_each_run_tells_its_speed_clock_and_chi2_with_what_was_known(summary):
+    found = {(item.run, item.name): item for item in summary.conditions}
+    assert set(found) == {(run, name) for run in ("right", "wrong") for name in ("delay", "speed")}
+    wrong = found["wrong", "speed"]
+    assert wrong.value == pytest.approx(TRUE_SPEED / STATED_SPEED - 1, abs=1e-3)
+    assert wrong.prior == 0.01
+    assert wrong.sigmas == pytest.approx(wrong.value / wrong.prior)
+    assert abs(found["right", "speed"].value) < 1e-3
+    assert found["right", "delay"].unit == "s"
+    assert set(summary.run_chi2) == {"right", "wrong"}
+    assert all(value == pytest.approx(1.0, abs=0.2) for value in summary.run_chi2.values())
+
+
+def test_each_step_of_dhcm_is_simulated_at_its_own_clock(tmp_path):
+    problem = misstated_run(tmp_path)
+    found = calibrate_problem(problem, Settings(method="dhcm", search=GeneticSearch(1, 10, 0), starts=2))
+    assert {item.step for item in summarise(found).conditions} == {"sensor F", "sensor R"}
+    for trial, response in zip(problem.trials, fitted_responses(found), strict=True):
+        assert (np.std(trial.recording.values - response, axis=0) < 0.05 * np.std(trial.recording.values, axis=0)).all()
+
+
+def test_a_summary_of_before_the_conditions_is_still_read(summary):
+    data = summary.to_dict()
+    for name in ("conditions", "run_chi2"):
+        del data[name]
+    assert CalibrationSummary.from_dict(data).conditions == ()

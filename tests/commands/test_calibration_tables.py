@@ -1,0 +1,72 @@
+"""What `calibrate` prints: what is told stands first, and what is not is never the last word."""
+
+from dataclasses import replace
+
+import pytest
+
+from tests.fit.recordings import sedan_truth, write_run
+from vehgen.calibrate.calibration import Settings, calibrate_problem
+from vehgen.calibrate.genetic import GeneticSearch
+from vehgen.calibrate.result import CombinationSummary, FactAdvice
+from vehgen.calibrate.summary import summarise
+from vehgen.commands.calibration_tables import show_calibration
+from vehgen.fit.problem import make_problem
+from vehgen.fit.trial import load_trials
+
+KERB_MASS = FactAdvice("kerb mass", "kerb_mass: ...", 1700.0, 17.3, "kg", 0.2, 0.15, ("kf", "mf"))
+FRONT = FactAdvice("load of front", "axle_weights: {front: ...}", 9000.0, 90.0, "N", 0.4, 0.1, ("mf",))
+
+
+@pytest.fixture(scope="module")
+def summary(tmp_path_factory):
+    trials = load_trials([write_run(tmp_path_factory.mktemp("run"), "hump", sedan_truth())])
+    return summarise(calibrate_problem(make_problem(trials), Settings(search=GeneticSearch(1, 10, 0), starts=1)), combinations=("kf/mf",))
+
+
+@pytest.fixture(scope="module")
+def open_summary(summary):
+    """The summary of a vehicle that recordings tell but in part."""
+    parameters = {name: replace(item, interval=None, status="unidentifiable") for name, item in summary.parameters.items()}
+    directions = (dict.fromkeys(summary.parameters, 1.0),)
+    told = {"kf/mH": CombinationSummary(40.0, (39.0, 41.0), "s^-2")}
+    advice = (KERB_MASS, FRONT)
+    return replace(
+        summary, parameters=parameters, rank=9, pivots=("mf",), null_directions=directions, combinations=told, prior_data_advice=advice
+    )
+
+
+def printed(capsys, summary):
+    show_calibration(summary)
+    return " ".join(capsys.readouterr().out.split())
+
+
+def test_runs_are_told_with_what_was_known_of_them(summary, capsys):
+    text = printed(capsys, summary)
+    speed = next(item for item in summary.conditions if item.name == "speed")
+    assert f"{100 * speed.value:+.2f} % 1.00 % {speed.sigmas:+.2f}" in text
+    assert f"{summary.run_chi2['hump']:.3f}" in text
+    assert "kf/mf" in text
+
+
+def test_what_is_told_comes_before_what_is_not(open_summary, capsys):
+    text = printed(capsys, open_summary)
+    places = [text.index(part) for part in ("body heave", "39 to 41", "unidentifiable", "help most", "can determine 9")]
+    assert places == sorted(places)
+    low, high = open_summary.parameters["kf"].interval_given_pivots
+    assert "if mf were known" in text
+    assert f"{low:.4g} to {high:.4g}" in text
+
+
+def test_the_facts_that_help_most_are_asked_for_with_how_to_give_them(open_summary, capsys):
+    text = printed(capsys, open_summary)
+    assert "the kerb mass, known to 17 kg" in text
+    assert "`kerb_mass: {value: ... kg, uncertainty: 17 kg}`" in text
+    assert "then the load of front" in text
+    assert "help most" not in printed(capsys, replace(open_summary, prior_data_advice=(replace(KERB_MASS, width_left=0.95),)))
+
+
+def test_wider_intervals_and_doubtful_runs_are_spoken_of(summary, capsys):
+    far = tuple(replace(item, sigmas=-5.0) for item in summary.conditions)
+    text = printed(capsys, replace(summary, conditions=far, run_chi2={"hump": 2.25}, interval_inflation=1.5))
+    assert "(chi2 2.25): all intervals are wider by the factor 1.50" in text
+    assert "hump: its speed was fitted 5.0 standard deviations off" in text
