@@ -15,13 +15,14 @@ import scipy.optimize
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from vehgen.codegen.decimation import decimate
 from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.fit.noise import Noise, road_answer, taper
 from vehgen.fit.trial import Trial
 from vehgen.measure.acquisition import POINT_SAMPLES, UNKNOWN, AcquisitionChain, FilterKind
-from vehgen.simulate.acquired import decimate, extended, kept_stride
+from vehgen.simulate.acquired import extended, kept_stride
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -71,12 +72,8 @@ class FineResponse:
 
     def acquired(self, chains: Sequence[AcquisitionChain]) -> Array:
         """Return the samples that chains, one a channel, make of it, `shape (count, n_channels)`."""
-        found = np.empty((self.skipped + self.count, self.values.shape[1]))
-        for chain in dict.fromkeys(chains):
-            own = [i for i, item in enumerate(chains) if item == chain]
-            first, taps = chain.taps(self.dt)
-            found[:, own] = decimate(self.values[None][:, :, own], first, taps, self.ratio, len(found))[0]
-        return found[self.skipped :]
+        filters = [chain.taps(self.dt) for chain in chains]
+        return np.asarray(decimate(self.values[None], filters, self.ratio, self.skipped + self.count, threads=1)[0][self.skipped :])
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,7 @@ class LeastSquaresFit:
     x: Array
     chi2: float
     loss: float
-    linearisation: Linearisation
+    linearisation: Linearisation | None = None
 
     def conditions(self) -> tuple[Condition, ...]:
         """Return what it supposes of sensors and runs."""

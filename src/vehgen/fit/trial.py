@@ -20,8 +20,8 @@ from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-AT_REST_S, AT_REST_SHARE = 0.1, 0.2
-"""A vehicle rests that moves less than this share of what it does later for so long at the begin of its recording [s]."""
+AT_REST_SAMPLES, AT_REST_SHARE = 3, 0.2
+"""A vehicle rests at the begin of a recording whose first samples are all below this share of what it does later."""
 FORGOTTEN = 4.0
 """After so many decay times 2 % of a motion are left."""
 MOST_SKIPPED = 0.5
@@ -157,9 +157,8 @@ def _from_known_road(trial: Trial) -> Trial:
     """
     scenario, recording = trial.scenario, trial.recording
     rough = [part for part in scenario.track.parts if not isinstance(part, Hump)]
-    first = max(1, round(AT_REST_S / recording.dt))
     size = np.sqrt(np.mean(recording.values**2, axis=0))
-    if not rough or np.all(np.sqrt(np.mean(recording.values[:first] ** 2, axis=0)) < AT_REST_SHARE * size):
+    if not rough or np.all(np.sqrt(np.mean(recording.values[:AT_REST_SAMPLES] ** 2, axis=0)) < AT_REST_SHARE * size):
         return trial
     offsets = trial.simulator.model.wheel_offsets(trial.values)
     known = float(scenario.speed.distance(np.array([scenario.first_arrival]))[0]) + float(offsets.max(initial=0.0))

@@ -14,9 +14,9 @@ from dataclasses import replace
 import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
-from threadpoolctl import ThreadpoolController
 
 from vehgen.codegen import Excitation, Kernel, KernelResult
+from vehgen.codegen.decimation import decimate
 from vehgen.measure.acquisition import AcquisitionChain
 from vehgen.simulate.excitation_cache import ExcitationCache
 from vehgen.simulate.scenario import Scenario
@@ -27,14 +27,9 @@ LEAST_RATIO = 5
 """Kept steps per sample, at least, of what a FIR filter decimates ..."""
 LEAST_RATE = 500.0
 """... and kept steps per second [Hz], where the internal step is as short."""
-PRODUCT_SAMPLES = 25
-"""Samples that one product of matrices filters: more take in more zeros, fewer more calls."""
-BLOCK_INDIVIDUALS = 64
-"""Individuals filtered together: their kept steps stay near the processor."""
 DIRECT_PRODUCTS = 400_000
 """Products up to which a column is convolved directly: a hump is short."""
 _FILTERED = ExcitationCache()
-_POOLS = ThreadpoolController()
 
 
 def assumed_chains(scenario: Scenario, channels: Sequence[str]) -> tuple[AcquisitionChain, ...]:
@@ -146,34 +141,5 @@ def _filtered_output(
     filters = {chain: chain.taps(scenario.dt * stride) for chain in dict.fromkeys(chains)}
     ahead = math.ceil(max(0, *(-first for first, _ in filters.values())) / ratio)
     result = kernel.run(parameters, extended(scenario, ahead).excitation(offsets), stride, threads=threads)
-    fine = result.responses
-    found = np.empty((len(fine), (len(scenario.time) - 1) // scenario.decimation + 1, len(chains)))
-    for chain, (first, taps) in filters.items():
-        own = [i for i, item in enumerate(chains) if item == chain]
-        for begin in range(0, len(fine), BLOCK_INDIVIDUALS):
-            part = slice(begin, begin + BLOCK_INDIVIDUALS)
-            found[part, :, own] = decimate(fine[part][:, :, own], first, taps, ratio, found.shape[1])
-    return replace(result, responses=found)
-
-
-def decimate(fine: Array, first: int, taps: Array, ratio: int, count: int) -> Array:
-    """Return every `ratio`-th number of the filtered signals `shape (n, n_fine, k)`, at rest before their beginning, `count` of them."""
-    n, n_fine, k = fine.shape
-    before = max(first + len(taps) - 1, 0)
-    after = max((count - 1) * ratio - first + 1 - n_fine, 0)
-    signals = np.zeros((before + n_fine + after, n * k))
-    signals[before : before + n_fine] = fine.transpose(1, 0, 2).reshape(n_fine, -1)
-    band = np.zeros((PRODUCT_SAMPLES, (PRODUCT_SAMPLES - 1) * ratio + len(taps)))
-    for row in range(PRODUCT_SAMPLES):
-        band[row, row * ratio : row * ratio + len(taps)] = taps[::-1]
-    found = np.empty((count, n * k))
-    begin = before - first - len(taps) + 1
-    with (
-        _POOLS.limit(limits=1, user_api="blas"),
-        np.errstate(invalid="ignore", over="ignore"),
-    ):  # individuals that failed stay failed, the others as they are
-        for row in range(0, count, PRODUCT_SAMPLES):
-            rows = min(PRODUCT_SAMPLES, count - row)
-            start, width = begin + row * ratio, (rows - 1) * ratio + len(taps)
-            np.matmul(band[:rows, :width], signals[start : start + width], out=found[row : row + rows])
-    return found.reshape(count, n, k).transpose(1, 0, 2)
+    count = (len(scenario.time) - 1) // scenario.decimation + 1
+    return replace(result, responses=decimate(result.responses, [filters[chain] for chain in chains], ratio, count, threads))
