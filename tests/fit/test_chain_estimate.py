@@ -71,7 +71,7 @@ def recorded(folder, sampled, speed, road):
 def delayed(misfit, x, seconds):
     """Return x with the clock that a fit would have found."""
     moved = x.copy()
-    moved[misfit.n_parameters] = seconds / misfit.nuisances.delay
+    moved[misfit.n_parameters + misfit.error_position(0, "delay")] = seconds / misfit.nuisances.delay
     return moved
 
 
