@@ -178,8 +178,7 @@ class Decision:
         return tuple(PlaceChi(item.place.label, item.chi) for item in self.rounds[0].passed[:5]) if self.rounds else ()
 
     def _mistaken(self, mistakes: tuple[MeasurementFault, ...]) -> Decided:
-        cures = "; ".join(dict.fromkeys(item.cure for item in mistakes))
-        ended = self._end("measurement_fault", wording.mistaken([item.message for item in mistakes]), cures)
+        ended = self._end("measurement_fault", wording.mistaken([item.message for item in mistakes]))
         return replace(ended, verdict=replace(ended.verdict, faults=mistakes))
 
     def _end(self, verdict: VerdictName, reason: str, next_experiment: str | None = None) -> Decided:

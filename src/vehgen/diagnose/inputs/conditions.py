@@ -68,7 +68,7 @@ class RunCondition:
     sigmas: float
 
 
-_WORDS = {
+_FAULT_OF = {
     "delay": ("clock", "the recording {where} starts {amount} {late} than the file says, or the road lies elsewhere along the way"),
     "speed": ("speed", "the speed {where} was {amount} {more} than stated"),
     "height": ("hump_height", "the road {where} is {amount} {more} than stated, or all channels read as much {more}"),
@@ -119,7 +119,7 @@ def findings_of_conditions(
     heights
         The heights of humps [m] by run, as stated (default: unknown): two runs whose heights suit each other's were exchanged.
     """
-    beyond = [item for item in conditions if abs(item.sigmas) > BEYOND and item.name in _WORDS]
+    beyond = [item for item in conditions if abs(item.sigmas) > BEYOND and item.name in _FAULT_OF]
     found: list[MeasurementFault] = []
     known = heights or {}
     for one, other in combinations([item for item in beyond if item.name == "height" and item.run in known and item.value > -1], 2):
@@ -145,7 +145,7 @@ def _fault(alike: Sequence[Condition], runs: tuple[str, ...]) -> MeasurementFaul
     """Return the fault that conditions of the same name and nearly the same value tell together."""
     item = alike[0]
     value, own = float(np.mean([other.value for other in alike])), tuple(other.run for other in alike)
-    kind, sentence = _WORDS[item.name]
+    kind, sentence = _FAULT_OF[item.name]
     amount = f"{abs(value):.3g} {item.unit}" if item.unit else f"{100 * abs(value):.3g} %"
     up = value > 0
     words = {"late": "later" if up else "earlier", "more": "more" if up else "less", "longer": "longer" if up else "shorter"}

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -25,7 +26,9 @@ if TYPE_CHECKING:
     from vehgen.diagnose.detect.detection import Detection
 
 MOST_MISTAKES = 3
-"""So many mistakes are looked for one after the other."""
+"""So many mistakes told end the search."""
+HELPS = 0.95
+"""A plain mistake that leaves more than this share of the excess is not looked at beside another."""
 CLEARLY_BETTER = 3.0
 """Mistakes win over effects where these leave so many times their excess."""
 CLEAR, BY_FAR = 0.1, 0.5
@@ -74,33 +77,60 @@ def find_mistakes(case: BaseRefits, plain_only: bool = False) -> tuple[Measureme
         Look for subtle mistakes only beside plain ones.
     """
     found: list[MeasurementFault] = []
-    for _ in range(MOST_MISTAKES):
-        best = _best(case, PLAIN)
-        doubtful = not plain_only if best is None else best.left > CLEAR and best.left * case.excess > FLOOR
-        if doubtful:
-            other = _best(case, SUBTLE)
-            best = other if best is None or (other is not None and other.left < BY_FAR * best.left) else best
-        if best is None:
+    while len(found) < MOST_MISTAKES:
+        steps = _next(case, plain_only)
+        if not steps:
             break
-        found += best.faults
-        case.accept(best.hypothesis, best.fit, best.left)
+        for step in steps:
+            found += step.faults
+            case.accept(step.hypothesis, step.fit, step.left)
         if case.excess <= FLOOR:
             break
     return tuple(found)
 
 
-def _best(case: BaseRefits, generators: tuple[Generator, ...]) -> _Judged | None:
-    """Return the hypothesis that leaves least of those within their limits; the first that leaves noise ends the search."""
-    best: _Judged | None = None
+def _next(case: BaseRefits, plain_only: bool) -> tuple[_Judged, ...]:
+    """Return the mistake that explains most, or two plain ones that only together explain enough; nothing where there is none."""
+    judged = _judge(case, PLAIN)
+    best = _least(judged)
+    if best is None and (pair := _pair(case, judged)):
+        return pair
+    doubtful = not plain_only if best is None else best.left > CLEAR and best.left * case.excess > FLOOR
+    if doubtful:
+        other = _least(_judge(case, SUBTLE))
+        best = other if best is None or (other is not None and other.left < BY_FAR * best.left) else best
+    return () if best is None else (best,)
+
+
+def _judge(case: BaseRefits, generators: tuple[Generator, ...]) -> list[_Judged]:
+    """Return the hypotheses of generators, refitted; the first that leaves noise ends the search."""
+    judged: list[_Judged] = []
     for generate in generators:
         for hypothesis in generate(case):
             fit, left = case.judge(hypothesis)
             faults = hypothesis.describe(fit.misfit.adjusted(fit.x))
-            if faults and left <= hypothesis.limit and (best is None or left < best.left):
-                best = _Judged(hypothesis, fit, left, faults)
+            if faults:
+                judged.append(_Judged(hypothesis, fit, left, faults))
+        best = _least(judged)
         if best is not None and best.left * case.excess <= FLOOR:
-            return best
-    return best
+            break
+    return judged
+
+
+def _least(judged: Sequence[_Judged]) -> _Judged | None:
+    """Return what leaves least of what keeps its limit."""
+    return min((item for item in judged if item.left <= item.hypothesis.limit), key=lambda item: item.left, default=None)
+
+
+def _pair(case: BaseRefits, judged: Sequence[_Judged]) -> tuple[_Judged, ...]:
+    """Return a mistake that does not explain enough by itself, with a second one that does beside it."""
+    first = min(judged, key=lambda item: item.left, default=None)
+    if first is None or first.left > HELPS:
+        return ()
+    beside = copy(case)
+    beside.accept(first.hypothesis, first.fit, first.left)
+    second = _least(_judge(beside, PLAIN))
+    return () if second is None or first.left * second.left > first.hypothesis.limit else (first, second)
 
 
 def recorded_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:

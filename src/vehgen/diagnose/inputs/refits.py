@@ -137,10 +137,12 @@ class BaseRefits:
         return fit, float((np.mean(lines) + prior - 1) / self.excess)
 
     def _noises(self, trials: Sequence[Trial], blind: frozenset[tuple[str, str]]) -> Noises:
-        known = self.base.misfit.noises
-        same = len(known) == len(trials) and all(one is other for one, other in zip(trials, self.detected, strict=True))
-        found = known if same else find_noise_floor(trials, self.band).noises
-        blinded = {}
+        known = {id(trial.recording): self.base.misfit.noises[trial.name] for trial in self.detected}  # noise goes with the recording
+        if all(id(trial.recording) in known for trial in trials):
+            found = {trial.name: known[id(trial.recording)] for trial in trials}
+        else:
+            found = find_noise_floor(trials, self.band).noises
+        blinded: Noises = {}
         for trial in trials:
             own = found[trial.name]
             factors = np.array([BLINDING if (trial.name, channel) in blind else 1.0 for channel in trial.channels])
