@@ -80,26 +80,32 @@ class Decision:
         first = self._search_round(self.base)
         if first.stopped:
             return self._stopped()
-        if not first.fits:
-            return self._unknown(first)
+        weak = self._add(first) if first.fits else None
+        if self.interrupted:
+            return self._name(self.chain) if self.chain else self._stopped()
+        return self._other_mistakes() or weak or (self._name(self.chain) if self.chain else self._unknown(first))
+
+    def _add(self, first: SearchRound) -> Decided | None:
+        """Add what passes to the chain; return the verdict where the best effect is too weak to be named."""
         best = first.fits[0]
         good = passes(best, self.base)
         weak = self._too_weak(first, best, good)
-        if weak is not None:
-            return weak
-        if good:
+        if weak is None and good:
             self.chain = [best]
             self._further()
-        else:
+        elif weak is None:
             self._pair(first)
-        if self.interrupted:
-            return self._name(self.chain) if self.chain else self._stopped()
+        return weak
+
+    def _other_mistakes(self) -> Decided | None:
+        """Return the verdict where a mistake that looks like an effect explains the runs, and no effect of the vehicle does."""
         unsure = not self.chain or unfinished(self.chain[-1], self.base)
-        if unsure or not all(candidate.effect.changes_vehicle for candidate in self.chain[-1].effects):
-            mistakes = explain_gap(detection, self.chain[-1].chi if self.chain else None, unsure)
-            if mistakes:
-                return self._mistaken(mistakes)
-        return self._name(self.chain) if self.chain else self._unknown(first)
+        named = self.chain[-1].effects if self.chain else ()
+        of_vehicle = all(candidate.effect.changes_vehicle for candidate in named)
+        if self.detection.chi <= limit.WEAK or (of_vehicle and not unsure):
+            return None
+        mistakes = explain_gap(self.detection, self.chain[-1].chi if self.chain else None, unsure)
+        return self._mistaken(mistakes) if mistakes else None
 
     def _too_weak(self, first: SearchRound, best: ModelFit, good: bool) -> Decided | None:
         """Return the verdict where the best effect is not told from chance, from random laws, or by the validation runs."""
