@@ -8,6 +8,7 @@ import scipy.signal
 from benchmarks.hidden_effects.generator import Effect, Hump, RunSpec
 
 from vehgen.diagnose.detect.detection import detect
+from vehgen.diagnose.inputs.conditions import RunCondition, findings_of_conditions
 from vehgen.diagnose.inputs.judging import explain_gap, plain_mistakes, recorded_mistakes, supposed_mistakes
 from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.thresholds import NOISE_FLOOR
@@ -224,3 +225,19 @@ def test_the_verdict_names_run_channel_and_cure(plain):
     assert "F_az is 9.807 times too small in high" in data["reason"]
     assert "9.8066" in fault["cure"]
     assert type(verdict).from_dict(data) == verdict
+
+
+def test_conditions_of_any_fit_are_read_by_name_place_and_size():
+    conditions = [
+        RunCondition("low", "gain", "F_az", 0.2, "", 6.7),
+        RunCondition("high", "gain", "F_az", 0.21, "", 7.0),
+        RunCondition("fast", "delay", "", 0.1, "s", 2.0),
+        RunCondition("fast", "speed", "", -0.05, "", -10.0),
+    ]
+    faults = findings_of_conditions(conditions, ["low", "high", "fast"])
+    assert [(item.kind, item.runs, item.channels) for item in faults] == [
+        ("gain", ("low", "high"), ("F_az",)),
+        ("speed", ("fast",), ()),
+    ]
+    assert "5 % less than stated" in faults[1].message
+    assert "10 standard deviations" in faults[1].message

@@ -121,7 +121,7 @@ def findings_of_conditions(
     """
     beyond = [item for item in conditions if abs(item.sigmas) > BEYOND and item.name in _FAULT_OF]
     found: list[MeasurementFault] = []
-    known = heights or {}
+    known = {run: height for run, height in (heights or {}).items() if height > 0}
     for one, other in combinations([item for item in beyond if item.name == "height" and item.run in known and item.value > -1], 2):
         ratio = known[other.run] / known[one.run]
         if abs(np.log((1 + one.value) / ratio)) < AGREE and abs(np.log((1 + other.value) * ratio)) < AGREE:

@@ -45,7 +45,7 @@ def _groups(trials: Sequence[Trial]) -> list[tuple[int, ...]]:
     """Return the numbers of the runs over each hump; runs over several humps are left out."""
     found: list[tuple[Hump, list[int]]] = []
     for i, trial in enumerate(trials):
-        if len(trial.scenario.humps) != 1:
+        if len(trial.scenario.humps) != 1 or _top(trial.scenario.humps[0]) == 0:
             continue
         hump = trial.scenario.humps[0]
         for other, members in found:
