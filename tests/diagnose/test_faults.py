@@ -19,7 +19,6 @@ RUNS = (
     RunSpec((Hump(0.5, 0.05, 5.0),), 4.0, 4.0, "fast"),
 )
 F_AZ, F_Q, R_AZ, R_Q = range(4)
-FRICTION = Effect("dry_friction", "front", {"force": 800.0})
 
 
 @pytest.fixture(scope="module")
@@ -200,7 +199,6 @@ def test_healthy_runs_have_no_fault(plain):
 
 
 HONEST = (
-    FRICTION,
     Effect("tyre_footprint", "all", {"length": 0.23}),
     Effect("sensor_gain", "F_az", {"error": 0.15}),
     Effect("speed_error", "all", {"error": 0.05}),
