@@ -21,7 +21,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "hidden-effects.md"
 IMAGE = ROOT / "docs" / "images" / "hidden-effects.svg"
 START, END = "<!-- results: start -->", "<!-- results: end -->"
-OTHER = ("no_missing_effect", "too_weak", "not_in_library", "insufficient_data", "crash")
+OTHER = ("no_missing_effect", "too_weak", "not_in_library", "insufficient_data", "measurement_fault", "crash")
 
 
 def main() -> None:

@@ -108,6 +108,7 @@ def test_markup_in_names_is_text(capsys: pytest.CaptureFixture[str]):
         verdict="no_difference",
         reason=f"{MARKUP} fits",
         effects=[],
+        faults=[],
         gap=SimpleNamespace(runs=[SimpleNamespace(run=MARKUP, validation=False, before=1.0, after=1.0)]),
         notes=[MARKUP],
         next_experiment=MARKUP,

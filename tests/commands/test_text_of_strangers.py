@@ -88,7 +88,7 @@ def test_a_progress_bar_shows_markup_as_it_stands(monkeypatch: pytest.MonkeyPatc
 
 def test_a_verdict_on_a_sensor_with_brackets_is_printed(capsys: pytest.CaptureFixture[str]):
     verdict = SimpleNamespace(
-        verdict="sensor_fault", reason=MARKUP, effects=(), notes=[MARKUP], next_experiment=MARKUP, gap=SimpleNamespace(runs=[])
+        verdict="sensor_fault", reason=MARKUP, effects=(), faults=(), notes=[MARKUP], next_experiment=MARKUP, gap=SimpleNamespace(runs=[])
     )
     found: Any = SimpleNamespace(verdict=verdict)
     _show(found, [Path("report.html")])

@@ -88,6 +88,8 @@ def _show(found: Diagnosis, files: list[Path]) -> None:
         for run in verdict.gap.runs
     ]
     print_table("chi (1 is noise alone)", columns, rows, right=(2, 3)[: len(columns) - 2])
+    for cure in dict.fromkeys(fault.cure for fault in verdict.faults):
+        say(f"put right: {cure}")
     for note in verdict.notes:
         say(f"note: {note}")
     if verdict.next_experiment:

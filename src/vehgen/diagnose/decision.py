@@ -14,7 +14,9 @@ from vehgen.diagnose.design.experiment import VISIBLE, propose, propose_stronger
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit
-from vehgen.diagnose.inputs.checks import check_inputs, explain_gap
+from vehgen.diagnose.inputs.checks import variety_notes
+from vehgen.diagnose.inputs.fault import MeasurementFault
+from vehgen.diagnose.inputs.judging import explain_gap, plain_mistakes, recorded_mistakes, supposed_mistakes
 from vehgen.diagnose.localise.free_form import FreeForm, fit_free_form, recover, strongest
 from vehgen.diagnose.localise.localisation import suffices
 from vehgen.diagnose.result import Decided, DiagnosisModels
@@ -59,12 +61,12 @@ class Decision:
 
     def _decide(self) -> Decided:
         detection = self.detection
-        shown = check_inputs(detection.trials)
-        fatal = [item.message for item in shown if item.fatal]
-        self.notes += [item.message for item in shown if not item.fatal]
-        if fatal:
-            return self._end("insufficient_data", wording.unusable(fatal), "record these channels anew, or leave them out of the run files")
-        if max(detection.chi, float(np.sqrt(self.base.training))) <= limit.NOISE_FLOOR:
+        self.notes += variety_notes(detection.trials)
+        quiet = max(detection.chi, float(np.sqrt(self.base.training))) <= limit.NOISE_FLOOR
+        mistakes = recorded_mistakes(detection) or (supposed_mistakes(detection) if quiet else plain_mistakes(detection))
+        if mistakes:
+            return self._mistaken(mistakes)
+        if quiet:
             return self._end("no_missing_effect", wording.no_missing_effect(detection.chi))
         if not detection.validation_runs:
             count = len(detection.trials)
@@ -78,27 +80,32 @@ class Decision:
         first = self._search_round(self.base)
         if first.stopped:
             return self._stopped()
-        if not first.fits:
-            return self._unknown(first)
+        weak = self._add(first) if first.fits else None
+        if self.interrupted:
+            return self._name(self.chain) if self.chain else self._stopped()
+        return self._other_mistakes() or weak or (self._name(self.chain) if self.chain else self._unknown(first))
+
+    def _add(self, first: SearchRound) -> Decided | None:
+        """Add what passes to the chain; return the verdict where the best effect is too weak to be named."""
         best = first.fits[0]
         good = passes(best, self.base)
         weak = self._too_weak(first, best, good)
-        if weak is not None:
-            return weak
-        if good:
+        if weak is None and good:
             self.chain = [best]
             self._further()
-        else:
+        elif weak is None:
             self._pair(first)
-        if self.interrupted:
-            return self._name(self.chain) if self.chain else self._stopped()
-        if not self.chain or unfinished(self.chain[-1], self.base):
-            wrong = explain_gap(detection)
-            if wrong:
-                return self._end(
-                    "insufficient_data", wording.unusable([wrong[0].message]), "; ".join(item.message for item in wrong[1:]) or None
-                )
-        return self._name(self.chain) if self.chain else self._unknown(first)
+        return weak
+
+    def _other_mistakes(self) -> Decided | None:
+        """Return the verdict where a mistake that looks like an effect explains the runs, and no effect of the vehicle does."""
+        unsure = not self.chain or unfinished(self.chain[-1], self.base)
+        named = self.chain[-1].effects if self.chain else ()
+        of_vehicle = all(candidate.effect.changes_vehicle for candidate in named)
+        if self.detection.chi <= limit.WEAK or (of_vehicle and not unsure):
+            return None
+        mistakes = explain_gap(self.detection, self.chain[-1].chi if self.chain else None, unsure)
+        return self._mistaken(mistakes) if mistakes else None
 
     def _too_weak(self, first: SearchRound, best: ModelFit, good: bool) -> Decided | None:
         """Return the verdict where the best effect is not told from chance, from random laws, or by the validation runs."""
@@ -175,6 +182,10 @@ class Decision:
 
     def _places(self) -> tuple[PlaceChi, ...]:
         return tuple(PlaceChi(item.place.label, item.chi) for item in self.rounds[0].passed[:5]) if self.rounds else ()
+
+    def _mistaken(self, mistakes: tuple[MeasurementFault, ...]) -> Decided:
+        ended = self._end("measurement_fault", wording.mistaken([item.message for item in mistakes]))
+        return replace(ended, verdict=replace(ended.verdict, faults=mistakes))
 
     def _end(self, verdict: VerdictName, reason: str, next_experiment: str | None = None) -> Decided:
         found = Verdict(verdict, reason, (), self._gap(), self._places(), next_experiment=next_experiment, notes=tuple(self.notes))

@@ -7,9 +7,10 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
+from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.files.results import Result, Table
 
-VerdictName = Literal["no_missing_effect", "named", "ambiguous", "not_in_library", "too_weak", "insufficient_data"]
+VerdictName = Literal["no_missing_effect", "named", "ambiguous", "not_in_library", "too_weak", "insufficient_data", "measurement_fault"]
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,8 @@ class Verdict(Result):
     """The verdict of a diagnosis.
 
     `reason` says it in plain sentences; `places` are the places that pass the place test; `next_experiment` what would tell more; `notes`
-    what a careful reader should know; `free_form` describes the unknown force where no effect of the library does.
+    what a careful reader should know; `free_form` describes the unknown force where no effect of the library does; `faults` are mistakes of
+    the measurement, to be put right before anything is named.
     """
 
     KIND: ClassVar[str] = "verdict"
@@ -88,6 +90,7 @@ class Verdict(Result):
     next_experiment: str | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
     free_form: dict[str, Any] | None = None
+    faults: tuple[MeasurementFault, ...] = ()
 
     def table(self) -> Table:
         """Return the named effects' parameters, a row each."""

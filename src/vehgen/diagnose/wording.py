@@ -162,9 +162,9 @@ def too_few_runs(chi: float, count: int) -> str:
     return f"The runs cannot tell: a gap is there (chi {chi:.2f}, where 1 is noise alone), but {needed}"
 
 
-def unusable(reasons: Sequence[str]) -> str:
-    """Return the verdict `insufficient_data` where the inputs are wrong."""
-    return f"The runs cannot tell before this is put right: {'; '.join(reasons)}"
+def mistaken(faults: Sequence[str]) -> str:
+    """Return the verdict `measurement_fault`, of the messages of what is wrong with the measurement."""
+    return f"The measurement is at fault: {'; '.join(faults)}"
 
 
 def stopped(count: int, best: tuple[str, float] | None) -> str:

@@ -36,6 +36,8 @@ COLOURED = 12.0
 """Gain in -2 ln of the likelihood of the lead-ins beyond which noise counts as coloured."""
 LEAST = 0.5
 """A lead-in that tells of less than this share of what its own top of the band shows has let the road's roughness take the noise."""
+STEADY = 3.0
+"""The loudest quarter of a quiet lead-in is less than this many times as loud as the middling one."""
 LARGEST_RATIO = 4.0
 """The top of the band of a loud run may hold its motion too: it counts at most this much more than the lead-in's variance."""
 
@@ -148,8 +150,16 @@ def lead_in(trial: Trial) -> Trial | None:
     count = int(quiet.sum())
     if count * trial.recording.dt < SHORTEST_QUIET_S or np.any(np.ptp(trial.recording.values[:count], axis=0) == 0.0):
         return None
+    if not _steady(trial.recording.values[:count]):
+        return None
     measurement = replace(trial.recording, time=time[:count], values=trial.recording.values[:count])
     return replace(trial, recording=measurement)
+
+
+def _steady(values: Array) -> bool:
+    """Return whether quarters of a stretch are about equally loud: one that holds the hump, of a run stated wrong, is not quiet."""
+    quarters = np.array([np.std(part, axis=0) for part in np.array_split(values, 4)])
+    return bool(np.all(quarters.max(axis=0) < STEADY * np.median(quarters, axis=0)))
 
 
 def top_of_band(trial: Trial, band: tuple[float, float] = CALIBRATION_BAND_HZ) -> Array:

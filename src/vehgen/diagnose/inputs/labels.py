@@ -6,6 +6,7 @@ the better one; exchanged sensors raise it by 0.37 or more, turned channels by 0
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, permutations
@@ -13,8 +14,10 @@ from itertools import combinations, permutations
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.inputs.finding import Finding
+from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always, place_words
+from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.fit.trial import Trial
+from vehgen.measure.recording import RecordedChannel
 
 Array = NDArray[np.float64]
 LAG = 0.3
@@ -23,6 +26,10 @@ CORRELATION_MARGIN = 0.15
 """Another labelling must raise the mean correlation by this, and turned signs by this once more."""
 TURNED = -0.3
 """A channel is taken as turned below this correlation."""
+RELABELLED = 0.5
+"""Largest share of the excess that another labelling may leave: the true effect may still be in it."""
+CHANNELS_ONLY = 0.02
+"""Single channels exchanged must raise it by this more than whole sensors: the pitch rates of one body are alike."""
 MANY = 4
 """Beyond so many sensors only pairs of them are exchanged."""
 
@@ -46,21 +53,6 @@ class Labels:
         return replace(trial, recording=replace(trial.recording, values=values))
 
 
-def correlate(trial: Trial, simulated: Array, band: tuple[float, float]) -> Array:
-    """Return the correlation of every measured channel (second axis) with every simulated one within a band, at lags up to LAG.
-
-    `shape (n_lags, n_channels, n_channels)`, from -LAG, the recording early, to LAG.
-    """
-    dt, n = trial.recording.dt, len(simulated)
-    frequency = np.fft.rfftfreq(2 * n, dt)
-    inside = ((frequency >= band[0]) & (frequency <= band[1]))[:, None]
-    measured, model = (np.fft.rfft(item, 2 * n, axis=0) * inside for item in (trial.recording.values, simulated))
-    cross = np.fft.irfft(measured[:, :, None] * model[:, None, :].conj(), 2 * n, axis=0)
-    own, other = (np.sqrt((np.fft.irfft(item, 2 * n, axis=0) ** 2).sum(axis=0)) for item in (measured, model))
-    reach = min(int(LAG / dt), n - 1)
-    return np.asarray(cross[np.arange(-reach, reach + 1)] / np.maximum(np.outer(own, other), 1e-300))
-
-
 def true_labels(trial: Trial, correlation: Array) -> Labels:
     """Return the labelling that correlates best, each kind of mistake handicapped by MARGIN."""
     n = correlation.shape[1]
@@ -73,13 +65,14 @@ def true_labels(trial: Trial, correlation: Array) -> Labels:
             at = int(mean.argmax())
             item = Labels(source, tuple(int(sign) for sign in signs[at]))
             score = mean[at] - CORRELATION_MARGIN * ((source != tuple(range(n))) + (min(item.signs) < 0))
+            score -= CHANNELS_ONLY * (not _whole_sensors(trial.recording.channels, source))
             if score > best:
                 best, pattern = float(score), item
     return pattern
 
 
 def _sources(trial: Trial) -> Iterator[tuple[int, ...]]:
-    """Yield every way in which sensors of the same quantities may have been exchanged, as channel numbers; the labelled one first."""
+    """Yield every way in which sensors, or two channels of one sensor or quantity, may have been exchanged, the labelled one first."""
     channels = trial.recording.channels
     sensors = list(dict.fromkeys(channel.sensor for channel in channels))
     number = {(channel.sensor, channel.quantity): i for i, channel in enumerate(channels)}
@@ -93,26 +86,58 @@ def _sources(trial: Trial) -> Iterator[tuple[int, ...]]:
         source = [number.get((given[channel.sensor], channel.quantity), -1) for channel in channels]
         if sorted(source) == list(range(len(channels))):
             yield tuple(source)
+    for i, j in combinations(range(len(channels)), 2):
+        one_of_both = (channels[i].sensor == channels[j].sensor) != (channels[i].quantity == channels[j].quantity)
+        if one_of_both:
+            yield tuple(j if k == i else i if k == j else k for k in range(len(channels)))
 
 
-def relabelled(trials: Sequence[Trial], hypothesis: Mapping[str, Labels]) -> Iterator[Finding]:
+def label_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
+    """Yield that sensors were exchanged or channels turned, as each run's correlations have it, and as most runs have it."""
+    found = {trial.name: true_labels(trial, item.within(LAG)) for trial, item in zip(case.trials, case.comparisons, strict=True)}
+    wrong = {name: pattern for name, pattern in found.items() if not pattern.trivial}
+    if not wrong:
+        return
+    hypotheses = [wrong]
+    common, count = Counter(wrong.values()).most_common(1)[0]
+    if count > len(case.trials) / 2 and len({trial.channels for trial in case.trials}) == 1:
+        hypotheses.append({trial.name: common for trial in case.trials})
+    for hypothesis in hypotheses[: 1 if hypotheses[-1] == wrong else 2]:
+        trials = tuple(hypothesis[trial.name].undo(trial) if trial.name in hypothesis else trial for trial in case.trials)
+        faults = tuple(_relabelled(case.trials, hypothesis))
+        yield Hypothesis(trials, always(*faults), RELABELLED)
+
+
+def _whole_sensors(channels: Sequence[RecordedChannel], source: Sequence[int]) -> bool:
+    """Return whether channels that were exchanged went with all others of their sensors."""
+    taken = {(channel.sensor, channels[i].sensor) for channel, i in zip(channels, source, strict=True)}
+    same = all(channel.quantity == channels[i].quantity for channel, i in zip(channels, source, strict=True))
+    return same and len(taken) == len({sensor for sensor, _ in taken})
+
+
+def _true_owners(channels: Sequence[RecordedChannel], source: Sequence[int]) -> dict[str, str]:
+    """Return under which name each sensor was recorded, or each channel where channels went without the rest of their sensor."""
+    if _whole_sensors(channels, source):
+        return {channel.sensor: channels[i].sensor for channel, i in zip(channels, source, strict=True)}
+    return {channel.name: channels[i].name for channel, i in zip(channels, source, strict=True)}
+
+
+def _relabelled(trials: Sequence[Trial], hypothesis: Mapping[str, Labels]) -> Iterator[MeasurementFault]:
     """Yield what is wrong with the labels of runs, given their true ones by name."""
     named = {trial.name: trial for trial in trials}
-    everywhere = len(hypothesis) == len(trials) and len(set(hypothesis.values())) == 1
-    for run, pattern in list(hypothesis.items())[: 1 if everywhere else None]:
-        channels = named[run].recording.channels
-        where = "in all runs" if everywhere else f"in {run}"
-        given = {channel.sensor: channels[i].sensor for channel, i in zip(channels, pattern.source, strict=True)}
-        moved = sorted(name for name, other in given.items() if name != other)
+    everyone = tuple(named)
+    for pattern in dict.fromkeys(hypothesis.values()):
+        runs = tuple(name for name, own in hypothesis.items() if own == pattern)
+        channels = named[runs[0]].recording.channels
+        where = place_words(runs, everyone)
+        given = _true_owners(channels, pattern.source)
+        moved = tuple(sorted(name for name, other in given.items() if name != other))
         if moved:
-            words = " and ".join(moved) + " have been exchanged" if len(moved) == 2 else "the sensors " + ", ".join(moved) + " are mixed up"
+            words = " and ".join(moved) + " have been exchanged" if len(moved) == 2 else ", ".join(moved) + " are mixed up"
             what = ", ".join(f"what is labelled {name} is what {given[name]} would record" for name in moved)
-            message = f"{words} {where}: {what}; put the columns right in the run file"
-            yield Finding("exchanged", None if everywhere else run, ", ".join(moved), message, True)
-        turned = [channel.name for channel, sign in zip(channels, pattern.signs, strict=True) if sign < 0]
+            yield MeasurementFault("exchanged", runs, moved, f"{words} {where}: {what}", "put the columns right in the run file")
+        turned = tuple(channel.name for channel, sign in zip(channels, pattern.signs, strict=True) if sign < 0)
         if turned:
             verb = "has its sign" if len(turned) == 1 else "have their signs"
-            message = (
-                f"{' and '.join(turned)} {verb} turned {where}: set `sign: -1` for it in the run file (z up, pitch nose-down positive)"
-            )
-            yield Finding("turned", None if everywhere else run, ", ".join(turned), message, True)
+            cure = "set `sign: -1` for it in the run file (z up, pitch nose-down positive)"
+            yield MeasurementFault("turned", runs, turned, f"{' and '.join(turned)} {verb} turned {where}", cure)

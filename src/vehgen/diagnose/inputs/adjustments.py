@@ -1,0 +1,67 @@
+"""What a mistake of one run or of a recorder does to the readings: a number each, fitted along with the base model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.interpolate
+import scipy.signal
+from numpy.typing import NDArray
+
+from vehgen.fit.adjustments import Adjustment, Gain, SensorDelay
+from vehgen.fit.trial import Trial
+
+Array = NDArray[np.float64]
+FILTER_ORDER = 4
+
+
+@dataclass(frozen=True)
+class RunGain(Gain):
+    """A channel's reading over the truth in the run `run` only."""
+
+    run: str = ""
+
+    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+        """Return the readings with the channel times its number, in its run."""
+        return super().response(trial, response, numbers) if trial.name == self.run else response
+
+
+@dataclass(frozen=True)
+class RunDelay(SensorDelay):
+    """How late all channels of a sensor are in the run `run` only [s]."""
+
+    run: str = ""
+
+    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+        """Return the readings with the sensor's channels later, in its run."""
+        return super().response(trial, response, numbers) if trial.name == self.run else response
+
+
+@dataclass(frozen=True)
+class RecorderFilter(Adjustment):
+    """The logarithm of the cut-off [Hz] of a Butterworth low-pass in `channels` of `runs`."""
+
+    runs: tuple[str, ...] = ()
+    channels: tuple[str, ...] = ()
+
+    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+        """Return the readings filtered, in its runs and channels."""
+        if trial.name not in self.runs:
+            return response
+        highest = 0.49 / trial.recording.dt
+        cutoff = float(np.clip(np.exp(numbers[0]), 0.5, highest))
+        sections = scipy.signal.butter(FILTER_ORDER, cutoff, fs=1 / trial.recording.dt, output="sos")
+        slow = np.array([name in self.channels for name in trial.channels])
+        return np.where(slow, scipy.signal.sosfilt(sections, response, axis=-2), response)
+
+
+@dataclass(frozen=True)
+class ClockRate(Adjustment):
+    """How many seconds of a recorder's clock a second takes, in all runs."""
+
+    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+        """Return the readings against the recorder's clock."""
+        time = trial.recording.time
+        spline = scipy.interpolate.CubicSpline(time, response, axis=-2, extrapolate=False)
+        return np.asarray(np.nan_to_num(spline(time[0] + (time - time[0]) / numbers[0]), nan=0.0))

@@ -1,0 +1,166 @@
+"""Amplitudes that are wrong: channels in other units, dead channels, another gain in one run, an offset or a drift."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.diagnose.inputs.adjustments import RunGain
+from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always, place_words
+from vehgen.diagnose.inputs.refits import BaseRefits
+from vehgen.files.units import STANDARD_GRAVITY, read_unit
+from vehgen.fit.trial import Trial
+
+Array = NDArray[np.float64]
+ACCELERATION_UNITS = {"m/s^2": 1.0, "g": STANDARD_GRAVITY, "mm/s^2": 1e-3, "mg": STANDARD_GRAVITY / 1000}
+RATE_UNITS = {"rad/s": 1.0, "deg/s": np.pi / 180, "mrad/s": 1e-3}
+UNITS_OF = {"acceleration": ACCELERATION_UNITS, "pitch_rate": RATE_UNITS}
+"""What a channel's units are worth in SI, by quantity."""
+NEAR_FACTOR = 0.45
+"""A level within this of a factor's logarithm suggests it: the file's parameters and a missing effect move levels too."""
+COHERENT = 0.4
+"""A channel's unit is judged where it correlates this well with its prediction."""
+ALIVE, DEAD = 0.6, 0.35
+"""A dead channel correlates below the one while its like correlate above the other: channels of its quantity, or else all others."""
+NEIGHBOURS = 0.05
+"""A dead channel's correlation is looked at within this of the others' lag [s]."""
+OTHER_UNIT = 0.5
+"""Largest share of the excess that another unit may leave: the true effect may still be in it."""
+ONE_CHANNEL = 0.25
+"""The same for a dead channel, for another gain in one run, and for a drift."""
+GAIN_NOTICED, GAIN_FAR = 0.08, 1.5
+"""A channel's level off by more than the one and less than the other in one run, as a logarithm, is fitted."""
+DRIFT_NOTICED = 0.1
+"""An offset and drift of this share of a channel's RMS is taken out."""
+
+
+def unit_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
+    """Yield that channels are stated in other units than they were recorded in, all of them together."""
+    found: dict[tuple[str, str, float], list[str]] = {}
+    trials = []
+    for trial, item in zip(case.trials, case.comparisons, strict=True):
+        factors = np.ones(len(trial.channels))
+        for i, channel in enumerate(trial.recording.channels):
+            if abs(item.own[item.best, i]) < COHERENT:
+                continue
+            factor = _nearest_factor(float(item.levels[i]), UNITS_OF.get(channel.quantity, {}))
+            if factor != 1.0:
+                factors[i] = 1 / factor
+                found.setdefault((channel.name, channel.quantity, factor), []).append(trial.name)
+        trials.append(scaled(trial, factors))
+    if found:
+        faults = tuple(_unit_fault(case, *key, tuple(runs)) for key, runs in found.items())
+        yield Hypothesis(tuple(trials), always(*faults), OTHER_UNIT)
+
+
+def dead_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
+    """Yield that channels recorded noise only, those of all runs together."""
+    found: dict[str, list[str]] = {}
+    for trial, item in zip(case.trials, case.comparisons, strict=True):
+        reach = round(NEIGHBOURS / item.dt)
+        around = np.abs(item.own[max(item.best - reach, 0) : item.best + reach + 1]).max(axis=0)
+        channels = trial.recording.channels
+        for i, channel in enumerate(channels):
+            others = [j for j in range(len(channels)) if j != i]
+            like = [j for j in others if channels[j].quantity == channel.quantity] or others
+            late = np.abs(item.own[:, i]).max() > ALIVE  # it follows at another lag: a clock is wrong
+            if around[i] < DEAD and not late and like and around[like].min() > ALIVE:
+                found.setdefault(channel.name, []).append(trial.name)
+    if not found:
+        return
+    faults = tuple(
+        MeasurementFault(
+            "dead",
+            tuple(runs),
+            (name,),
+            f"{name} holds nothing but noise {place_words(tuple(runs), case.runs)}: it does not follow what the other channels felt",
+            "leave this channel out of the run file, or record again with a sensor that works",
+        )
+        for name, runs in found.items()
+    )
+    blind = frozenset((run, name) for name, runs in found.items() for run in runs)
+    yield Hypothesis(case.trials, always(*faults), ONE_CHANNEL, blind=blind)
+
+
+def gain_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
+    """Yield that one channel has another gain in one run than in the others, where it stands out most."""
+    if len(case.trials) < 3 or len({trial.channels for trial in case.trials}) > 1:
+        return
+    levels = np.array([item.levels for item in case.comparisons])
+    apart = levels - np.median(levels, axis=0)
+    apart -= np.median(apart, axis=1, keepdims=True)
+    run, channel = np.unravel_index(np.abs(apart).argmax(), apart.shape)
+    begin = float(np.exp(apart[run, channel]))
+    if not GAIN_NOTICED < abs(np.log(begin)) < GAIN_FAR:
+        return
+    trial = case.trials[int(run)]
+    name = trial.channels[int(channel)]
+
+    def describe(numbers: Array) -> tuple[MeasurementFault, ...]:
+        gain = float(numbers[-1])
+        message = f"{name} reads {gain:.3g} times what it reads in the other runs {place_words((trial.name,), case.runs)}"
+        cure = "find out what was changed on this sensor, put its column right, or leave the channel out of this run"
+        return (MeasurementFault("gain", (trial.name,), (name,), message, cure, gain),)
+
+    adjustment = RunGain(name, 0.05, 1.0, run=trial.name)
+    yield Hypothesis(case.trials, describe, ONE_CHANNEL, (adjustment,), (begin,))
+
+
+def drift_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
+    """Yield that channels have an offset or a drift, all of them together."""
+    found: dict[str, list[str]] = {}
+    trials = []
+    largest = 0.0
+    for trial, predicted in zip(case.trials, case.predictions, strict=True):
+        n = len(trial.recording.time)
+        columns = np.column_stack([np.ones(n), np.linspace(-1, 1, n)])
+        line = columns @ np.linalg.lstsq(columns, trial.recording.values - predicted[:n], rcond=None)[0]
+        loudness = np.sqrt(np.mean((trial.recording.values - line) ** 2, axis=0))
+        share = np.abs(line).max(axis=0) / np.maximum(loudness, 1e-300)
+        for name, own in zip(trial.channels, share, strict=True):
+            if own > DRIFT_NOTICED:
+                found.setdefault(name, []).append(trial.name)
+                largest = max(largest, float(own))
+        values = trial.recording.values - np.where(share > DRIFT_NOTICED, line, 0.0)
+        trials.append(replace(trial, recording=replace(trial.recording, values=values)))
+    if found:
+        faults = tuple(
+            MeasurementFault(
+                "drift",
+                tuple(runs),
+                (name,),
+                f"{name} has an offset or drifts {place_words(tuple(runs), case.runs)}, by up to {100 * largest:.0f} % of its RMS",
+                "take mean and trend off the column, or import the recording with its quiet lead-in, which does so",
+            )
+            for name, runs in found.items()
+        )
+        yield Hypothesis(tuple(trials), always(*faults), ONE_CHANNEL)
+
+
+def scaled(trial: Trial, factors: Array) -> Trial:
+    """Return a trial with its channels times factors `shape (n_channels,)`."""
+    if np.all(factors == 1.0):
+        return trial
+    return replace(trial, recording=replace(trial.recording, values=trial.recording.values * factors))
+
+
+def _nearest_factor(level: float, units: dict[str, float]) -> float:
+    """Return by which factor readings are too large by their level, of those that exchanged units make; 1 where none is near."""
+    worth = list(units.values())
+    factors = sorted({one / other for one in worth for other in worth} | {1.0}, key=lambda factor: abs(level - np.log(factor)))
+    return float(factors[0]) if abs(level - np.log(factors[0])) < NEAR_FACTOR else 1.0
+
+
+def _unit_fault(case: BaseRefits, channel: str, quantity: str, factor: float, runs: tuple[str, ...]) -> MeasurementFault:
+    units = UNITS_OF[quantity]
+    pairs = [(one, other) for one in units for other in units if abs(np.log(units[other] / units[one] * factor)) < 1e-9]
+    pair = next((pair for pair in pairs if next(iter(units)) in pair), pairs[0])
+    many = f"{factor:.4g} times too large" if factor > 1 else f"{1 / factor:.4g} times too small"
+    message = f"{channel} is {many} {place_words(runs, case.runs)}: its readings are in {pair[1]}, and taken as {pair[0]}"
+    read = read_unit(pair[1])
+    known = read is not None and read[2] == len(pair[1]) and abs(read[0] / units[pair[1]] - 1) < 1e-6
+    cure = f"set `unit: {pair[1]}` for it in the run file" if known else f"multiply its column by {1 / factor:.6g}"
+    return MeasurementFault("unit", runs, (channel,), message, cure, factor)

@@ -1,0 +1,102 @@
+"""What a fit had to suppose of the runs: a speed, a height or a clock far beyond its prior is a finding, however well the fit is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+
+import numpy as np
+
+from vehgen.diagnose.inputs.fault import MeasurementFault, place_words
+from vehgen.fit.nuisances import Condition
+
+BEYOND = 3.9
+"""A condition of so many standard deviations of its prior, at the end of its range, is a finding."""
+TOGETHER = 6.0
+"""Speeds, or one sensor's clocks, whose sum over the runs is so many of its standard deviations off are a finding, each small as it is."""
+AGREE = 0.15
+"""Conditions of two runs that undo one another within this share of themselves are an exchange; of all runs, one cause."""
+
+
+_FAULT_OF = {
+    "delay": ("clock", "the recording {where} starts {amount} {late} than the file says, or the road lies elsewhere along the way"),
+    "speed": ("speed", "the speed {where} was {amount} {more} than stated"),
+    "height": ("hump_height", "the road {where} is {amount} {more} than stated, or all channels read as much {more}"),
+    "length": ("hump_length", "the hump {where} is {amount} {longer} than stated"),
+    "wander": ("wander", "the speed {where} wandered by {amount}"),
+    "clock": ("clocks_apart", "the clock of {place} {where} is {amount} {late}"),
+    "gain": ("gain", "{place} reads {amount} {more} {where} than it should"),
+    "form": ("hump_form", "the hump {where} is of another form than stated"),
+    "skew": ("hump_form", "the hump {where} leans as none that was stated"),
+    "tilt": ("tilt", "{place} sits tilted by {amount} {where}"),
+    "position": ("position", "{place} sits {amount} off {where}"),
+}
+"""The kind of fault, and what is wrong, by the condition's name."""
+_CURES = {
+    "delay": "state when the recording starts, or measure where the road begins",
+    "speed": "measure the speed by GPS or by the time between the axles' arrivals, and put it right",
+    "height": "measure the height of the road and check that the channels' gain is that of the other runs",
+    "length": "measure the hump's length and put the run file right",
+    "wander": "record again at a steadier speed, or give the run a measured speed",
+    "clock": "record both sensors by one clock, or let both feel a knock at a known time",
+    "gain": "check the sensor's calibration and the column's unit",
+    "form": "measure the hump's form and state it as points",
+    "skew": "measure the hump's form and state it as points",
+    "tilt": "mount the sensor level, or import the recording so that its axes are turned upright",
+    "position": "measure where the sensor sits and put the run file right",
+}
+
+
+def findings_of_conditions(
+    conditions: Sequence[Condition], runs: Sequence[str], heights: Mapping[str, float] | None = None
+) -> tuple[MeasurementFault, ...]:
+    """Return what conditions beyond BEYOND standard deviations tell.
+
+    Parameters
+    ----------
+    conditions
+        All conditions of a fit.
+    runs
+        The names of all runs.
+    heights
+        The heights of humps [m] by run, as stated (default: unknown): two runs whose heights suit each other's were exchanged.
+    """
+    beyond = [item for item in conditions if abs(item.sigmas) > BEYOND and item.name in _FAULT_OF]
+    for name, place in dict.fromkeys((item.name, item.place) for item in conditions if item.name in ("speed", "clock")):
+        same = [item for item in conditions if (item.name, item.place) == (name, place)]
+        if len(same) > 1 and abs(sum(item.sigmas for item in same)) > TOGETHER * len(same) ** 0.5:
+            beyond = [*(item for item in beyond if item not in same), *same]
+    found: list[MeasurementFault] = []
+    known = {run: height for run, height in (heights or {}).items() if height > 0}
+    for one, other in combinations([item for item in beyond if item.name == "height" and item.run in known and item.value > -1], 2):
+        ratio = known[other.run] / known[one.run]
+        if abs(np.log((1 + one.value) / ratio)) < AGREE and abs(np.log((1 + other.value) * ratio)) < AGREE:
+            beyond = [item for item in beyond if item not in (one, other)]
+            message = (
+                f"the hump heights of {one.run} and {other.run} have been exchanged: each suits the other's recording "
+                f"({100 * one.value:+.0f} % and {100 * other.value:+.0f} %)"
+            )
+            cure = "put the humps of the two run files right, or exchange their recordings"
+            found.append(MeasurementFault("exchanged_heights", (one.run, other.run), (), message, cure))
+    for name, place in dict.fromkeys((item.name, item.place) for item in beyond):
+        left = [item for item in beyond if (item.name, item.place) == (name, place)]
+        while left:
+            alike = [item for item in left if abs(item.value - left[0].value) <= max(AGREE * abs(left[0].value), item.sigma)]
+            found.append(_fault(alike, tuple(runs)))
+            left = [item for item in left if item not in alike]
+    return tuple(found)
+
+
+def _fault(alike: Sequence[Condition], runs: tuple[str, ...]) -> MeasurementFault:
+    """Return the fault that conditions of the same name and nearly the same value tell together."""
+    item = alike[0]
+    value = float(np.mean([other.value for other in alike]))
+    own = tuple(dict.fromkeys(run for other in alike for run in ((other.run,) if other.run else runs)))
+    kind, sentence = _FAULT_OF[item.name]
+    amount = f"{abs(value):.3g} {item.unit}" if item.unit else f"{100 * abs(value):.3g} %"
+    up = value > 0
+    words = {"late": "later" if up else "earlier", "more": "more" if up else "less", "longer": "longer" if up else "shorter"}
+    words |= {"fast": "too fast" if up else "too slow", "place": item.place or "the recorder"}
+    message = sentence.format(where=place_words(own, runs), amount=amount, **words)
+    message += f" ({max(abs(other.sigmas) for other in alike):.0f} standard deviations of what was thought possible)"
+    return MeasurementFault(kind, own, (item.place,) if item.place else (), message, _CURES[item.name], value, item.unit)

@@ -1,0 +1,104 @@
+"""Another hump than the file says: its length and its shape, by what suits the recordings better."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.diagnose.inputs.comparison import compare
+from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always, place_words
+from vehgen.diagnose.inputs.refits import BaseRefits
+from vehgen.fit.trial import Trial
+from vehgen.road import Hump
+
+Array = NDArray[np.float64]
+SHAPES = ("half_sine", "versine", "trapezoid")
+LENGTHS = tuple(round(0.6 + 0.05 * i, 2) for i in range(23))
+"""True lengths over stated ones that are tried."""
+FINE_LENGTHS = tuple(0.01 * i for i in range(-4, 5))
+RISEN = 0.02
+"""Gain in correlation from which another hump is fitted."""
+HUMP_LEFT = 0.25
+"""Largest share of the excess that another hump may leave."""
+ONE_HUMP = 0.02
+"""Humps whose lengths and heights agree within this share are one."""
+
+
+def hump_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
+    """Yield that humps have another length or shape: all of them, those of one size, or that of one run only."""
+    groups = _groups(case.trials)
+    changed = [item for group in groups if (item := _best(case, group)) is not None]
+    single = [item for group in groups if len(group) > 1 for number in group if (item := _best(case, (number,))) is not None]
+    for items in ([changed] if len(changed) > 1 else []) + [[item] for item in (*changed, *single)]:
+        trials, faults = list(case.trials), []
+        for runs, fault in items:
+            faults.append(fault)
+            for number, trial in runs.items():
+                trials[number] = trial
+        yield Hypothesis(tuple(trials), always(*faults), HUMP_LEFT)
+
+
+def _groups(trials: Sequence[Trial]) -> list[tuple[int, ...]]:
+    """Return the numbers of the runs over each hump; runs over several humps are left out."""
+    found: list[tuple[Hump, list[int]]] = []
+    for i, trial in enumerate(trials):
+        if len(trial.scenario.humps) != 1 or _top(trial.scenario.humps[0]) == 0:
+            continue
+        hump = trial.scenario.humps[0]
+        for other, members in found:
+            if abs(hump.length / other.length - 1) < ONE_HUMP and abs(_top(hump) / _top(other) - 1) < ONE_HUMP:
+                members.append(i)
+                break
+        else:
+            found.append((hump, [i]))
+    return [tuple(members) for _, members in found]
+
+
+def _best(case: BaseRefits, group: tuple[int, ...]) -> tuple[dict[int, Trial], MeasurementFault] | None:
+    """Return runs, by number, over the hump that suits them best, with the fault told; None where that is the file's."""
+    as_filed = float(np.mean([case.comparisons[i].score for i in group]))
+    scores = {(shape, factor): _score(case, group, shape, factor) for shape in SHAPES for factor in LENGTHS}
+    shape, factor = max(scores, key=lambda key: scores[key])
+    fine = {(shape, factor + step): _score(case, group, shape, factor + step) for step in FINE_LENGTHS}
+    shape, factor = max(fine, key=lambda key: fine[key])
+    if fine[shape, factor] < as_filed + RISEN:
+        return None
+    changed, levels = {i: _over(case.trials[i], shape, factor) for i in group}, []
+    for i, trial in changed.items():
+        item = compare(trial, case.predict(trial), case.band)
+        levels.append(float(np.mean(item.levels)))
+        changed[i] = replace(trial, scenario=trial.scenario.adjusted(delay=item.lag, height=float(np.exp(levels[-1]))))
+    hump = changed[group[0]].scenario.humps[0]
+    runs, height = tuple(case.trials[i].name for i in group), _top(hump) * float(np.exp(np.mean(levels)))
+    words = f"about {hump.length:.2g} m long, {1e3 * height:.2g} mm high and shaped as a {shape.replace('_', ' ')}"
+    message = f"the hump {place_words(runs, case.runs)} is another than the file says: one {words} suits the recordings"
+    cure = "measure length, height and profile of the hump and put the run file right"
+    return changed, MeasurementFault("hump", runs, (), message, cure, hump.length, "m")
+
+
+def _score(case: BaseRefits, group: tuple[int, ...], shape: str, factor: float) -> float:
+    changed = [_over(case.trials[i], shape, factor) for i in group]
+    return float(np.mean([compare(trial, case.predict(trial), case.band).score for trial in changed]))
+
+
+def _over(trial: Trial, shape: str, factor: float) -> Trial:
+    """Return a trial over a hump of another shape, and of `factor` times the length about the same middle."""
+    track = trial.scenario.track
+    old = trial.scenario.humps[0]
+    new = Hump.from_shape(shape, old.at + (1 - factor) * old.length / 2, factor * old.length, _top(old))
+    parts = tuple(new if part is old else part for part in track.parts)
+    return replace(trial, scenario=replace(trial.scenario, track=replace(track, parts=parts)))
+
+
+def _top(hump: Hump) -> float:
+    """Return the height of a hump [m]."""
+    heights = hump.shape(np.linspace(0.0, hump.length, 201))
+    return float(heights[np.abs(heights).argmax()])
+
+
+def road_heights(trials: Sequence[Trial]) -> dict[str, float]:
+    """Return the height of every run's highest hump [m] by its name; runs without humps are left out."""
+    return {trial.name: max(_top(hump) for hump in trial.scenario.humps) for trial in trials if trial.scenario.humps}

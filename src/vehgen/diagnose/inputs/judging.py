@@ -1,0 +1,169 @@
+"""Which mistakes of the measurement were made? Each is undone, the base model fitted again, and the best is kept; then again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from copy import copy
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from vehgen.diagnose.inputs.amplitudes import dead_hypotheses, drift_hypotheses, gain_hypotheses, unit_hypotheses
+from vehgen.diagnose.inputs.checks import check_inputs
+from vehgen.diagnose.inputs.clocks import clock_hypotheses
+from vehgen.diagnose.inputs.conditions import findings_of_conditions
+from vehgen.diagnose.inputs.copies import find_copies
+from vehgen.diagnose.inputs.exchanges import exchange_hypotheses, speed_hypotheses, speed_unit_hypotheses
+from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault
+from vehgen.diagnose.inputs.humps import hump_hypotheses, road_heights
+from vehgen.diagnose.inputs.labels import label_hypotheses
+from vehgen.diagnose.inputs.recorders import filter_hypotheses, rate_hypotheses
+from vehgen.diagnose.inputs.refits import BaseRefits
+from vehgen.diagnose.inputs.vehicle import axle_hypotheses, other_vehicle, unrelated_recording
+from vehgen.diagnose.thresholds import NOISE_FLOOR
+from vehgen.fit.least_squares import LeastSquaresFit
+
+if TYPE_CHECKING:
+    from vehgen.diagnose.detect.detection import Detection
+
+MOST_MISTAKES = 3
+"""So many mistakes told end the search."""
+HELPS = 0.95
+"""A plain mistake that leaves more than this share of the excess is not looked at beside another."""
+CLEARLY_BETTER = 3.0
+"""Mistakes win over effects where these leave so many times their excess."""
+CLEAR, BY_FAR = 0.1, 0.5
+"""A plain mistake that leaves the one share of the excess is not compared with subtle ones; these must leave the other share of its own."""
+FLOOR = NOISE_FLOOR**2 - 1
+"""Excess at which nothing is left."""
+Generator = Callable[[BaseRefits], Iterator[Hypothesis]]
+PLAIN: tuple[Generator, ...] = (
+    label_hypotheses,
+    unit_hypotheses,
+    dead_hypotheses,
+    exchange_hypotheses,
+    speed_unit_hypotheses,
+    lambda case: clock_hypotheses(case, decisive=True),
+)
+"""What no effect of the library looks like: looked for before any effect is."""
+SUBTLE: tuple[Generator, ...] = (
+    speed_hypotheses,
+    lambda case: clock_hypotheses(case, decisive=False),
+    gain_hypotheses,
+    drift_hypotheses,
+    filter_hypotheses,
+    axle_hypotheses,
+    hump_hypotheses,
+    rate_hypotheses,
+)
+"""What an effect may look like, looked for where none explains the runs."""
+
+
+@dataclass(frozen=True)
+class _Judged:
+    hypothesis: Hypothesis
+    fit: LeastSquaresFit
+    left: float
+    faults: tuple[MeasurementFault, ...]
+
+
+def find_mistakes(case: BaseRefits, plain_only: bool = False) -> tuple[MeasurementFault, ...]:
+    """Return the mistakes that explain the gap, the one that explains most first; nothing where none does.
+
+    Parameters
+    ----------
+    case
+        The runs; left with what was found undone.
+    plain_only
+        Look for subtle mistakes only beside plain ones.
+    """
+    found: list[MeasurementFault] = []
+    while len(found) < MOST_MISTAKES:
+        steps = _next(case, plain_only)
+        if not steps:
+            break
+        for step in steps:
+            found += step.faults
+            case.accept(step.hypothesis, step.fit, step.left)
+        if case.excess <= FLOOR:
+            break
+    return tuple(found)
+
+
+def _next(case: BaseRefits, plain_only: bool) -> tuple[_Judged, ...]:
+    """Return the mistake that explains most, or two plain ones that only together explain enough; nothing where there is none."""
+    judged = _judge(case, PLAIN)
+    best = _least(judged)
+    if best is None and (pair := _pair(case, judged)):
+        return pair
+    doubtful = not plain_only if best is None else best.left > CLEAR and best.left * case.excess > FLOOR
+    if doubtful:
+        other = _least(_judge(case, SUBTLE))
+        best = other if best is None or (other is not None and other.left < BY_FAR * best.left) else best
+    return () if best is None else (best,)
+
+
+def _judge(case: BaseRefits, generators: tuple[Generator, ...]) -> list[_Judged]:
+    """Return the hypotheses of generators, refitted; the first that leaves noise ends the search."""
+    judged: list[_Judged] = []
+    for generate in generators:
+        for hypothesis in generate(case):
+            fit, left = case.judge(hypothesis)
+            faults = hypothesis.describe(fit.misfit.adjusted(fit.x))
+            if faults:
+                judged.append(_Judged(hypothesis, fit, left, faults))
+        best = _least(judged)
+        if best is not None and best.left * case.excess <= FLOOR:
+            break
+    return judged
+
+
+def _least(judged: Sequence[_Judged]) -> _Judged | None:
+    """Return what leaves least of what keeps its limit."""
+    return min((item for item in judged if item.left <= item.hypothesis.limit), key=lambda item: item.left, default=None)
+
+
+def _pair(case: BaseRefits, judged: Sequence[_Judged]) -> tuple[_Judged, ...]:
+    """Return a mistake that does not explain enough by itself, with a second one that does beside it."""
+    first = min(judged, key=lambda item: item.left, default=None)
+    if first is None or first.left > HELPS:
+        return ()
+    beside = copy(case)
+    beside.accept(first.hypothesis, first.fit, first.left)
+    second = _least(_judge(beside, PLAIN))
+    return () if second is None or first.left * second.left > first.hypothesis.limit else (first, second)
+
+
+def recorded_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
+    """Return what recordings show by themselves: clipped and stuck channels, and copies of one pass."""
+    return (*check_inputs(detection.trials), *find_copies(detection.trials, detection.floor.noises, detection.band))
+
+
+def supposed_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
+    """Return what the base fit had to suppose of the runs beyond belief."""
+    fits = (detection.base.least_squares, *([detection.base.validation_fit] if detection.base.validation_fit else []))
+    conditions = [item for fit in fits for item in fit.conditions()]
+    return findings_of_conditions(conditions, [trial.name for trial in detection.trials], road_heights(detection.trials))
+
+
+def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
+    """Return mistakes that no effect of the library looks like."""
+    return find_mistakes(BaseRefits(detection), plain_only=True)
+
+
+def explain_gap(detection: Detection, chi: float | None = None, vehicle: bool = True) -> tuple[MeasurementFault, ...]:
+    """Return the mistakes that explain what the base model misses, whatever they look like; nothing where none does.
+
+    Parameters
+    ----------
+    detection
+        The base model's gap.
+    chi
+        What effects leave; mistakes must leave a clearly smaller excess (default: no effects were found).
+    vehicle
+        Whether the vehicle may be another one altogether.
+    """
+    case = BaseRefits(detection)
+    found = find_mistakes(case)
+    if found and (chi is None or CLEARLY_BETTER * case.excess < chi**2 - 1):
+        return found
+    return (other_vehicle(case) or unrelated_recording(case)) if vehicle and not found else ()

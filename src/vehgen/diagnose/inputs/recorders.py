@@ -1,0 +1,95 @@
+"""Recorders that are wrong: a clock that runs too fast, and a filter that cuts off what the vehicle does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.diagnose.inputs.adjustments import ClockRate, RecorderFilter
+from vehgen.diagnose.inputs.comparison import compare
+from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, place_words
+from vehgen.diagnose.inputs.refits import BaseRefits
+from vehgen.fit.adjustments import SpeedScale
+from vehgen.fit.noise import transform
+from vehgen.fit.trial import Trial
+
+Array = NDArray[np.float64]
+RATE_LEFT = 0.25
+"""Largest share of the excess that another rate of the clock may leave."""
+FILTER_LEFT = 0.5
+"""The same for a filter, of which the order is not known, and which cuts the noise too, so that it is taken as smaller than it is."""
+RATES = tuple(round(0.85 + 0.01 * i, 2) for i in range(31))
+RATE_NOTICED, LEAST_RATE = 0.02, 0.02
+"""Gain in correlation from which another rate of the clock is fitted, and the smallest such rate less one."""
+AS_WELL = 3.0
+"""Clock and speed are told apart where one leaves less than the other by this factor."""
+SLOW_BAND_HZ, FAST_BAND_HZ = (0.5, 4.0), (15.0, 35.0)
+"""A filtered channel follows the prediction in the lower band, and lacks most of it in the upper."""
+FILTERED = 0.35
+"""Share of the predicted amplitude in the upper band, over that in the lower, below which a filter is fitted."""
+FIRST_CUTOFF_HZ = 10.0
+
+
+def rate_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
+    """Yield that the recorder's clock is too fast or too slow; a tie with the speed is told as such."""
+    change = ClockRate("", 0.01, 1.0, low=0.7, high=1.4)
+    scores = []
+    for rate in RATES:
+        own = [compare(trial, case.predict(trial, (change,), (rate,)), case.band).score for trial in case.trials]
+        scores.append(float(np.mean(own)))
+    best = RATES[int(np.argmax(scores))]
+    if max(scores) < scores[RATES.index(1.0)] + RATE_NOTICED or abs(best - 1) < LEAST_RATE:
+        return
+    by_clock = case.refit(case.problem, (change,), (best,))[1]
+    if by_clock > RATE_LEFT:
+        return
+    by_speed = min(case.refit(case.problem, (SpeedScale("runs", 0.01, 1.0),), (start,))[1] for start in (1 / best, 1.0))
+    if by_speed < by_clock / AS_WELL:
+        return
+
+    def describe(numbers: Array) -> tuple[MeasurementFault, ...]:
+        rate = float(numbers[-1])
+        words = f"the recorder's clock seems to run {100 * abs(rate - 1):.1f} % too {'fast' if rate > 1 else 'slow'} in all runs"
+        cure = "check the recorder's sampling rate against a stopwatch, and the speed against a measured stretch"
+        if by_speed < AS_WELL * by_clock:
+            return (MeasurementFault("clock_or_speed", (), (), f"{words}, or the speeds are stated wrong by as much", cure, rate),)
+        return (MeasurementFault("clock_rate", (), (), words, cure, rate),)
+
+    yield Hypothesis(case.trials, describe, RATE_LEFT, (change,), (best,))
+
+
+def filter_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
+    """Yield that channels were filtered, all of them together by one filter."""
+    found: dict[str, tuple[str, ...]] = {}
+    for trial, predicted in zip(case.trials, case.predictions, strict=True):
+        kept = _kept(trial, predicted)
+        slow = tuple(name for name, share in zip(trial.channels, kept, strict=True) if share < FILTERED)
+        if slow:
+            found[trial.name] = slow
+    if not found:
+        return
+    runs, channels = tuple(found), tuple(dict.fromkeys(name for names in found.values() for name in names))
+
+    def describe(numbers: Array) -> tuple[MeasurementFault, ...]:
+        cutoff = float(np.exp(numbers[-1]))
+        where = place_words(runs, case.runs)
+        message = f"{', '.join(channels)} {'was' if len(channels) == 1 else 'were'} low-passed at about {cutoff:.2g} Hz {where}"
+        cure = "switch the recorder's filter off, or record faster than it filters; else compare below the cut-off with `band`"
+        return (MeasurementFault("low_pass", runs, channels, message, cure, cutoff, "Hz"),)
+
+    change = RecorderFilter("", 0.1, runs=runs, channels=channels)
+    yield Hypothesis(case.trials, describe, FILTER_LEFT, (change,), (float(np.log(FIRST_CUTOFF_HZ)),))
+
+
+def _kept(trial: Trial, predicted: Array) -> Array:
+    """Return the recorded over the predicted amplitude at high frequencies, over that at low ones, `shape (n_channels,)`."""
+    dt, n = trial.recording.dt, len(predicted)
+    frequency = np.fft.rfftfreq(n, dt)
+    shares = []
+    for low, high in (FAST_BAND_HZ, SLOW_BAND_HZ):
+        inside = (frequency >= low) & (frequency <= min(high, 0.45 / dt))
+        measured, model = (transform(item, dt, inside) for item in (trial.recording.values[:n], predicted))
+        shares.append(np.sqrt((np.abs(measured) ** 2).sum(axis=0) / np.maximum((np.abs(model) ** 2).sum(axis=0), 1e-300)))
+    return np.asarray(shares[0] / np.maximum(shares[1], 1e-300))

@@ -1,0 +1,146 @@
+"""Fits of the base model to all runs, with mistakes undone: what they leave of the gap."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.diagnose.detect.noise_floor import find_noise_floor
+from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, JACOBIAN_REFRESH, NUISANCES
+from vehgen.diagnose.inputs.comparison import Comparison, compare
+from vehgen.diagnose.inputs.fault import Hypothesis
+from vehgen.fit.adjustments import Adjustment
+from vehgen.fit.least_squares import COARSE_TOLERANCE, WEAK_PRIOR_SIGMA, FitOptions, LeastSquaresFit, fit_least_squares
+from vehgen.fit.misfit import Noises
+from vehgen.fit.noise import Noise
+from vehgen.fit.problem import Problem
+from vehgen.fit.trial import Trial
+
+if TYPE_CHECKING:
+    from vehgen.diagnose.detect.detection import Detection
+
+Array = NDArray[np.float64]
+BLINDING = 1e4
+"""The noise of a channel that is not to count is taken as so many times its own."""
+REFIT_STEPS = 20
+COSTLY = ("speed", "height")
+"""What a refit supposes of these counts as if it were left: else a mistake is undone by supposing another."""
+
+
+class BaseRefits:
+    """All runs of a detection, with the mistakes found so far undone, and refits of the base model to them.
+
+    `excess` is chi^2 - 1 of the base model on these runs; `shared`, `numbers` and `blind` undo what was found, as in :class:`Hypothesis`.
+    """
+
+    def __init__(self, detection: Detection) -> None:
+        self.base = detection.base.least_squares
+        self.detected = self.trials = detection.trials
+        self.problem = detection.problem.with_trials(self.trials)
+        self.band = self.base.misfit.band
+        self.excess = max(detection.chi**2 - 1, 1e-9)
+        self.shared: tuple[Adjustment, ...] = ()
+        self.numbers: tuple[float, ...] = ()
+        self.blind: frozenset[tuple[str, str]] = frozenset()
+
+    @property
+    def runs(self) -> tuple[str, ...]:
+        """The runs' names."""
+        return tuple(trial.name for trial in self.trials)
+
+    @cached_property
+    def predictions(self) -> list[Array]:
+        """What the vehicle file predicts for every run, `shape (n_samples, n_channels)`."""
+        return [self.predict(trial) for trial in self.trials]
+
+    @cached_property
+    def comparisons(self) -> list[Comparison]:
+        """Every run beside its prediction."""
+        return [compare(trial, own, self.band) for trial, own in zip(self.trials, self.predictions, strict=True)]
+
+    def predict(self, trial: Trial, shared: Sequence[Adjustment] = (), numbers: Sequence[float] = ()) -> Array:
+        """Return what the vehicle file predicts for a trial, adjusted also by `shared` at `numbers`, `shape (n_samples, n_channels)`."""
+        adjustments, values, scenario = (*self.shared, *shared), np.array((*self.numbers, *numbers)), trial.scenario
+        for item, value in zip(adjustments, values, strict=True):
+            scenario = item.scenario(scenario, float(value))
+        response = np.asarray(trial.simulator.run(trial.simulator.parameters(trial.values), scenario).responses)
+        for i, item in enumerate(adjustments):
+            response = item.response(trial, response, values[i:])
+        return np.asarray(response[0])
+
+    def accept(self, hypothesis: Hypothesis, fit: LeastSquaresFit, left: float) -> None:
+        """Undo a mistake for all that follows, given its refit and the share of the excess that it leaves."""
+        self.trials, self.shared, self.blind = hypothesis.trials, (*self.shared, *hypothesis.shared), self.blind | hypothesis.blind
+        self.numbers = tuple(float(value) for value in fit.misfit.adjusted(fit.x))
+        self.problem = self.problem.with_trials(self.trials)
+        self.excess = max(self.excess * left, 1e-9)
+        for name in ("predictions", "comparisons"):
+            self.__dict__.pop(name, None)
+
+    def judge(self, hypothesis: Hypothesis) -> tuple[LeastSquaresFit, float]:
+        """Return the refit with a mistake undone, and the share of the excess that it leaves."""
+        return self.refit(self.problem.with_trials(hypothesis.trials), hypothesis.shared, hypothesis.numbers, blind=hypothesis.blind)
+
+    def refit(
+        self,
+        problem: Problem,
+        shared: Sequence[Adjustment] = (),
+        numbers: Sequence[float] = (),
+        *,
+        unit: Array | None = None,
+        blind: frozenset[tuple[str, str]] = frozenset(),
+    ) -> tuple[LeastSquaresFit, float]:
+        """Fit the base model and return the fit with the share of the excess that it leaves.
+
+        Parameters
+        ----------
+        problem
+            Runs and searched parameters.
+        shared, numbers
+            Adjustments fitted along with those that undo what was found, and where they begin.
+        unit
+            Where the parameters begin (default: the file's values, held by the base's prior).
+        blind
+            Channels of runs that are not to count.
+        """
+        options = FitOptions(
+            NUISANCES,
+            self.band,
+            max_steps=REFIT_STEPS,
+            tolerance=COARSE_TOLERANCE,
+            jacobian_refresh=JACOBIAN_REFRESH,
+            prior_sigma=BASE_PRIOR_SIGMA if unit is None else WEAK_PRIOR_SIGMA,
+        )
+        blind = blind | self.blind
+        fit = fit_least_squares(
+            problem,
+            problem.space.unit(problem.space.start) if unit is None else unit,
+            options,
+            noises=self._noises(problem.trials, blind),
+            shared=(*self.shared, *shared),
+            numbers=(*self.numbers, *numbers),
+        )
+        powers = []
+        for trial, lines in zip(problem.trials, fit.misfit.whitened_spectrum(fit.x), strict=True):
+            counted = [(trial.name, channel) not in blind for channel in trial.channels]
+            powers.append(np.abs(lines[:, counted]).ravel() ** 2)
+        lines = np.concatenate(powers)
+        prior = sum(item.sigmas**2 for item in fit.conditions() if item.name in COSTLY) / (2 * len(lines))
+        return fit, float((np.mean(lines) + prior - 1) / self.excess)
+
+    def _noises(self, trials: Sequence[Trial], blind: frozenset[tuple[str, str]]) -> Noises:
+        known = {id(trial.recording): self.base.misfit.noises[trial.name] for trial in self.detected}  # noise goes with the recording
+        if all(id(trial.recording) in known for trial in trials):
+            found = {trial.name: known[id(trial.recording)] for trial in trials}
+        else:
+            found = find_noise_floor(trials, self.band).noises
+        blinded: Noises = {}
+        for trial in trials:
+            own = found[trial.name]
+            factors = np.array([BLINDING if (trial.name, channel) in blind else 1.0 for channel in trial.channels])
+            blinded[trial.name] = Noise(own.levels, own.sigma * factors, own.slope)
+        return blinded

@@ -1,0 +1,242 @@
+"""Plain mistakes made on purpose in recordings and run files are named with run, channel and cure; healthy runs and effects are not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.signal
+from benchmarks.hidden_effects.generator import Effect, Hump, RunSpec
+
+from vehgen.diagnose.detect.detection import detect
+from vehgen.diagnose.inputs.conditions import findings_of_conditions
+from vehgen.diagnose.inputs.judging import explain_gap, plain_mistakes, recorded_mistakes, supposed_mistakes
+from vehgen.diagnose.pipeline import diagnose_trials
+from vehgen.diagnose.thresholds import NOISE_FLOOR
+from vehgen.fit.nuisances import Condition
+
+RUNS = (
+    RunSpec((Hump(0.5, 0.03, 4.0),), 2.0, 5.0, "low"),
+    RunSpec((Hump(0.5, 0.05, 4.0),), 2.5, 4.5, "high"),
+    RunSpec((Hump(0.5, 0.05, 5.0),), 4.0, 4.0, "fast"),
+)
+F_AZ, F_Q, R_AZ, R_Q = range(4)
+
+
+@pytest.fixture(scope="module")
+def plain(trials_of):
+    return trials_of(runs=RUNS)
+
+
+def edited(trials, change, only=None):
+    """Return trials with changed values `shape (n_samples, 4)`, in all runs or in one."""
+    return [
+        replace(trial, recording=replace(trial.recording, values=change(trial.recording.values.copy())))
+        if only in (None, trial.name)
+        else trial
+        for trial in trials
+    ]
+
+
+def times(factor, *channels):
+    return lambda values: values * np.array([factor if i in channels else 1.0 for i in range(4)])
+
+
+def noise_only(channel, sigma):
+    def change(values):
+        values[:, channel] = sigma * np.random.default_rng(2).standard_normal(len(values))
+        return values
+
+    return change
+
+
+def rear_later(samples):
+    """Return a change that shifts the rear sensor, and leaves noise where it has nothing to show."""
+
+    def change(values):
+        quiet = np.array([0.015, 0.0006]) * np.random.default_rng(3).standard_normal((len(values), 2))
+        if samples > 0:
+            quiet[samples:] = values[:-samples, 2:]
+        else:
+            quiet[:samples] = values[-samples:, 2:]
+        return np.column_stack([values[:, :2], quiet])
+
+    return change
+
+
+def low_passed(cutoff):
+    sections = scipy.signal.butter(4, cutoff, fs=100.0, output="sos")
+    return lambda values: scipy.signal.sosfilt(sections, values, axis=0)
+
+
+def stated(trials, run, **changes):
+    """Return trials of which one states another scenario: its speed or its road's height times a factor."""
+    return [replace(trial, scenario=trial.scenario.adjusted(**changes)) if trial.name == run else trial for trial in trials]
+
+
+def exchanged(trials, one, other, field):
+    """Return trials of which two have exchanged their speed or their track, as two run files may."""
+    scenario = {trial.name: trial.scenario for trial in trials}
+    swap = {one: other, other: one}
+    return [
+        replace(trial, scenario=replace(trial.scenario, **{field: getattr(scenario[swap[trial.name]], field)}))
+        if trial.name in swap
+        else trial
+        for trial in trials
+    ]
+
+
+def over_another_hump(trials, length):
+    """Return trials whose files state a hump of another length, about the same middle."""
+    changed = []
+    for trial in trials:
+        track = trial.scenario.track
+        hump = track.parts[0]
+        peak = float(hump.shape(np.array([hump.length / 2]))[0])
+        other = type(hump).from_shape("half_sine", hump.at + (hump.length - length) / 2, length, peak)
+        changed.append(replace(trial, scenario=replace(trial.scenario, track=replace(track, parts=(other,)))))
+    return changed
+
+
+def told(faults):
+    return [(item.kind, set(item.runs), item.channels) for item in faults]
+
+
+EVERY = {"low", "high", "fast"}
+PLAIN_CASES = {
+    "g for m/s^2 in one run": (lambda runs: edited(runs, times(1 / 9.81, F_AZ), "high"), ("unit", {"high"}, ("F_az",)), 1 / 9.81),
+    "deg/s in all runs": (lambda runs: edited(runs, times(57.3, R_Q)), ("unit", EVERY, ("R_q",)), 57.3),
+    "dead in one run": (lambda runs: edited(runs, noise_only(R_AZ, 0.01), "high"), ("dead", {"high"}, ("R_az",)), None),
+    "turned in one run": (lambda runs: edited(runs, times(-1, F_AZ), "fast"), ("turned", {"fast"}, ("F_az",)), None),
+    "clocks 1.5 s apart": (lambda runs: edited(runs, rear_later(150), "low"), ("clocks_apart", {"low"}, ("R",)), 1.5),
+    "speeds exchanged": (lambda runs: exchanged(runs, "low", "fast", "speed"), ("exchanged_speeds", {"low", "fast"}, ()), None),
+    "km/h as m/s": (lambda runs: stated(runs, "high", speed=3.6), ("speed_unit", {"high"}, ()), 1 / 3.6),
+    "acceleration and rate exchanged": (
+        lambda runs: edited(runs, lambda values: values[:, [F_Q, F_AZ, R_AZ, R_Q]]),
+        ("exchanged", EVERY, ("F_az", "F_q")),
+        None,
+    ),
+}
+
+
+@pytest.mark.parametrize("case", PLAIN_CASES)
+def test_a_plain_mistake_is_named_before_any_effect_is_looked_for(plain, case):
+    make, expected, value = PLAIN_CASES[case]
+    (fault,) = plain_mistakes(detect(make(plain)))
+    assert told([fault]) == [expected]
+    assert value is None or fault.value == pytest.approx(value, rel=0.02)
+    assert fault.cure
+
+
+def test_two_mistakes_are_both_named(plain):
+    runs = edited(edited(plain, lambda values: values[:, [2, 3, 0, 1]], "low"), times(57.3, R_Q))
+    assert sorted(item.kind for item in plain_mistakes(detect(runs))) == ["exchanged", "unit"]
+
+
+SUBTLE_CASES = {
+    "8 Hz low-pass in one channel": (
+        lambda runs: edited(runs, lambda v: np.column_stack([low_passed(8)(v[:, 0]), v[:, 1:]])),
+        "low_pass",
+        8,
+    ),
+    "gain 1.25 in one run": (lambda runs: edited(runs, times(1.25, F_AZ), "high"), "gain", 1.25),
+    "clocks 20 ms apart in one run": (lambda runs: edited(runs, rear_later(2), "low"), "clocks_apart", 0.02),
+    "another hump": (lambda runs: over_another_hump(runs, 0.38), "hump", 0.5),
+}
+
+
+@pytest.mark.parametrize("case", SUBTLE_CASES)
+def test_a_mistake_that_looks_like_an_effect_explains_the_gap_with_its_number(plain, case):
+    make, kind, value = SUBTLE_CASES[case]
+    detection = detect(make(plain))
+    assert plain_mistakes(detection) == ()
+    faults = explain_gap(detection)
+    assert {item.kind for item in faults} == {kind}
+    assert faults[0].value == pytest.approx(value, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("make", "kind", "runs", "value"),
+    [
+        (lambda runs: stated(runs, "high", speed=1.1), "speed", {"high"}, 1 / 1.1 - 1),
+        (lambda runs: edited(runs, lambda values: 1.25 * values, "fast"), "hump_height", {"fast"}, 0.25),
+        (lambda runs: exchanged(runs, "low", "high", "track"), "exchanged_heights", {"low", "high"}, None),
+    ],
+    ids=["speed", "gain of a run", "heights"],
+)
+def test_what_a_good_fit_had_to_suppose_is_told(plain, make, kind, runs, value):
+    detection = detect(make(plain))
+    assert detection.chi < NOISE_FLOOR
+    (fault,) = supposed_mistakes(detection)
+    assert (fault.kind, set(fault.runs)) == (kind, runs)
+    assert value is None or fault.value == pytest.approx(value, abs=0.01)
+
+
+def test_a_near_copy_of_a_pass_is_no_run_of_its_own(plain):
+    low = next(trial for trial in plain if trial.name == "low")
+    random = np.random.default_rng(5)
+    again = low.recording.values + 0.002 * low.recording.values.std(axis=0) * random.standard_normal(low.recording.values.shape)
+    copy = replace(low, name="again", recording=replace(low.recording, values=np.roll(again, 3, axis=0)))
+    (fault,) = recorded_mistakes(detect([*plain, copy]))
+    assert (fault.kind, set(fault.runs)) == ("copy", {"low", "again"})
+
+
+def test_two_passes_over_one_hump_at_one_speed_are_no_copies(trials_of):
+    twice = tuple(replace(run, name=name) for run, name in ((RUNS[0], "low"), (RUNS[0], "again"), (RUNS[2], "fast")))
+    assert recorded_mistakes(detect(trials_of(runs=twice))) == ()
+
+
+def test_a_drift_is_told_though_the_noise_hides_it(plain):
+    def drift(values):
+        values[:, F_Q] += np.linspace(0, 1, len(values))
+        return values
+
+    (fault,) = recorded_mistakes(detect(edited(plain, drift, "low")))
+    assert told([fault]) == [("drift", {"low"}, ("F_q",))]
+
+
+def test_healthy_runs_have_no_fault(plain):
+    detection = detect(plain)
+    assert recorded_mistakes(detection) == supposed_mistakes(detection) == plain_mistakes(detection) == ()
+
+
+HONEST = (
+    Effect("tyre_footprint", "all", {"length": 0.23}),
+    Effect("sensor_gain", "F_az", {"error": 0.15}),
+    Effect("speed_error", "all", {"error": 0.05}),
+)
+
+
+@pytest.mark.parametrize("effect", HONEST, ids=lambda effect: effect.name)
+def test_an_effect_is_no_fault(detection_of, effect):
+    detection = detection_of(effect, runs=RUNS)
+    assert recorded_mistakes(detection) == plain_mistakes(detection) == ()
+    if max(detection.chi, detection.base.training**0.5) > NOISE_FLOOR:
+        assert explain_gap(detection) == ()
+
+
+def test_the_verdict_names_run_channel_and_cure(plain):
+    verdict = diagnose_trials(edited(plain, times(1 / 9.81, F_AZ), "high")).verdict
+    assert verdict.verdict == "measurement_fault"
+    assert verdict.effects == ()
+    data = verdict.to_dict()
+    (fault,) = data["faults"]
+    assert (fault["kind"], fault["runs"], fault["channels"]) == ("unit", ["high"], ["F_az"])
+    assert "F_az is 9.807 times too small in high" in data["reason"]
+    assert "9.8066" in fault["cure"]
+    assert type(verdict).from_dict(data) == verdict
+
+
+def test_conditions_of_any_fit_are_read_by_name_place_and_size():
+    conditions = [
+        Condition("low", "gain", "F_az", 0.2, "", 0.03),
+        Condition("high", "gain", "F_az", 0.21, "", 0.03),
+        Condition("fast", "delay", "", 0.1, "s", 0.05),
+        Condition("fast", "speed", "", -0.05, "", 0.005),
+    ]
+    faults = findings_of_conditions(conditions, ["low", "high", "fast"])
+    assert [(item.kind, item.runs, item.channels) for item in faults] == [
+        ("gain", ("low", "high"), ("F_az",)),
+        ("speed", ("fast",), ()),
+    ]
+    assert "5 % less than stated" in faults[1].message
+    assert "10 standard deviations" in faults[1].message
