@@ -21,7 +21,7 @@ from vehgen.diagnose.result import Decided, DiagnosisModels
 from vehgen.diagnose.select.criteria import adds, excess, needs_both, p_value_of, passes, seeds, tied, unfinished
 from vehgen.diagnose.select.estimates import estimate, gain_interval, unstable, validation_gain
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
-from vehgen.diagnose.select.search import DiagnosisProgress, SearchRound, search_round
+from vehgen.diagnose.select.search import DiagnosisProgress, SearchRound, merit, search_round
 from vehgen.diagnose.verdict import Gap, NamedEffect, NamedParameter, PlaceChi, Verdict, VerdictName
 from vehgen.effects import Effect
 from vehgen.errors import InputError
@@ -78,6 +78,8 @@ class Decision:
         first = self._search_round(self.base)
         if first.stopped:
             return self._stopped()
+        if first.idle and (not first.fits or merit(first.idle[0]) <= merit(first.fits[0])):
+            return self._out_of_range(first.idle[0])
         if not first.fits:
             return self._unknown(first)
         best = first.fits[0]
@@ -188,6 +190,15 @@ class Decision:
         fits = self.rounds[0].fits if self.rounds else ()
         best = (self._words(fits[0].last), float(np.sqrt(fits[0].training))) if fits else None
         return self._end("insufficient_data", wording.stopped(len(fits), best), "let the diagnosis run to its end")
+
+    def _out_of_range(self, freed: ModelFit) -> Decided:
+        space = freed.least_squares.misfit.problem.space
+        ratios = dict(zip(space.names, (freed.least_squares.values / space.start).tolist(), strict=True))
+        return self._end(
+            "insufficient_data",
+            wording.out_of_range({name: ratios[name] for name in freed.last.freed}),
+            "check the file, or calibrate first",
+        )
 
     def _unknown(self, first: SearchRound) -> Decided:
         best = (len(first.fits), self._words(first.fits[0].last), float(np.sqrt(first.fits[0].training))) if first.fits else None

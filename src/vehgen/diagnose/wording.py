@@ -167,6 +167,18 @@ def unusable(reasons: Sequence[str]) -> str:
     return f"The runs cannot tell before this is put right: {'; '.join(reasons)}"
 
 
+def out_of_range(ratios: Mapping[str, float]) -> str:
+    """Return the verdict `insufficient_data` where base parameters far from the file's values explain the gap as well as an effect.
+
+    Parameters
+    ----------
+    ratios
+        Fitted value over the file's, by parameter.
+    """
+    told = join_names([f"{name} of {ratio:.2f} times the file's value" for name, ratio in ratios.items()], "and")
+    return f"The runs cannot tell before this is put right: {told} explains the gap as well as any effect"
+
+
 def stopped(count: int, best: tuple[str, float] | None) -> str:
     """Return the verdict of a diagnosis that was stopped by hand: after how many candidates, and which one is best so far, with its chi."""
     done = f"{count} candidates" if count else "no candidate"

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import sympy as sp
 
@@ -12,6 +13,9 @@ from vehgen.mechanics import GRAVITY, EquationsOfMotion, derive, static_loads
 from vehgen.mechanics.energies import pitch_inertia
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.parts import Spring
+
+Size = Literal["k", "c", "kt"]
+"""Stiffness and damping of a suspension, link or hinge; stiffness of a tyre."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +59,31 @@ class EffectSite:
         joints: dict[str, Mapping[str, Spring]] = {"hinge": self.vehicle.hinges, "link": self.vehicle.links}
         spring = joints[kind][name] if kind in joints else getattr(self.vehicle.axles[name], kind)
         return list(spring.laws)
+
+
+def base_parameters(vehicle: Vehicle, place: str, sizes: Sequence[Size]) -> tuple[str, ...]:
+    """Return the free parameters on which stiffnesses and dampings at a place depend, in the vehicle's order.
+
+    Parameters
+    ----------
+    vehicle
+        The vehicle.
+    place
+        An axle, link, hinge, axles joined by `+`, or all tyres; at any other place there are none.
+    sizes
+        Which of them.
+    """
+    wanted: set[str] = set()
+    for name in vehicle.axles if place == ALL_TYRES else place.split("+"):
+        axle = vehicle.axles.get(name)
+        spring = axle.suspension if axle is not None else vehicle.links.get(name) or vehicle.hinges.get(name)
+        known = {} if spring is None else {"k": spring.k, "c": spring.c}
+        if axle is not None:
+            known["kt"] = axle.tyre.k
+        wanted |= {used for size in sizes if size in known for used in known[size].names}
+    while follow := {name for name in wanted if vehicle.parameters[name].equals is not None}:
+        wanted = (wanted - follow).union(*(vehicle.parameters[name].definition.names for name in follow))
+    return tuple(name for name in vehicle.free_parameters if name in wanted)
 
 
 class EffectLocator:

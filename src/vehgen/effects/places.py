@@ -15,9 +15,20 @@ ALL_TYRES = "all tyres"
 ALL_RUNS = "all runs"
 
 
+def nowhere(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
+    """Return no place."""
+    return ()
+
+
 def suspensions(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return every axle with a suspension, then every link: both are a spring and damper with room for laws."""
     return (*(name for name, axle in vehicle.axles.items() if axle.suspension is not None), *vehicle.links)
+
+
+def dampers(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
+    """Return the suspensions and links that have a dashpot."""
+    springs = {name: axle.suspension for name, axle in vehicle.axles.items() if axle.suspension is not None} | vehicle.links
+    return tuple(name for name in suspensions(vehicle, trials) if springs[name].c.names or springs[name].c.evaluate({}) > 0)
 
 
 def axles(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:

@@ -17,6 +17,7 @@ from vehgen.diagnose.fits.restarts import restart
 from vehgen.diagnose.fits.screening import screen
 from vehgen.diagnose.localise.localisation import localise, one_force, shortlist
 from vehgen.diagnose.localise.unknown_force import PlaceResult
+from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.effects import EffectLocator
 from vehgen.effects.evidence import Origins, Residual, StartingPoint
 from vehgen.simulate import SimulatorPool
@@ -32,13 +33,15 @@ LEADING = 3
 class SearchRound:
     """One search for one effect: what the `current` model leaves, the places tested and passed, and the candidates fitted, best first.
 
-    `stopped` tells that Ctrl-C ended it before all candidates were fitted.
+    `idle` are fits of freed base parameters alone that do as well as an effect whose fit freed them, and which is left out. `stopped` tells
+    that Ctrl-C ended it before all candidates were fitted.
     """
 
     current: ModelFit
     places: tuple[PlaceResult, ...]
     passed: tuple[PlaceResult, ...]
     fits: tuple[ModelFit, ...]
+    idle: tuple[ModelFit, ...] = ()
     stopped: bool = False
 
 
@@ -61,14 +64,15 @@ def search_round(
     try:
         places, passed = localise(current)
     except KeyboardInterrupt:
-        return SearchRound(current, (), (), (), True)
+        return SearchRound(current, (), (), (), (), True)
     say("localise", 1, 1, passed[0].place.label if passed else "no single place")
     others = [item for item in candidates if not item.is_among(current.effects)]
     chosen = others if everything else shortlist(current, others, places, passed)
     if current.effects and not passed and not everything:
         chosen = [item for item in others if not item.effect.is_single_force]
-    fits, stopped = fit_candidates(detection, current, passed, chosen, say, everything, workers)
-    return SearchRound(current, tuple(places), tuple(passed), tuple(fits), stopped)
+    found, stopped = fit_candidates(detection, current, passed, chosen, say, everything, workers)
+    fits, idle = (found, []) if stopped else test_freed(detection, current, passed, found)
+    return SearchRound(current, tuple(places), tuple(passed), tuple(fits), tuple(idle), stopped)
 
 
 def fit_candidates(
@@ -115,6 +119,22 @@ def fit_candidates(
     except KeyboardInterrupt:
         return sorted(fits, key=merit), True
     return sorted(fits, key=merit), False
+
+
+def test_freed(
+    detection: Detection, base: ModelFit, passed: Sequence[PlaceResult], fits: Sequence[ModelFit]
+) -> tuple[list[ModelFit], list[ModelFit]]:
+    """Return the fits whose effects do more than the base parameters that they free, and fits of these alone that do as well."""
+    current, simulators = CurrentModel.of(base), SimulatorPool()
+    trial = current.problem.trials[0]
+    locator, origins = EffectLocator(trial.run.vehicle, dict(trial.values)), _origins(base, current, passed)
+    noises = detection.floor.noises
+
+    def fit_one(candidate: Candidate) -> ModelFit | None:
+        points = candidate.effect.origins(origins)
+        return fit_candidate(candidate, current, (), noises, detection.band, locator, simulators, points)
+
+    return split_idle(fits, fit_one, LEADING)
 
 
 def _origins(base: ModelFit, current: CurrentModel, passed: Sequence[PlaceResult]) -> Origins:

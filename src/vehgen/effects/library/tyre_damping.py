@@ -30,5 +30,6 @@ TYRE_DAMPING_EFFECT = VehicleEffect(
         EffectParameter("ratio", "", "damping ratio of the unsprung mass on its tyres alone", low=1e-3, high=0.5, starts=(0.02, 0.1)),
     ),
     is_global=True,
+    frees=("kt",),
     edit=_edit,
 )
