@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.verdict import NamedParameter
-from vehgen.effects.places import ALL_RUNS, ALL_TYRES
+from vehgen.effects.places import ALL_RUNS, ALL_TYRES, EACH_TYRE
 from vehgen.vehicle import Vehicle
 
 SHARE_CALLED_ALL = 0.995
@@ -32,6 +32,8 @@ def place_words(attaches: str, place: str) -> str:
     """Return where an effect is, in words: of an effect that lives at `attaches` (suspension, tyre, hinge, body, axles, sensor, run)."""
     if place == ALL_TYRES:
         return "in all tyres"
+    if place == EACH_TYRE:
+        return "in all tyres, of each its own"
     if place == ALL_RUNS:
         return "in all runs"
     if attaches == "axles":

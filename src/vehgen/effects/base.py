@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from vehgen.effects.evidence import Origins, PlaceEvidence, Residual, StartingPoint
 from vehgen.effects.locator import EffectLocator, EffectSite, Size, base_parameters
-from vehgen.effects.places import ALL_TYRES, Places
+from vehgen.effects.places import EVERY_TYRE, Places
 from vehgen.files.expressions import Expression
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.trial import Trial
@@ -122,6 +122,10 @@ class Effect(ABC):
         """Return those of its parameters that are not searched but solved for in every run (see :meth:`solve`)."""
         return ()
 
+    def at(self, place: str, vehicle: Vehicle) -> Effect:
+        """Return the effect with the parameters that it has at a place of a vehicle."""
+        return self
+
     def freed(self, place: str, vehicle: Vehicle) -> tuple[str, ...]:
         """Return the free parameters of the vehicle, by name, that it `frees` at a place."""
         return base_parameters(vehicle, place, self.frees)
@@ -176,7 +180,7 @@ class Effect(ABC):
 
     def is_likely(self, place: str, evidence: PlaceEvidence) -> bool:
         """Return whether it is worth fitting at a place, by what the place test found."""
-        if place == ALL_TYRES:
+        if place in EVERY_TYRE:
             return not evidence.one_force or "tyre" in evidence.kinds
         touches = not evidence.parts.isdisjoint(place.split("+"))
         return touches or (self.is_global and not evidence.one_force)

@@ -8,7 +8,7 @@ from typing import Literal
 
 import sympy as sp
 
-from vehgen.effects.places import ALL_TYRES
+from vehgen.effects.places import EVERY_TYRE
 from vehgen.mechanics import GRAVITY, EquationsOfMotion, derive, static_loads
 from vehgen.mechanics.energies import pitch_inertia
 from vehgen.vehicle import Vehicle
@@ -74,7 +74,7 @@ def base_parameters(vehicle: Vehicle, place: str, sizes: Sequence[Size]) -> tupl
         Which of them.
     """
     wanted: set[str] = set()
-    for name in vehicle.axles if place == ALL_TYRES else place.split("+"):
+    for name in vehicle.axles if place in EVERY_TYRE else place.split("+"):
         axle = vehicle.axles.get(name)
         spring = axle.suspension if axle is not None else vehicle.links.get(name) or vehicle.hinges.get(name)
         known = {} if spring is None else {"k": spring.k, "c": spring.c}
@@ -114,7 +114,7 @@ class EffectLocator:
     def site(self, place: str) -> EffectSite:
         """Return the site of an axle, link, hinge, body, group of axles joined by `+`, or of all tyres, sized as their mean."""
         vehicle, known = self.vehicle, self._known
-        names = list(vehicle.axles) if place == ALL_TYRES else place.split("+")
+        names = list(vehicle.axles) if place in EVERY_TYRE else place.split("+")
         load = k = c = kt = 0.0
         body = names[0]
         for name in names:
@@ -143,6 +143,6 @@ class EffectLocator:
         length = max(marks) - min(marks) if len(marks) > 1 else 1.0
         if names[0] in vehicle.bodies:
             load = mass * GRAVITY
-        if place == ALL_TYRES:
+        if place in EVERY_TYRE:
             load, k, c, kt = (size / len(names) for size in (load, k, c, kt))
         return EffectSite(vehicle, place, load, k, c, kt, mass, self._inertias[body], length)

@@ -53,11 +53,12 @@ class Candidate:
 def list_candidates(vehicle: Vehicle, trials: Sequence[Trial], effects: Sequence[Effect], noises: Noises | None = None) -> list[Candidate]:
     """Return every effect at every place at which it can live; the noise of the runs weighs channels where an effect needs it."""
     sigma = {name: noise.sigma for name, noise in (noises or {}).items()}
-    return [
-        Candidate(effect, place, effect.search_names(place), effect.adjustments(place, sigma), effect.freed(place, vehicle))
-        for effect in effects
-        for place in effect.places(vehicle, trials)
-    ]
+    found = []
+    for effect in effects:
+        for place in effect.places(vehicle, trials):
+            own = effect.at(place, vehicle)
+            found.append(Candidate(own, place, own.search_names(place), own.adjustments(place, sigma), own.freed(place, vehicle)))
+    return found
 
 
 def build_problem(candidate: Candidate, base: Problem, locator: EffectLocator, simulators: SimulatorPool) -> Problem:

@@ -11,7 +11,7 @@ from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.estimates import p_value
 from vehgen.diagnose.select.search import SearchRound, own_numbers
-from vehgen.effects.places import ALL_TYRES
+from vehgen.effects.places import EVERY_TYRE
 
 
 def excess(mean_square: float) -> float:
@@ -48,8 +48,8 @@ def tied(found: SearchRound, best: ModelFit) -> list[ModelFit]:
 
 
 def _same(one: Candidate, other: Candidate) -> bool:
-    """Return whether two candidates are one effect of which the one holds for all tyres: they hold the one axle that matters."""
-    return one.effect.name == other.effect.name and ALL_TYRES in (one.place, other.place)
+    """Return whether two candidates are one effect of which the one holds for every tyre: it holds the axles that matter."""
+    return one.effect.name == other.effect.name and not {one.place, other.place}.isdisjoint(EVERY_TYRE)
 
 
 def unfinished(fit: ModelFit, base: ModelFit) -> bool:

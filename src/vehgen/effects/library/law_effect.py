@@ -7,7 +7,7 @@ from collections.abc import Callable
 from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.locator import EffectSite, Size
-from vehgen.effects.places import ALL_TYRES, hinges, suspensions
+from vehgen.effects.places import EVERY_TYRE, hinges, suspensions
 from vehgen.mechanics.laws import LAWS
 
 
@@ -30,7 +30,7 @@ def law_edit(kind: str, law: str, write: Callable[[EffectSite, Symbols], Change]
             return {"hinges": {site.place: {"laws": [*site.laws(kind, site.place), entry]}}}
         if kind == "suspension":
             return on_spring(site, {"laws": [*site.laws(site.kind, site.place), entry]})
-        names = list(site.vehicle.axles) if site.place == ALL_TYRES else [site.place]
+        names = list(site.vehicle.axles) if site.place in EVERY_TYRE else [site.place]
         return {"axles": {name: {kind: {"laws": [*site.laws(kind, name), entry]}} for name in names}}
 
     return edit
