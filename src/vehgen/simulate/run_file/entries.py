@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
 from pydantic import Field, model_validator
@@ -178,9 +179,14 @@ def _default_channels() -> dict[str, Column | ChannelEntry]:
 
 
 class SensorEntry(PlaceEntry):
-    """A sensor: a place, and the column of each quantity it records."""
+    """A sensor: a place, its height above the body's COG, and the column of each quantity it records."""
 
+    height: PlaceLength = 0.0
     channels: dict[Name, Column | ChannelEntry] = Field(default_factory=_default_channels)
+
+    def place(self, name: str) -> Place:
+        """Return the place under its name."""
+        return replace(super().place(name), height=self.height)
 
     def column(self, name: str, quantity: str) -> str:
         """Return the column that holds a quantity; `name` is the sensor's."""
