@@ -91,7 +91,7 @@ def test_a_sensor_of_an_axle_has_no_position_to_be_wrong_about():
 
 
 def test_wrong_parameters_are_refused_when_an_effect_is_made():
-    with pytest.raises(ValueError, match="one parameter, found 0"):
+    with pytest.raises(ValueError, match="has a parameter, found none"):
         replace(GAIN, parameters=())
     with pytest.raises(ValueError, match="frequency, drift and amplitude"):
         replace(ENGINE, parameters=ENGINE.parameters[:1])

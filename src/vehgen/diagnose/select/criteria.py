@@ -34,20 +34,22 @@ def p_value_of(found: SearchRound, fit: ModelFit, tried: int) -> float:
 
 def tied(found: SearchRound, best: ModelFit) -> list[ModelFit]:
     """Return the fits of a round that do as well as the best within the slack of TIE."""
-    floor = limit.NOISE_FLOOR**2 - 1
     before = excess(found.current.training)
-    near = max(0.02 * before, 0.5 * floor)
     return [
         item
         for item in found.fits
-        if item.key != best.key
-        and not _same(item.last, best.last)
-        and item.training - best.training <= near
-        and item.training - 1 <= limit.TIE * max(best.training - 1, 0.25 * floor)
+        if item.key != best.key and not same(item.last, best.last) and does_as_well(item.training, best.training, before)
     ]
 
 
-def _same(one: Candidate, other: Candidate) -> bool:
+def does_as_well(mean_square: float, best: float, before: float) -> bool:
+    """Return whether a mean square is within the slack of TIE of the best one, where an excess of `before` was to be explained."""
+    floor = limit.NOISE_FLOOR**2 - 1
+    near = max(0.02 * before, 0.5 * floor)
+    return mean_square - best <= near and mean_square - 1 <= limit.TIE * max(best - 1, 0.25 * floor)
+
+
+def same(one: Candidate, other: Candidate) -> bool:
     """Return whether two candidates are one effect of which the one holds for every tyre: it holds the axles that matter."""
     return one.effect.name == other.effect.name and not {one.place, other.place}.isdisjoint(EVERY_TYRE)
 

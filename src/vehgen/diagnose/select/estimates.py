@@ -147,6 +147,11 @@ def _columns(fit: ModelFit, candidate: Candidate) -> list[tuple[EffectParameter,
     return found
 
 
+def fitted_numbers(fit: ModelFit, candidate: Candidate) -> tuple[float, ...]:
+    """Return the numbers of an effect's parameters in a fit, those of the vehicle first; what is solved for is not among them."""
+    return tuple(value for _, _, value, _ in _columns(fit, candidate))
+
+
 def _index(misfit: Misfit, adjustment: Adjustment) -> int:
     """Return where an adjustment stands among those of a fit."""
     return next(i for i, own in enumerate(misfit.shared) if type(own) is type(adjustment) and own.place == adjustment.place)

@@ -71,7 +71,7 @@ def search_round(
     if current.effects and not passed and not everything:
         chosen = [item for item in others if not item.effect.is_single_force]
     found, stopped = fit_candidates(detection, current, passed, chosen, say, everything, workers)
-    fits, idle = (found, []) if stopped else test_freed(detection, current, passed, found)
+    fits, idle = (found, []) if stopped else split_idle(found, Fitter(detection, current, passed).fit_roughly, LEADING)
     return SearchRound(current, tuple(places), tuple(passed), tuple(fits), tuple(idle), stopped)
 
 
@@ -88,11 +88,8 @@ def fit_candidates(
 
     The candidates are screened first, unless `everything` is to be tried.
     """
-    current = CurrentModel.of(base)
-    trial = current.problem.trials[0]
-    locator, simulators = EffectLocator(trial.run.vehicle, dict(trial.values)), SimulatorPool()
-    origins, residual = _origins(base, current, passed), Residual(base.least_squares.misfit, base.least_squares.x)
-    validation_runs, noises = detection.validation_runs, detection.floor.noises
+    fitter = Fitter(detection, base, passed)
+    current, locator, simulators = fitter.current, fitter.locator, fitter.simulators
     fits: list[ModelFit] = []
     try:
         if not everything:
@@ -105,9 +102,7 @@ def fit_candidates(
             compile_all([trial.simulator.kernel for problem in problems for trial in problem.trials], workers)
             progress("compile", 1, 1, f"{len(problems)} vehicles")
         for done, candidate in enumerate(candidates, start=1):
-            points = candidate.effect.origins(origins)
-            begin = candidate.effect.starts(candidate.place, locator, residual)
-            fit = fit_candidate(candidate, current, validation_runs, noises, detection.band, locator, simulators, points, begin)
+            fit = fitter.fit(candidate)
             if fit is not None:
                 fits.append(fit)
             best = min(fits, key=merit, default=base)
@@ -115,26 +110,40 @@ def fit_candidates(
         fits.sort(key=merit)
         for i, fit in enumerate(fits[:LEADING]):
             if np.isfinite(fit.validation):
-                fits[i] = restart(fit, validation_runs, noises)
+                fits[i] = restart(fit, detection.validation_runs, detection.floor.noises)
     except KeyboardInterrupt:
         return sorted(fits, key=merit), True
     return sorted(fits, key=merit), False
 
 
-def test_freed(
-    detection: Detection, base: ModelFit, passed: Sequence[PlaceResult], fits: Sequence[ModelFit]
-) -> tuple[list[ModelFit], list[ModelFit]]:
-    """Return the fits whose effects do more than the base parameters that they free, and fits of these alone that do as well."""
-    current, simulators = CurrentModel.of(base), SimulatorPool()
-    trial = current.problem.trials[0]
-    locator, origins = EffectLocator(trial.run.vehicle, dict(trial.values)), _origins(base, current, passed)
-    noises = detection.floor.noises
+class Fitter:
+    """Fits candidates on top of a fit; `passed` are the places that suffice to explain what it leaves."""
 
-    def fit_one(candidate: Candidate) -> ModelFit | None:
-        points = candidate.effect.origins(origins)
-        return fit_candidate(candidate, current, (), noises, detection.band, locator, simulators, points)
+    def __init__(self, detection: Detection, base: ModelFit, passed: Sequence[PlaceResult]) -> None:
+        self.detection, self.current, self.simulators = detection, CurrentModel.of(base), SimulatorPool()
+        trial = self.current.problem.trials[0]
+        self.locator = EffectLocator(trial.run.vehicle, dict(trial.values))
+        self.origins = _origins(base, self.current, passed)
+        self.residual = Residual(base.least_squares.misfit, base.least_squares.x)
 
-    return split_idle(fits, fit_one, LEADING)
+    def fit(self, candidate: Candidate, begin: Sequence[tuple[float, ...]] = (), checked: bool = True) -> ModelFit | None:
+        """Fit one candidate from its own starts and from others; unless it is `checked`, not on the validation runs."""
+        starts = [*begin, *candidate.effect.starts(candidate.place, self.locator, self.residual)]
+        return fit_candidate(
+            candidate,
+            self.current,
+            self.detection.validation_runs if checked else (),
+            self.detection.floor.noises,
+            self.detection.band,
+            self.locator,
+            self.simulators,
+            candidate.effect.origins(self.origins),
+            starts,
+        )
+
+    def fit_roughly(self, candidate: Candidate) -> ModelFit | None:
+        """Fit one candidate from its own starts, to the training runs alone."""
+        return self.fit(candidate, checked=False)
 
 
 def _origins(base: ModelFit, current: CurrentModel, passed: Sequence[PlaceResult]) -> Origins:
