@@ -65,7 +65,7 @@ class Decision:
         self.notes += [item.message for item in shown if not item.fatal]
         if fatal:
             return self._end("insufficient_data", wording.unusable(fatal), "record these channels anew, or leave them out of the run files")
-        if max(detection.chi, float(np.sqrt(self.base.training))) <= limit.NOISE_FLOOR:
+        if max(detection.chi, float(np.sqrt(self.base.training))) <= detection.nothing_missing:
             return self._end("no_missing_effect", wording.no_missing_effect(detection.chi))
         if not detection.validation_runs:
             count = len(detection.trials)

@@ -32,7 +32,7 @@ def resolve(misfit: Misfit, x: Array) -> Problem:
         most = samples_kept(trial.run, trial.recording.dt) * 2**HALVINGS
         coarse = misfit.respond(trial, values, numbers, error)[0]
         while trial.scenario.decimation < most:
-            finer = _halved(trial)
+            finer = halved(trial)
             fine = misfit.respond(finer, values, numbers, error)[0]
             moved = float(np.mean(np.abs(misfit.whitened_signal(number, fine - coarse)) ** 2))
             if not moved > RESOLVED_SHARE:
@@ -49,6 +49,7 @@ def _jumps(trial: Trial) -> bool:
     return rough and any(channel.quantity.endswith(("acceleration", "force", "load")) for channel in model.channels)
 
 
-def _halved(trial: Trial) -> Trial:
+def halved(trial: Trial) -> Trial:
+    """Return a trial simulated with half the step, its samples the same."""
     scenario = trial.scenario
     return replace(trial, scenario=replace(scenario, dt=scenario.dt / 2, decimation=2 * scenario.decimation))
