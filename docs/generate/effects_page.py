@@ -188,7 +188,7 @@ def draw() -> None:
             size = surveyor.site(candidate.place).load
             changed = base + 0.02 * size * line.columns(trial, 17.8, 0.01, trial.values)[0]
         else:
-            numbers = np.array(combination[:1]) if candidate.shared else np.zeros(0)
+            numbers = np.array(combination[: len(candidate.shared)]) if candidate.shared else np.zeros(0)
             changed = misfit.respond(posed.trials[0], values[None], numbers, np.zeros(2))[0]
         save_figure(_figure(effect, t, base, changed, list(trial.channels)), IMAGES / f"{effect.name}.svg")
 
