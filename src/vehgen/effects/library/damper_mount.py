@@ -38,7 +38,7 @@ DAMPER_MOUNT_EFFECT = VehicleEffect(
             "stiffness of the mount, in series with the dashpot",
             low=0.5,
             high=60.0,
-            starts=(2.5, 8.0, 25.0),
+            starts=(25.0, 8.0, 2.5),
             scale=lambda site: 2 * math.pi * site.c,
         ),
     ),
