@@ -115,6 +115,8 @@ that take part in arithmetic: `{"c": site.spring.c + 2*symbols["c"]}`. A `RunEff
 `is_global`."""
 SHOWN = {"hinge_friction": "L2_q", "hinge_stiffness": "L2_q", "walking_beam": "L2_az", "cargo_module": "L2_az", "sensor_delay": "L2_az"}
 """The channel that shows an effect best; L1_az otherwise."""
+FREED = {"k": "the stiffness", "c": "the damping", "kt": "the tyre's stiffness"}
+"""What an effect frees, in words."""
 PLACES = {"walking_beam": "axle4+axle5", "cargo_module": "semitrailer", "frame_bending": "semitrailer", "sensor_delay": "L2"}
 
 
@@ -139,6 +141,8 @@ def page() -> str:
             lines += ["| parameter | unit | searched | meaning |", "|---|---|---|---|"]
             lines += [f"| `{item.name}` | {item.unit} | {item.low:g} to {item.high:g} | {item.meaning} |" for item in effect.parameters]
             lines.append("")
+        if effect.frees:
+            lines += [f"Its fits search {' and '.join(map(FREED.get, effect.frees))} there within the file's whole range.", ""]
         lines += [f"![{effect.title}, before and after](images/effects/{effect.name}.svg)", ""]
         lines += [f"Source: {effect.source}.", ""]
     return "\n".join(lines)
@@ -184,7 +188,7 @@ def draw() -> None:
             size = surveyor.site(candidate.place).load
             changed = base + 0.02 * size * line.columns(trial, 17.8, 0.01, trial.values)[0]
         else:
-            numbers = np.array(combination[:1]) if candidate.shared else np.zeros(0)
+            numbers = np.array(combination[: len(candidate.shared)]) if candidate.shared else np.zeros(0)
             changed = misfit.respond(posed.trials[0], values[None], numbers, np.zeros(2))[0]
         save_figure(_figure(effect, t, base, changed, list(trial.channels)), IMAGES / f"{effect.name}.svg")
 

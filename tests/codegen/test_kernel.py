@@ -156,7 +156,7 @@ NONLINEAR_BASELINE = {
     "asymmetric_damping": 579,
     "bump_stop": 557,
     "cubic_stiffness": 667,
-    "dry_friction": 502,
+    "dry_friction": 682,
     "elasto_plastic": 567,
     "hysteresis": 942,
     "progressive_stiffness": 517,

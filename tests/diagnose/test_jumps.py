@@ -1,6 +1,4 @@
-"""Dry friction: responses that jump, the steps they need, their many minima, and what the place test learns in spite of them."""
-
-from dataclasses import replace
+"""Dry friction: responses that jump, told by plain steps, their many minima, and what the place test learns in spite of them."""
 
 import numpy as np
 import pytest
@@ -13,8 +11,6 @@ from vehgen.diagnose.localise.unknown_force import score_locations as place_test
 from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.select.estimates import RunEstimate, disagreement
 from vehgen.effects import EFFECTS
-from vehgen.fit.misfit import Misfit
-from vehgen.fit.resolution import resolve
 
 FRICTION = Effect("dry_friction", "front", {"force": 600.0})
 
@@ -24,28 +20,26 @@ def found(trials_of):
     return diagnose_trials(trials_of(FRICTION), [EFFECTS["dry_friction"]])
 
 
-def test_friction_gets_shorter_steps_where_it_jumps_and_smooth_models_none(found):
+def test_friction_is_marked_as_jumping_and_needs_no_shorter_steps(found):
     base, friction = found.detection.base, found.chosen[-1]
     assert not any(trial.jumps for trial in base.least_squares.misfit.problem.trials)
-    assert any(trial.jumps for trial in friction.least_squares.misfit.problem.trials)
-    steps = {trial.name: trial.scenario.dt for trial in friction.least_squares.misfit.problem.trials}
-    assert steps["rough"] < 1e-3 == pytest.approx(steps["fast"])
+    assert all(trial.jumps for trial in friction.least_squares.misfit.problem.trials)
+    assert all(trial.scenario.dt == pytest.approx(1e-3) for trial in friction.least_squares.misfit.problem.trials)
 
 
-def test_at_the_truth_shorter_steps_come_closer_to_the_recording(found):
-    """The recording was made with steps of 0.05 ms by another integrator."""
+def test_at_the_truth_plain_steps_tell_the_recording_but_for_a_sample_next_to_a_jump(found):
+    """The recording was made with steps of 0.05 ms by another integrator; over the rough road the friction jumps some hundred times."""
     misfit, x = found.chosen[-1].least_squares.misfit, found.chosen[-1].least_squares.x
     truth = true_parameters(Case("sedan2", effects=(FRICTION,), runs=RUNS, seed=3)) | {"dry_friction_front_force": 600.0}
     values = np.array([truth[name] for name in misfit.problem.space.names])
     x = np.concatenate([misfit.problem.space.unit(values), np.zeros(len(x) - len(values))])
-    plain = found.detection.problem.trials
-    coarse = [replace(trial, scenario=item.scenario) for trial, item in zip(misfit.problem.trials, plain, strict=True)]
-    first = misfit.problem.with_trials(coarse)
-    loose = Misfit(first, misfit.noises, values, misfit.nuisances, misfit.band)
-    tight = Misfit(resolve(loose, x), misfit.noises, values, misfit.nuisances, misfit.band)
-    number = [trial.name for trial in plain].index("rough")
-    before, after = (float(np.mean(np.abs(item.whitened_spectrum(x)[number]) ** 2)) for item in (loose, tight))
-    assert before > 1.5 > after
+    number = [trial.name for trial in misfit.problem.trials].index("rough")
+    assert misfit.problem.trials[number].scenario.dt == pytest.approx(1e-3)
+    whole = np.mean(np.abs(misfit.whitened_spectrum(x)[number]) ** 2)
+    left = (misfit.problem.trials[number].recording.values - misfit.simulate(x)[number]) / misfit.noises["rough"].sigma
+    assert whole < 1.5
+    assert (np.abs(left) > 6).sum() <= 2
+    assert np.median(np.abs(left)) < 0.75
 
 
 def test_several_minima_are_tried_and_the_force_is_told_within_its_interval(found):

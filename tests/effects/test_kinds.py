@@ -25,7 +25,7 @@ def found(parts=(), kinds=(), one_force=True, sensors=()):
 
 def test_the_library_has_all_three_kinds_and_each_costs_its_numbers():
     kinds = [VehicleEffect, RunEffect, LineEffect]
-    assert [sum(isinstance(effect, kind) for effect in EFFECTS.values()) for kind in kinds] == [16, 6, 1]
+    assert [sum(isinstance(effect, kind) for effect in EFFECTS.values()) for kind in kinds] == [17, 6, 1]
     assert FRICTION.n_numbers(3) == FRICTION.n_numbers(9) == 1
     assert EFFECTS["tyre_liftoff"].n_numbers(3) == 0
     assert GAIN.n_numbers(3) == 1
@@ -91,7 +91,7 @@ def test_a_sensor_of_an_axle_has_no_position_to_be_wrong_about():
 
 
 def test_wrong_parameters_are_refused_when_an_effect_is_made():
-    with pytest.raises(ValueError, match="one parameter, found 0"):
+    with pytest.raises(ValueError, match="has a parameter, found none"):
         replace(GAIN, parameters=())
     with pytest.raises(ValueError, match="frequency, drift and amplitude"):
         replace(ENGINE, parameters=ENGINE.parameters[:1])

@@ -59,10 +59,10 @@ def test_every_edit_fits_a_vehicle_with_the_longest_names():
     locator = EffectLocator(vehicle, vehicle.values())
     for effect in EFFECTS.values():
         if effect.changes_vehicle:
-            names = [name for place in effect.places(vehicle, ()) for name in effect.search_names(place)]
+            names = [name for place in effect.places(vehicle, ()) for name in effect.at(place, vehicle).search_names(place)]
             assert len(set(names)) == len(names)
-            for place in effect.places(vehicle, ())[:1]:
-                vehicle.with_changes(effect.change(locator.site(place)))
+            for place in (*effect.places(vehicle, ())[:1], *effect.places(vehicle, ())[-1:]):
+                vehicle.with_changes(effect.at(place, vehicle).change(locator.site(place)))
 
 
 def frequencies(vehicle):
@@ -80,6 +80,20 @@ def test_a_walking_beam_leaves_the_tandem_its_heave_and_takes_its_pitch_stiffnes
     offset = half * (m4 - m5) / (m4 + m5)
     springs = kt[0] * (half - offset) ** 2 + kt[1] * (half + offset) ** 2 + site.k * offset**2
     assert K[pitch, pitch] == pytest.approx(springs, rel=1e-9)
+
+
+def test_each_tyre_has_its_own_damping_or_all_share_a_ratio():
+    vehicle = load_vehicle("sedan2")
+    locator, damping = EffectLocator(vehicle, vehicle.values()), EFFECTS["tyre_damping"]
+    own = damping.at("each tyre", vehicle)
+    assert [item.name for item in own.parameters] == ["ratio_front", "ratio_rear"]
+    assert own.n_numbers(5) == 2
+    changed = vehicle.with_changes(own.change(locator.site("each tyre"), {"ratio_front": 0.02, "ratio_rear": 0.1}))
+    values = changed.all_values(changed.values())
+    for name, ratio, k, m in (("front", 0.02, 448.76 * 1500, 90), ("rear", 0.1, 408.65 * 1500, 150)):
+        assert changed.axles[name].tyre.c.evaluate(values) == pytest.approx(2 * ratio * np.sqrt(k * m))
+    assert damping.at("all tyres", vehicle).n_numbers(5) == damping.at("front", vehicle).n_numbers(5) == 1
+    assert "each tyre" not in damping.places(load_vehicle("quarter_car"), ())
 
 
 def test_a_light_load_leaves_the_body_modes_nearly_alone():

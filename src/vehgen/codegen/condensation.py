@@ -6,8 +6,8 @@ constant matrix of the linear step and J the elements' travel rows. Each element
 whose left side grows with x. Off the diagonal G is small (only the bodies couple the elements), so a few sweeps, started from the forces
 of the last step, converge; all elements step at once in a sweep (Jacobi), because a chain of dependent steps would leave the processor
 waiting. Each step follows a line through the laws' present force: for each law its tangent (Newton), or, where its slope has a known bound,
-half of that bound. Such a chord never diverges on a law of bounded slope, and its division is done once per individual. Dry friction is
-set-valued: the force that would stop the slip at the end of the step (Moreau, doi:10.1007/978-3-7091-2624-0_1), clipped to +-F.
+half of that bound. Such a chord never diverges on a law of bounded slope, and its division is done once per individual. For dry friction,
+which is set-valued, see friction.py.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from vehgen.codegen.factorisation import Factor, Matrix, factorise
+from vehgen.codegen.friction import friction_now, mean_friction
 from vehgen.codegen.program import SAMPLE_PHASE, SETUP_PHASE, STEP_PHASE, Node, Program
 from vehgen.mechanics.energies import Element
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
@@ -176,7 +177,7 @@ class Condensation:
             stops.append(stop)
             pulls.append(program.multiply(self.inverse[joint.number], program.subtract(free_rates[-1], stop)))
         forces = [program.leaf(f"f{joint.number}", STEP_PHASE) for joint in self.joints]
-        stuck: list[Node] = [zero] * len(self.joints)
+        held: list[Node] = [zero] * len(self.joints)
         before = forces
         for _ in range(self.sweeps):
             before = forces
@@ -189,8 +190,8 @@ class Condensation:
                 smooth, slope = self._smooth(joint, rate, starts[i], ground[i])
                 total = smooth
                 if joint.friction:
-                    stuck[i] = self._friction(joint, before, pulls[i], smooth, slope, program.subtract(rate, stops[i]))
-                    total = program.add(smooth, stuck[i])
+                    friction, held[i] = self._friction(joint, before, pulls[i], smooth, slope, program.subtract(rate, stops[i]), v)
+                    total = program.add(smooth, friction)
                 share = self._relaxation(joint, slope)
                 forces.append(program.add(total, program.multiply(share, program.subtract(before[i], total))))
         middle = [
@@ -201,7 +202,7 @@ class Condensation:
         for joint in self.joints:
             if joint.friction:
                 last = program.leaf(f"g{joint.number}", STEP_PHASE)
-                states += [(program.leaf(f"h{joint.number}", STEP_PHASE), last), (last, stuck[joint.number])]
+                states += [(program.leaf(f"h{joint.number}", STEP_PHASE), last), (last, held[joint.number])]
         for joint in self.joints:
             rate = self._times(joint.row, middle)
             d = program.add(starts[joint.number], program.multiply(self.half_h, rate))
@@ -238,18 +239,22 @@ class Condensation:
         stiff = program.multiply(self.compliance[joint.number][joint.number], slope)
         return program.divide(stiff, program.add(program.number(1.0), stiff))
 
-    def _friction(self, joint: NonlinearElement, before: list[Node], pull: Node, smooth: Node, slope: Node, slip: Node) -> Node:
-        """Return the friction that would stop the slip at the end of the step, clipped to its bound."""
+    def _friction(
+        self, joint: NonlinearElement, before: list[Node], pull: Node, smooth: Node, slope: Node, slip: Node, v: list[Node]
+    ) -> tuple[Node, Node]:
+        """Return the mean friction over the step, and the force that would keep the slip as it is."""
         program, i = self.program, joint.number
         others = [program.negate(program.multiply(self.normalised[i][j], force)) for j, force in enumerate(before) if j != i]
-        needed = program.total([pull, *others, program.negate(smooth), program.multiply(slope, slip)])
-        return self._clip(joint, needed)
+        stopping = program.total([pull, *others, program.negate(smooth), program.multiply(slope, slip)])
+        moving = self._times(joint.row, v)
+        lost = program.multiply(program.multiply(program.number(0.5), program.add(self.inverse[i], slope)), moving)
+        holding = program.subtract(stopping, lost)
+        return mean_friction(program, holding, lost, moving, self._bound(joint)), holding
 
-    def _clip(self, joint: NonlinearElement, force: Node) -> Node:
-        """Clip a friction force to its bound."""
-        program, zero = self.program, self.program.number(0.0)
-        bound = self._read(joint, sp.Add(*(step.friction for step in joint.steps)), zero, zero, STEP_PHASE)
-        return program.apply("min", program.apply("max", force, program.negate(bound)), bound)
+    def _bound(self, joint: NonlinearElement) -> Node:
+        """Return the bound of an element's friction."""
+        zero = self.program.number(0.0)
+        return self._read(joint, sp.Add(*(step.friction for step in joint.steps)), zero, zero, STEP_PHASE)
 
     def _residual(self, before: list[Node], after: list[Node]) -> Node:
         worst = self.program.leaf("residual", STEP_PHASE)
@@ -258,9 +263,9 @@ class Condensation:
         return worst
 
     def now(self, u: list[Node], v: list[Node], drives: list[Node]) -> list[Node]:
-        """Return every element's law force at a sample: smooth laws at that instant, friction from the two steps before.
+        """Return every element's law force at a sample: smooth laws at that instant, friction by the slip there.
 
-        A sample ends a step, half a step after the friction last found; the line through the last two forces reaches it.
+        A sample ends a step, half a step after the force last found that would hold the slip; the line through the last two reaches it.
         """
         program, width = self.program, len(self.model.inputs)
         found = []
@@ -271,7 +276,8 @@ class Condensation:
             if joint.friction:
                 last, before = (program.leaf(f"{name}{joint.number}", SAMPLE_PHASE) for name in "gh")
                 half = program.multiply(program.number(0.5), program.subtract(last, before))
-                force = program.add(force, self._clip(joint, program.add(last, half)))
+                stopping = program.multiply(program.multiply(program.number(0.5), self.inverse[joint.number]), self._times(joint.row, v))
+                force = program.add(force, friction_now(program, program.add(last, half), stopping, self._bound(joint)))
             found.append(force)
         return found
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose import wording
 from vehgen.diagnose.collecting import run_chis
-from vehgen.diagnose.design.experiment import VISIBLE, propose, propose_stronger
+from vehgen.diagnose.design.experiment import VISIBLE, propose_stronger
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit
@@ -19,12 +19,13 @@ from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.judging import explain_gap, plain_mistakes, recorded_mistakes, supposed_mistakes
 from vehgen.diagnose.localise.free_form import FreeForm, fit_free_form, recover, strongest
 from vehgen.diagnose.localise.localisation import suffices
+from vehgen.diagnose.naming import Naming
 from vehgen.diagnose.result import Decided, DiagnosisModels
-from vehgen.diagnose.select.criteria import adds, excess, needs_both, p_value_of, passes, seeds, tied, unfinished
-from vehgen.diagnose.select.estimates import estimate, gain_interval, unstable, validation_gain
+from vehgen.diagnose.select.criteria import adds, needs_both, p_value_of, passes, seeds, unfinished
+from vehgen.diagnose.select.estimates import gain_interval
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
-from vehgen.diagnose.select.search import DiagnosisProgress, SearchRound, search_round
-from vehgen.diagnose.verdict import Gap, NamedEffect, NamedParameter, PlaceChi, Verdict, VerdictName
+from vehgen.diagnose.select.search import DiagnosisProgress, SearchRound, merit, search_round
+from vehgen.diagnose.verdict import Gap, PlaceChi, Verdict, VerdictName
 from vehgen.effects import Effect
 from vehgen.errors import InputError
 
@@ -62,7 +63,7 @@ class Decision:
     def _decide(self) -> Decided:
         detection = self.detection
         self.notes += variety_notes(detection.trials)
-        quiet = max(detection.chi, float(np.sqrt(self.base.training))) <= limit.NOISE_FLOOR
+        quiet = max(detection.chi, float(np.sqrt(self.base.training))) <= detection.nothing_missing
         mistakes = recorded_mistakes(detection) or (supposed_mistakes(detection) if quiet else plain_mistakes(detection))
         if mistakes:
             return self._mistaken(mistakes)
@@ -80,6 +81,8 @@ class Decision:
         first = self._search_round(self.base)
         if first.stopped:
             return self._stopped()
+        if first.idle and (not first.fits or merit(first.idle[0]) <= merit(first.fits[0])):
+            return self._out_of_range(first.idle[0])
         weak = self._add(first) if first.fits else None
         if self.interrupted:
             return self._name(self.chain) if self.chain else self._stopped()
@@ -200,6 +203,15 @@ class Decision:
         best = (self._words(fits[0].last), float(np.sqrt(fits[0].training))) if fits else None
         return self._end("insufficient_data", wording.stopped(len(fits), best), "let the diagnosis run to its end")
 
+    def _out_of_range(self, freed: ModelFit) -> Decided:
+        space = freed.least_squares.misfit.problem.space
+        ratios = dict(zip(space.names, (freed.least_squares.values / space.start).tolist(), strict=True))
+        return self._end(
+            "insufficient_data",
+            wording.out_of_range({name: ratios[name] for name in freed.last.freed}),
+            "check the file, or calibrate first",
+        )
+
     def _unknown(self, first: SearchRound) -> Decided:
         best = (len(first.fits), self._words(first.fits[0].last), float(np.sqrt(first.fits[0].training))) if first.fits else None
         if self.base.least_squares.on_bound:
@@ -219,82 +231,10 @@ class Decision:
         return self._decided(verdict, (), law)
 
     def _name(self, chain: list[ModelFit]) -> Decided:
-        return self._name_one(chain[0]) if len(chain) == 1 else self._name_several(chain)
-
-    def _name_one(self, fit: ModelFit) -> Decided:
-        step = self._round_of(fit)
-        ties = tied(step, fit)
-        effects = [self._effect(step, fit, 0, [item.last.label for item in ties])]
-        effects += [self._effect(step, item, 0, []) for item in ties[:2]]
-        if ties:
-            told = [item.sentence for item in effects] + [self._words(item.last) for item in ties[2:]]
-            return self._named([fit], ties, effects, wording.ambiguous(told))
-        return self._named([fit], ties, effects, wording.named([effects[0].sentence], validation_gain(self.base, fit)))
-
-    def _words(self, candidate: Candidate, parameters: Mapping[str, NamedParameter] | None = None) -> str:
-        return wording.candidate_words(self.detection.trials[0].run.vehicle, candidate, parameters)
-
-    def _name_several(self, chain: list[ModelFit]) -> Decided:
-        last, steps = chain[-1], [self._round_of(fit) for fit in chain]
-        alternatives = [tied(step, fit) for step, fit in zip(steps, chain, strict=True)]
-        effects = [
-            self._effect(step, last, i, [item.last.label for item in others])
-            for i, (step, others) in enumerate(zip(steps, alternatives, strict=True))
-        ]
-        ties = [item for others in alternatives for item in others]
-        told = [item.sentence for item in effects]
-        reason = wording.named(told, validation_gain(self.base, last), [self._words(item.last) for item in ties])
-        return self._named(chain, ties, effects, reason)
-
-    def _named(self, chain: list[ModelFit], ties: list[ModelFit], effects: list[NamedEffect], reason: str) -> Decided:
-        verdict = Verdict(
-            "ambiguous" if ties else "named",
-            reason,
-            tuple(effects),
-            self._gap(chain[-1]),
-            self._places(),
-            next_experiment=self._apart(chain, ties) if ties else None,
-            notes=self._notes(chain[-1]),
-        )
+        naming = Naming(self.detection, self.rounds, self.tried, self.progress, self.interrupted)
+        named = naming.verdict(chain)
+        verdict = replace(named, gap=self._gap(chain[-1]), places=self._places(), notes=(*self.notes, *named.notes))
         return self._decided(verdict, chain)
 
-    def _round_of(self, fit: ModelFit) -> SearchRound:
-        return next(item for item in self.rounds if any(own.key == fit.key for own in item.fits))
-
-    def _apart(self, chain: list[ModelFit], ties: list[ModelFit]) -> str | None:
-        """Return which run would tell tied models apart, by what each predicts."""
-        if self.interrupted:
-            return None
-        advice = chain[-1].last.effect.tie_advice
-        if advice and all(fit.last.effect.tie_advice == advice for fit in ties):
-            return advice
-        self.progress("propose", 0, 1, "")
-        found = propose(self.detection, (chain[-1], *ties))
-        return found.text if found else None
-
-    def _effect(self, step: SearchRound, fit: ModelFit, number: int, others: list[str]) -> NamedEffect:
-        """Return the effect `number` of a fit, judged by what it closed in its own round."""
-        own = next((item for item in step.fits if item.key == fit.key[: number + 1]), fit)
-        candidate = fit.effects[number]
-        parameters = estimate(fit, candidate)
-        return NamedEffect(
-            candidate.effect.name,
-            candidate.place,
-            parameters,
-            p_value_of(step, own, self.tried),
-            validation_gain(step.current, own),
-            gain_interval(step.current, own, self.validation_runs),
-            tuple(others),
-            self._words(candidate, parameters),
-        )
-
-    def _notes(self, fit: ModelFit) -> tuple[str, ...]:
-        told = list(self.notes)
-        for candidate in fit.effects:
-            told += [f"{candidate.label}: {text}" for text in unstable(fit, candidate)]
-        if fit.least_squares.on_bound:
-            told.append(f"on the bound of its range: {', '.join(fit.least_squares.on_bound)}")
-        left = excess(fit.training)
-        if left > limit.AGAIN**2 - 1:
-            told.append(f"chi {np.sqrt(1 + left):.2f} is left unexplained")
-        return tuple(told)
+    def _words(self, candidate: Candidate) -> str:
+        return wording.candidate_words(self.detection.trials[0].run.vehicle, candidate)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.verdict import NamedParameter
-from vehgen.effects.places import ALL_RUNS, ALL_TYRES
+from vehgen.effects.places import ALL_RUNS, ALL_TYRES, EACH_TYRE
 from vehgen.vehicle import Vehicle
 
 SHARE_CALLED_ALL = 0.995
@@ -32,6 +32,8 @@ def place_words(attaches: str, place: str) -> str:
     """Return where an effect is, in words: of an effect that lives at `attaches` (suspension, tyre, hinge, body, axles, sensor, run)."""
     if place == ALL_TYRES:
         return "in all tyres"
+    if place == EACH_TYRE:
+        return "in all tyres, of each its own"
     if place == ALL_RUNS:
         return "in all runs"
     if attaches == "axles":
@@ -165,6 +167,18 @@ def too_few_runs(chi: float, count: int) -> str:
 def mistaken(faults: Sequence[str]) -> str:
     """Return the verdict `measurement_fault`, of the messages of what is wrong with the measurement."""
     return f"The measurement is at fault: {'; '.join(faults)}"
+
+
+def out_of_range(ratios: Mapping[str, float]) -> str:
+    """Return the verdict `insufficient_data` where base parameters far from the file's values explain the gap as well as an effect.
+
+    Parameters
+    ----------
+    ratios
+        Fitted value over the file's, by parameter.
+    """
+    told = join_names([f"{name} of {ratio:.2f} times the file's value" for name, ratio in ratios.items()], "and")
+    return f"The runs cannot tell before this is put right: {told} explains the gap as well as any effect"
 
 
 def stopped(count: int, best: tuple[str, float] | None) -> str:

@@ -15,12 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.effects.evidence import Origins, PlaceEvidence, Residual, StartingPoint
-from vehgen.effects.locator import EffectLocator, EffectSite
-from vehgen.effects.places import ALL_TYRES, Places
+from vehgen.effects.locator import EffectLocator, EffectSite, Size, base_parameters
+from vehgen.effects.places import EVERY_TYRE, Places
 from vehgen.files.expressions import Expression
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.trial import Trial
 from vehgen.simulate import SimulatorPool
+from vehgen.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 Change = dict[str, Any]
@@ -86,6 +87,9 @@ class Effect(ABC):
         Its parameters.
     is_global
         Whether no single place explains it, or it reaches several: it is tried wherever one unknown force at one place does not suffice.
+    frees
+        Which base parameters at its place its law redistributes: `k` and `c` of the suspension, link or hinge, `kt` of the tyre. Its fits
+        search them within the file's whole range: with the law beside them, they may be far from the file's value.
     tie_advice
         What to do where only effects with this same advice explain the recordings equally well; empty where another run may decide.
     """
@@ -100,6 +104,7 @@ class Effect(ABC):
     places: Places
     parameters: tuple[EffectParameter, ...] = ()
     is_global: bool = False
+    frees: tuple[Size, ...] = ()
     tie_advice: str = ""
 
     @property
@@ -116,6 +121,14 @@ class Effect(ABC):
     def solved_parameters(self) -> tuple[EffectParameter, ...]:
         """Return those of its parameters that are not searched but solved for in every run (see :meth:`solve`)."""
         return ()
+
+    def at(self, place: str, vehicle: Vehicle) -> Effect:
+        """Return the effect with the parameters that it has at a place of a vehicle."""
+        return self
+
+    def freed(self, place: str, vehicle: Vehicle) -> tuple[str, ...]:
+        """Return the free parameters of the vehicle, by name, that it `frees` at a place."""
+        return base_parameters(vehicle, place, self.frees)
 
     @abstractmethod
     def n_numbers(self, n_runs: int) -> int:
@@ -167,7 +180,7 @@ class Effect(ABC):
 
     def is_likely(self, place: str, evidence: PlaceEvidence) -> bool:
         """Return whether it is worth fitting at a place, by what the place test found."""
-        if place == ALL_TYRES:
+        if place in EVERY_TYRE:
             return not evidence.one_force or "tyre" in evidence.kinds
         touches = not evidence.parts.isdisjoint(place.split("+"))
         return touches or (self.is_global and not evidence.one_force)

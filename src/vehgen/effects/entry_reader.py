@@ -101,7 +101,7 @@ class EntryReader:
         ((name, item),) = entry.parameters.items()
         if item.times is not None:
             raise self.wrong("runs and sensors have no size: leave `times` out", "parameters", name, "times", key=True)
-        parameter, (theirs,) = self.parameter(name, item), known.parameters
+        parameter, theirs = self.parameter(name, item), known.parameters[0]
         expected = parse_unit(theirs.unit)[1] if theirs.unit else NONE
         if self.own[name] != expected:
             kind = f"in {theirs.unit} or a unit like it" if theirs.unit else "a plain number"
@@ -109,7 +109,7 @@ class EntryReader:
             raise self.wrong(f"{entry.adjusts} is {kind}, found {item.unit or 'no unit'}", *where, key=not item.unit)
         if entry.adjusts in ("speed", "footprint") and item.low <= 0:
             raise self.wrong(f"{entry.adjusts} is above 0, found {item.low:g}", "parameters", name, "low")
-        return replace(known, parameters=(parameter,), **self.description(known))
+        return replace(known, parameters=(parameter, *known.parameters[1:]), **self.description(known))
 
     def line_effect(self, line: LineEntry) -> LineEffect:
         """Return the line, looked for between its two frequencies."""

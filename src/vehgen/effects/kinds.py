@@ -92,7 +92,9 @@ class VehicleEffect(Effect):
 
 @dataclass(frozen=True, kw_only=True)
 class RunEffect(Effect):
-    """An effect of all runs or of a sensor, with one parameter: a speed, a contact length, a gain, a delay, a tilt, a position.
+    """An effect of all runs or of a sensor: a speed, a contact length, a gain, a delay, a tilt, a position.
+
+    It has one parameter, and more where its adjustment reads the numbers after its own.
 
     Attributes
     ----------
@@ -108,9 +110,9 @@ class RunEffect(Effect):
     neutral: float = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse what is not one parameter."""
-        if len(self.parameters) != 1:
-            raise ValueError(f"{self.name}: an effect of runs or sensors has one parameter, found {len(self.parameters)}")
+        """Refuse what has no parameter."""
+        if not self.parameters:
+            raise ValueError(f"{self.name}: an effect of runs or sensors has a parameter, found none")
 
     @property
     def is_single_force(self) -> bool:
@@ -118,8 +120,8 @@ class RunEffect(Effect):
         return False
 
     def n_numbers(self, n_runs: int) -> int:
-        """Return 1: its number holds in all runs."""
-        return 1
+        """Return the number of its parameters: they hold in all runs."""
+        return len(self.parameters)
 
     def search_names(self, place: str) -> tuple[str, ...]:
         """Return the name of a sensor's shift in the model, for effects that search it."""
@@ -127,14 +129,17 @@ class RunEffect(Effect):
 
     def search_dimensions(self, place: str, locator: EffectLocator) -> tuple[SearchDimension, ...]:
         """Return a sensor's shift, begun where the run file says that the sensor is, or as near as its range allows."""
-        (parameter,) = self.parameters
+        parameter = self.parameters[0]
         start = min(max(self.neutral, parameter.low), parameter.high)
         return tuple(SearchDimension(name, parameter.low, parameter.high, start) for name in self.search_names(place))
 
     def adjustments(self, place: str, noise_sigma: Mapping[str, Array]) -> tuple[Adjustment, ...]:
-        """Return its adjustment."""
-        (parameter,) = self.parameters
-        return () if self.adjustment is None else (self.adjustment(place, self.scale, self.neutral, parameter.low, parameter.high),)
+        """Return its adjustment, followed by plain ones that hold its further numbers."""
+        if self.adjustment is None:
+            return ()
+        first, *others = self.parameters
+        further = (Adjustment(f"{place} {item.name}", 1.0, item.starts[0], item.low, item.high) for item in others)
+        return (self.adjustment(place, self.scale, self.neutral, first.low, first.high), *further)
 
     def origins(self, origins: Origins) -> list[StartingPoint]:
         """Return where the base parameters begin: for an effect of all runs as filed, as a place tells nothing of it."""

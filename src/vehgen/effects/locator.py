@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import sympy as sp
 
-from vehgen.effects.places import ALL_TYRES
+from vehgen.effects.places import EVERY_TYRE
 from vehgen.mechanics import GRAVITY, EquationsOfMotion, derive, static_loads
 from vehgen.mechanics.energies import pitch_inertia
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.parts import Spring
+
+Size = Literal["k", "c", "kt"]
+"""Stiffness and damping of a suspension, link or hinge; stiffness of a tyre."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +61,31 @@ class EffectSite:
         return list(spring.laws)
 
 
+def base_parameters(vehicle: Vehicle, place: str, sizes: Sequence[Size]) -> tuple[str, ...]:
+    """Return the free parameters on which stiffnesses and dampings at a place depend, in the vehicle's order.
+
+    Parameters
+    ----------
+    vehicle
+        The vehicle.
+    place
+        An axle, link, hinge, axles joined by `+`, or all tyres; at any other place there are none.
+    sizes
+        Which of them.
+    """
+    wanted: set[str] = set()
+    for name in vehicle.axles if place in EVERY_TYRE else place.split("+"):
+        axle = vehicle.axles.get(name)
+        spring = axle.suspension if axle is not None else vehicle.links.get(name) or vehicle.hinges.get(name)
+        known = {} if spring is None else {"k": spring.k, "c": spring.c}
+        if axle is not None:
+            known["kt"] = axle.tyre.k
+        wanted |= {used for size in sizes if size in known for used in known[size].names}
+    while follow := {name for name in wanted if vehicle.parameters[name].equals is not None}:
+        wanted = (wanted - follow).union(*(vehicle.parameters[name].definition.names for name in follow))
+    return tuple(name for name in vehicle.free_parameters if name in wanted)
+
+
 class EffectLocator:
     """Looks up sites of one vehicle.
 
@@ -85,7 +114,7 @@ class EffectLocator:
     def site(self, place: str) -> EffectSite:
         """Return the site of an axle, link, hinge, body, group of axles joined by `+`, or of all tyres, sized as their mean."""
         vehicle, known = self.vehicle, self._known
-        names = list(vehicle.axles) if place == ALL_TYRES else place.split("+")
+        names = list(vehicle.axles) if place in EVERY_TYRE else place.split("+")
         load = k = c = kt = 0.0
         body = names[0]
         for name in names:
@@ -114,6 +143,6 @@ class EffectLocator:
         length = max(marks) - min(marks) if len(marks) > 1 else 1.0
         if names[0] in vehicle.bodies:
             load = mass * GRAVITY
-        if place == ALL_TYRES:
+        if place in EVERY_TYRE:
             load, k, c, kt = (size / len(names) for size in (load, k, c, kt))
         return EffectSite(vehicle, place, load, k, c, kt, mass, self._inertias[body], length)

@@ -12,12 +12,26 @@ from vehgen.vehicle import Vehicle
 Places = Callable[[Vehicle, Sequence[Trial]], tuple[str, ...]]
 """Names the places of a vehicle and its runs."""
 ALL_TYRES = "all tyres"
+EACH_TYRE = "each tyre"
+"""All tyres as well, each with numbers of its own."""
+EVERY_TYRE = (ALL_TYRES, EACH_TYRE)
 ALL_RUNS = "all runs"
+
+
+def nowhere(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
+    """Return no place."""
+    return ()
 
 
 def suspensions(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return every axle with a suspension, then every link: both are a spring and damper with room for laws."""
     return (*(name for name, axle in vehicle.axles.items() if axle.suspension is not None), *vehicle.links)
+
+
+def dampers(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
+    """Return the suspensions and links that have a dashpot."""
+    springs = {name: axle.suspension for name, axle in vehicle.axles.items() if axle.suspension is not None} | vehicle.links
+    return tuple(name for name in suspensions(vehicle, trials) if springs[name].c.names or springs[name].c.evaluate({}) > 0)
 
 
 def axles(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
@@ -33,6 +47,11 @@ def all_tyres(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
 def tyres(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return all tyres as one place, then every axle's."""
     return (ALL_TYRES, *vehicle.axles) if vehicle.axles else ()
+
+
+def tyres_alike_or_each(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
+    """Return all tyres as one place, every axle's, then all tyres each for itself, where there are several."""
+    return (*tyres(vehicle, trials), *((EACH_TYRE,) if len(vehicle.axles) > 1 else ()))
 
 
 def hinges(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:

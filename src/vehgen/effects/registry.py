@@ -9,6 +9,7 @@ from vehgen.effects.library.asymmetric_damping import ASYMMETRIC_DAMPING_EFFECT
 from vehgen.effects.library.bump_stop import BUMP_STOP_EFFECT
 from vehgen.effects.library.cargo_module import CARGO_MODULE_EFFECT
 from vehgen.effects.library.cubic_stiffness import CUBIC_STIFFNESS_EFFECT
+from vehgen.effects.library.damper_mount import DAMPER_MOUNT_EFFECT
 from vehgen.effects.library.dry_friction import DRY_FRICTION_EFFECT
 from vehgen.effects.library.engine_harmonic import ENGINE_HARMONIC_EFFECT
 from vehgen.effects.library.frame_bending import FRAME_BENDING_EFFECT
@@ -45,6 +46,7 @@ EFFECTS: dict[str, Effect] = {
         QUADRATIC_DAMPING_EFFECT,
         HYSTERESIS_EFFECT,
         RELAXATION_EFFECT,
+        DAMPER_MOUNT_EFFECT,
         TYRE_LIFTOFF_EFFECT,
         TYRE_DAMPING_EFFECT,
         TYRE_FOOTPRINT_EFFECT,

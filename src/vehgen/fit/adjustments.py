@@ -6,14 +6,15 @@ A fit carries an adjustment's number along with the vehicle's parameters, in uni
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import scipy.integrate
 from numpy.typing import NDArray
 
 from vehgen.fit.trial import Trial
-from vehgen.mechanics import GRAVITY
+from vehgen.mechanics import GRAVITY, PointOutput
+from vehgen.mechanics.outputs import fore_aft_row
 from vehgen.simulate import Scenario
 
 Array = NDArray[np.float64]
@@ -91,20 +92,53 @@ class SensorDelay(Adjustment):
         return np.where(late, shifted, response)
 
 
+@dataclass(frozen=True)
 class Tilt(Adjustment):
-    """The nose-down angle of a sensor on its body [rad].
+    """The nose-down angle of a sensor on its body [rad]; the next number is its height above where the run file has it [m].
 
-    Its acceleration then reads a_z cos(tilt) - g sin(tilt) pitch, what it reads at rest taken off; the body's fore-aft acceleration is
-    left out. The pitch is the integral of the sensor's own pitch rate.
+    Its acceleration then reads a_z cos(tilt) + (a_x - g pitch) sin(tilt), what it reads at rest taken off. The pitch is the integral of the
+    sensor's own pitch rate; the fore-aft acceleration a_x follows from the pitch accelerations of the bodies that are hinged to its own,
+    as far as pitch rates of them are recorded, at the file's masses and lengths.
     """
 
+    _known: dict[int, tuple[Trial, Array]] = field(default_factory=dict, repr=False, compare=False)
+
     def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
-        """Return the readings with the sensor tilted by `numbers[0]` [rad]."""
+        """Return the readings with the sensor tilted by `numbers[0]` [rad] and `numbers[1]` [m] higher."""
         columns = {channel.quantity: i for i, channel in enumerate(trial.recording.channels) if channel.sensor == self.place}
         if "acceleration" not in columns or "pitch_rate" not in columns:
             return response
-        pitch = scipy.integrate.cumulative_trapezoid(response[..., columns["pitch_rate"]], dx=trial.recording.dt, axis=-1, initial=0.0)
+        dt, column, own = trial.recording.dt, columns["acceleration"], columns["pitch_rate"]
+        pitch = scipy.integrate.cumulative_trapezoid(response[..., own], dx=dt, axis=-1, initial=0.0)
+        shares = self._shares(trial).copy()
+        shares[own] += numbers[1]
+        forward = _derivative(response @ shares, dt)
         changed = response.copy()
-        column = columns["acceleration"]
-        changed[..., column] = response[..., column] * np.cos(numbers[0]) - GRAVITY * np.sin(numbers[0]) * pitch
+        changed[..., column] = response[..., column] * np.cos(numbers[0]) + (forward - GRAVITY * pitch) * np.sin(numbers[0])
         return changed
+
+    def _shares(self, trial: Trial) -> Array:
+        """Return the sensor's fore-aft acceleration per rate of change of every channel, `shape (n_channels,)` [m]; found once a trial."""
+        if id(trial) not in self._known:
+            self._known[id(trial)] = trial, fore_aft_shares(trial, self.place)  # with the trial, whose number no other one then takes
+        return self._known[id(trial)][1]
+
+
+def fore_aft_shares(trial: Trial, sensor: str) -> Array:
+    """Return a sensor's fore-aft velocity per unit of each channel, `shape (n_channels,)` [m]: 0 for all but pitch rates of bodies."""
+    model, shares = trial.simulator.model, np.zeros(len(trial.channels))
+    place = next(item.output.place for item in trial.recording.channels if item.sensor == sensor and isinstance(item.output, PointOutput))
+    row = fore_aft_row(place, place.locate(model.vehicle, model.layout), model.motion, model.energies)
+    values = dict(zip(row, model.evaluate_list(row.values(), trial.values), strict=True))
+    for i, channel in enumerate(model.channels):
+        if channel.quantity == "pitch_rate":
+            shares[i] = sum(values.pop(j, 0.0) for j in channel.velocity if model.coordinates[j].motion == "pitch")
+    return shares
+
+
+def _derivative(signal: Array, dt: float) -> Array:
+    """Return the rate of change of signals `shape (..., n_samples)`, by their Fourier transform; mirrored, so that their ends meet."""
+    n = signal.shape[-1]
+    frequency = np.fft.rfftfreq(2 * n, dt)
+    both = np.concatenate([signal, signal[..., ::-1]], axis=-1)
+    return np.asarray(np.fft.irfft(2j * np.pi * frequency * np.fft.rfft(both), 2 * n)[..., :n])

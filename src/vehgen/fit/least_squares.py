@@ -72,7 +72,8 @@ class FitOptions:
     `nuisances` and `band` [Hz] as in :class:`Misfit`; the noise, where it is not known, is estimated from the residuals and the fit
     repeated `noise_rounds` times; a fit evaluates the residuals at most `max_steps` times and ends at a relative change of their sum of
     squares of `tolerance`. `jacobian_refresh` as in :func:`vehgen.fit.linearisation.lineariser`. `prior_sigma` is the standard deviation,
-    in the unit cube, of the prior about the space's start; the last `n_effect_parameters` parameters have a prior of WEAK_PRIOR_SIGMA.
+    in the unit cube, of the prior about the space's start, one for all or one each; the last `n_effect_parameters` parameters, of which it
+    says nothing, have a prior of WEAK_PRIOR_SIGMA.
     """
 
     nuisances: Nuisances = field(default_factory=Nuisances)
@@ -81,7 +82,7 @@ class FitOptions:
     max_steps: int = 60
     tolerance: float = FINE_TOLERANCE
     jacobian_refresh: int = 1
-    prior_sigma: float = WEAK_PRIOR_SIGMA
+    prior_sigma: float | Array = WEAK_PRIOR_SIGMA
     n_effect_parameters: int = 0
 
     def priors(self, n_parameters: int) -> Array:

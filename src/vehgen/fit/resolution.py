@@ -1,8 +1,8 @@
 """The time step that a run needs: halved until halving it further changes nothing that the noise would show.
 
-Of smooth laws the error's mean square falls sixteenfold with half the step. Dry friction is not smooth: its force jumps, a jump within a
-step comes late by a part of the step, and a sample that falls in between is off by the whole jump, so that the error's mean square falls
-but in proportion to the step.
+The error's mean square falls sixteenfold with half the step. Dry friction jumps where its slip ends; the kernels place that within a step
+(see :mod:`vehgen.codegen.friction`), so that friction is as accurate as smooth laws. But a sample next to a jump may be off by all of it,
+however short the step, and a fit's parameters move jumps across samples: such trials are marked.
 """
 
 from __future__ import annotations
@@ -21,8 +21,6 @@ RESOLVED_SHARE = 0.1
 """A step is short enough when half of it moves the whitened lines by this mean square or less (noise alone: 1)."""
 HALVINGS = 3
 """A run's step is halved so often at most, in all."""
-SMOOTH_RATIO = 1 / 6
-"""Where half the step leaves more than this share of the error, the response jumps."""
 
 
 def resolve(misfit: Misfit, x: Array) -> Problem:
@@ -32,19 +30,26 @@ def resolve(misfit: Misfit, x: Array) -> Problem:
     for number, trial in enumerate(misfit.problem.trials):
         error = misfit.errors_of(x, number)
         most = samples_kept(trial.run, trial.recording.dt) * 2**HALVINGS
-        coarse, before, jumps = misfit.respond(number, values, numbers, error, trial)[0], 0.0, trial.jumps
+        coarse = misfit.respond(number, values, numbers, error, trial)[0]
         while trial.scenario.decimation < most:
-            finer = _halved(trial)
+            finer = halved(trial)
             fine = misfit.respond(number, values, numbers, error, finer)[0]
             moved = float(np.mean(np.abs(misfit.whitened_signal(number, fine - coarse)) ** 2))
-            jumps = jumps or moved > SMOOTH_RATIO * before > 0.0
             if not moved > RESOLVED_SHARE:
                 break
-            trial, coarse, before = finer, fine, moved
-        found.append(replace(trial, jumps=jumps))
+            trial, coarse = finer, fine
+        found.append(replace(trial, jumps=_jumps(trial)))
     return Problem(tuple(found), misfit.problem.space)
 
 
-def _halved(trial: Trial) -> Trial:
+def _jumps(trial: Trial) -> bool:
+    """Return whether a trial's channels jump: accelerations and forces of a vehicle with dry friction."""
+    model = trial.simulator.model
+    rough = any(term.step().friction != 0 for element in model.elements for term in element.laws)
+    return rough and any(channel.quantity.endswith(("acceleration", "force", "load")) for channel in model.channels)
+
+
+def halved(trial: Trial) -> Trial:
+    """Return a trial simulated with half the step, its samples the same."""
     scenario = trial.scenario
     return replace(trial, scenario=replace(scenario, dt=scenario.dt / 2, decimation=2 * scenario.decimation))

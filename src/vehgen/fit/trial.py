@@ -35,8 +35,8 @@ class Trial:
     """One run with its measurement, ready to be simulated.
 
     `values` are the vehicle's free parameters in this run before anything is searched [SI]; `fixed` names those that the run file sets
-    itself, which no search changes. `jumps` tells of a response that jumps, as one with dry friction does: shorter steps help it but
-    slowly (see :mod:`vehgen.fit.resolution`).
+    itself, which no search changes. `jumps` tells of a response that jumps, as one with dry friction does (see
+    :mod:`vehgen.fit.resolution`).
     """
 
     name: str

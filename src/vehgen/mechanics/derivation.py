@@ -61,7 +61,9 @@ def derive(vehicle: VehicleLike, outputs: Iterable[Output] = (), forces: Iterabl
     places = {output.place.name: output.place for output in outputs if isinstance(output, PointOutput)}
     shifts = tuple(place.shift for place in (*places.values(), *forces))
     channels = tuple(
-        point_channel(output, vehicle, layout, motion) if isinstance(output, PointOutput) else element_channel(output, energies.elements)
+        point_channel(output, vehicle, layout, motion, energies)
+        if isinstance(output, PointOutput)
+        else element_channel(output, energies.elements)
         for output in outputs
     )
     return EquationsOfMotion(

@@ -52,6 +52,12 @@ class Energies:
     elements: tuple[Element, ...]
     weights: tuple[Inertia, ...]
 
+    def eliminated(self, group: str) -> Row:
+        """Return a group's eliminated fore-aft coordinate: it moves so that the group's momentum stays zero, -sum m h/sum m."""
+        terms = self.fore_aft[group]
+        total = sp.Add(*(term.inertia for term in terms))
+        return combine(*((-term.inertia / total, term.row) for term in terms))
+
 
 def pitch_inertia(body: Body) -> sp.Expr:
     """Return a body's pitch inertia: as given, or that of a uniform box of its `size`, m (l^2 + h^2)/12 [kg m^2]."""

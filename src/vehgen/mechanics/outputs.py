@@ -8,7 +8,7 @@ import sympy as sp
 
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.expressions import Expression
-from vehgen.mechanics.energies import Element
+from vehgen.mechanics.energies import Element, Energies
 from vehgen.mechanics.equations_of_motion import Channel
 from vehgen.mechanics.kinematics import Kinematics
 from vehgen.mechanics.layout import Layout
@@ -23,6 +23,7 @@ POINT_QUANTITIES = {
     "pitch": "rad",
     "pitch_rate": "rad/s",
     "pitch_acceleration": "rad/s^2",
+    "fore_aft_acceleration": "m/s^2",
 }
 AXLE_QUANTITIES = {"suspension_travel": "m", "suspension_force": "N", "tyre_force": "N", "tyre_load": "N"}
 LINK_QUANTITIES = {"link_travel": "m", "link_force": "N"}
@@ -30,7 +31,7 @@ LINK_QUANTITIES = {"link_travel": "m", "link_force": "N"}
 
 @dataclass(frozen=True)
 class Place:
-    """A place on a body: `x` ahead of its COG, or `distance` [m] behind an axle, hinge or body named `behind`.
+    """A place on a body: `x` ahead of its COG, or `distance` [m] behind an axle, hinge or body named `behind`, `height` [m] above the COG.
 
     Each place has a parameter `NAME.shift` [m], which moves it forward; it is 0 unless a population or a fit says otherwise.
     """
@@ -40,6 +41,7 @@ class Place:
     x: Expression | None = None
     behind: str | None = None
     distance: float = 0.0
+    height: float = 0.0
 
     @property
     def shift(self) -> str:
@@ -80,15 +82,24 @@ class ElementOutput:
 Output = PointOutput | ElementOutput
 
 
-def point_channel(output: PointOutput, vehicle: Vehicle, layout: Layout, motion: Kinematics) -> Channel:
+def point_channel(output: PointOutput, vehicle: Vehicle, layout: Layout, motion: Kinematics, energies: Energies) -> Channel:
     """Return the row of a quantity at a point of a body."""
     quantity = output.quantity
     if quantity not in POINT_QUANTITIES:
         raise InputError(f"{output.name}: unknown quantity {shown(quantity)} of a sensor; {did_you_mean(quantity, POINT_QUANTITIES)}")
     x = output.place.locate(vehicle, layout)
-    row = motion.turn(output.place.body, x) if quantity.startswith("pitch") else motion.rise(output.place.body, x)
-    part = {"pitch": "displacement", "pitch_rate": "velocity", "pitch_acceleration": "acceleration"}.get(quantity, quantity)
+    if quantity == "fore_aft_acceleration":
+        row = fore_aft_row(output.place, x, motion, energies)
+    else:
+        row = motion.turn(output.place.body, x) if quantity.startswith("pitch") else motion.rise(output.place.body, x)
+    part = {"pitch": "displacement", "pitch_rate": "velocity"}.get(quantity, quantity.removeprefix("pitch_").removeprefix("fore_aft_"))
     return Channel(output.name, quantity, POINT_QUANTITIES[quantity], output.place.body, **{part: row})
+
+
+def fore_aft_row(place: Place, x: sp.Expr, motion: Kinematics, energies: Energies) -> Row:
+    """Return how far forward a place `x` ahead of its body's COG moves: with its group of bodies, with its body, and as it pitches."""
+    own = combine((sp.S.One, motion.fore_aft[place.body]), (number(place.height), motion.turn(place.body, x)))
+    return combine((sp.S.One, energies.eliminated(motion.groups[place.body])), (sp.S.One, own))
 
 
 def element_channel(output: ElementOutput, elements: tuple[Element, ...]) -> Channel:

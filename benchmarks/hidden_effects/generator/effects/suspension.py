@@ -40,6 +40,14 @@ def _relaxation(setup: Setup, place: str, p: Values) -> None:
     setup.add_law(place, laws.MAXWELL, p["k"], p["time"], states=(0.0,))
 
 
+def _damper_mount(setup: Setup, place: str, p: Values) -> None:
+    if p["time"] == 0.0:
+        return
+    element = setup.suspension(place)
+    setup.add_law(place, laws.MAXWELL, element.c / p["time"], p["time"], states=(0.0,))
+    element.c = 0.0
+
+
 SUSPENSION = (
     EffectKind(
         "dry_friction", "f = force sign(v) while slipping; any abs(f) <= force that keeps v = 0 while sticking", suspensions,
@@ -87,5 +95,9 @@ SUSPENSION = (
             Value("k", "N/m", "stiffness of the series spring", (0.1, 0.25), (0.6, 2.0), "k", 0.0),
             Value("time", "s", "relaxation time", (0.02, 0.2), (0.02, 0.2)),
         ), _relaxation,
+    ),
+    EffectKind(
+        "damper_mount", "f = c y' = k (d - y) in place of c v, k = c/time: the dashpot stands on a spring", suspensions,
+        (Value("time", "s", "damping over the stiffness of the mount", (0.001, 0.002), (0.006, 0.03), neutral=0.0),), _damper_mount,
     ),
 )  # fmt: skip

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.design.candidate_runs import CandidateRun
-from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, ModelFit
+from vehgen.diagnose.fits.model_fit import ModelFit, base_priors
 from vehgen.fit.alignment import MOST_SIGMAS, best_delay
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
@@ -133,7 +133,8 @@ class FittedModel:
         own = sum(len(item.parameters) for item in self.fit.effects)
         jacobian = linearise(misfit, self.fit.least_squares.x).jacobian
         whole = jacobian.T @ jacobian
-        whole[:n, :n] += np.diag(np.concatenate([np.full(n - own, BASE_PRIOR_SIGMA), np.full(own, SPREAD)]) ** -2.0)
+        held = base_priors(misfit.problem.space.names[: n - own], self.fit.effects)
+        whole[:n, :n] += np.diag(np.concatenate([held, np.full(own, SPREAD)]) ** -2.0)
         k = n + len(misfit.shared)
         return np.asarray(whole[:k, :k] - whole[:k, k:] @ np.linalg.solve(whole[k:, k:], whole[k:, :k]))
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.detect.noise_floor import NoiseFloor, find_noise_floor
+from vehgen.diagnose.detect.numerical_floor import numerical_floor
 from vehgen.diagnose.detect.profile_error import measured_profiles, profile_noises
 from vehgen.diagnose.fits.model_fit import ModelFit, fit_base, mean_square_as_filed, narrow
+from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.errors import InputError
 from vehgen.fit.band import DIAGNOSIS_BAND_HZ, compared_band
 from vehgen.fit.problem import Problem, make_problem
@@ -30,7 +32,8 @@ class Detection:
     """What the first stage finds: the noise floor and how far the base model is above it.
 
     `base` is recalibrated; `as_filed` and `as_filed_validation` are the mean squares of the file's parameters, on the training runs and on
-    the validation runs (not a number where there are none); `recorder` stands for recorders that no run file declares.
+    the validation runs (not a number where there are none). `recorder` stands for recorders that no run file declares; `numerical` is what
+    the simulation's own error may add to the mean square of every run.
     """
 
     problem: Problem
@@ -41,6 +44,14 @@ class Detection:
     as_filed_validation: float
     band: tuple[float, float] = DIAGNOSIS_BAND_HZ
     recorder: FoundRecorder | None = None
+    numerical: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def nothing_missing(self) -> float:
+        """The chi at or below which nothing is missing: that of the noise floor and of the simulation's own error together."""
+        counts = {name: self.base.counts[name] for name in self.numerical}
+        added = sum(self.numerical[name] * count for name, count in counts.items()) / max(sum(counts.values()), 1)
+        return float(np.sqrt(NOISE_FLOOR**2 + added))
 
     @property
     def chi(self) -> float:
@@ -99,7 +110,18 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
         floor = replace(floor, noises=profile_noises(base, floor.noises))
         base = fit_base(problem, validation_runs, floor.noises, band, base)
     filed = [mean_square_as_filed(part, floor.noises, band) for part in (training, validation_runs)]
-    return Detection(problem, tuple(validation_runs), floor, base, filed[0], filed[1], band, recorder)
+    numerical = [numerical_floor(fit.misfit, fit.x) for fit in (base.least_squares, base.validation_fit) if fit is not None]
+    return Detection(
+        problem,
+        tuple(validation_runs),
+        floor,
+        base,
+        filed[0],
+        filed[1],
+        band,
+        recorder,
+        {name: own[name] for own in numerical for name in own},
+    )
 
 
 def band_gaps(detection: Detection, fit: ModelFit | None = None) -> list[BandGap]:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vehgen.effects import Effect, EffectLocator
 from vehgen.fit.adjustments import Adjustment
@@ -16,18 +17,22 @@ from vehgen.fit.trial import Trial
 from vehgen.simulate import SimulatorPool
 from vehgen.vehicle import Vehicle
 
+Array = NDArray[np.float64]
+
 
 @dataclass(frozen=True)
 class Candidate:
     """An effect at a place.
 
-    `parameters` are the names its parameters take in the search space; `shared` its adjustments of runs or sensors.
+    `parameters` are the names its parameters take in the search space; `shared` its adjustments of runs or sensors; `freed` the base
+    parameters that it searches within the file's whole range.
     """
 
     effect: Effect
     place: str
     parameters: tuple[str, ...]
     shared: tuple[Adjustment, ...] = ()
+    freed: tuple[str, ...] = ()
 
     @property
     def label(self) -> str:
@@ -48,15 +53,18 @@ class Candidate:
 def list_candidates(vehicle: Vehicle, trials: Sequence[Trial], effects: Sequence[Effect], noises: Noises | None = None) -> list[Candidate]:
     """Return every effect at every place at which it can live; the noise of the runs weighs channels where an effect needs it."""
     sigma = {name: noise.sigma for name, noise in (noises or {}).items()}
-    return [
-        Candidate(effect, place, effect.search_names(place), effect.adjustments(place, sigma))
-        for effect in effects
-        for place in effect.places(vehicle, trials)
-    ]
+    found = []
+    for effect in effects:
+        for place in effect.places(vehicle, trials):
+            own = effect.at(place, vehicle)
+            found.append(Candidate(own, place, own.search_names(place), own.adjustments(place, sigma), own.freed(place, vehicle)))
+    return found
 
 
 def build_problem(candidate: Candidate, base: Problem, locator: EffectLocator, simulators: SimulatorPool) -> Problem:
     """Return the base problem with the candidate's effect added to its trials and its parameters to the search.
+
+    The base parameters that the effect frees are searched within the range of the vehicle's file.
 
     Parameters
     ----------
@@ -71,10 +79,28 @@ def build_problem(candidate: Candidate, base: Problem, locator: EffectLocator, s
     """
     trials = candidate.effect.change_trials(base.trials, candidate.place, locator, simulators)
     added = candidate.effect.search_dimensions(candidate.place, locator)
+    known = widened(base.space, base.trials[0].run.vehicle.ranges(), candidate.freed)
     space = SearchSpace(
-        (*base.space.names, *(item.name for item in added)),
-        np.concatenate([base.space.lower, [item.low for item in added]]),
-        np.concatenate([base.space.upper, [item.high for item in added]]),
-        np.concatenate([base.space.start, [item.start for item in added]]),
+        (*known.names, *(item.name for item in added)),
+        np.concatenate([known.lower, [item.low for item in added]]),
+        np.concatenate([known.upper, [item.high for item in added]]),
+        np.concatenate([known.start, [item.start for item in added]]),
     )
     return Problem(trials, space)
+
+
+def widened(space: SearchSpace, ranges: Mapping[str, tuple[float, float]], names: Sequence[str]) -> SearchSpace:
+    """Return a space with some of its parameters searched within their `ranges` [SI], where those are wider."""
+    lower, upper = space.lower.copy(), space.upper.copy()
+    for i, name in enumerate(space.names):
+        if name in names and name in ranges:
+            lower[i], upper[i] = min(lower[i], ranges[name][0]), max(upper[i], ranges[name][1])
+    return replace(space, lower=lower, upper=upper)
+
+
+def carried(unit: Array, old: SearchSpace, new: SearchSpace) -> Array:
+    """Return points of a space's unit cube, `shape (..., old.size)`, in that of another space whose first parameters are the same."""
+    n = old.size
+    first = SearchSpace(old.names, new.lower[:n], new.upper[:n], new.start[:n])
+    alike = (old.lower == first.lower) & (old.upper == first.upper)
+    return np.asarray(np.where(alike, unit, first.unit(old.values(unit))))

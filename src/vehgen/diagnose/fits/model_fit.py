@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.fit.adjustments import Adjustment
-from vehgen.fit.least_squares import COARSE_TOLERANCE, FitOptions, LeastSquaresFit, fit_least_squares
+from vehgen.fit.least_squares import COARSE_TOLERANCE, WEAK_PRIOR_SIGMA, FitOptions, LeastSquaresFit, fit_least_squares
 from vehgen.fit.linearisation import Linearisation
 from vehgen.fit.misfit import Misfit, Noises
 from vehgen.fit.nuisances import Nuisances
@@ -155,9 +155,17 @@ def mean_square_as_filed(trials: Sequence[Trial], noises: Noises, band: tuple[fl
     return _pooled(*_by_run(_powers(fit)))
 
 
-def refine(problem: Problem, fit: LeastSquaresFit, x: Array, n_effect_parameters: int) -> LeastSquaresFit:
+def base_priors(names: Sequence[str], effects: Sequence[Candidate]) -> Array:
+    """Return the standard deviations, in the unit cube, of the priors of the base parameters `names`: weak for what effects set free."""
+    freed = {name for item in effects for name in item.freed}
+    return np.array([WEAK_PRIOR_SIGMA if name in freed else BASE_PRIOR_SIGMA for name in names])
+
+
+def refine(problem: Problem, fit: LeastSquaresFit, x: Array, effects: Sequence[Candidate]) -> LeastSquaresFit:
     """Fit finely from the unknowns `x` of another fit, on a problem with the same unknowns, of which the last are the effects'."""
     misfit = fit.misfit
+    n_effect_parameters = sum(len(item.parameters) for item in effects)
+    names = problem.space.names[: problem.space.size - n_effect_parameters]
     unit, errors = misfit.split(x)
     options = FitOptions(
         NUISANCES,
@@ -165,7 +173,7 @@ def refine(problem: Problem, fit: LeastSquaresFit, x: Array, n_effect_parameters
         max_steps=25,
         tolerance=DIAGNOSIS_TOLERANCE,
         jacobian_refresh=JACOBIAN_REFRESH,
-        prior_sigma=BASE_PRIOR_SIGMA,
+        prior_sigma=base_priors(names, effects),
         n_effect_parameters=n_effect_parameters,
     )
     numbers = tuple(misfit.adjusted(x))

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.fits.candidate import Candidate, build_problem
+from vehgen.diagnose.fits.candidate import Candidate, build_problem, carried
 from vehgen.diagnose.fits.model_fit import (
-    BASE_PRIOR_SIGMA,
     JACOBIAN_REFRESH,
     NUISANCES,
     CurrentModel,
     ModelFit,
+    base_priors,
     evaluate_fit,
     refine,
 )
@@ -74,7 +74,7 @@ def fit_candidate(
     effects = (*current.effects, candidate)
     if best.chi2 - 1 > HOPELESS * max(current.training - 1, 0.0):
         return evaluate_fit(effects, best, (), noises)
-    return evaluate_fit(effects, refine(resolve(best.misfit, best.x), best, best.x, rough.n_effect_parameters), validation_runs, noises)
+    return evaluate_fit(effects, refine(resolve(best.misfit, best.x), best, best.x, effects), validation_runs, noises)
 
 
 class _Rough:
@@ -85,6 +85,7 @@ class _Rough:
         self.shared = (*current.shared, *candidate.shared)
         self.nearby = current.nearby
         self.n_effect_parameters = current.n_effect_parameters + len(candidate.parameters)
+        self.priors = base_priors(problem.space.names[: problem.space.size - self.n_effect_parameters], (*current.effects, candidate))
 
     def search(self, origins: Sequence[StartingPoint], begin: Sequence[tuple[float, ...]]) -> LeastSquaresFit | None:
         """Return the lowest of the rough fits."""
@@ -112,7 +113,7 @@ class _Rough:
             max_steps=steps,
             tolerance=COARSE_TOLERANCE,
             jacobian_refresh=JACOBIAN_REFRESH,
-            prior_sigma=BASE_PRIOR_SIGMA,
+            prior_sigma=self.priors,
             n_effect_parameters=self.n_effect_parameters,
         )
         return fit_least_squares(
@@ -131,7 +132,8 @@ class _Rough:
                 point = space.start.copy()
                 if own:
                     point[n:] = combination[:own]
-                unit = np.concatenate([np.clip(base, 0.01, 0.99), space.unit(point)[n:]])
+                begun = carried(np.clip(base, 0.01, 0.99), self.current.problem.space, space)
+                unit = np.concatenate([begun, space.unit(point)[n:]])
                 numbers = (*neutral, *combination[: len(self.candidate.shared)])
                 units = [(value - item.neutral) / item.scale for item, value in zip(self.shared, numbers, strict=True)]
                 loss = float((misfit.residuals(np.concatenate([unit, units, errors])) ** 2).sum())

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA
+from vehgen.diagnose.fits.candidate import Candidate
+from vehgen.diagnose.fits.model_fit import base_priors
+from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
 
@@ -26,11 +29,14 @@ class Projection:
     left: Array
 
     @classmethod
-    def of(cls, misfit: Misfit, x: Array) -> Projection:
-        """Return the projection at unknowns x: parameters held by BASE_PRIOR_SIGMA, everything else by its own prior."""
+    def of(cls, misfit: Misfit, x: Array, effects: Sequence[Candidate] = ()) -> Projection:
+        """Return the projection at unknowns x of a fit with `effects`: every unknown is held by its own prior."""
         total = misfit.n_unknowns
         held = np.ones(total)
-        held[: misfit.n_parameters] = 1 / BASE_PRIOR_SIGMA
+        own = sum(len(item.parameters) for item in effects)
+        n = misfit.n_parameters - own
+        held[:n] = 1 / base_priors(misfit.problem.space.names[:n], effects)
+        held[n : misfit.n_parameters] = 1 / WEAK_PRIOR_SIGMA
         slopes = np.vstack([*(flatten(item, first=1).T for item in linearise(misfit, x).spectra), np.diag(held)])
         residual = np.concatenate([*(flatten(item) for item in misfit.whitened_spectrum(x)), np.zeros(total)])
         basis = np.linalg.qr(slopes)[0]

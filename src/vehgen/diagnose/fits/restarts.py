@@ -28,7 +28,7 @@ def restart(fit: ModelFit, validation_runs: Sequence[Trial], noises: Noises, see
         begin = x.copy()
         begin[: misfit.n_parameters] += shake * random.standard_normal(misfit.n_parameters)
         begin[: misfit.n_parameters] = np.clip(begin[: misfit.n_parameters], 0.01, 0.99)
-        found.append(refine(misfit.problem, fit.least_squares, begin, fit.n_effect_parameters))
+        found.append(refine(misfit.problem, fit.least_squares, begin, fit.effects))
     best = min(found, key=lambda item: item.loss)
     equals = tuple(item.x for item in found if item.chi2 <= best.chi2 + AS_GOOD)
     return replace(evaluate_fit(fit.effects, best, validation_runs, noises), equivalent_minima=equals)

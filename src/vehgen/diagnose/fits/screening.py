@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.fits.candidate import Candidate, build_problem
+from vehgen.diagnose.fits.candidate import Candidate, build_problem, carried
 from vehgen.diagnose.fits.first_order import ProbeMotion
 from vehgen.diagnose.fits.model_fit import NUISANCES, CurrentModel, ModelFit
 from vehgen.diagnose.fits.projection import Projection
@@ -47,17 +47,18 @@ def screen(
     if len(forces) <= MAX_CANDIDATES:
         return list(candidates)
     misfit, x = base.least_squares.misfit, base.least_squares.x
-    projection, motion = Projection.of(misfit, x), ProbeMotion(misfit, x)
+    projection, motion = Projection.of(misfit, x, base.effects), ProbeMotion(misfit, x)
     lines = np.concatenate([flatten(item) for item in misfit.whitened_spectrum(x)])
     gains = []
     for candidate in forces:
         problem = build_problem(candidate, current.problem, locator, simulators)
+        begun = carried(current.unit, current.problem.space, problem.space)
         exact: Misfit | None = None
         best = 0.0
         for combination in candidate.effect.starts(candidate.place, locator):
             point = problem.space.start.copy()
             point[len(current.unit) :] = combination[: len(candidate.parameters)]
-            unit = np.concatenate([current.unit, problem.space.unit(point)[len(current.unit) :]])
+            unit = np.concatenate([begun, problem.space.unit(point)[len(current.unit) :]])
             moved = motion.moved(problem, problem.space.values(unit)) if exact is None else None
             if moved is None:
                 exact = exact or Misfit(problem, misfit.noises, problem.space.start, NUISANCES, misfit.band, current.shared)

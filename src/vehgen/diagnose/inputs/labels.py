@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always, place_words
 from vehgen.diagnose.inputs.refits import BaseRefits
+from vehgen.fit.recording import RecordedChannel
 from vehgen.fit.trial import Trial
-from vehgen.measure.recording import RecordedChannel
 
 Array = NDArray[np.float64]
 LAG = 0.3

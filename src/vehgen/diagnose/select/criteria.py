@@ -11,7 +11,7 @@ from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.estimates import p_value
 from vehgen.diagnose.select.search import SearchRound, own_numbers
-from vehgen.effects.places import ALL_TYRES
+from vehgen.effects.places import EVERY_TYRE
 
 
 def excess(mean_square: float) -> float:
@@ -34,22 +34,24 @@ def p_value_of(found: SearchRound, fit: ModelFit, tried: int) -> float:
 
 def tied(found: SearchRound, best: ModelFit) -> list[ModelFit]:
     """Return the fits of a round that do as well as the best within the slack of TIE."""
-    floor = limit.NOISE_FLOOR**2 - 1
     before = excess(found.current.training)
-    near = max(0.02 * before, 0.5 * floor)
     return [
         item
         for item in found.fits
-        if item.key != best.key
-        and not _same(item.last, best.last)
-        and item.training - best.training <= near
-        and item.training - 1 <= limit.TIE * max(best.training - 1, 0.25 * floor)
+        if item.key != best.key and not same(item.last, best.last) and does_as_well(item.training, best.training, before)
     ]
 
 
-def _same(one: Candidate, other: Candidate) -> bool:
-    """Return whether two candidates are one effect of which the one holds for all tyres: they hold the one axle that matters."""
-    return one.effect.name == other.effect.name and ALL_TYRES in (one.place, other.place)
+def does_as_well(mean_square: float, best: float, before: float) -> bool:
+    """Return whether a mean square is within the slack of TIE of the best one, where an excess of `before` was to be explained."""
+    floor = limit.NOISE_FLOOR**2 - 1
+    near = max(0.02 * before, 0.5 * floor)
+    return mean_square - best <= near and mean_square - 1 <= limit.TIE * max(best - 1, 0.25 * floor)
+
+
+def same(one: Candidate, other: Candidate) -> bool:
+    """Return whether two candidates are one effect of which the one holds for every tyre: it holds the axles that matter."""
+    return one.effect.name == other.effect.name and not {one.place, other.place}.isdisjoint(EVERY_TYRE)
 
 
 def unfinished(fit: ModelFit, base: ModelFit) -> bool:

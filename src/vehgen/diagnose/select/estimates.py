@@ -55,9 +55,9 @@ def estimate(fit: ModelFit, candidate: Candidate | None = None) -> dict[str, Nam
     over the runs, its interval their spread and that of the base parameters.
     """
     candidate = candidate or fit.last
-    misfit, x = fit.least_squares.misfit, fit.least_squares.x
+    misfit = fit.least_squares.misfit
     covariance = np.asarray(
-        np.linalg.pinv(_normal(misfit, x, fit.n_effect_parameters)[1], hermitian=True) * max(fit.training, 1.0) / _seen(misfit),
+        np.linalg.pinv(_normal(fit)[1], hermitian=True) * max(fit.training, 1.0) / _seen(misfit),
         dtype=np.float64,
     )
     alone = estimates_by_run(fit, candidate)
@@ -94,12 +94,13 @@ def disagreement(alone: Sequence[RunEstimate]) -> float:
     return float(scipy.stats.t.ppf(0.95, len(sure) - 1) * np.sqrt(max(variance, 0.0) * (1 + 1 / len(sure))))
 
 
-def _normal(misfit: Misfit, x: Array, n_effect_parameters: int) -> tuple[dict[int, Array], Array]:
+def _normal(fit: ModelFit) -> tuple[dict[int, Array], Array]:
     """Return the Jacobians of trials `shape (n_residuals, n_unknowns)` by number, and the information they and the priors add up to.
 
-    The last `free` parameters are the effects'. Trials whose response jumps are left out where the others tell of all effects: what
+    Trials whose response jumps are left out where the others tell of all effects: what
     jumps across a difference quotient is no derivative.
     """
+    misfit, x, n_effect_parameters = fit.least_squares.misfit, fit.least_squares.x, fit.n_effect_parameters
     trials = misfit.problem.trials
     n, known = misfit.n_parameters, misfit.n_parameters + len(misfit.shared)
     jacobians = {i: flatten(slopes, first=1).T for i, slopes in enumerate(linearise(misfit, x).spectra)}
@@ -108,9 +109,11 @@ def _normal(misfit: Misfit, x: Array, n_effect_parameters: int) -> tuple[dict[in
     whole, part = (_moved(items.values(), misfit.n_unknowns)[asked] for items in (jacobians, smooth))
     if smooth and np.all(part > TOLD * whole):
         jacobians = smooth
+    freed = {name for item in fit.effects for name in item.freed}
+    base = misfit.problem.space.names[: n - n_effect_parameters]
     prior = np.concatenate(
         [
-            np.full(n - n_effect_parameters, BASE_PRIOR**-2),
+            np.array([WEAK_PRIOR if name in freed else BASE_PRIOR for name in base]) ** -2.0,
             np.full(n_effect_parameters, WEAK_PRIOR**-2),
             np.zeros(known - n),
             np.ones(misfit.n_unknowns - known),
@@ -142,6 +145,11 @@ def _columns(fit: ModelFit, candidate: Candidate) -> list[tuple[EffectParameter,
         i = _index(misfit, item)
         found.append((parameter, misfit.n_parameters + i, float(misfit.adjusted(x)[i]), item.scale))
     return found
+
+
+def fitted_numbers(fit: ModelFit, candidate: Candidate) -> tuple[float, ...]:
+    """Return the numbers of an effect's parameters in a fit, those of the vehicle first; what is solved for is not among them."""
+    return tuple(value for _, _, value, _ in _columns(fit, candidate))
 
 
 def _index(misfit: Misfit, adjustment: Adjustment) -> int:
@@ -192,7 +200,7 @@ def estimates_by_run(fit: ModelFit, candidate: Candidate | None = None) -> list[
     columns = _columns(fit, candidate)
     own = [column for _, column, _, _ in columns]
     lines = misfit.whitened_spectrum(x)
-    jacobians, whole = _normal(misfit, x, fit.n_effect_parameters)
+    jacobians, whole = _normal(fit)
     pulls = {t: jacobian.T @ flatten(lines[t]) for t, jacobian in jacobians.items()}
     blocks = misfit.n_parameters + len(misfit.shared)
     gradient = np.concatenate([np.zeros(blocks), x[blocks:]]) + sum(pulls.values())

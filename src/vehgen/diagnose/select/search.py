@@ -17,6 +17,7 @@ from vehgen.diagnose.fits.restarts import restart
 from vehgen.diagnose.fits.screening import screen
 from vehgen.diagnose.localise.localisation import localise, one_force, shortlist
 from vehgen.diagnose.localise.unknown_force import PlaceResult
+from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.effects import EffectLocator
 from vehgen.effects.evidence import Origins, Residual, StartingPoint
 from vehgen.simulate import SimulatorPool
@@ -32,13 +33,15 @@ LEADING = 3
 class SearchRound:
     """One search for one effect: what the `current` model leaves, the places tested and passed, and the candidates fitted, best first.
 
-    `stopped` tells that Ctrl-C ended it before all candidates were fitted.
+    `idle` are fits of freed base parameters alone that do as well as an effect whose fit freed them, and which is left out. `stopped` tells
+    that Ctrl-C ended it before all candidates were fitted.
     """
 
     current: ModelFit
     places: tuple[PlaceResult, ...]
     passed: tuple[PlaceResult, ...]
     fits: tuple[ModelFit, ...]
+    idle: tuple[ModelFit, ...] = ()
     stopped: bool = False
 
 
@@ -61,14 +64,15 @@ def search_round(
     try:
         places, passed = localise(current)
     except KeyboardInterrupt:
-        return SearchRound(current, (), (), (), True)
+        return SearchRound(current, (), (), (), (), True)
     say("localise", 1, 1, passed[0].place.label if passed else "no single place")
     others = [item for item in candidates if not item.is_among(current.effects)]
     chosen = others if everything else shortlist(current, others, places, passed)
     if current.effects and not passed and not everything:
         chosen = [item for item in others if not item.effect.is_single_force]
-    fits, stopped = fit_candidates(detection, current, passed, chosen, say, everything, workers)
-    return SearchRound(current, tuple(places), tuple(passed), tuple(fits), stopped)
+    found, stopped = fit_candidates(detection, current, passed, chosen, say, everything, workers)
+    fits, idle = (found, []) if stopped else split_idle(found, Fitter(detection, current, passed).fit_roughly, LEADING)
+    return SearchRound(current, tuple(places), tuple(passed), tuple(fits), tuple(idle), stopped)
 
 
 def fit_candidates(
@@ -84,11 +88,8 @@ def fit_candidates(
 
     The candidates are screened first, unless `everything` is to be tried.
     """
-    current = CurrentModel.of(base)
-    trial = current.problem.trials[0]
-    locator, simulators = EffectLocator(trial.run.vehicle, dict(trial.values)), SimulatorPool()
-    origins, residual = _origins(base, current, passed), Residual(base.least_squares.misfit, base.least_squares.x)
-    validation_runs, noises = detection.validation_runs, detection.floor.noises
+    fitter = Fitter(detection, base, passed)
+    current, locator, simulators = fitter.current, fitter.locator, fitter.simulators
     fits: list[ModelFit] = []
     try:
         if not everything:
@@ -101,9 +102,7 @@ def fit_candidates(
             compile_all([trial.simulator.kernel for problem in problems for trial in problem.trials], workers)
             progress("compile", 1, 1, f"{len(problems)} vehicles")
         for done, candidate in enumerate(candidates, start=1):
-            points = candidate.effect.origins(origins)
-            begin = candidate.effect.starts(candidate.place, locator, residual)
-            fit = fit_candidate(candidate, current, validation_runs, noises, detection.band, locator, simulators, points, begin)
+            fit = fitter.fit(candidate)
             if fit is not None:
                 fits.append(fit)
             best = min(fits, key=merit, default=base)
@@ -111,10 +110,40 @@ def fit_candidates(
         fits.sort(key=merit)
         for i, fit in enumerate(fits[:LEADING]):
             if np.isfinite(fit.validation):
-                fits[i] = restart(fit, validation_runs, noises)
+                fits[i] = restart(fit, detection.validation_runs, detection.floor.noises)
     except KeyboardInterrupt:
         return sorted(fits, key=merit), True
     return sorted(fits, key=merit), False
+
+
+class Fitter:
+    """Fits candidates on top of a fit; `passed` are the places that suffice to explain what it leaves."""
+
+    def __init__(self, detection: Detection, base: ModelFit, passed: Sequence[PlaceResult]) -> None:
+        self.detection, self.current, self.simulators = detection, CurrentModel.of(base), SimulatorPool()
+        trial = self.current.problem.trials[0]
+        self.locator = EffectLocator(trial.run.vehicle, dict(trial.values))
+        self.origins = _origins(base, self.current, passed)
+        self.residual = Residual(base.least_squares.misfit, base.least_squares.x)
+
+    def fit(self, candidate: Candidate, begin: Sequence[tuple[float, ...]] = (), checked: bool = True) -> ModelFit | None:
+        """Fit one candidate from its own starts and from others; unless it is `checked`, not on the validation runs."""
+        starts = [*begin, *candidate.effect.starts(candidate.place, self.locator, self.residual)]
+        return fit_candidate(
+            candidate,
+            self.current,
+            self.detection.validation_runs if checked else (),
+            self.detection.floor.noises,
+            self.detection.band,
+            self.locator,
+            self.simulators,
+            candidate.effect.origins(self.origins),
+            starts,
+        )
+
+    def fit_roughly(self, candidate: Candidate) -> ModelFit | None:
+        """Fit one candidate from its own starts, to the training runs alone."""
+        return self.fit(candidate, checked=False)
 
 
 def _origins(base: ModelFit, current: CurrentModel, passed: Sequence[PlaceResult]) -> Origins:

@@ -29,5 +29,6 @@ ASYMMETRIC_DAMPING_EFFECT = VehicleEffect(
     parameters=(
         EffectParameter("ratio", "", "damping in bump over that in rebound, their mean kept", low=0.05, high=1.0, starts=(0.3, 0.6)),
     ),
+    frees=("c",),
     edit=_edit,
 )

@@ -8,6 +8,7 @@ from vehgen.effects.library.law_effect import suspension_law
 CUBIC_STIFFNESS_EFFECT = suspension_law(
     name="cubic_stiffness",
     law="cubic_stiffness",
+    frees=("k",),
     signature="frequencies rise with amplitude; odd harmonics; bump and rebound alike",
     parameters=(
         EffectParameter(

@@ -8,6 +8,7 @@ from vehgen.effects.library.law_effect import suspension_law
 DRY_FRICTION_EFFECT = suspension_law(
     name="dry_friction",
     law="dry_friction",
+    frees=("c",),
     signature=(
         "small motions pass the suspension as if it were locked, large ones are damped; hump and rough-road runs disagree on its stiffness"
     ),

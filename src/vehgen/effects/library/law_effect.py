@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.kinds import VehicleEffect
-from vehgen.effects.locator import EffectSite
-from vehgen.effects.places import ALL_TYRES, hinges, suspensions
+from vehgen.effects.locator import EffectSite, Size
+from vehgen.effects.places import EVERY_TYRE, hinges, suspensions
 from vehgen.mechanics.laws import LAWS
 
 
@@ -30,7 +30,7 @@ def law_edit(kind: str, law: str, write: Callable[[EffectSite, Symbols], Change]
             return {"hinges": {site.place: {"laws": [*site.laws(kind, site.place), entry]}}}
         if kind == "suspension":
             return on_spring(site, {"laws": [*site.laws(site.kind, site.place), entry]})
-        names = list(site.vehicle.axles) if site.place == ALL_TYRES else [site.place]
+        names = list(site.vehicle.axles) if site.place in EVERY_TYRE else [site.place]
         return {"axles": {name: {kind: {"laws": [*site.laws(kind, name), entry]}} for name in names}}
 
     return edit
@@ -41,7 +41,9 @@ def on_spring(site: EffectSite, change: Change) -> Change:
     return {"links": {site.place: change}} if site.kind == "link" else {"axles": {site.place: {"suspension": change}}}
 
 
-def suspension_law(*, name: str, law: str, signature: str, parameters: tuple[EffectParameter, ...]) -> VehicleEffect:
+def suspension_law(
+    *, name: str, law: str, signature: str, parameters: tuple[EffectParameter, ...], frees: tuple[Size, ...] = ()
+) -> VehicleEffect:
     """Return the effect of a law of the library on a suspension or link."""
     known = LAWS[law]
     return VehicleEffect(
@@ -54,6 +56,7 @@ def suspension_law(*, name: str, law: str, signature: str, parameters: tuple[Eff
         attaches="suspension",
         places=suspensions,
         parameters=parameters,
+        frees=frees,
         edit=law_edit("suspension", law),
     )
 

@@ -8,6 +8,7 @@ from vehgen.effects.library.law_effect import suspension_law
 PROGRESSIVE_STIFFNESS_EFFECT = suspension_law(
     name="progressive_stiffness",
     law="progressive_stiffness",
+    frees=("k",),
     signature="stiffer in bump than in rebound: even harmonics and a shifted mean over rough roads",
     parameters=(
         EffectParameter("k", "N/m", "stiffness added beyond `start`", low=0.05, high=5.0, starts=(0.5, 2.0), scale=lambda site: site.k),

@@ -8,6 +8,7 @@ from vehgen.effects.library.law_effect import suspension_law
 QUADRATIC_DAMPING_EFFECT = suspension_law(
     name="quadratic_damping",
     law="quadratic_damping",
+    frees=("c",),
     signature="damping grows with amplitude and speed; odd harmonics",
     parameters=(
         EffectParameter("c2", "N s^2/m^2", "quadratic damping", low=0.02, high=30.0, starts=(0.5, 4.0), scale=lambda site: site.c / 0.2),

@@ -8,6 +8,7 @@ from vehgen.effects.library.law_effect import suspension_law
 RELAXATION_EFFECT = suspension_law(
     name="relaxation",
     law="relaxation",
+    frees=("k", "c"),
     signature="stiffness and damping change with frequency, not with amplitude: low and high frequencies want different k and c",
     parameters=(
         EffectParameter("k", "N/m", "stiffness of the series spring", low=0.05, high=10.0, starts=(0.5, 2.0), scale=lambda site: site.k),

@@ -27,5 +27,6 @@ TYRE_LIFTOFF_EFFECT = VehicleEffect(
     attaches="tyre",
     places=tyres,
     is_global=True,
+    frees=("kt",),
     edit=_edit,
 )

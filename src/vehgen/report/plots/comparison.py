@@ -21,6 +21,7 @@ QUANTITY_UNITS = {
     "displacement": "m",
     "pitch": "rad",
     "pitch_acceleration": "rad/s²",
+    "fore_aft_acceleration": "m/s²",
 }
 HIGHEST_SHOWN_HZ = 25.0
 """Frequencies shown [Hz]."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
 from pydantic import Field, model_validator
@@ -186,10 +187,15 @@ def _default_channels() -> dict[str, Column | ChannelEntry]:
 
 
 class SensorEntry(PlaceEntry):
-    """A sensor: a place, the column of each quantity it records, and what acquires them."""
+    """A sensor: a place, its height above the body's COG, the column of each quantity it records, and what acquires them."""
 
+    height: PlaceLength = 0.0
     channels: dict[Name, Column | ChannelEntry] = Field(default_factory=_default_channels)
     acquisition: str | AcquisitionEntry | None = None
+
+    def place(self, name: str) -> Place:
+        """Return the place under its name."""
+        return replace(super().place(name), height=self.height)
 
     def column(self, name: str, quantity: str) -> str:
         """Return the column that holds a quantity; `name` is the sensor's."""

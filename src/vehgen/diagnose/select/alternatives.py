@@ -1,0 +1,76 @@
+"""What else an earlier effect could be, once the later ones stand beside it.
+
+Of several effects the first is chosen while the others are still missing: what tells it from its rivals then may be what is missing. Each
+rival is fitted anew, with the later effects beside it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from vehgen.diagnose.detect.detection import Detection
+from vehgen.diagnose.fits.candidate import Candidate
+from vehgen.diagnose.fits.model_fit import ModelFit
+from vehgen.diagnose.select.criteria import does_as_well, excess, same
+from vehgen.diagnose.select.estimates import fitted_numbers
+from vehgen.diagnose.select.search import Fitter, SearchRound
+
+RIVALS = 4
+"""So many rivals of an effect are tried beside the later ones."""
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """A candidate that does as well in the place of an effect: `fit` holds all effects, with it in that place."""
+
+    instead_of: Candidate
+    candidate: Candidate
+    fit: ModelFit
+
+
+def alternatives_beside(detection: Detection, step: SearchRound, fit: ModelFit, number: int) -> list[Alternative]:
+    """Return what does as well in the place of an effect, beside those that were found after it.
+
+    Parameters
+    ----------
+    detection
+        What was detected.
+    step
+        The round in which the effect was found.
+    fit
+        The fit of all effects.
+    number
+        Which of its effects.
+    """
+    chosen, later = fit.effects[number], fit.effects[number + 1 :]
+    without = _refit(detection, step.current, later, fit)
+    if without is None:
+        return []
+    before = excess(without.training)
+    found = []
+    for rival in _rivals(step, chosen, later):
+        both = _refit(detection, rival, later, fit)
+        if both is not None and does_as_well(both.training, fit.training, before):
+            found.append(Alternative(chosen, rival.last, both))
+    return found
+
+
+def _rivals(step: SearchRound, chosen: Candidate, later: Sequence[Candidate]) -> list[ModelFit]:
+    """Return the rivals that come nearest in an effect's round: first those that no run tells from it, then by rank."""
+    others = [item for item in step.fits if not item.last.is_among((chosen, *later)) and not same(item.last, chosen)]
+    alike = [item for item in others if chosen.effect.tie_advice and item.last.effect.tie_advice == chosen.effect.tie_advice]
+    return [*alike, *(item for item in others if item not in alike)][:RIVALS]
+
+
+def _refit(detection: Detection, base: ModelFit, later: Sequence[Candidate], fit: ModelFit) -> ModelFit | None:
+    """Return a fit with the later effects of another one added, begun where they are there; None where one cannot live there."""
+    for candidate in later:
+        trials = base.least_squares.misfit.problem.trials
+        if candidate.place not in candidate.effect.places(trials[0].run.vehicle, trials):
+            return None
+        again = Fitter(detection, base, ()).fit(candidate, [fitted_numbers(fit, candidate)], checked=False)
+        if again is None:
+            return None
+        base = again
+    return base

@@ -1,0 +1,75 @@
+"""Whether an effect does more than the base parameters that its fit sets free.
+
+A candidate that searches a damping within the file's whole range fits well wherever that damping is merely far from the file's value. The
+base model with the same freedom, and without the effect, tells the two apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from vehgen.diagnose import thresholds as limit
+from vehgen.diagnose.fits.candidate import Candidate
+from vehgen.diagnose.fits.model_fit import ModelFit
+from vehgen.diagnose.select.estimates import p_value
+from vehgen.effects import Effect
+from vehgen.effects.places import nowhere
+
+FitOne = Callable[[Candidate], ModelFit | None]
+"""Fits one candidate on top of the current model."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FreedBase(Effect):
+    """No effect at all, but the freedom that another one gives the base parameters at its place."""
+
+    def n_numbers(self, n_runs: int) -> int:
+        """Return 0: it adds no parameter."""
+        return 0
+
+
+FREED_BASE = FreedBase(name="freed_base", title="Base parameters beyond the file's", attaches="base", places=nowhere)
+
+
+def split_idle(fits: Sequence[ModelFit], fit_one: FitOne, count: int) -> tuple[list[ModelFit], list[ModelFit]]:
+    """Return the fits whose effects do something, in their order, and those of freed base parameters alone that do as well, best first.
+
+    Parameters
+    ----------
+    fits
+        Best first; they are tested until `count` have been found to do something, the rest are returned as they are.
+    fit_one
+        Fits a candidate on top of the model that they were added to.
+    count
+        How many are needed.
+    """
+    alone: dict[tuple[str, ...], ModelFit | None] = {}
+    kept: list[ModelFit] = []
+    idle: dict[tuple[str, ...], ModelFit] = {}
+    for fit in fits:
+        names = fit.last.freed
+        if len(kept) < count and names:
+            if names not in alone:
+                alone[names] = fit_one(Candidate(FREED_BASE, ", ".join(names), (), (), names))
+            freed = alone[names]
+            if freed is not None and _does_as_well(freed, fit):
+                idle[names] = freed
+                continue
+        kept.append(fit)
+    return kept, sorted(idle.values(), key=_price)
+
+
+def _price(freed: ModelFit) -> float:
+    """Return what ranks freed base parameters: -2 ln of the likelihood on the training runs, with the price of each (BIC)."""
+    total = sum(freed.counts.values())
+    return freed.training * total + len(freed.last.freed) * float(np.log(total))
+
+
+def _does_as_well(freed: ModelFit, fit: ModelFit) -> bool:
+    """Return whether freed base parameters leave what a fit leaves: by chance, or less than twice its excess."""
+    own = fit.last.effect.n_numbers(len(fit.least_squares.misfit.problem.trials))
+    before, after = (max(item.training - 1, 0.0) for item in (freed, fit))
+    return after > limit.AT_LEAST * before or p_value(freed, fit, own) > limit.SIGNIFICANT

@@ -1,0 +1,64 @@
+"""Dampers far from the file's value, and dampers on soft mounts: told apart, not taken for one another."""
+
+import numpy as np
+import pytest
+from benchmarks.hidden_effects.generator import Effect, nominal
+
+from vehgen.diagnose.fits.candidate import build_problem, carried, list_candidates
+from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, base_priors, narrow
+from vehgen.diagnose.pipeline import diagnose_trials
+from vehgen.effects import EFFECTS, EffectLocator
+from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
+from vehgen.fit.problem import make_problem
+from vehgen.simulate import SimulatorPool
+from vehgen.vehicle import load_vehicle
+
+SERIES = [EFFECTS[name] for name in ("damper_mount", "relaxation", "quadratic_damping", "asymmetric_damping")]
+
+
+def test_a_damper_of_twice_the_files_value_is_no_missing_effect(trials_of):
+    """A law beside a damping that is free to leave the file would fit as well as that damping alone."""
+    weak = {**nominal("sedan2"), "cf": 2 * nominal("sedan2")["cf"]}
+    found = diagnose_trials(trials_of(parameters=weak), SERIES)
+    assert found.verdict.verdict == "insufficient_data"
+    assert "cf of 2.0" in found.verdict.reason
+    assert not found.verdict.effects
+
+
+def test_a_damper_on_a_soft_mount_is_named_with_its_stiffness(trials_of):
+    """Its spring stands in series; a branch beside the dashpot leaves more, however far the dashpot may fall."""
+    hidden = Effect("damper_mount", "front", {"time": 0.012})
+    found = diagnose_trials(trials_of(hidden, parameters=nominal("sedan2")), SERIES)
+    (effect,) = found.verdict.effects
+    assert (found.verdict.verdict, effect.name, effect.place) == ("named", "damper_mount", "front")
+    low, high = effect.parameters["k"].interval
+    assert low < nominal("sedan2")["cf"] / 0.012 < high
+    assert found.chosen[-1].training < 1.05
+
+
+@pytest.fixture(scope="module")
+def posed(trials_of):
+    trials = trials_of()
+    base = narrow(make_problem(trials))
+    candidate = next(item for item in list_candidates(trials[0].run.vehicle, trials, [EFFECTS["damper_mount"]]) if item.place == "front")
+    locator = EffectLocator(trials[0].run.vehicle, dict(trials[0].values))
+    return base, candidate, build_problem(candidate, base, locator, SimulatorPool())
+
+
+def test_a_freed_parameter_is_searched_in_the_files_range_and_others_are_not(posed):
+    base, candidate, problem = posed
+    ranges = load_vehicle("sedan2").ranges()
+    for i, name in enumerate(base.space.names):
+        bounds = problem.space.lower[i], problem.space.upper[i]
+        assert bounds == (ranges["cf"] if name == "cf" else (base.space.lower[i], base.space.upper[i]))
+    priors = dict(zip(base.space.names, base_priors(base.space.names, [candidate]), strict=True))
+    assert priors.pop("cf") == WEAK_PRIOR_SIGMA
+    assert set(priors.values()) == {BASE_PRIOR_SIGMA}
+
+
+def test_a_point_keeps_its_values_in_the_wider_space(posed):
+    base, _, problem = posed
+    unit = np.random.default_rng(3).uniform(0.1, 0.9, base.space.size)
+    wide = carried(unit, base.space, problem.space)
+    full = np.concatenate([wide, [0.5]])
+    assert problem.space.values(full)[:-1] == pytest.approx(base.space.values(unit), rel=1e-12)
