@@ -20,7 +20,7 @@ def _parser() -> argparse.ArgumentParser:
     make.add_argument("--seed", type=int, required=True)
     make.add_argument("--kind", choices=tuple(KINDS), required=True)
     make.add_argument("--count", type=int, required=True)
-    make.add_argument("--recorder", choices=("mixed", "logger", "phones"), default="mixed", help="mixed: every third pair has phones")
+    make.add_argument("--recorder", choices=("mixed", "logger", "phones"), default="mixed", help="mixed: a third has phones")
     make.add_argument("--processes", type=int, default=1)
     make.add_argument("--out", type=Path, required=True)
     score = commands.add_parser("score", help="solve cases and compare with the truth; goes on where it stopped")

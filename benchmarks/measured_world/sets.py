@@ -33,7 +33,7 @@ STRONG = 3.0
 """A hidden effect changes the channels by at least so many standard deviations of the sensors' noise, rms."""
 DRAWS = 20
 RECORDERS = ("logger", "logger", "phones")
-"""Of cases in turn, where both are wanted."""
+"""Of which one is drawn for a case, where both are wanted."""
 
 
 def draw_case(set_name: str, seed: int, kind: str, number: int, recorder: str = "mixed") -> Case:
@@ -42,7 +42,7 @@ def draw_case(set_name: str, seed: int, kind: str, number: int, recorder: str = 
         raise ValueError(f"no such cases: set {set_name!r}, kind {kind!r}, recorder {recorder!r}")
     rng = np.random.default_rng([SETS[set_name], seed, list(KINDS).index(kind), number])
     vehicle = VEHICLES[number % len(VEHICLES)]
-    chosen = RECORDERS[(number // 2) % len(RECORDERS)] if recorder == "mixed" else recorder
+    chosen = str(rng.choice(RECORDERS)) if recorder == "mixed" else recorder
     return KINDS[kind](f"{kind}_{number:03d}", vehicle, chosen, number, rng)
 
 
@@ -108,9 +108,9 @@ def _effects(name: str, vehicle: str, recorder: str, number: int, rng: np.random
 
 
 def _faults(name: str, vehicle: str, recorder: str, number: int, rng: np.random.Generator) -> Case:
-    """Make one plain mistake, kinds in turn; only recorders' files are spoilt, since exports of phones say what their units are."""
+    """Make one plain mistake, kinds in turn, each on either vehicle; only recorders' files are spoilt, since exports of phones say what their units are."""
     case = gentle(_base(name, "faults", vehicle, "logger", diagnosis_runs(vehicle, False, rng), rng))
-    return with_fault(case, list(FAULTS)[number % len(FAULTS)], rng)
+    return with_fault(case, list(FAULTS)[(number // 2) % len(FAULTS)], rng)
 
 
 KINDS: dict[str, Callable[[str, str, str, int, np.random.Generator], Case]] = {
