@@ -59,13 +59,10 @@ def imported(folder: Path) -> tuple[list[Path], dict[str, str]]:
         exports = [folder / export for export in told.pop("exports")]
         sensors = [vehgen.PhoneSensor(**sensor) for sensor in told.pop("sensors")]
         out = folder / told.pop("out")
-        profile = told.pop("profile", None)
-        if profile is not None:
-            profile = {**profile, "file": str(folder / profile["file"])}
+        if "profile" in told:
+            told["profile"]["file"] = str(folder / told["profile"]["file"])
         try:
-            vehgen.import_phones(
-                exports, vehicle=folder / told["vehicle"], sensors=sensors, hump=told.get("hump"), profile=profile, out=out
-            )
+            vehgen.import_phones(exports, sensors=sensors, out=out, **{**told, "vehicle": folder / told["vehicle"]})
             runs.append(out)
         except vehgen.InputError as error:
             refused[name] = str(error)
