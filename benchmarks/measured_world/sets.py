@@ -108,7 +108,10 @@ def _effects(name: str, vehicle: str, recorder: str, number: int, rng: np.random
 
 
 def _faults(name: str, vehicle: str, recorder: str, number: int, rng: np.random.Generator) -> Case:
-    """Make one plain mistake, kinds in turn, each on either vehicle; only recorders' files are spoilt, since exports of phones say what their units are."""
+    """Make one plain mistake, kinds in turn, each on either vehicle.
+
+    Only recorders' files are spoilt: exports of phones say what their units are.
+    """
     case = gentle(_base(name, "faults", vehicle, "logger", diagnosis_runs(vehicle, False, rng), rng))
     return with_fault(case, list(FAULTS)[(number // 2) % len(FAULTS)], rng)
 
