@@ -27,6 +27,9 @@ TAPE_ERROR = 0.003
 SPREADS = (0.05, 0.10)
 """Standard deviation of the true parameters about the file's, relative: drawn between these for every vehicle."""
 NONSENSE = {("sedan2", "suspended_cab")}
+"""A sedan has no suspended cab."""
+UNDONE = ("sensor_tilt", "sensor_delay", "speed_error")
+"""What an import of phones sets right: it turns them upright, sets their clocks and takes the speed from satellites."""
 UNLISTED = 0.15
 """Share of hidden effects that stand for what no library holds."""
 STRONG = 3.0
@@ -76,10 +79,11 @@ def _coverage(name: str, vehicle: str, recorder: str, number: int, rng: np.rando
     return replace(case, unseen=unseen_runs(vehicle, rng))
 
 
-def _options(vehicle: str, listed: bool) -> dict[str, list[EffectOption]]:
+def _options(vehicle: str, recorder: str, listed: bool) -> dict[str, list[EffectOption]]:
     found: dict[str, list[EffectOption]] = {}
     for option in list_effects(vehicle):
-        if option.listed == listed and (vehicle, option.name) not in NONSENSE:
+        undone = recorder == "phones" and option.name in UNDONE
+        if option.listed == listed and not undone and (vehicle, option.name) not in NONSENSE:
             found.setdefault(option.name, []).append(option)
     return found
 
@@ -90,7 +94,7 @@ def _effects(name: str, vehicle: str, recorder: str, number: int, rng: np.random
     Humps keep their full height, since many effects show at large travels only; tyres that would leave the road pull at it there,
     unless lift-off is the effect.
     """
-    options = _options(vehicle, rng.random() >= UNLISTED)
+    options = _options(vehicle, recorder, rng.random() >= UNLISTED)
     places = options[list(options)[(number // 2) % len(options)]]
     best: tuple[float, Case] | None = None
     for _ in range(DRAWS):
