@@ -96,19 +96,17 @@ def _effects(name: str, vehicle: str, recorder: str, number: int, rng: np.random
     """
     options = _options(vehicle, recorder, rng.random() >= UNLISTED)
     places = options[list(options)[(number // 2) % len(options)]]
-    best: tuple[float, Case] | None = None
+    drawn = []
     for _ in range(DRAWS):
         option = places[int(rng.integers(len(places)))]
         sharp = option.name == "tyre_liftoff"
         case = _base(name, "effects", vehicle, recorder, diagnosis_runs(vehicle, sharp, rng), rng)
         case = replace(case, effects=(option.draw(rng, "visible"),))
         found = strength(case)
-        if best is None or found > best[0]:
-            best = found, case
+        drawn.append((found, replace(case, strength=found)))
         if found > STRONG:
             break
-    assert best is not None
-    return best[1]
+    return max(drawn, key=lambda item: item[0])[1]
 
 
 def _faults(name: str, vehicle: str, recorder: str, number: int, rng: np.random.Generator) -> Case:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from benchmarks import measured_world
+from benchmarks.hidden_effects.generator.cases import Effect
 from benchmarks.measured_world import accepted, score, solve
 from benchmarks.measured_world.cases import Recording
 from benchmarks.measured_world.faults import FAULTS, spoilt, with_fault
@@ -72,6 +73,13 @@ def test_a_recording_begins_where_the_mark_is_or_a_fixed_time_before(healthy):
 
 def test_a_case_without_effects_has_no_strength(healthy):
     assert strength(replace(healthy, runs=healthy.runs[:1])) == 0.0
+
+
+def test_the_strength_of_a_wrong_gain_is_its_share_of_the_signal_over_the_noise(healthy):
+    case = replace(healthy, runs=healthy.runs[:1], effects=(Effect("sensor_gain", "F_az", {"error": 0.2}),))
+    bare = record_run(replace(case, effects=()), case.runs[0])
+    signal = np.sqrt(np.mean(bare.clean["F_az"] ** 2))
+    assert strength(case) == pytest.approx(0.2 * signal / bare.sigma["F_az"] / np.sqrt(4))
 
 
 def test_loggers_files_can_be_read_and_simulated(healthy, tmp_path):
