@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import json
 from pathlib import Path
 
 from benchmarks.measured_world.make import make_set
+from benchmarks.measured_world.page import page, read
+from benchmarks.measured_world.score import score_set
 from benchmarks.measured_world.sets import KINDS, SETS
 
 
@@ -17,9 +20,18 @@ def _parser() -> argparse.ArgumentParser:
     make.add_argument("--seed", type=int, required=True)
     make.add_argument("--kind", choices=tuple(KINDS), required=True)
     make.add_argument("--count", type=int, required=True)
-    make.add_argument("--recorder", choices=("mixed", "logger", "phones"), default="mixed", help="mixed: every third pair has phones")
+    make.add_argument("--recorder", choices=("mixed", "logger", "phones"), default="mixed", help="mixed: a third has phones")
     make.add_argument("--processes", type=int, default=1)
     make.add_argument("--out", type=Path, required=True)
+    score = commands.add_parser("score", help="solve cases and compare with the truth; goes on where it stopped")
+    score.add_argument("folder", type=Path, help="what `make` wrote")
+    score.add_argument("--out", type=Path, required=True, help="a file of JSON lines that grows case by case")
+    score.add_argument("--processes", type=int, default=2)
+    score.add_argument("--limit", type=int, help="at most so many cases")
+    score.add_argument("--timeout", type=float, default=3600.0, help="seconds a case may take")
+    score.add_argument("--settings", type=json.loads, default={}, help="more arguments of calibrations, as JSON")
+    show = commands.add_parser("page", help="print the tables of scored cases")
+    show.add_argument("results", type=Path, nargs="+")
     return parser
 
 
@@ -28,6 +40,10 @@ def main() -> None:
     options = _parser().parse_args()
     if options.command == "make":
         make_set(options.set, options.seed, options.kind, options.count, options.out, options.recorder, options.processes)
+    elif options.command == "score":
+        score_set(options.folder, options.out, options.processes, options.limit, options.timeout, options.settings)
+    else:
+        print(page(read(options.results)), end="")
 
 
 if __name__ == "__main__":

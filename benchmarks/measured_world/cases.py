@@ -67,7 +67,8 @@ class Fault:
 
 @dataclass(frozen=True)
 class Case:
-    """A case. `parameters` are the true vehicle's [SI]; `stated`: distances that the vehicle file gives otherwise than usual [m]."""
+    """A case. `parameters` are the true vehicle's [SI]; `stated`: distances that the vehicle file gives otherwise than usual [m];
+    `strength`: rms of what the effects change in the channels over the noise of the sensors."""
 
     name: str
     kind: str
@@ -82,6 +83,7 @@ class Case:
     fault: Fault | None = None
     unseen: tuple[Run, ...] = ()
     stated: dict[str, float] = field(default_factory=dict)
+    strength: float | None = None
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from benchmarks.measured_world.files import copy_vehicle, truth, write_json, wri
 from benchmarks.measured_world.modes import invariants, natural_modes
 from benchmarks.measured_world.sets import draw_case
 from benchmarks.measured_world.unseen import write_unseen
-from benchmarks.measured_world.world import record_run, strength
+from benchmarks.measured_world.world import record_run
 
 
 def write_case(case: Case, out: Path) -> None:
@@ -33,7 +33,7 @@ def write_case(case: Case, out: Path) -> None:
         sigma = {recording.run.name: recording.sigma for recording in recordings}
     more: dict[str, Any] = {"noise": sigma}
     if case.effects:
-        more["strength"] = strength(case)
+        more["strength"] = case.strength
     if case.kind == "coverage":
         write_unseen(case, sealed / "unseen")
         more |= {"modes": natural_modes(case.vehicle, case.parameters), "invariants": invariants(case.vehicle, case.parameters)}

@@ -6,19 +6,21 @@ from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import linalg
+from scipy import linalg, optimize
 
 from benchmarks.hidden_effects.generator.system import base_system
 from benchmarks.hidden_effects.generator.vehicles import layout
 
 Array = NDArray[np.float64]
+FOLLOWING = 201
+"""Steps in which damping grows while poles are followed."""
 
 
 def natural_modes(vehicle: str, parameters: Mapping[str, float]) -> list[dict[str, float]]:
     """Return the undamped frequency [Hz] and the damping ratio of every mode of the linear vehicle, ascending.
 
     The pins' constraints are eliminated by a basis of what they allow. The undamped frequency is that of M and K alone; `pole` is the
-    magnitude of the damped system's eigenvalue [Hz] that belongs to the ratio.
+    magnitude of the damped system's eigenvalue [Hz] that it becomes as the damping grows, to which the ratio belongs.
     """
     system = base_system(layout(vehicle, parameters))
     n = len(system.coordinates)
@@ -29,19 +31,24 @@ def natural_modes(vehicle: str, parameters: Mapping[str, float]) -> list[dict[st
         C += element.c * np.outer(row, row)
     allowed = linalg.null_space(system.constraint_matrix()) if system.constraints else np.eye(n)
     M, C, K = (allowed.T @ matrix @ allowed for matrix in (system.mass_matrix(), C, K))
-    undamped = np.sqrt(np.maximum(linalg.eigh(K, M, eigvals_only=True), 0.0)) / (2.0 * np.pi)
-    undamped = np.sort(undamped[undamped > 1e-3])
-    zero, one = np.zeros_like(M), np.eye(len(M))
-    poles = linalg.eigvals(np.block([[zero, one], [-linalg.solve(M, K), -linalg.solve(M, C)]]))
-    poles = poles[np.abs(poles) > 2.0 * np.pi * 1e-3]
-    upper = np.sort_complex(poles[poles.imag > 1e-9])
-    ordered = upper[np.argsort(np.abs(upper))]
-    if len(ordered) != len(undamped):
-        raise ValueError(f"{vehicle} has an overdamped mode: {len(ordered)} pairs of poles, {len(undamped)} frequencies")
+    squares = linalg.eigh(K, M, eigvals_only=True)
+    undamped = np.sqrt(np.sort(squares[squares > 1e-4]))
     return [
-        {"frequency": float(hz), "pole": float(abs(pole) / (2.0 * np.pi)), "damping_ratio": float(-pole.real / abs(pole))}
-        for hz, pole in zip(undamped, ordered, strict=True)
+        {"frequency": float(w / (2.0 * np.pi)), "pole": float(abs(pole) / (2.0 * np.pi)), "damping_ratio": float(-pole.real / abs(pole))}
+        for w, pole in zip(undamped, _followed(M, C, K, 1j * undamped), strict=True)
     ]
+
+
+def _followed(M: Array, C: Array, K: Array, poles: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """Return where the undamped poles [rad/s] go as the damping grows from nothing to C: each to the nearest of the next step, none
+    twice."""
+    zero, one = np.zeros_like(M), np.eye(len(M))
+    for share in np.linspace(0.0, 1.0, FOLLOWING)[1:]:
+        found = linalg.eigvals(np.block([[zero, one], [-linalg.solve(M, K), -share * linalg.solve(M, C)]]))
+        candidates = found[found.imag >= 0.0]
+        rows, columns = optimize.linear_sum_assignment(np.abs(poles[:, None] - candidates[None, :]))
+        poles = candidates[columns[np.argsort(rows)]]
+    return poles
 
 
 def invariants(vehicle: str, p: Mapping[str, float]) -> dict[str, float]:

@@ -27,13 +27,16 @@ TAPE_ERROR = 0.003
 SPREADS = (0.05, 0.10)
 """Standard deviation of the true parameters about the file's, relative: drawn between these for every vehicle."""
 NONSENSE = {("sedan2", "suspended_cab")}
+"""A sedan has no suspended cab."""
+UNDONE = ("sensor_tilt", "sensor_delay", "speed_error")
+"""What an import of phones sets right: it turns them upright, sets their clocks and takes the speed from satellites."""
 UNLISTED = 0.15
 """Share of hidden effects that stand for what no library holds."""
 STRONG = 3.0
 """A hidden effect changes the channels by at least so many standard deviations of the sensors' noise, rms."""
 DRAWS = 20
 RECORDERS = ("logger", "logger", "phones")
-"""Of cases in turn, where both are wanted."""
+"""Of which one is drawn for a case, where both are wanted."""
 
 
 def draw_case(set_name: str, seed: int, kind: str, number: int, recorder: str = "mixed") -> Case:
@@ -42,7 +45,7 @@ def draw_case(set_name: str, seed: int, kind: str, number: int, recorder: str = 
         raise ValueError(f"no such cases: set {set_name!r}, kind {kind!r}, recorder {recorder!r}")
     rng = np.random.default_rng([SETS[set_name], seed, list(KINDS).index(kind), number])
     vehicle = VEHICLES[number % len(VEHICLES)]
-    chosen = RECORDERS[(number // 2) % len(RECORDERS)] if recorder == "mixed" else recorder
+    chosen = str(rng.choice(RECORDERS)) if recorder == "mixed" else recorder
     return KINDS[kind](f"{kind}_{number:03d}", vehicle, chosen, number, rng)
 
 
@@ -76,10 +79,11 @@ def _coverage(name: str, vehicle: str, recorder: str, number: int, rng: np.rando
     return replace(case, unseen=unseen_runs(vehicle, rng))
 
 
-def _options(vehicle: str, listed: bool) -> dict[str, list[EffectOption]]:
+def _options(vehicle: str, recorder: str, listed: bool) -> dict[str, list[EffectOption]]:
     found: dict[str, list[EffectOption]] = {}
     for option in list_effects(vehicle):
-        if option.listed == listed and (vehicle, option.name) not in NONSENSE:
+        undone = recorder == "phones" and option.name in UNDONE
+        if option.listed == listed and not undone and (vehicle, option.name) not in NONSENSE:
             found.setdefault(option.name, []).append(option)
     return found
 
@@ -90,27 +94,28 @@ def _effects(name: str, vehicle: str, recorder: str, number: int, rng: np.random
     Humps keep their full height, since many effects show at large travels only; tyres that would leave the road pull at it there,
     unless lift-off is the effect.
     """
-    options = _options(vehicle, rng.random() >= UNLISTED)
+    options = _options(vehicle, recorder, rng.random() >= UNLISTED)
     places = options[list(options)[(number // 2) % len(options)]]
-    best: tuple[float, Case] | None = None
+    drawn = []
     for _ in range(DRAWS):
         option = places[int(rng.integers(len(places)))]
         sharp = option.name == "tyre_liftoff"
         case = _base(name, "effects", vehicle, recorder, diagnosis_runs(vehicle, sharp, rng), rng)
         case = replace(case, effects=(option.draw(rng, "visible"),))
         found = strength(case)
-        if best is None or found > best[0]:
-            best = found, case
+        drawn.append((found, replace(case, strength=found)))
         if found > STRONG:
             break
-    assert best is not None
-    return best[1]
+    return max(drawn, key=lambda item: item[0])[1]
 
 
 def _faults(name: str, vehicle: str, recorder: str, number: int, rng: np.random.Generator) -> Case:
-    """Make one plain mistake, kinds in turn; only recorders' files are spoilt, since exports of phones say what their units are."""
+    """Make one plain mistake, kinds in turn, each on either vehicle.
+
+    Only recorders' files are spoilt: exports of phones say what their units are.
+    """
     case = gentle(_base(name, "faults", vehicle, "logger", diagnosis_runs(vehicle, False, rng), rng))
-    return with_fault(case, list(FAULTS)[number % len(FAULTS)], rng)
+    return with_fault(case, list(FAULTS)[(number // 2) % len(FAULTS)], rng)
 
 
 KINDS: dict[str, Callable[[str, str, str, int, np.random.Generator], Case]] = {
