@@ -11,7 +11,7 @@ from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose import wording
 from vehgen.diagnose.collecting import run_chis
 from vehgen.diagnose.design.experiment import VISIBLE, propose_stronger
-from vehgen.diagnose.detect.detection import Detection
+from vehgen.diagnose.detect.detection import Detection, look_again
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit
 from vehgen.diagnose.inputs.checks import variety_notes
@@ -29,6 +29,11 @@ from vehgen.diagnose.verdict import Gap, PlaceChi, Verdict, VerdictName
 from vehgen.effects import Effect
 from vehgen.errors import InputError
 
+LOOK_AGAIN_SHARE = 0.5
+"""Where the best candidate leaves no more than this share of the excess, recorder and profiles are judged by it."""
+LOOKS_AGAIN = 2
+LOOKED_AT_AGAIN = 8
+"""So many candidates are then fitted again."""
 MOST_EFFECTS = 3
 """So many effects are added at most."""
 
@@ -83,10 +88,28 @@ class Decision:
             return self._stopped()
         if first.idle and (not first.fits or merit(first.idle[0]) <= merit(first.fits[0])):
             return self._out_of_range(first.idle[0])
+        for _ in range(LOOKS_AGAIN):
+            first = self._again(first)
         weak = self._add(first) if first.fits else None
         if self.interrupted:
             return self._name(self.chain) if self.chain else self._stopped()
         return self._other_mistakes() or weak or (self._name(self.chain) if self.chain else self._unknown(first))
+
+    def _again(self, first: SearchRound) -> SearchRound:
+        """Return a round of the leading candidates, recorder and profiles being as the best has them; the same round where they were so."""
+        best = first.fits[0] if first.fits else None
+        if best is None or best.training - 1 > LOOK_AGAIN_SHARE * (self.base.training - 1):
+            return first
+        detection = look_again(self.detection, best)
+        if detection is None:
+            return first
+        self.detection, self.base = detection, detection.base
+        leading = {fit.key for fit in first.fits[:LOOKED_AT_AGAIN]}
+        candidates = [item for item in self._candidates(self.base) if ((item.effect.name, item.place),) in leading]
+        self.rounds.clear()
+        self.rounds.append(search_round(detection, self.base, candidates, True, self.progress, self.workers))
+        self.interrupted = self.interrupted or self.rounds[-1].stopped
+        return self.rounds[-1]
 
     def _add(self, first: SearchRound) -> Decided | None:
         """Add what passes to the chain; return the verdict where the best effect is too weak to be named."""

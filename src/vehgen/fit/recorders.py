@@ -10,14 +10,21 @@ from vehgen.fit.misfit import Array, Misfit
 from vehgen.fit.trial import Trial
 from vehgen.measure.acquisition import AcquisitionChain
 
+SAME_CUT_OFF = 0.1
+"""Cut-offs that differ by less than this share are the same."""
+
 
 @dataclass(frozen=True)
 class FoundRecorder:
-    """What stands for the recorders that are not known: the best `estimate`, and where the compared `band` [Hz] ends for that."""
+    """What stands for the recorders of `channels`, which no run file declares: the best `estimate`.
+
+    The compared `band` [Hz] is `cut` where several chains would do and folding might matter.
+    """
 
     estimate: ChainEstimate
     band: tuple[float, float]
     cut: bool
+    channels: tuple[str, ...]
 
     @property
     def chain(self) -> AcquisitionChain:
@@ -39,7 +46,17 @@ class FoundRecorder:
 
     def applied(self, trials: Sequence[Trial]) -> list[Trial]:
         """Return trials whose unknown recorders are this one."""
-        return [with_chain(trial, self.chain) for trial in trials]
+        found = []
+        for trial in trials:
+            chains = {name: self.chain if name in self.channels else trial.scenario.chain(name) for name in trial.channels}
+            found.append(replace(trial, scenario=replace(trial.scenario, chains=chains)))
+        return found
+
+    def is_like(self, other: FoundRecorder) -> bool:
+        """Return whether another one is of the same kind and cuts off at the same frequency."""
+        one, two = self.chain, other.chain
+        same = (one.filter, one.order, self.cut) == (two.filter, two.order, other.cut)
+        return same and abs((one.cut_off or 0.0) - (two.cut_off or 0.0)) <= SAME_CUT_OFF * (two.cut_off or 1.0)
 
 
 def has_unknown(trials: Sequence[Trial]) -> bool:
@@ -47,22 +64,28 @@ def has_unknown(trials: Sequence[Trial]) -> bool:
     return any(not trial.scenario.chain(name).is_known for trial in trials for name in trial.channels)
 
 
-def with_chain(trial: Trial, chain: AcquisitionChain) -> Trial:
-    """Return a trial with a chain in place of those that are not known, its delays kept."""
-    known = {name: trial.scenario.chain(name) for name in trial.channels}
-    chains = {name: own if own.is_known else replace(chain, delay=chain.delay + own.delay) for name, own in known.items()}
-    return replace(trial, scenario=replace(trial.scenario, chains=chains))
-
-
-def find_recorder(misfit: Misfit, x: Array) -> FoundRecorder:
+def find_recorder(
+    misfit: Misfit, x: Array, channels: Sequence[str] | None = None, band: tuple[float, float] | None = None
+) -> FoundRecorder:
     """Return what stands for the unknown recorders of a fit's runs.
 
     Where several chains would do, the band ends at the frequency up to which folding matters in no run.
+
+    Parameters
+    ----------
+    misfit, x
+        A fit.
+    channels
+        Those whose recorder is not known (default: as the runs have it).
+    band
+        The band to be compared [Hz] (default: the fit's).
     """
-    estimate = estimate_chain(misfit, x)
+    trials, asked = misfit.problem.trials, band or misfit.band
+    unknown = [name for trial in trials for name in trial.channels if not trial.scenario.chain(name).is_known]
+    channels = tuple(channels or dict.fromkeys(unknown))
+    estimate = estimate_chain(misfit, x, channels=channels)
     if estimate.is_clear:
-        return FoundRecorder(estimate, misfit.band, False)
-    trials = misfit.problem.trials
+        return FoundRecorder(estimate, asked, False, channels)
     tops = [trusted_band(trial, fine_response(misfit, x, t), misfit.noises[trial.name]) for t, trial in enumerate(trials)]
-    top = max(min([*tops, misfit.band[1]]), misfit.band[1] / 2)
-    return FoundRecorder(estimate, (misfit.band[0], top), top < misfit.band[1])
+    top = max(min([*tops, asked[1]]), asked[1] / 2)
+    return FoundRecorder(estimate, (asked[0], top), top < asked[1], channels)

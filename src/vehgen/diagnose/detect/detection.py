@@ -21,6 +21,8 @@ from vehgen.fit.recorders import FoundRecorder, find_recorder, has_unknown
 from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
+SAME_LEVELS = 0.5
+"""Levels of an error of a profile that differ by less in their logarithms are the same."""
 PROFILE_ROUNDS = 2
 """So often are the errors of measured profiles found, and the base model refitted with them."""
 BAND_EDGES_HZ = (0.0, 3.0, 8.0, 15.0, np.inf)
@@ -33,7 +35,7 @@ class Detection:
 
     `base` is recalibrated; `as_filed` and `as_filed_validation` are the mean squares of the file's parameters, on the training runs and on
     the validation runs (not a number where there are none). `recorder` stands for recorders that no run file declares; `numerical` is what
-    the simulation's own error may add to the mean square of every run.
+    the simulation's own error may add to the mean square of every run; `asked_band` the band that was asked for.
     """
 
     problem: Problem
@@ -45,6 +47,7 @@ class Detection:
     band: tuple[float, float] = DIAGNOSIS_BAND_HZ
     recorder: FoundRecorder | None = None
     numerical: dict[str, float] = field(default_factory=dict)
+    asked_band: tuple[float, float] = DIAGNOSIS_BAND_HZ
 
     @property
     def nothing_missing(self) -> float:
@@ -103,25 +106,51 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
     recorder = None
     if has_unknown(trials):
         recorder = find_recorder(base.least_squares.misfit, base.least_squares.x)
-        training, validation_runs, band = recorder.applied(training), recorder.applied(validation_runs), recorder.band
+        training, validation_runs = recorder.applied(training), recorder.applied(validation_runs)
         problem = problem.with_trials(training)
-        base = fit_base(problem, validation_runs, floor.noises, band, base)
+        base = fit_base(problem, validation_runs, floor.noises, recorder.band, base)
     for _ in range(PROFILE_ROUNDS if any(measured_profiles(trial) for trial in trials) else 0):
         floor = replace(floor, noises=profile_noises(base, floor.noises))
-        base = fit_base(problem, validation_runs, floor.noises, band, base)
-    filed = [mean_square_as_filed(part, floor.noises, band) for part in (training, validation_runs)]
-    numerical = [numerical_floor(fit.misfit, fit.x) for fit in (base.least_squares, base.validation_fit) if fit is not None]
-    return Detection(
-        problem,
-        tuple(validation_runs),
-        floor,
-        base,
-        filed[0],
-        filed[1],
-        band,
-        recorder,
-        {name: own[name] for own in numerical for name in own},
-    )
+        base = fit_base(problem, validation_runs, floor.noises, band if recorder is None else recorder.band, base)
+    return _detection(problem, validation_runs, floor, base, recorder, band)
+
+
+def look_again(detection: Detection, fit: ModelFit) -> Detection | None:
+    """Return a detection whose recorder and errors of profiles follow from a better model's fit; None where they stay as they are.
+
+    A missing effect passes in part for a rough profile, and hides what the recorder did.
+    """
+    recorder, floor = detection.recorder, detection.floor
+    problem, validation_runs = detection.problem, list(detection.validation_runs)
+    if recorder is not None and not recorder.estimate.is_clear:
+        found = find_recorder(fit.least_squares.misfit, fit.least_squares.x, recorder.channels, detection.asked_band)
+        if not found.is_like(recorder):
+            recorder = found
+            problem = problem.with_trials(found.applied(problem.trials))
+            validation_runs = found.applied(validation_runs)
+    noises = profile_noises(fit, floor.noises)
+    changes = [np.log(noises[name].levels / floor.noises[name].levels) for name in noises]
+    if recorder is detection.recorder and all(np.abs(item).max() < SAME_LEVELS for item in changes):
+        return None
+    band = detection.asked_band if recorder is None else recorder.band
+    floor = replace(floor, noises=noises)
+    base = fit_base(problem, validation_runs, noises, band, detection.base)
+    return _detection(problem, validation_runs, floor, base, recorder, detection.asked_band)
+
+
+def _detection(
+    problem: Problem,
+    validation_runs: Sequence[Trial],
+    floor: NoiseFloor,
+    base: ModelFit,
+    recorder: FoundRecorder | None,
+    asked_band: tuple[float, float],
+) -> Detection:
+    band = base.least_squares.misfit.band
+    filed = [mean_square_as_filed(part, floor.noises, band) for part in (problem.trials, validation_runs)]
+    parts = [numerical_floor(fit.misfit, fit.x) for fit in (base.least_squares, base.validation_fit) if fit is not None]
+    numerical = {name: value for part in parts for name, value in part.items()}
+    return Detection(problem, tuple(validation_runs), floor, base, filed[0], filed[1], band, recorder, numerical, asked_band)
 
 
 def band_gaps(detection: Detection, fit: ModelFit | None = None) -> list[BandGap]:
