@@ -32,7 +32,7 @@ ON_ROAD_MARGIN_S = 0.3
 """The speed matters from so long before the first wheel meets the hump until so long after the last has left it [s]."""
 READING = ("clock", "gain", "tilt", "position")
 """Errors that change what a sensor reads, not what the vehicle does."""
-UNITS = {"delay": "s", "clock": "s", "tilt": "rad", "position": "m"}
+ERROR_UNITS = {"delay": "s", "clock": "s", "tilt": "rad", "position": "m"}
 """Units of the errors; all others are relative."""
 
 
@@ -119,7 +119,7 @@ class Nuisance:
     @property
     def unit(self) -> str:
         """Its unit; empty for relative errors."""
-        return UNITS.get(self.name, "")
+        return ERROR_UNITS.get(self.name, "")
 
     @property
     def moves_vehicle(self) -> bool:
