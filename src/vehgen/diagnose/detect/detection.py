@@ -118,11 +118,11 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
 def look_again(detection: Detection, fit: ModelFit) -> Detection | None:
     """Return a detection whose recorder and errors of profiles follow from a better model's fit; None where they stay as they are.
 
-    A missing effect passes in part for a rough profile, and hides what the recorder did.
+    A missing effect passes in part for a rough profile, and for a low-pass of the recorder, however clear that one seems without it.
     """
     recorder, floor = detection.recorder, detection.floor
     problem, validation_runs = detection.problem, list(detection.validation_runs)
-    if recorder is not None and not recorder.estimate.is_clear:
+    if recorder is not None:
         found = find_recorder(fit.least_squares.misfit, fit.least_squares.x, recorder.channels, detection.asked_band)
         if not found.is_like(recorder):
             recorder = found

@@ -5,7 +5,7 @@ import pytest
 import scipy.signal
 
 from tests.fit.profile_world import FINE, SIGMA, fine_channels, misfit_of, read_run, rough_road
-from vehgen.diagnose.detect.profile_error import MOST_ERROR_M, ProfileError, find_profile_error
+from vehgen.diagnose.detect.road_error import MOST_ERROR_M, ProfileError, find_profile_error
 from vehgen.fit.noise import EVEN, KNOT_WAVENUMBERS, Noise
 from vehgen.fit.nuisances import Nuisances
 
