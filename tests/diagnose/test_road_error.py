@@ -1,13 +1,19 @@
-"""The error of a measured profile: its spectrum against drawn profiles, and its size in runs over roads that were measured wrongly."""
+"""What roads add to the noise: errors of measured profiles against drawn ones, and roads under humps rougher than before them."""
+
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import scipy.signal
 
-from tests.fit.profile_world import FINE, SIGMA, fine_channels, misfit_of, read_run, rough_road
-from vehgen.diagnose.detect.road_error import MOST_ERROR_M, ProfileError, find_profile_error
+from tests.fit import recordings
+from tests.fit.profile_world import FINE, SEARCHED, SIGMA, TRUTH, fine_channels, misfit_of, read_run, rough_road
+from vehgen.diagnose.detect.road_error import MOST_ERROR_M, ProfileError, find_profile_error, road_noises
+from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import EVEN, KNOT_WAVENUMBERS, Noise
 from vehgen.fit.nuisances import Nuisances
+from vehgen.fit.problem import make_problem
+from vehgen.fit.trial import load_trials
 
 POINTS, SPEED = 0.05, 12.0
 """Spacing of the measured points [m], speed [m/s]."""
@@ -87,3 +93,32 @@ def test_no_error_of_a_profile_explains_a_wrong_model(tmp_path, driven):
     assert found.growth <= 3.001
     noisy = type(misfit)(misfit.problem, {"run": found.noise(LEAD)}, misfit.problem.space.start, misfit.nuisances, misfit.band)
     assert np.mean(np.abs(noisy.whitened_spectrum(x)[0]) ** 2) > 3
+
+
+STEP = 2e-4
+LEVEL = STEP**2 / (POINTS * 2 * np.pi**2 * 0.01)
+"""Gd(n0) of a random walk by STEP every POINTS [m^3]."""
+STEADY_WALK_HZ = (0.5, 10.0)
+"""At 2.5 m/s, waves longer than five points: shorter ones are cut by straight lines between them."""
+
+
+def under_hump(folder, lead_level):
+    """Return the noise found for a run over a hump on a road of LEVEL, where the lead-in showed another one."""
+    trial = load_trials([recordings.write_run(folder, "run", TRUTH, 2.5, noise=0.0, rough=STEP)])[0]
+    lead = {"run": Noise(np.full_like(EVEN, lead_level), 0.1 * SIGMA)}
+    problem = make_problem([trial], SEARCHED)
+    misfit = Misfit(problem, lead, np.array([TRUTH[name] for name in SEARCHED]), QUIET, STEADY_WALK_HZ)
+    fit = SimpleNamespace(misfit=misfit, x=np.concatenate([problem.space.unit(problem.space.start), np.zeros(misfit.n_errors)]))
+    return road_noises(SimpleNamespace(least_squares=fit, validation_fit=None), lead, lead)["run"], lead["run"]
+
+
+@pytest.mark.parametrize(("share", "found"), [(0.75, 0.75), (1.3, 1.3), (0.1, 0.6), (6.0, 1.6)])
+def test_the_road_under_a_hump_is_as_rough_as_the_run_says_within_bounds(tmp_path, share, found):
+    noise, lead = under_hump(tmp_path, LEVEL / share)
+    assert noise.levels == pytest.approx(found * lead.levels, rel=0.15)
+    assert noise.sigma is lead.sigma
+
+
+def test_an_even_road_stays_even(tmp_path):
+    noise, lead = under_hump(tmp_path, EVEN[0])
+    assert noise is lead
