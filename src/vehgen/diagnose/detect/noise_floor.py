@@ -135,7 +135,8 @@ def _from_lead_in(
         inside = (frequency >= max(band[0], 1.0)) & (frequency <= band[1])
         lines = transform(part.recording.values - part.recording.values.mean(axis=0), part.recording.dt, inside)
         residuals.append((lines, road_answer(part, frequency[inside], part.values)))
-    noise = estimate_noise(residuals, Noise(np.full(len(EVEN), 100 * SMALLEST_LEVEL) if levels is None else levels, sigma, slope))
+    start = Noise(np.full(len(EVEN), 100 * SMALLEST_LEVEL) if levels is None else levels, sigma, slope)
+    noise = estimate_noise(residuals, start, same_road=True)[0]
     return noise, sum(noise.loss(lines, answer) for lines, answer in residuals)
 
 
