@@ -83,7 +83,7 @@ def test_what_an_unknown_low_pass_takes_off_is_found_and_a_declared_one_takes_no
         factor = np.exp(-0.4 * share**2 - 1j * share**3)[:, None]
         return np.fft.irfft(np.fft.rfft(padded, axis=0) * factor, len(padded), axis=0)[: len(values)]
 
-    fit, found = fitted(changed(tmp_path, filtered))
+    fit, found = fitted(changed(tmp_path, filtered), wear=0.0, form=0.0, skew=0.0, length=0.0)
     for sensor in ("F", "R"):
         assert found["roll_off", sensor] == pytest.approx(0.4, abs=0.12)
         assert found["dispersion", sensor] == pytest.approx(1.0, abs=0.5)
