@@ -229,7 +229,7 @@ class _Search:
                 response = item.response(trial, response, self.misfit.adjusted(self.x)[i:])
             frequency = self.misfit.frequency(t)
             factors = np.column_stack([item.response(frequency) for item in chains])
-            left = self.misfit.measured(t) - self.misfit.lines(t, response[0], self.misfit.errors_of(self.x, t))
+            left = self.misfit.measured(t) - self.misfit.channel_lines(t, response[0], self.misfit.errors_of(self.x, t))
             residuals.append(flatten(self.misfit.whiten(t, left)))
             slopes.append(flatten(self.misfit.whiten(t, self.slopes[t] * factors), first=1).T)
         return ChainFit(chain, _projected(np.concatenate(residuals), np.vstack(slopes), self.priors))

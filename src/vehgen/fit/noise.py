@@ -233,7 +233,9 @@ def estimate_noise(residuals: Sequence[tuple[Complex, RoadAnswer]], start: Noise
     share = np.mean([np.mean(np.abs(lines) ** 2 / (np.abs(answer.gain) ** 2).sum(axis=2).clip(1e-300)) for lines, answer in residuals])
     mostly_road = Noise(np.full(knots, share), 0.1 * np.sqrt(power), start.slope)
     bounds = [(np.log(SMALLEST_LEVEL), np.log(LARGEST_LEVEL))] * knots
-    bounds += [(-MOST_RUN_SIGMAS * ROUGHEST_RUN, MOST_RUN_SIGMAS * ROUGHEST_RUN)] * spread + [(np.log(low), np.log(low) + 12.0) for low in floor]
+    bounds += [(-MOST_RUN_SIGMAS * ROUGHEST_RUN, MOST_RUN_SIGMAS * ROUGHEST_RUN)] * spread + [
+        (np.log(low), np.log(low) + 12.0) for low in floor
+    ]
     found = []
     with threadpool_limits(1, user_api="blas"):  # a dozen unknowns: more threads only wait for one another
         for first in (start, mostly_road):
