@@ -157,6 +157,12 @@ class Misfit:
         found = {(item.name, item.place): item.value for item in self.conditions(x) if not item.run}
         return {**self.known, **found}
 
+    def without(self, x: Array, names: Sequence[str]) -> Array:
+        """Return the unknowns x with all errors of some names at 0."""
+        start = self.n_parameters + len(self.shared)
+        kept = [item.name not in names for item in self.conditions(x)]
+        return np.concatenate([x[:start], x[start:] * kept])
+
     def adjusted(self, x: Array) -> Array:
         """Return the numbers of the shared adjustments, `shape (len(shared),)`."""
         own = x[self.n_parameters : self.n_parameters + len(self.shared)]

@@ -161,7 +161,8 @@ def _from_lead_in(
 ) -> tuple[Noise, float]:
     """Return the noise of lead-ins for a slope, and -2 ln of its likelihood."""
     residuals = [_lines(part, band) for part in quiet]
-    noise = estimate_noise(residuals, Noise(np.full(len(EVEN), 100 * SMALLEST_LEVEL) if levels is None else levels, sigma, slope))
+    start = Noise(np.full(len(EVEN), 100 * SMALLEST_LEVEL) if levels is None else levels, sigma, slope)
+    noise = estimate_noise(residuals, start, same_road=True)[0]
     return noise, sum(noise.loss(lines, answer) for lines, answer in residuals)
 
 
