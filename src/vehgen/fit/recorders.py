@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from vehgen.fit.chain_estimate import ChainEstimate, estimate_chain, fine_response, trusted_band
 from vehgen.fit.misfit import Array, Misfit
 from vehgen.fit.trial import Trial
-from vehgen.measure.acquisition import AcquisitionChain
+from vehgen.measure.acquisition import UNKNOWN, AcquisitionChain
 
 SAME_CUT_OFF = 0.1
 """Cut-offs that differ by less than this share are the same."""
@@ -49,6 +49,14 @@ class FoundRecorder:
         found = []
         for trial in trials:
             chains = {name: self.chain if name in self.channels else trial.scenario.chain(name) for name in trial.channels}
+            found.append(replace(trial, scenario=replace(trial.scenario, chains=chains)))
+        return found
+
+    def forgotten(self, trials: Sequence[Trial]) -> list[Trial]:
+        """Return trials on which this one stands with recorders that are unknown again."""
+        found = []
+        for trial in trials:
+            chains = {name: UNKNOWN if name in self.channels else trial.scenario.chain(name) for name in trial.channels}
             found.append(replace(trial, scenario=replace(trial.scenario, chains=chains)))
         return found
 
