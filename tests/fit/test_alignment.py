@@ -28,11 +28,10 @@ def test_a_delay_by_whole_samples_is_found(samples):
     assert likeness > 0.97
 
 
-def test_the_size_of_a_channel_counts_no_more_than_of_another():
+def test_the_size_of_a_channel_says_nothing():
     signal = slow_noise()
-    measured = np.roll(signal, 20, axis=0) * [1.0, 1e-4]
-    assert best_delay(measured, signal, DT, BAND)[1] < best_delay(measured, signal * [1.0, 1e-4], DT, BAND)[1]
-    assert best_delay(measured, signal * [3.0, 3e-4], DT, BAND) == pytest.approx(best_delay(measured, signal * [1.0, 1e-4], DT, BAND))
+    measured = np.roll(signal, 20, axis=0)
+    assert best_delay(measured * [1.0, 1e-4], signal * [30.0, 1.0], DT, BAND) == pytest.approx(best_delay(measured, signal, DT, BAND))
 
 
 def test_what_lies_outside_the_band_says_nothing():

@@ -18,7 +18,7 @@ from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import transform
 
 Array = NDArray[np.float64]
-SPEEDS = tuple(0.5 * i for i in range(-7, 8))
+SPEED_SIGMAS = tuple(0.5 * i for i in range(-7, 8))
 """Errors of the speed that are tried, in standard deviations."""
 BANDS_HZ = (3.0, 8.0, 20.0)
 """Highest frequencies of the motions that are laid over one another, the slow ones first [Hz]."""
@@ -58,7 +58,7 @@ def _laid_over(misfit: Misfit, x: Array, number: int) -> Array:
     sigma = alone.errors[0].own[names.index("delay")].sigma
     top = min(misfit.band[1], BANDS_HZ[1])
     best, start = -np.inf, np.zeros(len(names))
-    for speed in SPEEDS if "speed" in names else (0.0,):
+    for speed in SPEED_SIGMAS if "speed" in names else (0.0,):
         tried = np.zeros(len(names))
         if "speed" in names:
             tried[names.index("speed")] = speed

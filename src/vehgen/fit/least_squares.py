@@ -181,11 +181,11 @@ def _fit(
         return LinearisedPoint(information, gradient)
 
     with threadpool_limits(1, user_api="blas"):  # small matrices: more threads only wait for one another
-        found = minimise(square, linearised, x, _bounds(misfit), tolerance, options.max_steps)
+        found = minimise(square, linearised, x, unknown_bounds(misfit), tolerance, options.max_steps)
     return found, kept[0]
 
 
-def _bounds(misfit: Misfit) -> tuple[Array, Array]:
+def unknown_bounds(misfit: Misfit) -> tuple[Array, Array]:
     """Return the least and the largest values of a misfit's unknowns, each `shape (n_unknowns,)`."""
     n, rest = misfit.n_parameters, misfit.n_errors
     shared = np.reshape([item.bounds for item in misfit.shared], (-1, 2))

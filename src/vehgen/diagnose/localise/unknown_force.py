@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.fit.least_squares import unknown_bounds
 from vehgen.fit.linearisation import Lineariser, linearise, lineariser
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.mechanics.rows import Row
@@ -130,8 +131,7 @@ def _test(
         if chi < best_chi:
             best, best_chi = x, chi
         step = np.linalg.lstsq(np.vstack([jacobian, rows]), -np.concatenate([residual, offset]), rcond=None)[0]
-        new = x + step
-        new[: misfit.n_parameters] = np.clip(new[: misfit.n_parameters], 0.0, 1.0)
+        new = np.clip(x + step, *unknown_bounds(misfit))
         if np.abs(new - x).max() < 1e-4:
             break
         x = new

@@ -1,0 +1,32 @@
+"""The place test: no hypothesis needs errors of runs and sensors that no fit may have."""
+
+import numpy as np
+import pytest
+from benchmarks.hidden_effects.generator import Effect
+
+from vehgen.diagnose.localise.localisation import localise
+from vehgen.diagnose.localise.unknown_force import list_places, score_locations
+from vehgen.fit.alignment import MOST_SIGMAS
+
+FRICTION = Effect("dry_friction", "rear", {"force": 450.0})
+
+
+@pytest.fixture(scope="module")
+def base(detection_of):
+    return detection_of(FRICTION).base
+
+
+def test_errors_stay_within_their_bounds_at_every_place(base):
+    misfit, x = base.least_squares.misfit, base.least_squares.x
+    results = score_locations(misfit, x, list_places(misfit))
+    assert results
+    for result in results:
+        unit, errors = misfit.split(result.x)
+        assert np.abs(errors).max() <= MOST_SIGMAS
+        assert unit.min() >= 0.0
+        assert unit.max() <= 1.0
+
+
+def test_friction_is_placed_where_it_is(base):
+    _, passed = localise(base)
+    assert passed[0].place.label in ("suspension rear", "tyre rear")
