@@ -8,28 +8,28 @@ Data = dict[str, Any]
 SAME_PLACE = {"all": ("all tyres", "all runs", "all")}
 """The generator's words for places, and a diagnosis's."""
 KINDS: dict[str, tuple[str, ...]] = {
-    "unit_g": ("unit", "scale", "gain"),
-    "unit_degrees": ("unit", "scale", "gain"),
-    "speed_unit": ("speed", "speed_unit"),
+    "unit_g": ("unit",),
+    "unit_degrees": ("unit",),
+    "speed_unit": ("speed_unit", "speed"),
     "speed_off": ("speed",),
-    "sign_reversed": ("sign", "reversed"),
-    "channels_exchanged": ("exchanged", "swapped", "channels_exchanged"),
-    "sensors_exchanged": ("exchanged", "swapped", "sensors_exchanged"),
-    "dead_channel": ("dead", "dead_channel"),
-    "clipped": ("clipped", "clipping"),
-    "low_passed": ("low_passed", "filter", "bandwidth", "low_pass"),
-    "clocks_apart": ("clocks", "clock", "delay"),
-    "speeds_swapped": ("speed", "runs_exchanged", "swapped", "run_files_swapped"),
-    "humps_swapped": ("hump", "height", "runs_exchanged", "swapped", "run_files_swapped"),
-    "other_hump": ("hump", "road"),
-    "other_vehicle": ("vehicle", "other_vehicle"),
-    "wheelbase": ("wheelbase", "axle_positions", "axles"),
-    "gain_one_run": ("gain", "scale"),
-    "profile_moved": ("profile", "profile_position", "profile_shift", "road"),
-    "near_copies": ("copies", "copy", "duplicate", "near_copies"),
-    "clock_fast": ("clock", "clock_rate", "time_base"),
+    "sign_reversed": ("turned",),
+    "channels_exchanged": ("exchanged",),
+    "sensors_exchanged": ("exchanged",),
+    "dead_channel": ("dead", "stuck"),
+    "clipped": ("clipped",),
+    "low_passed": ("low_pass",),
+    "clocks_apart": ("clocks_apart",),
+    "speeds_swapped": ("exchanged_speeds", "exchanged_recordings", "speed"),
+    "humps_swapped": ("exchanged_roads", "exchanged_heights", "exchanged_recordings", "hump_height", "hump"),
+    "other_hump": ("hump", "hump_length", "hump_form", "hump_height"),
+    "other_vehicle": ("other_vehicle", "other_parameters", "stranger"),
+    "wheelbase": ("axle_position",),
+    "gain_one_run": ("gain",),
+    "profile_moved": ("road_position", "clock"),
+    "near_copies": ("copy",),
+    "clock_fast": ("clock_rate", "clock_or_speed"),
 }
-"""Kinds of `measurement_fault` that name a mistake: equal, or beginning with one of these words."""
+"""Kinds of `measurement_fault` that name a mistake: swapped speeds or humps where two recordings were exchanged are the same."""
 WORDS: dict[str, tuple[str, ...]] = {
     "unit_g": ("unit", "in g", "9.8"),
     "unit_degrees": ("unit", "deg"),
@@ -88,7 +88,7 @@ def judged_fault(fault: Data, answer: Data) -> str:
     if verdict == "measurement_fault":
         items = answer.get("faults", [])
         kinds = [str(item.get("kind", "")) for item in items]
-        if not any(kind.startswith(word) for kind in kinds for word in KINDS[fault["kind"]]):
+        if not set(kinds) & set(KINDS[fault["kind"]]):
             return "another fault named"
         return "fault named right, place too" if any(_placed(fault, item) for item in items) else "fault named right"
     if verdict in ABSTAINING:
@@ -102,5 +102,5 @@ def judged_fault(fault: Data, answer: Data) -> str:
 
 def _placed(fault: Data, item: Data) -> bool:
     """Return whether a named fault tells a run, sensor or channel concerned."""
-    told = f"{item.get('run', '')} {item.get('sensor_or_channel', '')}"
+    told = {*item.get("runs", ()), *item.get("channels", ())}
     return any(name in told for name in (*fault["runs"], *fault["items"]))

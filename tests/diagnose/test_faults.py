@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.interpolate
 import scipy.signal
-from benchmarks.hidden_effects.generator import Effect, Hump, RunSpec
+from benchmarks.hidden_effects.generator import Effect, Hump, RunSpec, nominal, perturbed
 
 from vehgen.diagnose.detect.detection import detect
-from vehgen.diagnose.inputs.conditions import findings_of_conditions
+from vehgen.diagnose.inputs.conditions import findings_of_conditions, moved_roads
 from vehgen.diagnose.inputs.judging import explain_gap, plain_mistakes, recorded_mistakes, supposed_mistakes
 from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.thresholds import NOISE_FLOOR
@@ -169,6 +170,35 @@ def test_what_a_good_fit_had_to_suppose_is_told(plain, make, kind, runs, value):
     (fault,) = supposed_mistakes(detection)
     assert (fault.kind, set(fault.runs)) == (kind, runs)
     assert value is None or fault.value == pytest.approx(value, abs=0.01)
+
+
+def test_a_run_of_another_vehicle_is_told_from_the_others(trials_of, plain):
+    other = dict(zip(("mH", "IZ", "kf", "kr"), (1.35, 1.35, 1.2, 0.8), strict=True))
+    parameters = {name: factor * nominal("sedan2")[name] for name, factor in other.items()}
+    (strange,) = [trial for trial in trials_of(runs=RUNS, parameters=perturbed("sedan2", 3) | parameters) if trial.name == "high"]
+    (fault,) = explain_gap(detect([strange if trial.name == "high" else trial for trial in plain]))
+    assert (fault.kind, fault.runs) == ("other_vehicle", ("high",))
+
+
+def test_a_clock_that_runs_fast_is_told_or_tied_with_the_speed(plain):
+    def by_a_fast_clock(values):
+        numbers = np.arange(len(values))
+        return scipy.interpolate.CubicSpline(numbers, values, axis=0)(numbers / 1.1)
+
+    (fault,) = explain_gap(detect(edited(plain, by_a_fast_clock)))
+    assert fault.kind in ("clock_rate", "clock_or_speed")
+    assert fault.value == pytest.approx(1.1, abs=0.01)
+
+
+def test_a_road_that_begins_elsewhere_is_told_where_all_other_runs_agree():
+    delays = {"low": 0.004, "high": -0.003, "road": 0.101}
+    conditions = [Condition(run, "delay", "", value, "s", 0.2) for run, value in delays.items()]
+    (fault,) = moved_roads(conditions, {"road": 10.0})
+    assert (fault.kind, fault.runs) == ("road_position", ("road",))
+    assert fault.value == pytest.approx(1.0, abs=0.02)
+    assert "further along" in fault.message
+    scattered = [replace(item, value=value) for item, value in zip(conditions, (0.04, -0.03, 0.1), strict=True)]
+    assert moved_roads(scattered, {"road": 10.0}) == ()
 
 
 def test_a_near_copy_of_a_pass_is_no_run_of_its_own(plain):

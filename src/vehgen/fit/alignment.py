@@ -91,13 +91,12 @@ def _fitted(alone: Misfit, start: Array) -> Array:
 def best_delay(measured: Array, simulated: Array, dt: float, band: tuple[float, float]) -> tuple[float, float]:
     """Return by how much later [s] simulated channels `shape (n_samples, n_channels)` must come to be most like the measured, and how like.
 
-    Likeness is the correlation of all channels together within the band [Hz], each in units of its measured size.
+    Likeness is the correlation of all channels together within the band [Hz], each in units of its own size: a dead channel counts little.
     """
     n = len(simulated)
     frequency = np.fft.rfftfreq(n, dt)
     inside = (frequency >= band[0]) & (frequency <= band[1])
-    scale = np.maximum(np.sqrt(np.mean(measured**2, axis=0)), 1e-300)
-    one, other = (transform(item / scale, dt, inside) for item in (measured, simulated))
+    one, other = (transform(item / np.maximum(np.sqrt(np.mean(item**2, axis=0)), 1e-300), dt, inside) for item in (measured, simulated))
     cross = np.zeros(len(frequency), dtype=np.complex128)
     cross[inside] = (one * other.conj()).sum(axis=1)
     lags = np.fft.irfft(cross, n)

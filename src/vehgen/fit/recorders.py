@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from vehgen.fit.chain_estimate import ChainEstimate, estimate_chain, fine_response, trusted_band
 from vehgen.fit.misfit import Array, Misfit
 from vehgen.fit.trial import Trial
-from vehgen.measure.acquisition import AcquisitionChain
+from vehgen.measure.acquisition import UNKNOWN, AcquisitionChain
 
 MOST_LEFT = 2.0
 """A fit that leaves a larger mean square lacks something that passes for a low-pass: an ideal one is then taken, until more is known."""
@@ -51,6 +51,14 @@ class FoundRecorder:
         found = []
         for trial in trials:
             chains = {name: self.chain if name in self.channels else trial.scenario.chain(name) for name in trial.channels}
+            found.append(replace(trial, scenario=replace(trial.scenario, chains=chains)))
+        return found
+
+    def forgotten(self, trials: Sequence[Trial]) -> list[Trial]:
+        """Return trials on which this one stands with recorders that are unknown again."""
+        found = []
+        for trial in trials:
+            chains = {name: UNKNOWN if name in self.channels else trial.scenario.chain(name) for name in trial.channels}
             found.append(replace(trial, scenario=replace(trial.scenario, chains=chains)))
         return found
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.interpolate
 import scipy.signal
 from numpy.typing import NDArray
 
 from vehgen.fit.adjustments import Adjustment, Gain, SensorDelay
 from vehgen.fit.trial import Trial
+from vehgen.simulate import Scenario
 
 Array = NDArray[np.float64]
 FILTER_ORDER = 4
@@ -60,8 +60,6 @@ class RecorderFilter(Adjustment):
 class ClockRate(Adjustment):
     """How many seconds of a recorder's clock a second takes, in all runs."""
 
-    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
-        """Return the readings against the recorder's clock."""
-        time = trial.recording.time
-        spline = scipy.interpolate.CubicSpline(time, response, axis=-2, extrapolate=False)
-        return np.asarray(np.nan_to_num(spline(time[0] + (time - time[0]) / numbers[0]), nan=0.0))
+    def scenario(self, scenario: Scenario, value: float) -> Scenario:
+        """Return the scenario with steps, and samples, that are as short as the clock is fast."""
+        return replace(scenario, dt=scenario.dt / value, duration=scenario.duration / value)

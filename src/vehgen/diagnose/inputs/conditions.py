@@ -16,10 +16,12 @@ TOGETHER = 6.0
 """Speeds, or one sensor's clocks, whose sum over the runs is so many of its standard deviations off are a finding, each small as it is."""
 AGREE = 0.15
 """Conditions of two runs that undo one another within this share of themselves are an exchange; of all runs, one cause."""
-
-
+LEAST_OTHERS = 2
+"""A run's start is compared with those of so many others at least."""
+STANDS_OUT, CLOCKS_SPREAD_S, LEAST_SHIFT_M = 6.0, 0.01, 0.3
+"""A start off by so many times the others' spread, which is no less than this [s], and a road off by so much [m], are findings."""
 _FAULT_OF = {
-    "delay": ("clock", "the recording {where} starts {amount} {late} than the file says, or the road lies elsewhere along the way"),
+    "delay": ("clock", "the recording {where} starts {amount} {early} than the file says, or the road lies elsewhere along the way"),
     "speed": ("speed", "the speed {where} was {amount} {more} than stated"),
     "height": ("hump_height", "the road {where} is {amount} {more} than stated, or all channels read as much {more}"),
     "length": ("hump_length", "the hump {where} is {amount} {longer} than stated"),
@@ -91,6 +93,37 @@ def findings_of_conditions(
     return tuple(found)
 
 
+def moved_roads(conditions: Sequence[Condition], speeds: Mapping[str, float]) -> tuple[MeasurementFault, ...]:
+    """Return which roads lie elsewhere along the way: their runs' clocks stand out from those of all other runs.
+
+    Parameters
+    ----------
+    conditions
+        All conditions of a fit.
+    speeds
+        The speed [m/s] of every run over a measured profile, whose place is easily mistaken.
+    """
+    delays = {item.run: item for item in conditions if item.name == "delay"}
+    found = []
+    for run in (name for name in speeds if name in delays):
+        others = np.array([item.value for name, item in delays.items() if name != run])
+        if len(others) < LEAST_OTHERS:
+            continue
+        usual = float(np.median(others))
+        spread = max(float(np.sqrt(np.mean((others - usual) ** 2))), CLOCKS_SPREAD_S)
+        late = delays[run].value - usual
+        shift = late * speeds[run]
+        if abs(late) < STANDS_OUT * spread or abs(shift) < LEAST_SHIFT_M:
+            continue
+        message = (
+            f"the road of {run} seems to lie {abs(shift):.2f} m {'further along' if late > 0 else 'nearer'} than the file says, or its "
+            f"recording starts {abs(late):.2g} s {'earlier' if late > 0 else 'later'}: the other runs' starts agree within {spread:.1g} s"
+        )
+        cure = "measure where the profile begins, or state when the recording starts"
+        found.append(MeasurementFault("road_position", (run,), (), message, cure, shift, "m"))
+    return tuple(found)
+
+
 def _fault(alike: Sequence[Condition], runs: tuple[str, ...]) -> MeasurementFault:
     """Return the fault that conditions of the same name and nearly the same value tell together."""
     item = alike[0]
@@ -99,7 +132,12 @@ def _fault(alike: Sequence[Condition], runs: tuple[str, ...]) -> MeasurementFaul
     kind, sentence = _FAULT_OF[item.name]
     amount = f"{abs(value):.3g} {item.unit}" if item.unit else f"{100 * abs(value):.3g} %"
     up = value > 0
-    words = {"late": "later" if up else "earlier", "more": "more" if up else "less", "longer": "longer" if up else "shorter"}
+    words = {
+        "late": "later" if up else "earlier",
+        "early": "earlier" if up else "later",
+        "more": "more" if up else "less",
+        "longer": "longer" if up else "shorter",
+    }
     words |= {"fast": "too fast" if up else "too slow", "place": item.place or "the recorder"}
     message = sentence.format(where=place_words(own, runs), amount=amount, **words)
     message += f" ({max(abs(other.sigmas) for other in alike):.0f} standard deviations of what was thought possible)"

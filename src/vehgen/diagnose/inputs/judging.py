@@ -7,10 +7,11 @@ from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from vehgen.diagnose.detect.road_error import measured_profiles
 from vehgen.diagnose.inputs.amplitudes import dead_hypotheses, drift_hypotheses, gain_hypotheses, unit_hypotheses
 from vehgen.diagnose.inputs.checks import check_inputs
 from vehgen.diagnose.inputs.clocks import clock_hypotheses
-from vehgen.diagnose.inputs.conditions import findings_of_conditions
+from vehgen.diagnose.inputs.conditions import BEYOND, findings_of_conditions, moved_roads
 from vehgen.diagnose.inputs.copies import find_copies
 from vehgen.diagnose.inputs.exchanges import exchange_hypotheses, speed_hypotheses, speed_unit_hypotheses
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault
@@ -18,7 +19,7 @@ from vehgen.diagnose.inputs.humps import hump_hypotheses, road_heights
 from vehgen.diagnose.inputs.labels import label_hypotheses
 from vehgen.diagnose.inputs.recorders import filter_hypotheses, rate_hypotheses
 from vehgen.diagnose.inputs.refits import BaseRefits
-from vehgen.diagnose.inputs.vehicle import axle_hypotheses, other_vehicle, unrelated_recording
+from vehgen.diagnose.inputs.vehicle import axle_hypotheses, other_vehicle, strange_run_hypotheses, unrelated_recording
 from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.fit.least_squares import LeastSquaresFit
 
@@ -54,6 +55,7 @@ SUBTLE: tuple[Generator, ...] = (
     axle_hypotheses,
     hump_hypotheses,
     rate_hypotheses,
+    strange_run_hypotheses,
 )
 """What an effect may look like, looked for where none explains the runs."""
 
@@ -64,6 +66,11 @@ class _Judged:
     fit: LeastSquaresFit
     left: float
     faults: tuple[MeasurementFault, ...]
+
+    @property
+    def strained(self) -> bool:
+        """Whether the refit supposes something of runs or sensors beyond belief."""
+        return any(abs(item.sigmas) > BEYOND for item in self.fit.conditions())
 
 
 def find_mistakes(case: BaseRefits, plain_only: bool = False) -> tuple[MeasurementFault, ...]:
@@ -103,7 +110,7 @@ def _next(case: BaseRefits, plain_only: bool) -> tuple[_Judged, ...]:
 
 
 def _judge(case: BaseRefits, generators: tuple[Generator, ...]) -> list[_Judged]:
-    """Return the hypotheses of generators, refitted; the first that leaves noise ends the search."""
+    """Return the hypotheses of generators, refitted; the first that leaves noise, and supposes nothing else, ends the search."""
     judged: list[_Judged] = []
     for generate in generators:
         for hypothesis in generate(case):
@@ -112,7 +119,7 @@ def _judge(case: BaseRefits, generators: tuple[Generator, ...]) -> list[_Judged]
             if faults:
                 judged.append(_Judged(hypothesis, fit, left, faults))
         best = _least(judged)
-        if best is not None and best.left * case.excess <= FLOOR:
+        if best is not None and best.left * case.excess <= FLOOR and not best.strained:
             break
     return judged
 
@@ -142,7 +149,10 @@ def supposed_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
     """Return what the base fit had to suppose of the runs beyond belief."""
     fits = (detection.base.least_squares, *([detection.base.validation_fit] if detection.base.validation_fit else []))
     conditions = [item for fit in fits for item in fit.conditions()]
-    return findings_of_conditions(conditions, [trial.name for trial in detection.trials], road_heights(detection.trials))
+    found = findings_of_conditions(conditions, [trial.name for trial in detection.trials], road_heights(detection.trials))
+    speeds = {trial.name: trial.scenario.top_speed for trial in detection.trials if measured_profiles(trial)}
+    told = {run for item in found if item.kind == "clock" for run in item.runs}
+    return (*found, *(item for item in moved_roads(conditions, speeds) if not told & set(item.runs)))
 
 
 def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
@@ -164,6 +174,16 @@ def explain_gap(detection: Detection, chi: float | None = None, vehicle: bool = 
     """
     case = BaseRefits(detection)
     found = find_mistakes(case)
-    if found and (chi is None or CLEARLY_BETTER * case.excess < chi**2 - 1):
+    left = case.excess / case.first_excess
+    better = 1.0 if {item.kind for item in found} == {"clock_or_speed"} else CLEARLY_BETTER  # a tie with the effect is a tie
+    if found and (chi is None or better * left < (chi**2 - 1) / (detection.chi**2 - 1)):
         return found
-    return (other_vehicle(case) or unrelated_recording(case)) if vehicle and not found else ()
+    if found or not vehicle:
+        return ()
+    return other_vehicle(case) or _single_speeds(detection) or unrelated_recording(case)
+
+
+def _single_speeds(detection: Detection) -> tuple[MeasurementFault, ...]:
+    """Return speeds that the base fit had to suppose beyond belief in some runs only: arrivals tell them, whatever is missing."""
+    count = len(detection.trials)
+    return tuple(item for item in supposed_mistakes(detection) if item.kind == "speed" and len(item.runs) < count)

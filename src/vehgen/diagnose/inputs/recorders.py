@@ -24,7 +24,7 @@ RATES = tuple(round(0.85 + 0.01 * i, 2) for i in range(31))
 RATE_NOTICED, LEAST_RATE_ERROR = 0.02, 0.02
 """Gain in correlation from which another rate of the clock is fitted, and the smallest such rate less one."""
 AS_WELL = 3.0
-"""Clock and speed are told apart where one leaves less than the other by this factor."""
+"""A clock is told from a speed where it leaves less by this factor; where it leaves less at all, the two are a tie."""
 SLOW_BAND_HZ, FAST_BAND_HZ = (0.5, 4.0), (15.0, 35.0)
 """A filtered channel follows the prediction in the lower band, and lacks most of it in the upper."""
 FILTERED_SHARE = 0.35
@@ -46,7 +46,7 @@ def rate_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     if by_clock > RATE_LEFT:
         return
     by_speed = min(case.refit(case.problem, (SpeedScale("runs", 0.01, 1.0),), (start,))[1] for start in (1 / best, 1.0))
-    if by_speed < by_clock / AS_WELL:
+    if by_speed < by_clock:
         return
 
     def describe(numbers: Array) -> tuple[MeasurementFault, ...]:

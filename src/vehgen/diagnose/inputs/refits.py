@@ -13,11 +13,13 @@ from vehgen.diagnose.detect.noise_floor import find_noise_floor
 from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, JACOBIAN_REFRESH, NUISANCES
 from vehgen.diagnose.inputs.comparison import Comparison, compare
 from vehgen.diagnose.inputs.fault import Hypothesis
+from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.least_squares import COARSE_TOLERANCE, WEAK_PRIOR_SIGMA, FitOptions, LeastSquaresFit, fit_least_squares
 from vehgen.fit.misfit import Noises
 from vehgen.fit.noise import Noise
 from vehgen.fit.problem import Problem
+from vehgen.fit.recorders import FoundRecorder
 from vehgen.fit.trial import Trial
 
 if TYPE_CHECKING:
@@ -27,25 +29,41 @@ Array = NDArray[np.float64]
 BLINDING = 1e4
 """The noise of a channel that is not to count is taken as so many times its own."""
 REFIT_STEPS = 20
-COSTLY = ("speed", "height")
-"""What a refit supposes of these counts as if it were left: else a mistake is undone by supposing another."""
+REFIT_TOP_HZ = 15.0
+"""Refits compare up to this frequency [Hz]: above, a low-pass that was found for a wrong model would stand in the way of the right one."""
 
 
 class BaseRefits:
     """All runs of a detection, with the mistakes found so far undone, and refits of the base model to them.
 
-    `excess` is chi^2 - 1 of the base model on these runs; `shared`, `numbers` and `blind` undo what was found, as in :class:`Hypothesis`.
+    `excess` is chi^2 - 1 of the base model on these runs, `first_excess` that before any mistake was undone; `shared`, `numbers` and
+    `blind` undo what was found, as in :class:`Hypothesis`. Recorders whose low-pass is not known count as unknown again, and refits
+    compare slow motions, where these show the gap: the low-pass was found for a model that does not fit.
     """
 
     def __init__(self, detection: Detection) -> None:
         self.base = detection.base.least_squares
         self.detected = self.trials = detection.trials
         self.problem = detection.problem.with_trials(self.trials)
-        self.band = self.base.misfit.band
+        self.band = self.refit_band = self.base.misfit.band
         self.excess = max(detection.chi**2 - 1, 1e-9)
         self.shared: tuple[Adjustment, ...] = ()
         self.numbers: tuple[float, ...] = ()
         self.blind: frozenset[tuple[str, str]] = frozenset()
+        if detection.recorder is not None and self.band[1] > REFIT_TOP_HZ:
+            self._forget(detection.recorder, detection.asked_band)
+        self.first_excess = self.excess
+
+    def _forget(self, recorder: FoundRecorder, band: tuple[float, float]) -> None:
+        """Take the low-pass that was found as unknown again, and compare slow motions, where the gap shows there."""
+        known = self.trials, self.problem, self.refit_band, self.excess
+        self.trials = tuple(recorder.forgotten(self.trials))
+        self.problem = self.problem.with_trials(self.trials)
+        self.refit_band = band[0], REFIT_TOP_HZ
+        self.excess = 1.0
+        self.excess = self.refit(self.problem)[1]
+        if self.excess <= NOISE_FLOOR**2 - 1:
+            self.trials, self.problem, self.refit_band, self.excess = known
 
     @property
     def runs(self) -> tuple[str, ...]:
@@ -109,7 +127,7 @@ class BaseRefits:
         """
         options = FitOptions(
             NUISANCES,
-            self.band,
+            self.refit_band,
             max_steps=REFIT_STEPS,
             tolerance=COARSE_TOLERANCE,
             jacobian_refresh=JACOBIAN_REFRESH,
@@ -129,7 +147,7 @@ class BaseRefits:
             counted = [(trial.name, channel) not in blind for channel in trial.channels]
             powers.append(np.abs(lines[:, counted]).ravel() ** 2)
         lines = np.concatenate(powers)
-        prior = sum(item.sigmas**2 for item in fit.conditions() if item.name in COSTLY) / (2 * len(lines))
+        prior = sum(item.sigmas**2 for item in fit.conditions()) / (2 * len(lines))  # else a mistake is undone by supposing another
         return fit, float((np.mean(lines) + prior - 1) / self.excess)
 
     def _noises(self, trials: Sequence[Trial], blind: frozenset[tuple[str, str]]) -> Noises:

@@ -6,21 +6,20 @@ Axles are suspected where moving one makes measured and predicted correlate bett
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.codegen import Excitation
 from vehgen.diagnose.fits.model_fit import BASE_RANGE
 from vehgen.diagnose.inputs.comparison import Comparison, compare
-from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault
+from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always
 from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.diagnose.thresholds import NOISE_FLOOR
-from vehgen.fit.adjustments import Adjustment, SpeedScale
+from vehgen.fit.adjustments import SpeedScale
 from vehgen.fit.noise import transform
 from vehgen.fit.problem import make_problem
-from vehgen.simulate import Scenario
+from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
 MOVED = 0.25
@@ -32,87 +31,105 @@ UNRELATED_SHARE = 0.6
 NOTICED = 0.02
 """Gain in correlation from which a moved axle is fitted."""
 AXLE_SHIFT_SHARE = 0.25
-"""Axles are moved by up to this share of their distance to the axle before."""
+"""Distances between axles are changed by up to this share of themselves."""
 AXLE_SHIFT_STEP_M, FINE_STEP = 0.1, 0.01
+SPEEDS = tuple(round(0.8 + 0.01 * i, 2) for i in range(41))
+"""True speeds over stated ones that are tried in the axles' place."""
+NUDGE = 1e-3
+"""Parameters are changed by this share to see which axles they move."""
+LEAST_RUNS, SUSPECTS = 3, 2
+"""Of so many runs at least, so many that the base fits worst may be of another vehicle."""
+STRANGE = 0.1
+"""Largest share of the excess that the other runs may leave without it."""
 SPEED_FITS_TOO = 2.0
 """Where another speed leaves less than so many times what other axles leave, the axles are not blamed."""
 
 
-@dataclass(frozen=True)
-class _Moved(Scenario):
-    axles: tuple[int, ...] = ()
-    shift: float = 0.0
-
-    def excitation(self, offsets: Array) -> Excitation:
-        moved = np.array(offsets)
-        moved[list(self.axles)] += self.shift
-        return super().excitation(moved)
-
-
-@dataclass(frozen=True)
-class AxleShift(Adjustment):
-    """How much further behind the first axle some axles run than the vehicle file says [m]; `axles` are their numbers."""
-
-    axles: tuple[int, ...] = ()
-
-    def scenario(self, scenario: Scenario, value: float) -> Scenario:
-        """Return the scenario with the road `value` [m] later under the axles."""
-        known = {item.name: getattr(scenario, item.name) for item in fields(Scenario) if item.init}
-        return _Moved(**known, axles=self.axles, shift=value)
-
-
 def axle_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
-    """Yield that one axle, or all from one on, run elsewhere, where that makes the recordings correlate better and no speed does."""
-    trial = case.trials[0]
-    names = list(trial.run.vehicle.axles)
-    offsets = trial.simulator.model.wheel_offsets(trial.values)
-    order = [int(i) for i in np.argsort(offsets)]
+    """Yield that axles are another distance apart, where that makes the recordings correlate better and no speed does."""
     found = []
-    for k in range(1, len(order)):
-        gap = float(offsets[order[k]] - offsets[order[k - 1]])
-        for group in dict.fromkeys(((order[k],), tuple(order[k:]))):
-            change = AxleShift("+".join(names[i] for i in group), AXLE_SHIFT_STEP_M, axles=group)
-            reach = round(AXLE_SHIFT_SHARE * gap / AXLE_SHIFT_STEP_M)
-            found.append((*_best(case, change, [i * AXLE_SHIFT_STEP_M for i in range(-reach, reach + 1)]), change))
+    for name in _distances(case):
+        value = case.trials[0].values[name]
+        reach = round(AXLE_SHIFT_SHARE * value / AXLE_SHIFT_STEP_M)
+        found.append((*_best(case, [_restated(case, name, value + i * AXLE_SHIFT_STEP_M) for i in range(-reach, reach + 1)]), name))
     if not found:
         return
-    score, value, change = max(found, key=lambda item: item[0])
+    score, trials, name = max(found, key=lambda item: item[0])
     if score < _mean(case.comparisons) + NOTICED:
         return
-    value = _best(case, change, [value + i * FINE_STEP for i in range(-5, 6)])[1]
-    left = case.refit(case.problem, (change,), (value,))[1]
+    trials = _best(case, [_restated(case, name, trials[0].values[name] + i * FINE_STEP) for i in range(-5, 6)])[1]
+    left = case.refit(case.problem.with_trials(trials))[1]
     if left > MOVED:
         return
     speed = SpeedScale("runs", 0.01, 1.0)
-    scale = _best(case, speed, [0.9 + 0.01 * i for i in range(21)])[1]
+    scores = {
+        scale: _mean([compare(trial, case.predict(trial, (speed,), (scale,)), case.band) for trial in case.trials]) for scale in SPEEDS
+    }
+    scale = max(scores, key=lambda key: scores[key])
     if case.refit(case.problem, (speed,), (scale,))[1] < SPEED_FITS_TOO * left:
         return
-    moved = [names[i] for i in change.axles]
+    stated, value = case.trials[0].values[name], trials[0].values[name]
+    shift = value - stated
+    axles = _axles_moved(case, name)
+    words = f"{' and '.join(axles)} {'seems' if len(axles) == 1 else 'seem'} to run {abs(shift):.2f} m "
+    words += f"{'further' if shift > 0 else 'less'} behind the axles before than the vehicle file says, by when the road is met"
+    message = f"{words}: {name} is about {value:.2f} m there, not {stated:.2f} m"
+    cure = "measure the distance and put the vehicle file right"
+    yield Hypothesis(trials, always(MeasurementFault("axle_position", (), (), message, cure, shift, "m")), MOVED)
 
-    def describe(numbers: Array) -> tuple[MeasurementFault, ...]:
-        shift = float(numbers[-1])
-        words = (
-            f"{' and '.join(moved)} {'seems' if len(moved) == 1 else 'seem'} to run {abs(shift):.2f} m {'further' if shift > 0 else 'less'}"
-        )
-        met = "it meets" if len(moved) == 1 else "they meet"
-        message = f"{words} behind {names[order[0]]} than the vehicle file says, by when {met} the road"
-        return (MeasurementFault("axle_position", (), (), message, "measure the distance and put the vehicle file right", shift, "m"),)
 
-    yield Hypothesis(case.trials, describe, MOVED, (change,), (value,))
+def _distances(case: BaseRefits) -> Iterator[str]:
+    """Yield the parameters of the vehicle file that say where axles run and are not fitted."""
+    trial = case.trials[0]
+    for name, value in trial.values.items():
+        free = name not in case.problem.space.names and not any(name in own.fixed for own in case.trials)
+        if free and value > 0 and _axles_moved(case, name):
+            yield name
+
+
+def _axles_moved(case: BaseRefits, name: str) -> list[str]:
+    """Return the axles that a parameter moves along the vehicle."""
+    trial = case.trials[0]
+    model, changed = trial.simulator.model, trial.values | {name: trial.values[name] * (1 + NUDGE)}
+    shifts = np.abs(model.wheel_offsets(changed) - model.wheel_offsets(trial.values))
+    return [axle for axle, shift in zip(trial.run.vehicle.axles, shifts, strict=True) if shift > NUDGE * NUDGE]
+
+
+def _restated(case: BaseRefits, name: str, value: float) -> tuple[Trial, ...]:
+    """Return all runs of a vehicle of which one parameter is another."""
+    return tuple(replace(trial, values=trial.values | {name: value}) for trial in case.trials)
 
 
 def _mean(items: Sequence[Comparison]) -> float:
     return float(np.mean([item.score for item in items]))
 
 
-def _best(case: BaseRefits, change: Adjustment, values: Sequence[float]) -> tuple[float, float]:
-    """Return the mean correlation of all runs at the best of `values`, and that value."""
-    best = (-np.inf, 0.0)
-    for value in values:
-        score = _mean([compare(trial, case.predict(trial, (change,), (value,)), case.band) for trial in case.trials])
+def _best(case: BaseRefits, choices: Sequence[tuple[Trial, ...]]) -> tuple[float, tuple[Trial, ...]]:
+    """Return the mean correlation of all runs in the best of several choices, and that choice."""
+    best = (-np.inf, case.trials)
+    for trials in choices:
+        score = _mean([compare(trial, case.predict(trial), case.band) for trial in trials])
         if score > best[0]:
-            best = score, float(value)
+            best = score, trials
     return best
+
+
+def strange_run_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
+    """Yield that one run is of another vehicle: without it the base fits the others, and with parameters of its own it fits that run."""
+    if len(case.trials) < LEAST_RUNS:
+        return
+    together = case.refit(case.problem)[0]
+    squares = [float(np.mean(np.abs(lines) ** 2)) for lines in together.misfit.whitened_spectrum(together.x)]
+    for number in np.argsort(squares)[::-1][:SUSPECTS].tolist():
+        trial = case.trials[number]
+        wide = make_problem((trial,))
+        left = case.refit(wide, unit=np.asarray(wide.space.unit(wide.space.start)))[1]
+        if left > max(OTHER, (NOISE_FLOOR**2 - 1) / case.excess):
+            continue
+        message = f"{trial.name} does not go with the other runs: a vehicle fits them, and another one, of the same make, fits {trial.name}"
+        cure = "check that it is a run of this vehicle, loaded as in the other runs; else leave it out, or state its parameters with `set`"
+        blind = frozenset((trial.name, channel) for channel in trial.channels)
+        yield Hypothesis(case.trials, always(MeasurementFault("other_vehicle", (trial.name,), (), message, cure)), STRANGE, blind=blind)
 
 
 def other_vehicle(case: BaseRefits) -> tuple[MeasurementFault, ...]:
