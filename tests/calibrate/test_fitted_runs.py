@@ -19,7 +19,13 @@ def misstated_run(folder):
     """Write two runs; the speed of the second is stated 2 % too low."""
     right, wrong = (write_run(folder, name, sedan_truth(), TRUE_SPEED, seed=i) for i, name in enumerate(("right", "wrong")))
     wrong.write_text(wrong.read_text(encoding="utf-8").replace(f"speed: {TRUE_SPEED}", f"speed: {STATED_SPEED}"), encoding="utf-8")
-    return make_problem(load_trials([right, wrong]))
+    return make_problem(load_trials([declared(right), declared(wrong)]))
+
+
+def declared(run):
+    """Return a run whose file says that its recorder filters nothing."""
+    run.write_text(run.read_text(encoding="utf-8") + "acquisition: none\n", encoding="utf-8")
+    return run
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +45,7 @@ def test_a_good_fit_is_scored_and_drawn_as_one_where_the_speed_was_misstated(sum
 
 
 def test_tyre_loads_are_those_of_the_runs_as_they_were(calibration, tmp_path):
-    trials = load_trials([write_run(tmp_path, "right", sedan_truth(), TRUE_SPEED)])
+    trials = load_trials([declared(write_run(tmp_path, "right", sedan_truth(), TRUE_SPEED))])
     right = calibrate_problem(make_problem(trials), Settings(search=GeneticSearch(1, 10, 0), starts=1))
     alone = least_tyre_loads(right)
     found = least_tyre_loads(calibration)
@@ -67,8 +73,23 @@ def test_each_step_of_dhcm_is_simulated_at_its_own_clock(tmp_path):
         assert (np.std(trial.recording.values - response, axis=0) < 0.05 * np.std(trial.recording.values, axis=0)).all()
 
 
+def test_a_recorder_that_no_file_declares_is_found_and_told(tmp_path):
+    trials = load_trials([write_run(tmp_path, "run", sedan_truth(), TRUE_SPEED)])
+    found = summarise(calibrate_problem(make_problem(trials), Settings(search=GeneticSearch(1, 10, 0), starts=1)))
+    told = found.recorder[0]
+    assert set(told.channels) == {"F_az", "F_q", "R_az", "R_q"}
+    assert told.told.startswith("the recorder's low-pass is not stated")
+    assert told.compared_to <= found.band[1]
+    assert CalibrationSummary.from_dict(found.to_dict()).recorder == found.recorder
+    assert {(item.name, item.place) for item in found.conditions} >= {("roll_off", "F"), ("dispersion", "R")}
+
+
+def test_a_declared_recorder_is_taken_as_it_is(summary):
+    assert summary.recorder == ()
+
+
 def test_a_summary_of_before_the_conditions_is_still_read(summary):
     data = summary.to_dict()
-    for name in ("conditions", "run_chi2"):
+    for name in ("conditions", "run_chi2", "recorder"):
         del data[name]
     assert CalibrationSummary.from_dict(data).conditions == ()
