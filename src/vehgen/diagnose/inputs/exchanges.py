@@ -33,7 +33,7 @@ HONEST_SPEED = 0.15
 """A speed wrong by up to this share, the same in all runs, is an effect (`speed_error`)."""
 SAME_SPEED, LEAST_SPEED = 0.05, 0.025
 """Factors within this of one another are one; a factor this near to 1 is left to the fit."""
-SAME_RATE = 1e-6
+SAME_INTERVAL = 1e-6
 """Sampling intervals within this share of one another are one."""
 _WHAT = {
     "recording": "the recordings of {} and {} have been exchanged",
@@ -48,7 +48,7 @@ def exchange_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     bad = [i for i, item in enumerate(case.comparisons) if item.unexplained > BADLY]
     for i, j in combinations(bad, 2):
         one, other = case.trials[i], case.trials[j]
-        if one.channels != other.channels or abs(one.recording.dt / other.recording.dt - 1) > SAME_RATE:
+        if one.channels != other.channels or abs(one.recording.dt / other.recording.dt - 1) > SAME_INTERVAL:
             continue
         before = case.comparisons[i].unexplained + case.comparisons[j].unexplained
         for kind in _WHAT:

@@ -22,13 +22,13 @@ RATE_LEFT = 0.25
 FILTER_LEFT = 0.5
 """The same for a filter, of which the order is not known, and which cuts the noise too, so that it is taken as smaller than it is."""
 RATES = tuple(round(0.85 + 0.01 * i, 2) for i in range(31))
-RATE_NOTICED, LEAST_RATE = 0.02, 0.02
+RATE_NOTICED, LEAST_RATE_ERROR = 0.02, 0.02
 """Gain in correlation from which another rate of the clock is fitted, and the smallest such rate less one."""
 AS_WELL = 3.0
 """A clock is told from a speed where it leaves less by this factor; where it leaves less at all, the two are a tie."""
 SLOW_BAND_HZ, FAST_BAND_HZ = (0.5, 4.0), (15.0, 35.0)
 """A filtered channel follows the prediction in the lower band, and lacks most of it in the upper."""
-FILTERED = 0.35
+LOW_PASSED = 0.35
 """Share of the predicted amplitude in the upper band, over that in the lower, below which a filter is fitted."""
 FIRST_CUTOFF_HZ = 10.0
 SLOW_RECORDER_HZ = 20.0
@@ -44,7 +44,7 @@ def rate_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
         own = [compare(trial, case.predict(trial, (change,), (rate,)), case.band).score for trial in case.trials]
         scores.append(float(np.mean(own)))
     best = RATES[int(np.argmax(scores))]
-    if max(scores) < scores[RATES.index(1.0)] + RATE_NOTICED or abs(best - 1) < LEAST_RATE:
+    if max(scores) < scores[RATES.index(1.0)] + RATE_NOTICED or abs(best - 1) < LEAST_RATE_ERROR:
         return
     by_clock = case.refit(case.problem, (change,), (best,))[1]
     if by_clock > RATE_LEFT:
@@ -80,7 +80,7 @@ def filter_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     found: dict[str, tuple[str, ...]] = {}
     for trial, predicted in zip(case.trials, case.predictions, strict=True):
         kept = _kept(trial, predicted)
-        slow = tuple(name for name, share in zip(trial.channels, kept, strict=True) if share < FILTERED)
+        slow = tuple(name for name, share in zip(trial.channels, kept, strict=True) if share < LOW_PASSED)
         if slow:
             found[trial.name] = slow
     if not found:
