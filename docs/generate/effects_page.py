@@ -189,7 +189,7 @@ def draw() -> None:
             changed = base + 0.02 * size * line.columns(trial, 17.8, 0.01, trial.values)[0]
         else:
             numbers = np.array(combination[: len(candidate.shared)]) if candidate.shared else np.zeros(0)
-            changed = misfit.respond(posed.trials[0], values[None], numbers, np.zeros(2))[0]
+            changed = misfit.respond(0, values[None], numbers, np.zeros(len(misfit.errors[0].items)))[0]
         save_figure(_figure(effect, t, base, changed, list(trial.channels)), IMAGES / f"{effect.name}.svg")
 
 

@@ -45,6 +45,16 @@ def test_a_direction_that_nothing_tells_is_left_where_it_was():
     assert found == pytest.approx([0.5, 0.5], abs=1e-4)
 
 
+def test_unknowns_of_any_size_count_alike():
+    """An unknown that hardly tells makes normal equations whose condition number is 1e28: warnings are errors here."""
+    sizes = np.array([1e8, 1.0, 1e-6])
+    mixed = np.array([[1.0, 0.5, 0.2], [0.3, 1.0, 0.1], [0.2, 0.4, 1.0], [0.1, 0.2, 0.3]]) * sizes
+    wanted = np.array([2e-8, -0.4, 0.3e6])
+    bounds = np.full(3, -1e9), np.full(3, 1e9)
+    found = ours(lambda x: mixed @ (x - wanted), lambda x: mixed, np.zeros(3), bounds)
+    assert found == pytest.approx(wanted, rel=1e-4)
+
+
 def test_few_steps_never_end_higher_than_they_began():
     residuals, jacobian = problem(3)
     start = np.full(6, 2.0)

@@ -4,68 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import scipy.linalg
 import scipy.signal
 
-from tests.fit.recordings import two_axle
+from tests.fit.profile_world import FINE, RATE, SIGMA, fine_channels, low_passed, misfit_of, read_run, rough_road
 from vehgen.fit.chain_estimate import estimate_chain, fine_response, trusted_band
-from vehgen.fit.misfit import Misfit
-from vehgen.fit.noise import EVEN, Noise
 from vehgen.fit.nuisances import Nuisances
-from vehgen.fit.problem import make_problem
-from vehgen.fit.trial import load_trials
-
-FINE, RATE = 40, 100.0
-SIGMA = np.array([0.02, 5e-4, 0.02, 5e-4])
-TRUTH = {
-    "mH": 1500.0, "Lf": 1.18, "mf": 90.0, "mr": 150.0, "IZ": 2640.0, "kf": 62505.0,
-    "kr": 71655.0, "cf": 3270.0, "cr": 4455.0, "ktf": 673140.0, "ktr": 612975.0,
-}  # fmt: skip
-RUN = """vehicle: sedan2.yaml
-speed: {speed} m/s
-road: [{{profile: {{file: road.csv, distance: s, height: h}}}}]
-duration: 8 s
-sensors:
-  F: {{body: body, behind: front, channels: {{acceleration: F_az, pitch_rate: F_q}}}}
-  R: {{body: body, behind: rear, channels: {{acceleration: R_az, pitch_rate: R_q}}}}
-recording: run.csv
-"""
-
-
-def fine_channels(road, speed):
-    """Return the sedan's channels every 1/(FINE RATE) s, by scipy.signal.lsim's first-order hold."""
-    mass, damping, stiffness, load = two_axle(TRUTH)
-    inverse = np.linalg.inv(mass)
-    a = np.block([[np.zeros((4, 4)), np.eye(4)], [-inverse @ stiffness, -inverse @ damping]])
-    b = np.vstack([np.zeros((4, 2)), inverse @ load])
-    heave, pitch = a[4], a[5]
-    rows, direct = [], []
-    for place in (TRUTH["Lf"], TRUTH["Lf"] - 2.8):
-        rows += [heave - place * pitch, np.eye(8)[5]]
-        direct += [b[4] - place * b[5], np.zeros(2)]
-    time = np.arange(int(9 * RATE * FINE)) / (RATE * FINE)
-    wheels = np.column_stack([np.interp(speed * time - late, *road) - road[1][0] for late in (0.0, 2.8)])
-    return scipy.signal.lsim((a, b, np.array(rows), np.array(direct)), wheels, time)[1]
-
-
-def rough_road(seed=0):
-    """Return a road of about ISO 8608 class B: a random walk of heights every 5 cm."""
-    s = np.arange(0.0, 160.0, 0.05)
-    return s, np.cumsum(np.random.default_rng(seed).standard_normal(len(s))) * 1.5e-3 * np.sqrt(0.05)
 
 
 def recorded(folder, sampled, speed, road):
-    np.savetxt(folder / "road.csv", np.column_stack(road), delimiter=",", header="s,h", comments="")
-    values = sampled[: int(8 * RATE) + 1]
-    values = values + SIGMA * np.random.default_rng(1).standard_normal(values.shape)
-    rows = np.column_stack([np.arange(len(values)) / RATE, values])
-    np.savetxt(folder / "run.csv", rows, delimiter=",", header="t,F_az,F_q,R_az,R_q", comments="")
-    (folder / "run.yaml").write_text(RUN.format(speed=speed), encoding="utf-8")
-    problem = make_problem(load_trials([folder / "run.yaml"]), ["kf", "kr", "cf", "cr", "ktf", "ktr"])
-    noise = Noise(EVEN, SIGMA)
-    misfit = Misfit(problem, {"run": noise}, problem.space.start, Nuisances(0.05, 0.005), (0.5, 40.0))
-    x = np.concatenate([problem.space.unit(problem.space.start), np.zeros(misfit.n_errors)])
-    return misfit, x
+    return misfit_of(read_run(folder, sampled, speed, road), Nuisances(0.05, 0.005))
 
 
 def delayed(misfit, x, seconds):
@@ -73,11 +20,6 @@ def delayed(misfit, x, seconds):
     moved = x.copy()
     moved[misfit.n_parameters + misfit.error_position(0, "delay")] = seconds / misfit.nuisances.delay
     return moved
-
-
-def low_passed(channels, order, cut_off, design=scipy.signal.butter):
-    extra = {"norm": "mag"} if design is scipy.signal.bessel else {}
-    return scipy.signal.sosfilt(design(order, cut_off, fs=RATE * FINE, output="sos", **extra), channels, axis=0)[::FINE]
 
 
 @pytest.fixture(scope="module")

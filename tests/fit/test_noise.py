@@ -55,10 +55,24 @@ def test_level_and_sigma_come_out_of_noise_that_was_drawn_with_them():
     truth = Noise(np.full(len(KNOT_WAVENUMBERS), 2e-3), np.array([0.05, 0.2, 0.1, 0.3]))
     found = estimate_noise(
         [(draw(truth, answer, random), answer) for _ in range(3)], Noise(np.full(len(KNOT_WAVENUMBERS), 1e-5), np.ones(4))
-    )
+    )[0]
     assert found.sigma == pytest.approx(truth.sigma, rel=0.2)
     inside = (answer.wavenumber > 0.3) & (answer.wavenumber < 15)
     assert np.median(found.level(answer.wavenumber[inside])) == pytest.approx(2e-3, rel=0.15)
+
+
+def test_each_trial_has_a_road_of_its_own_roughness_and_all_have_the_same_sensors():
+    random = np.random.default_rng(4)
+    answer, sigma = make_answer(random, n=800), np.array([0.05, 0.2, 0.1, 0.3])
+    levels = (5e-4, 8e-3)
+    residuals = [(draw(Noise(np.full(len(KNOT_WAVENUMBERS), level), sigma), answer, random), answer) for level in levels]
+    found = estimate_noise(residuals, Noise(np.full(len(KNOT_WAVENUMBERS), 1e-5), np.ones(4)))
+    inside = (answer.wavenumber > 0.3) & (answer.wavenumber < 15)
+    for noise, level in zip(found, levels, strict=True):
+        assert np.median(noise.level(answer.wavenumber[inside])) == pytest.approx(level, rel=0.2)
+    assert found[0].sigma.tolist() == found[1].sigma.tolist()
+    alike = estimate_noise(residuals, Noise(np.full(len(KNOT_WAVENUMBERS), 1e-5), np.ones(4)), same_road=True)
+    assert alike[0].levels == pytest.approx(alike[1].levels)
 
 
 def test_levels_are_looked_for_on_one_thread_whatever_the_caller_allows(monkeypatch):

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.ndimage
 import scipy.signal
 
 from tests.fit.recordings import DT, sedan_truth, write_run
@@ -12,9 +13,10 @@ from vehgen.fit.least_squares import FitOptions, fit_least_squares
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import EVEN, Noise
-from vehgen.fit.nuisances import Nuisances, wander_knots
+from vehgen.fit.nuisances import Nuisances, asked_nuisances, wander_knots
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
+from vehgen.road import Hump
 
 TRUTH = sedan_truth()
 SIGMA = np.array([0.02, 1e-3, 0.02, 1e-3])
@@ -52,6 +54,42 @@ def test_a_late_clock_of_one_sensor_is_found(tmp_path):
     fit, found = fitted(changed(tmp_path, lambda v: np.hstack([v[:, :2], late(v[:, 2:], 0.017)])))
     assert found["clock", "R"] == pytest.approx(0.017, abs=1e-3)
     assert fit.chi2 == pytest.approx(1.0, abs=0.1)
+
+
+def test_a_gyroscope_that_lags_its_accelerometer_is_found(tmp_path):
+    def lagging(values):
+        return np.column_stack([values[:, 0], late(values[:, 1:2], 0.003), values[:, 2], late(values[:, 3:], 0.001)])
+
+    fit, found = fitted(changed(tmp_path, lagging))
+    assert found["lag", "F"] - found["lag", "R"] == pytest.approx(0.002, abs=3e-4)
+    assert fit.chi2 == pytest.approx(1.0, abs=0.1)
+
+
+def test_a_hump_with_worn_edges_is_found(tmp_path):
+    """The edges are worn in the file's place: points of the drawing under a Gaussian mean of 10 mm."""
+    trial = changed(tmp_path, lambda v: v)
+    hump = trial.scenario.humps[0]
+    s = np.arange(-0.05, hump.length + 0.05, 1e-3)
+    sharper = hump.height(hump.at + s) - (scipy.ndimage.gaussian_filter1d(hump.height(hump.at + s), 10.0) - hump.height(hump.at + s))
+    track = replace(trial.scenario.track, parts=(Hump.from_points(hump.at + s[0], s, sharper),))
+    _, found = fitted(replace(trial, scenario=replace(trial.scenario, track=track)), length=0.0, form=0.0, skew=0.0)
+    assert found["wear", ""] == pytest.approx(100.0, rel=0.2)
+
+
+def test_what_an_unknown_low_pass_takes_off_is_found_and_a_declared_one_takes_nothing(tmp_path):
+    def filtered(values):
+        padded = np.vstack([values, np.zeros_like(values)])
+        share = np.fft.rfftfreq(len(padded), DT) * 2 * DT
+        factor = np.exp(-0.4 * share**2 - 1j * share**3)[:, None]
+        return np.fft.irfft(np.fft.rfft(padded, axis=0) * factor, len(padded), axis=0)[: len(values)]
+
+    fit, found = fitted(changed(tmp_path, filtered), wear=0.0, form=0.0, skew=0.0, length=0.0)
+    for sensor in ("F", "R"):
+        assert found["roll_off", sensor] == pytest.approx(0.4, abs=0.12)
+        assert found["dispersion", sensor] == pytest.approx(1.0, abs=0.5)
+    assert fit.chi2 == pytest.approx(1.0, abs=0.1)
+    declared = changed(tmp_path, lambda v: v, text=lambda text: text + "acquisition: none\n")
+    assert not {item.name for item in Nuisances().of_sensors([declared])} & {"roll_off", "dispersion"}
 
 
 def test_a_gain_is_found(tmp_path):
@@ -97,6 +135,9 @@ def test_a_run_file_says_how_well_it_knows_itself(tmp_path):
     sigmas = {(item.name, item.place): item.sigma for item in (*Nuisances().of_run(trial), *Nuisances().of_sensors([trial]))}
     assert sigmas["speed", ""] == pytest.approx(0.05 / 2.5)
     assert ("clock", "R") not in sigmas
+    asked = {item.name: item.sigma for item in asked_nuisances(speed=0.04, height=None).of_run(trial)}
+    assert asked["speed"] == 0.04
+    assert asked["height"] == Nuisances().height
     assert sigmas["gain", "F_q"] == 0.03
     assert sigmas["position", "F"] == pytest.approx(0.05)
 

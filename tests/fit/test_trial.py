@@ -1,13 +1,19 @@
-"""Runs and their recordings: recordings that miss the hump, and clocks and speeds that are a little wrong."""
+"""Runs and their recordings: that miss the hump, whose clocks and speeds are a little wrong, that begin on a road nobody measured."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from tests.fit.profile_world import FINE, RATE, fine_channels, misfit_of, motion_matrices, read_run, rough_road
+from tests.fit.profile_world import write_run as write_profile_run
 from tests.fit.recordings import sedan_truth, write_run
 from vehgen.errors import InputError
 from vehgen.fit.least_squares import fit_least_squares
+from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.problem import make_problem
-from vehgen.fit.trial import load_trials
+from vehgen.fit.recording import read_recording
+from vehgen.fit.trial import FORGOTTEN, load_trials
 
 TRUTH = sedan_truth()
 
@@ -34,3 +40,75 @@ def test_a_recording_that_ends_before_the_hump_is_refused(tmp_path):
     path.write_text(path.read_text(encoding="utf-8").replace("at: 4 m", "at: 30 m"), encoding="utf-8")
     with pytest.raises(InputError, match=r"ends after .* before the last axle"):
         load_trials([path])
+
+
+SPEED, KNOWN_FROM = 12.0, 30.0
+"""Of a run, and where its road's profile begins [m]."""
+
+
+def driven_on_from_an_unknown_road(tmp_path, hump=False):
+    """Return the trial of a recording that begins in full drive, where the profile begins: the road before is not in its file."""
+    s, heights = rough_road()
+    begin = int(KNOWN_FROM / SPEED * RATE)
+    sampled = fine_channels((s, heights), SPEED, 12.0)[::FINE][begin:]
+    known = s >= KNOWN_FROM - 1e-9
+    road = s[known] - KNOWN_FROM, heights[known]
+    if not hump:
+        return read_run(tmp_path, sampled, SPEED, road)
+    path = write_profile_run(tmp_path, sampled, SPEED, road)
+    only_hump = "[{hump: {shape: half_sine, length: 0.5 m, height: 0.03 m, at: 4 m}}]"
+    path.write_text(path.read_text().replace("[{profile: {file: road.csv, distance: s, height: h}}]", only_hump))
+    return load_trials([path])[0]
+
+
+def chi2(trial):
+    misfit, x = misfit_of(trial, Nuisances(delay=0.0))
+    return np.mean(np.abs(misfit.whitened_spectrum(x)[0]) ** 2)
+
+
+def test_a_run_that_continues_an_unknown_road_begins_when_the_vehicle_has_forgotten_it(tmp_path):
+    """The slowest decay is that of the independent state matrix; the last axle comes 2.8 m behind the first."""
+    trial = driven_on_from_an_unknown_road(tmp_path)
+    slowest = 1 / -np.linalg.eigvals(motion_matrices()[0]).real.max()
+    assert trial.scenario.skipped / RATE == pytest.approx(2.8 / SPEED + FORGOTTEN * slowest, abs=0.01)
+    assert trial.recording.time[0] == pytest.approx(trial.scenario.skipped / RATE)
+    assert len(trial.recording.time) == len(trial.recording.values) == 801 - trial.scenario.skipped
+    assert chi2(trial) < 1.3
+
+
+def test_what_is_left_out_would_have_spoilt_the_fit(tmp_path):
+    trial = driven_on_from_an_unknown_road(tmp_path)
+    whole = read_recording(trial.run)
+    assert chi2(replace(trial, recording=whole, scenario=replace(trial.scenario, skipped=0))) > 2
+
+
+def test_what_is_simulated_is_kept_from_where_the_recording_is(tmp_path):
+    trial = driven_on_from_an_unknown_road(tmp_path)
+    (kept,) = misfit_of(trial, Nuisances())[0].motions(misfit_of(trial, Nuisances())[1])
+    whole = replace(trial, recording=read_recording(trial.run), scenario=replace(trial.scenario, skipped=0))
+    (all_of_it,) = misfit_of(whole, Nuisances())[0].motions(misfit_of(whole, Nuisances())[1])
+    assert kept == pytest.approx(all_of_it[trial.scenario.skipped :], abs=1e-12)
+
+
+def test_a_recording_that_begins_at_rest_or_runs_over_humps_alone_is_left_whole(tmp_path):
+    road = rough_road()
+    from_rest = read_run(tmp_path, fine_channels(road, SPEED)[::FINE], SPEED, road)
+    assert (from_rest.scenario.skipped, len(from_rest.recording.time)) == (0, 801)
+    assert driven_on_from_an_unknown_road(tmp_path, hump=True).scenario.skipped == 0
+
+
+def test_no_more_than_half_of_a_short_recording_is_left_out(tmp_path):
+    s, heights = rough_road()
+    begin = int(KNOWN_FROM / SPEED * RATE)
+    sampled = fine_channels((s, heights), SPEED, 12.0)[::FINE][begin : begin + 300]
+    known = s >= KNOWN_FROM - 1e-9
+    trial = read_run(tmp_path, sampled, SPEED, (s[known] - KNOWN_FROM, heights[known]))
+    assert trial.scenario.skipped == 150
+
+
+def test_what_never_decays_is_not_waited_for(tmp_path):
+    s, heights = rough_road()
+    sampled = np.random.default_rng(2).standard_normal((801, 4))
+    undamped = "parameters: {cf: 0 N s/m, cr: 0 N s/m}\n"
+    trial = read_run(tmp_path, sampled, SPEED, (s, heights), extra=undamped)
+    assert trial.scenario.skipped / RATE == pytest.approx(2.8 / SPEED, abs=0.01)

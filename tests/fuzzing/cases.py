@@ -9,8 +9,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-FORMATS = ("vehicle", "run", "cargo", "frame", "facts", "effects", "table", "export")
-"""The six formats of YAML, the tables (CSV) that runs name, and phone exports."""
+FORMATS = ("vehicle", "run", "cargo", "frame", "facts", "effects", "table", "export", "options")
+"""The six formats of YAML, the tables (CSV) that runs name, phone exports, and the options of commands."""
 
 
 LONGEST_NAME = 255
@@ -44,12 +44,26 @@ class Case:
     special: dict[str, str] = field(default_factory=dict)
     mutations: tuple[str, ...] = ()
 
+    @property
+    def start(self) -> str:
+        """The folder below the case's own that it is read from."""
+        return "out" if self.format == "options" else "."
+
+    @property
+    def needs_place(self) -> bool:
+        """Whether a refusal must name a line: there is one in the main file, unless that is an archive, no file, or not at fault."""
+        return self.format not in {"export", "options"} and self.main in self.files and self.main not in self.special
+
+    @property
+    def written(self) -> dict[str, bytes]:
+        """The files without those whose names no file system holds: nobody has such files."""
+        names = (name for name in self.files if max(len(os.fsencode(part)) for part in name.split("/")) <= LONGEST_NAME)
+        return {name: self.files[name] for name in names}
+
     def write(self, folder: Path) -> None:
         """Write the case's files into an empty folder, and an empty folder `out` beside them."""
         (folder / "out").mkdir(parents=True)
-        for name, data in self.files.items():
-            if max(len(os.fsencode(part)) for part in name.split("/")) > LONGEST_NAME:
-                continue  # no file system holds such a file: nobody has it
+        for name, data in self.written.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(data)
         for name, kind in self.special.items():

@@ -13,7 +13,7 @@ from vehgen.calibrate.summary import summarise
 from vehgen.errors import ArgumentError, did_you_mean
 from vehgen.files.limits import check_count, check_seed, check_share
 from vehgen.fit.band import CALIBRATION_BAND_HZ
-from vehgen.fit.nuisances import Nuisances
+from vehgen.fit.nuisances import asked_nuisances
 from vehgen.fit.parallel import runner_at
 from vehgen.fit.prior_data import load_prior_data
 from vehgen.fit.problem import make_problem
@@ -38,8 +38,8 @@ def calibrate(
     polish: bool = True,
     seed: int = 1,
     band: tuple[float, float] = CALIBRATION_BAND_HZ,
-    height_error: float = 0.03,
-    speed_error: float = 0.01,
+    height_error: float | None = None,
+    speed_error: float | None = None,
     facts: str | os.PathLike[str] | None = None,
     combinations: Sequence[str] = (),
     bootstrap: int = 0,
@@ -73,7 +73,7 @@ def calibrate(
     band
         Frequencies compared [Hz].
     height_error, speed_error
-        Relative uncertainty of the hump's height and of the speed.
+        Relative uncertainty of the hump's height and of the speed (default: what each run file states, else 0.03 and 0.01).
     facts
         A file of axle weights and other facts known from elsewhere.
     combinations
@@ -106,7 +106,7 @@ def calibrate(
         polish=polish,
         starts=max(1, starts),
         band=(float(band[0]), float(band[1])),
-        nuisances=Nuisances(speed=speed_error, height=height_error),
+        nuisances=asked_nuisances(speed=speed_error, height=height_error),
     )
     problem = make_problem(load_trials(runs, as_vehicle(vehicle)))
     prior_data = None if facts is None else load_prior_data(Path(facts), problem)
@@ -122,8 +122,8 @@ def check_numbers(
     starts: int,
     bootstrap: int,
     seed: int,
-    height_error: float,
-    speed_error: float,
+    height_error: float | None,
+    speed_error: float | None,
     band: tuple[float, float],
 ) -> None:
     """Refuse numbers that no search can use, before anything is read or made."""
@@ -132,8 +132,9 @@ def check_numbers(
     check_count(generations, "generations", 0, 1_000_000)
     check_count(starts, "starts", 0, 10_000)
     check_count(bootstrap, "bootstrap", 0, 100_000)
-    check_share(height_error, "height_error")
-    check_share(speed_error, "speed_error")
+    for value, name in ((height_error, "height_error"), (speed_error, "speed_error")):
+        if value is not None:
+            check_share(value, name)
     if len(band) != 2 or not 0 < band[0] < band[1]:
         raise ArgumentError(f"`band`: two frequencies in Hz were expected, the lower first and above 0; found {tuple(band)}", "band")
 

@@ -6,7 +6,6 @@ import hashlib
 import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -16,16 +15,18 @@ from vehgen.calibrate.equivalents import nearest_equivalent
 from vehgen.calibrate.genetic import GeneticSearch, SearchState
 from vehgen.calibrate.methods import Step, plan
 from vehgen.calibrate.objective import PsdObjective
+from vehgen.calibrate.polish import Polish, PolishOptions, polish
 from vehgen.errors import InputError
 from vehgen.files import write_text
 from vehgen.files.reading import read_text
 from vehgen.files.tables import MAX_TABLE_BYTES
 from vehgen.fit.band import CALIBRATION_BAND_HZ
-from vehgen.fit.least_squares import FitOptions, LeastSquaresFit, fit_least_squares
+from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.parallel import Runner
 from vehgen.fit.prior_data import PriorData
 from vehgen.fit.problem import Problem
+from vehgen.fit.recorders import FoundRecorder
 
 Array = NDArray[np.float64]
 SAVE_EVERY = 10
@@ -53,13 +54,15 @@ class Settings:
 class StepResult:
     """What one step found.
 
-    `state` is the search's last state; `fits` the polished starts, best first (empty without polish); `problem` what was searched.
+    `state` is the search's last state; `fits` the polished starts, best first (empty without polish); `problem` what was searched;
+    `recorder` what the fits suppose of recorders that no run file declares.
     """
 
     step: Step
     problem: Problem
     state: SearchState
     fits: tuple[LeastSquaresFit, ...]
+    recorder: FoundRecorder | None = None
 
     @property
     def values(self) -> dict[str, float]:
@@ -132,6 +135,7 @@ def calibrate_problem(
         own = problem.of_sensors(step.sensors).searching(step.searched, frozen)
         objective = PsdObjective(own, settings.band)
         state: SearchState | None = None
+        polished = Polish((), None)
         generations = settings.search.generations
         try:
             for state in _search(objective, settings, number, saved[number] if number < len(saved) else None):
@@ -139,17 +143,20 @@ def calibrate_problem(
                 if checkpoint is not None and (state.generation % SAVE_EVERY == 0 or state.generation == generations):
                     _save(checkpoint, problem, settings, [*(item.state for item in results), state])
             assert state is not None
-            fits = _polish_all(own, state, settings, prior_data, runner or Runner(), progress, step.label) if settings.polish else ()
+            if settings.polish:
+                polished = _polish_all(own, state, settings, prior_data, runner or Runner(), progress, step.label)
         except KeyboardInterrupt:
             if state is None:
                 raise
             if checkpoint is not None:
                 _save(checkpoint, problem, settings, [*(item.state for item in results), state])
-            fits, stopped = (), True
-        results.append(StepResult(step, own, state, fits))
+            polished, stopped = Polish((), None), True
+        results.append(StepResult(step, own, state, polished.fits, polished.recorder))
         values |= {name: value for name, value in results[-1].values.items() if name in step.kept}
         if stopped:
             break
+        if polished.recorder is not None:
+            problem = problem.with_trials(polished.recorder.applied(problem.trials))
     return Calibration(problem, settings, tuple(results), values, stopped)
 
 
@@ -165,16 +172,13 @@ def _search(objective: PsdObjective, settings: Settings, number: int, state: Sea
 
 def _polish_all(
     problem: Problem, state: SearchState, settings: Settings, facts: PriorData | None, runner: Runner, tell: CalibrationProgress, label: str
-) -> tuple[LeastSquaresFit, ...]:
+) -> Polish:
     own_facts = None if facts is None else replace(facts, problem=problem)
-    job = partial(fit_least_squares, problem, options=FitOptions(settings.nuisances, settings.band), prior_data=own_facts)
-    fits: list[LeastSquaresFit] = []
     points = starting_points(problem, state, settings)
-    for fit in runner.map(job, points):
-        fits.append(fit)
-        tell(f"{label}, polish", len(fits), len(points), min(item.loss for item in fits))
-    best, *others = sorted(fits, key=lambda fit: fit.loss)
-    return (nearest_equivalent(best, own_facts), *others)
+    options = PolishOptions(settings.nuisances, settings.band, runner)
+    found = polish(problem, points, options, own_facts, lambda done, best: tell(f"{label}, polish", done, len(points), best))
+    best, *others = found.fits
+    return replace(found, fits=(nearest_equivalent(best, own_facts), *others))
 
 
 def starting_points(problem: Problem, state: SearchState, settings: Settings) -> list[Array]:

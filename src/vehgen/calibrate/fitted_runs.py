@@ -23,7 +23,7 @@ from vehgen.mechanics.outputs import ElementOutput
 from vehgen.simulate import Scenario, Simulator
 
 Array = NDArray[np.float64]
-ALL_RUNS = "all runs"
+IN_ALL_RUNS = "all runs"
 """What errors of sensors that are the same in all runs are listed under."""
 
 
@@ -32,7 +32,7 @@ def run_conditions(calibration: Calibration) -> tuple[ConditionSummary, ...]:
     found = []
     for step in _polished(calibration):
         for item in step.fits[0].conditions():
-            run, place = item.run or ALL_RUNS, item.place or "run"
+            run, place = item.run or IN_ALL_RUNS, item.place or "run"
             found.append(ConditionSummary(run, step.step.label, item.name, place, item.value, item.unit, item.sigma, item.sigmas))
     return tuple(found)
 

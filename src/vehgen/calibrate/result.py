@@ -95,6 +95,24 @@ class ConditionSummary:
 
 
 @dataclass(frozen=True)
+class RecorderSummary:
+    """What a step of the polish supposes of recorders that no run file declares.
+
+    `filter`, `order` and `cut_off` [Hz] of the low-pass that suits the recordings of `channels` best; `is_clear` says whether none that
+    differs would do as well. Nothing above `compared_to` [Hz] is compared; `told` says it in words.
+    """
+
+    step: str
+    channels: tuple[str, ...]
+    filter: str
+    order: int
+    cut_off: float | None
+    is_clear: bool
+    compared_to: float
+    told: str
+
+
+@dataclass(frozen=True)
 class FactAdvice:
     """What measuring a fact would do for the intervals of the parameters.
 
@@ -145,6 +163,8 @@ class CalibrationSummary(Result):
         it exceeds 1.
     prior_data_advice
         Facts that could be measured, best first: what each would do for the intervals.
+    recorder
+        What stands for recorders that no run file declares, step by step.
     """
 
     KIND: ClassVar[str] = "calibration"
@@ -180,6 +200,7 @@ class CalibrationSummary(Result):
     run_chi2: dict[str, float] = field(default_factory=dict)
     interval_inflation: float = 1.0
     prior_data_advice: tuple[FactAdvice, ...] = ()
+    recorder: tuple[RecorderSummary, ...] = ()
 
     def __post_init__(self) -> None:
         if len(self.steps) != len(self.history):

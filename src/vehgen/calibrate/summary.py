@@ -32,10 +32,12 @@ from vehgen.calibrate.result import (
     ModeSummary,
     NoiseSummary,
     ParameterSummary,
+    RecorderSummary,
 )
 from vehgen.files.provenance import file_hashes, versions
 from vehgen.fit.parallel import Runner
 from vehgen.fit.prior_data import PriorData
+from vehgen.fit.recorders import FoundRecorder
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.writing import quantity
 
@@ -108,6 +110,7 @@ def summarise(
         run_chi2=run_chi2(last.fits[0]) if last.fits else {},
         interval_inflation=1.0 if uncertainty is None else uncertainty.inflation,
         prior_data_advice=() if uncertainty is None else advise_prior_data(uncertainty, _facts_of(last, prior_data)),
+        recorder=tuple(_recorder(step.step.label, step.recorder) for step in calibration.steps if step.recorder is not None),
     )
 
 
@@ -168,6 +171,12 @@ def _nuisances(conditions: Sequence[ConditionSummary], step: str) -> dict[str, d
 def _noise(result: StepResult) -> tuple[NoiseSummary, ...]:
     noises = result.fits[0].misfit.noises if result.fits else {}
     return tuple(NoiseSummary(name, noise.sigma, noise.levels) for name, noise in noises.items())
+
+
+def _recorder(step: str, found: FoundRecorder) -> RecorderSummary:
+    chain = found.chain
+    clear, top = found.estimate.is_clear, found.band[1]
+    return RecorderSummary(step, found.channels, chain.filter, chain.order, chain.cut_off, clear, top, found.describe())
 
 
 def provenance(calibration: Calibration) -> dict[str, Any]:

@@ -33,8 +33,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--starts", type=int, default=6, metavar="N", help="starts of the gradient polish (default 6)")
     parser.add_argument("--no-polish", action="store_true", help="stop after the genetic search, as the paper does; gives no intervals")
     parser.add_argument("--band", metavar="LOW,HIGH", help="frequencies compared [Hz] (default 0.3,40)")
-    parser.add_argument("--height-error", type=float, default=0.0, metavar="R", help="relative uncertainty of the hump's height, e.g. 0.02")
-    parser.add_argument("--speed-error", type=float, default=0.01, metavar="R", help="relative uncertainty of the speed (default 0.01)")
+    stated = "(default: as the run file's `uncertainty` says, else"
+    parser.add_argument("--height-error", type=float, metavar="R", help=f"relative uncertainty of the hump's height {stated} 0.03)")
+    parser.add_argument("--speed-error", type=float, metavar="R", help=f"relative uncertainty of the speed {stated} 0.01)")
     parser.add_argument("--facts", metavar="FILE", type=Path, help="axle weights and other facts known from elsewhere")
     parser.add_argument("--combination", metavar="EXPR", action="append", default=[], help="estimate this too, e.g. 'k1/(mT + mS)'")
     parser.add_argument("--bootstrap", type=int, default=0, metavar="N", help="check the intervals with N refits to redrawn noise")

@@ -96,7 +96,7 @@ def _listed(names: list[str]) -> str:
 
 
 def _warnings(outcome: CalibrationSummary) -> list[str]:
-    found = []
+    found = list(dict.fromkeys(item.told for item in outcome.recorder))
     rank, searched = outcome.rank, outcome.searched
     if any(item.status == "unidentifiable" for item in outcome.parameters.values()):
         moved = "; ".join(_listed(list(direction)) for direction in outcome.null_directions)

@@ -97,19 +97,23 @@ class Spread:
 def _spread(value: Any, dimension: Dimension) -> Spread:
     """Read a standard deviation, a plain share up to 1 or a quantity; raises a pydantic error for what is neither."""
     try:
-        return Spread(_from(value, NONE, 1.0), True)
+        share = read_quantity(value, NONE)
     except PydanticCustomError:
         if dimension == NONE:
             raise
         return Spread(_from(value, dimension, math.inf), False)
+    return Spread(_bounded(share, 1.0, "a share" if dimension == NONE else "a share, or a standard deviation with its unit,"), True)
 
 
 def _from(value: Any, dimension: Dimension, most: float) -> float:
-    number = read_quantity(value, dimension)
+    return _bounded(read_quantity(value, dimension), most, "a standard deviation")
+
+
+def _bounded(number: float, most: float, what: str) -> float:
     if not 0 <= number <= most or not math.isfinite(number):
         bound = f" up to {most:g}" if math.isfinite(most) else ""
         raise PydanticCustomError(
-            "quantity", "expected a standard deviation from 0{bound}, found {value}", {"bound": bound, "value": number}
+            "quantity", "expected {what} from 0{bound}, found {value}", {"what": what, "bound": bound, "value": f"{number:g}"}
         )
     return number
 

@@ -102,7 +102,11 @@ def _step(point: LinearisedPoint, x: Array, bounds: tuple[Array, Array], damping
 
 
 def _solve(matrix: Array, right: Array) -> Array:
+    """Return the solution of positive definite equations, in unknowns so scaled that all count alike; singular, the shortest one."""
+    scale = 1 / np.sqrt(np.diagonal(matrix))
+    scaled = matrix * scale[:, None] * scale
     try:
-        return np.asarray(scipy.linalg.solve(matrix, right, assume_a="pos"))
-    except (np.linalg.LinAlgError, scipy.linalg.LinAlgWarning):
-        return np.asarray(np.linalg.lstsq(matrix, right, rcond=None)[0])
+        found = scipy.linalg.cho_solve(scipy.linalg.cho_factor(scaled), right * scale)
+    except np.linalg.LinAlgError:
+        found = np.linalg.lstsq(scaled, right * scale)[0]
+    return np.asarray(found * scale)

@@ -20,6 +20,7 @@ from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.fit.noise import Noise, road_answer, taper
+from vehgen.fit.nuisances import LOW_PASS
 from vehgen.fit.trial import Trial
 from vehgen.measure.acquisition import POINT_SAMPLES, UNKNOWN, AcquisitionChain, FilterKind
 from vehgen.simulate.acquired import extended, kept_stride
@@ -36,6 +37,8 @@ REFINED_SHARE = 0.01
 """A cut-off is refined to this share of itself."""
 SAME_GAIN = 0.05
 """Chains whose gains differ by less throughout the band are the same."""
+EXACT = 1e6
+"""Weight of a prior that leaves no freedom."""
 UNSEEN = 1e-12
 """A direction of the unknowns whose scaled curvature is below this share of the largest is left alone."""
 LOOK_AHEAD_S = 0.6
@@ -194,7 +197,10 @@ class _Search:
     @classmethod
     def of(cls, misfit: Misfit, x: Array, channels: tuple[str, ...], prior_sigma: float) -> _Search:
         n, shared = misfit.n_parameters, len(misfit.shared)
+        held = np.array([item.name in LOW_PASS for item in misfit.conditions(x)], dtype=bool)
+        x = misfit.without(x, LOW_PASS)  # what stood for other chains than the one that the fit was made through
         weights = np.concatenate([np.full(n, 1 / prior_sigma), np.zeros(shared), np.ones(misfit.n_unknowns - n - shared)])
+        weights[n + shared :][held] = EXACT
         spectra = linearise(misfit, x).spectra
         slopes = []
         for t, (trial, white) in enumerate(zip(misfit.problem.trials, spectra, strict=True)):
@@ -223,7 +229,7 @@ class _Search:
                 response = item.response(trial, response, self.misfit.adjusted(self.x)[i:])
             frequency = self.misfit.frequency(t)
             factors = np.column_stack([item.response(frequency) for item in chains])
-            left = self.misfit.measured(t) - self.misfit.lines(t, response[0], self.misfit.errors_of(self.x, t))
+            left = self.misfit.measured(t) - self.misfit.channel_lines(t, response[0], self.misfit.errors_of(self.x, t))
             residuals.append(flatten(self.misfit.whiten(t, left)))
             slopes.append(flatten(self.misfit.whiten(t, self.slopes[t] * factors), first=1).T)
         return ChainFit(chain, _projected(np.concatenate(residuals), np.vstack(slopes), self.priors))

@@ -97,6 +97,7 @@ def fit_least_squares(
     options: FitOptions | None = None,
     *,
     noises: Noises | None = None,
+    first: Noises | None = None,
     start: Array | None = None,
     prior_data: PriorData | None = None,
     shared: Sequence[Adjustment] = (),
@@ -116,6 +117,8 @@ def fit_least_squares(
         How the fit is done.
     noises
         Known noise; it is then not estimated.
+    first
+        Noise from which its estimation starts (default: :func:`first_noises`).
     start
         Where the errors begin, `shape (n_errors,)`; by default every run is laid over its recording.
     prior_data
@@ -129,7 +132,7 @@ def fit_least_squares(
     """
     options = options or FitOptions()
     given = noises is not None
-    noises = noises or first_noises(problem)
+    noises = noises or first or first_noises(problem)
     misfit = Misfit(problem, noises, problem.space.values(unit), options.nuisances, options.band, shared, known)
     begun = [(value - item.neutral) / item.scale for item, value in zip(shared, numbers, strict=True)] if numbers else [0.0] * len(shared)
     x = np.concatenate([np.clip(unit, 0.0, 1.0), begun, align(misfit, unit, begun) if start is None else start])
@@ -200,12 +203,12 @@ def first_noises(problem: Problem) -> Noises:
 
 
 def estimate_noises(misfit: Misfit, x: Array) -> Noises:
-    """Return the noise that the residuals show: one for all trials with the same channels."""
+    """Return the noise that the residuals show: sensors alike in all trials with the same channels, roads of one kind."""
     found: Noises = {}
     lines = dict(zip((trial.name for trial in misfit.problem.trials), misfit.residual_spectrum(x), strict=True))
     for channels in dict.fromkeys(trial.channels for trial in misfit.problem.trials):
         names = [trial.name for trial in misfit.problem.trials if trial.channels == channels]
         old = misfit.noises[names[0]]
-        shared = estimate_noise([lines[name] for name in names], Noise(np.maximum(old.levels, FIRST_LEVEL), old.sigma / 2))
-        found |= dict.fromkeys(names, shared)
+        each = estimate_noise([lines[name] for name in names], Noise(np.maximum(old.levels, FIRST_LEVEL), old.sigma / 2))
+        found |= dict(zip(names, each, strict=True))
     return found

@@ -121,7 +121,7 @@ class _Trial:
         motions = np.concatenate(
             [self.by_parameter, np.reshape(by_shared, (-1, *self.centre.shape)), *(own[None] for own in slopes.values())]
         )
-        lines = misfit.lines(self.number, motions, self.error)
+        lines = misfit.channel_lines(self.number, motions, self.error)
         n = len(self.by_parameter) + len(shared)
         by_error = dict(zip(slopes, lines[n:], strict=True))
         still = misfit.unread(self.number, self.centre, self.error)

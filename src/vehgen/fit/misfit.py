@@ -157,6 +157,12 @@ class Misfit:
         found = {(item.name, item.place): item.value for item in self.conditions(x) if not item.run}
         return {**self.known, **found}
 
+    def without(self, x: Array, names: Sequence[str]) -> Array:
+        """Return the unknowns x with all errors of some names at 0."""
+        start = self.n_parameters + len(self.shared)
+        kept = [item.name not in names for item in self.conditions(x)]
+        return np.concatenate([x[:start], x[start:] * kept])
+
     def adjusted(self, x: Array) -> Array:
         """Return the numbers of the shared adjustments, `shape (len(shared),)`."""
         own = x[self.n_parameters : self.n_parameters + len(self.shared)]
@@ -166,7 +172,7 @@ class Misfit:
         """Return how the places of trial `number`'s sensors move, `shape (n, n_samples, n_channels)`.
 
         At searched values `shape (n, n_parameters)` [SI], adjustments and the trial's errors; what the sensors' own errors make of it is
-        left to :meth:`lines`. `trial` stands in for the trial itself, with another step.
+        left to :meth:`channel_lines`. `trial` stands in for the trial itself, with another step.
         """
         trial = trial or self.problem.trials[number]
         scenario = self.errors[number].scenario(trial.scenario, error)
@@ -177,7 +183,7 @@ class Misfit:
             response = item.response(trial, response, numbers[i:])
         return response
 
-    def lines(self, number: int, response: Array, error: Array) -> Complex:
+    def channel_lines(self, number: int, response: Array, error: Array) -> Complex:
         """Return the spectral lines of what trial `number`'s sensors read of motions `shape (..., n_samples, n_channels)`."""
         return self.read(number, self.unread(number, response, error), error)
 
@@ -191,7 +197,7 @@ class Misfit:
         reading = self.errors[number].reading(self.frequency(number), error)
         return lines if reading is None else _apply(reading, lines)
 
-    def seen(self, number: int, lines: Complex, x: Array) -> Complex:
+    def read_at(self, number: int, lines: Complex, x: Array) -> Complex:
         """Return :meth:`read` of lines at all unknowns x."""
         return self.read(number, lines, self.errors_of(x, number))
 
@@ -210,7 +216,7 @@ class Misfit:
     def residual_spectrum(self, x: Array) -> list[tuple[Complex, RoadAnswer]]:
         """Return each trial's residual, measured minus simulated, as spectral lines, with the road's way into them."""
         return [
-            (weight.measured - self.lines(t, motion, self.errors_of(x, t)), weight.answer)
+            (weight.measured - self.channel_lines(t, motion, self.errors_of(x, t)), weight.answer)
             for t, (weight, motion) in enumerate(zip(self._weights, self.motions(x), strict=True))
         ]
 

@@ -40,6 +40,10 @@ SMALLEST_LEVEL, LARGEST_LEVEL = 1e-10, 1e-2
 """A road smoother than this Gd(n0) [m^3] counts as even (class A begins at 16e-6); none is rougher."""
 ROUGHEST_LEVEL = 3.0
 """Change of ln(level) from one knot to the next that counts as one standard deviation."""
+ROUGHEST_RUN = 1.0
+"""Difference of ln(level) between one trial's road and all of them that counts as one standard deviation ..."""
+MOST_RUN_SIGMAS = 3.0
+"""... of which it may be so many."""
 EVEN = np.full(len(KNOT_WAVENUMBERS), SMALLEST_LEVEL)
 """Levels of an even road."""
 COLOUR_AT = 44.0
@@ -186,8 +190,11 @@ def road_answer(trial: Trial, frequency: Array, values: dict[str, float]) -> Roa
     return RoadAnswer(frequency, frequency / speed, np.asarray(gain), dt, forced)
 
 
-def estimate_noise(residuals: Sequence[tuple[Complex, RoadAnswer]], start: Noise) -> Noise:
-    """Return the most likely levels and sigmas for residuals, lines `shape (n, n_channels)` of trials with the same channels on one road.
+def estimate_noise(residuals: Sequence[tuple[Complex, RoadAnswer]], start: Noise, *, same_road: bool = False) -> tuple[Noise, ...]:
+    """Return the most likely noise of trials with the same channels, from residuals, lines `shape (n, n_channels)`: a noise a trial.
+
+    Sensors are as loud in all trials. Roads are of one kind, but not equally rough: a vehicle never takes the same track twice, and the
+    roughness beneath one pass differs from the next by a factor of its own.
 
     Parameters
     ----------
@@ -195,31 +202,44 @@ def estimate_noise(residuals: Sequence[tuple[Complex, RoadAnswer]], start: Noise
         Lines and the road's way into them, trial by trial.
     start
         Where to begin.
+    same_road
+        All roads are equally rough.
     """
     power = np.mean([np.mean(np.abs(lines) ** 2, axis=0) / (2 * answer.dt) for lines, answer in residuals], axis=0)
     floor = 1e-4 * np.sqrt(power)
-    knots = len(KNOT_WAVENUMBERS)
+    knots, count = len(KNOT_WAVENUMBERS), len(residuals)
+    spread = 0 if same_road or count == 1 else count
 
-    def read(x: Array) -> Noise:
-        return Noise(np.exp(x[:knots]), np.exp(x[knots:]), start.slope)
+    def read(x: Array) -> tuple[Noise, ...]:
+        sigma, factors = np.exp(x[knots + spread :]), np.exp(x[knots : knots + spread] if spread else np.zeros(count))
+        return tuple(Noise(np.exp(x[:knots]) * factor, sigma, start.slope) for factor in factors)
 
     def loss(x: Array) -> tuple[float, Array]:
-        noise, bends = read(x), np.diff(x[:knots])
-        total = float((bends**2).sum()) / ROUGHEST_LEVEL**2  # holds levels that no line tells to their neighbours
+        bends, factors = np.diff(x[:knots]), x[knots : knots + spread]
         slopes = np.zeros_like(x)
+        # holds levels that no line tells to their neighbours, and the trials' to one another
+        total = float((bends**2).sum() / ROUGHEST_LEVEL**2 + (factors**2).sum() / ROUGHEST_RUN**2)
         slopes[:knots] = 2 / ROUGHEST_LEVEL**2 * (np.append(0.0, bends) - np.append(bends, 0.0))
-        for lines, answer in residuals:
+        slopes[knots : knots + spread] = 2 / ROUGHEST_RUN**2 * factors
+        for i, (noise, (lines, answer)) in enumerate(zip(read(x), residuals, strict=True)):
             own, by_level, by_sigma = noise.loss_and_slopes(lines, answer)
             total += own
-            slopes += np.concatenate([by_level, by_sigma])
+            slopes[:knots] += by_level
+            slopes[knots + spread :] += by_sigma
+            if spread:
+                slopes[knots + i] += by_level.sum()
         return total, slopes
 
     share = np.mean([np.mean(np.abs(lines) ** 2 / (np.abs(answer.gain) ** 2).sum(axis=2).clip(1e-300)) for lines, answer in residuals])
     mostly_road = Noise(np.full(knots, share), 0.1 * np.sqrt(power), start.slope)
-    bounds = [(np.log(SMALLEST_LEVEL), np.log(LARGEST_LEVEL))] * knots + [(np.log(low), np.log(low) + 12.0) for low in floor]
+    bounds = [(np.log(SMALLEST_LEVEL), np.log(LARGEST_LEVEL))] * knots
+    bounds += [(-MOST_RUN_SIGMAS * ROUGHEST_RUN, MOST_RUN_SIGMAS * ROUGHEST_RUN)] * spread + [
+        (np.log(low), np.log(low) + 12.0) for low in floor
+    ]
     found = []
     with threadpool_limits(1, user_api="blas"):  # a dozen unknowns: more threads only wait for one another
         for first in (start, mostly_road):
             levels, sigma = np.clip(first.levels, SMALLEST_LEVEL, LARGEST_LEVEL), np.maximum(first.sigma, floor)
-            found.append(scipy.optimize.minimize(loss, np.log(np.concatenate([levels, sigma])), jac=True, method="L-BFGS-B", bounds=bounds))
+            begun = np.concatenate([np.log(levels), np.zeros(spread), np.log(sigma)])
+            found.append(scipy.optimize.minimize(loss, begun, jac=True, method="L-BFGS-B", bounds=bounds))
     return read(min(found, key=lambda item: float(item.fun)).x)

@@ -10,6 +10,8 @@ from vehgen.fit.misfit import Array, Misfit
 from vehgen.fit.trial import Trial
 from vehgen.measure.acquisition import UNKNOWN, AcquisitionChain
 
+MOST_LEFT = 2.0
+"""A fit that leaves a larger mean square lacks something that passes for a low-pass: an ideal one is then taken, until more is known."""
 SAME_CUT_OFF = 0.1
 """Cut-offs that differ by less than this share are the same."""
 
@@ -92,8 +94,12 @@ def find_recorder(
     unknown = [name for trial in trials for name in trial.channels if not trial.scenario.chain(name).is_known]
     channels = tuple(channels or dict.fromkeys(unknown))
     estimate = estimate_chain(misfit, x, channels=channels)
-    if estimate.is_clear:
+    if estimate.is_clear and estimate.scale <= MOST_LEFT:
         return FoundRecorder(estimate, asked, False, channels)
+    if estimate.scale > MOST_LEFT:
+        ideal = next(item for item in (estimate.best, *estimate.others) if item.chain.filter == "ideal")
+        rest = tuple(item for item in (estimate.best, *estimate.others) if item is not ideal)
+        estimate = replace(estimate, best=ideal, others=rest, is_clear=False)
     tops = [trusted_band(trial, fine_response(misfit, x, t), misfit.noises[trial.name]) for t, trial in enumerate(trials)]
     top = max(min([*tops, asked[1]]), asked[1] / 2)
     return FoundRecorder(estimate, (asked[0], top), top < asked[1], channels)

@@ -163,8 +163,8 @@ def _from_known_road(trial: Trial) -> Trial:
     offsets = trial.simulator.model.wheel_offsets(trial.values)
     known = float(scenario.speed.distance(np.array([scenario.first_arrival]))[0]) + float(offsets.max(initial=0.0))
     arrived = float(np.interp(known, scenario.speed.distance(scenario.time), scenario.time))
-    decays = [1 / (2 * np.pi * mode.undamped_hz * mode.damping_ratio) for mode in natural_modes(trial.simulator.model, trial.values)]
-    settled = arrived - float(recording.time[0]) + FORGOTTEN * max((item for item in decays if item > 0), default=0.0)
+    rates = [2 * np.pi * mode.damped_hz * mode.damping_ratio for mode in natural_modes(trial.simulator.model, trial.values)]
+    settled = arrived - float(recording.time[0]) + FORGOTTEN * max((1 / rate for rate in rates if rate > 0), default=0.0)
     skipped = min(round(settled / recording.dt), round(MOST_SKIPPED * len(recording.time)))
     kept = replace(recording, time=recording.time[skipped:], values=recording.values[skipped:])
     return replace(trial, recording=kept, scenario=replace(scenario, skipped=skipped))

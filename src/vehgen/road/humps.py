@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+import scipy.ndimage
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError, did_you_mean, shown
@@ -17,6 +18,11 @@ _PER_LOBE = 1000
 """Spacing of the frequencies at which a hump's spectrum is looked at: so many to one cycle over its length."""
 _LOBES = 500
 """So many cycles over a hump's length are looked at: beyond, its nulls lie closer than any mode is wide."""
+
+_ROUNDED_BY_M = 0.008
+"""Standard deviation of the Gaussian mean that rounds edges [m]; shares of it stand for narrower and wider ones."""
+_ROUNDED_REACH_M = 0.032
+_ROUNDED_STEP_M = 1e-3
 
 
 @dataclass(frozen=True)
@@ -70,7 +76,7 @@ class Hump:
         start = distance - distance[0]
         return cls(at, float(start[-1]), partial(_points, distance=start, height=height))
 
-    def deformed(self, length: float = 1.0, form: float = 1.0, skew: float = 0.0) -> Hump:
+    def deformed(self, length: float = 1.0, form: float = 1.0, skew: float = 0.0, rounding: float = 0.0) -> Hump:
         """Return the hump as it may really be, starting where it starts.
 
         Parameters
@@ -80,9 +86,20 @@ class Hump:
         form
             Exponent of its height over its highest: below 1 it is fuller, above 1 more pointed (a half sine of form 2 is a versine).
         skew
-            How far its middle lies before (above 0) or behind the drawing's, as four times the share of the length.
+            By which share its far end is higher and its near end lower than drawn: a hump that lies tilted.
+        rounding
+            By how much its edges are worn, or bridged by the tyre: the mean square of the distances over which its height is averaged
+            [m^2]; below 0 they are sharper than drawn.
         """
-        return Hump(self.at, length * self.length, partial(_deformed, shape=self.shape, whole=self.length, change=(length, form, skew)))
+        shape = partial(_deformed, shape=self.shape, whole=self.length, change=(length, form, skew))
+        if rounding == 0.0:
+            return Hump(self.at, length * self.length, shape)
+        distance = np.arange(-_ROUNDED_REACH_M, length * self.length + _ROUNDED_REACH_M + _ROUNDED_STEP_M, _ROUNDED_STEP_M)
+        heights = np.zeros_like(distance)
+        inside = (distance > 0) & (distance < length * self.length)
+        heights[inside] = shape(distance[inside])
+        mean = scipy.ndimage.gaussian_filter1d(heights, _ROUNDED_BY_M / _ROUNDED_STEP_M, truncate=_ROUNDED_REACH_M / _ROUNDED_BY_M)
+        return Hump.from_points(self.at + distance[0], distance, heights + rounding / _ROUNDED_BY_M**2 * (mean - heights))
 
     def spectral_nulls(self, speed: float, f_max: float) -> Array:
         """Return the frequencies up to `f_max` [Hz] at which the hump, crossed at `speed` [m/s], excites nothing.
@@ -157,11 +174,11 @@ def rectangle(length: float, height: float, radius: float) -> Shape:
 def _deformed(s: Array, shape: Shape, whole: float, change: tuple[float, float, float]) -> Array:
     length, form, skew = change
     share = s / (whole * length)
-    heights = shape(whole * (share + skew * share * (1 - share)))
-    if form == 1.0:
-        return heights
-    highest = float(np.abs(shape(np.linspace(0.0, whole, 201))).max())
-    return np.asarray(np.copysign(highest * (np.abs(heights) / highest) ** form, heights))
+    heights = shape(whole * share)
+    if form != 1.0:
+        highest = float(np.abs(shape(np.linspace(0.0, whole, 201))).max())
+        heights = np.copysign(highest * (np.abs(heights) / highest) ** form, heights)
+    return np.asarray(heights * (1 + skew * (2 * share - 1)))
 
 
 def _points(s: Array, distance: Array, height: Array) -> Array:

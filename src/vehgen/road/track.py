@@ -16,8 +16,8 @@ _PIECE_LENGTH_M = 500.0
 """Longer stretches are integrated piece by piece [m]: a piece has a million points."""
 GRID = 5e-4
 """Spacing of the grid on which the road is integrated [m]."""
-UNDEFORMED = (1.0, 1.0, 0.0)
-"""Length, form and skew of a hump as it was drawn."""
+UNDEFORMED = (1.0, 1.0, 0.0, 0.0)
+"""Length, form, skew and rounding of a hump as it was drawn."""
 
 
 class Profile(Protocol):
@@ -61,7 +61,7 @@ class MeasuredProfile:
 class Track:
     """The sum of profiles, times `scale`, averaged over a footprint [m] (0: a point contact).
 
-    `deformation` is what its humps are deformed by: length, form and skew (see :meth:`Hump.deformed`).
+    `deformation` is what its humps are deformed by: length, form, skew and rounding (see :meth:`Hump.deformed`).
 
     The moving average is the difference of the road's integral between the edges of the contact, taken from a grid of half a
     millimetre: a hump shorter than the footprint still counts in full.
@@ -70,7 +70,7 @@ class Track:
     parts: tuple[Profile, ...]
     footprint: float = 0.0
     scale: float = 1.0
-    deformation: tuple[float, float, float] = UNDEFORMED
+    deformation: tuple[float, float, float, float] = UNDEFORMED
 
     @property
     def end(self) -> float:

@@ -129,12 +129,12 @@ class Scenario:
         *,
         anchor: float = 0.0,
         wander: Wander | None = None,
-        deformation: tuple[float, float, float] | None = None,
+        deformation: tuple[float, float, float, float] | None = None,
     ) -> Scenario:
         """Return the same run, `delay` [s] later, at `speed` times the speed, on a road `height` times as high.
 
         Speed and `wander` are seen from where the vehicle is at the time `anchor` [s]; `deformation` is that of the humps
-        (length, form, skew; default: as it is).
+        (length, form, skew, rounding; default: as it is).
         """
         same = (delay, speed, wander) == (0.0, 1.0, None)
         law = self.speed if same else AdjustedSpeed(self.speed, delay, speed, anchor, wander)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.detect.noise_floor import NoiseFloor, find_noise_floor
 from vehgen.diagnose.detect.numerical_floor import numerical_floor
-from vehgen.diagnose.detect.profile_error import measured_profiles, profile_noises
+from vehgen.diagnose.detect.road_error import measured_profiles, road_noises
 from vehgen.diagnose.fits.model_fit import ModelFit, fit_base, mean_square_as_filed, narrow
 from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.errors import InputError
@@ -23,8 +23,8 @@ from vehgen.fit.trial import Trial
 Array = NDArray[np.float64]
 SAME_LEVELS = 0.5
 """Levels of an error of a profile that differ by less in their logarithms are the same."""
-PROFILE_ROUNDS = 2
-"""So often are the errors of measured profiles found, and the base model refitted with them."""
+ROAD_ROUNDS = 2
+"""So often are the errors of measured profiles found, and the base model refitted with them; once where there are none."""
 BAND_EDGES_HZ = (0.0, 3.0, 8.0, 15.0, np.inf)
 """Bands of the table of gaps [Hz]: rigid-body motion, between, wheel hop, above."""
 
@@ -109,8 +109,8 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
         training, validation_runs = recorder.applied(training), recorder.applied(validation_runs)
         problem = problem.with_trials(training)
         base = fit_base(problem, validation_runs, floor.noises, recorder.band, base)
-    for _ in range(PROFILE_ROUNDS if any(measured_profiles(trial) for trial in trials) else 0):
-        floor = replace(floor, noises=profile_noises(base, floor.noises))
+    for _ in range(ROAD_ROUNDS if any(measured_profiles(trial) for trial in trials) else 1):
+        floor = replace(floor, noises=road_noises(base, floor.noises, floor.quiet))
         base = fit_base(problem, validation_runs, floor.noises, band if recorder is None else recorder.band, base)
     return _detection(problem, validation_runs, floor, base, recorder, band)
 
@@ -118,17 +118,17 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
 def look_again(detection: Detection, fit: ModelFit) -> Detection | None:
     """Return a detection whose recorder and errors of profiles follow from a better model's fit; None where they stay as they are.
 
-    A missing effect passes in part for a rough profile, and hides what the recorder did.
+    A missing effect passes in part for a rough profile, and for a low-pass of the recorder, however clear that one seems without it.
     """
     recorder, floor = detection.recorder, detection.floor
     problem, validation_runs = detection.problem, list(detection.validation_runs)
-    if recorder is not None and not recorder.estimate.is_clear:
+    if recorder is not None:
         found = find_recorder(fit.least_squares.misfit, fit.least_squares.x, recorder.channels, detection.asked_band)
         if not found.is_like(recorder):
             recorder = found
             problem = problem.with_trials(found.applied(problem.trials))
             validation_runs = found.applied(validation_runs)
-    noises = profile_noises(fit, floor.noises)
+    noises = road_noises(fit, floor.noises, floor.quiet)
     changes = [np.log(noises[name].levels / floor.noises[name].levels) for name in noises]
     if recorder is detection.recorder and all(np.abs(item).max() < SAME_LEVELS for item in changes):
         return None

@@ -17,12 +17,13 @@ from numpy.typing import NDArray
 
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.misfit import Noises
-from vehgen.fit.noise import COLOUR_AT, EVEN, SMALLEST_LEVEL, Noise, estimate_noise, road_answer, transform
+from vehgen.fit.noise import COLOUR_AT, EVEN, LARGEST_LEVEL, SMALLEST_LEVEL, Noise, RoadAnswer, estimate_noise, road_answer, transform
 from vehgen.fit.trial import Trial
 from vehgen.measure import record_psd
 from vehgen.road import Hump
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 SHORTEST_QUIET_S = 0.8
 """A lead-in shorter than this [s] tells nothing."""
 LEAD_IN_MARGIN_S = 0.1
@@ -34,6 +35,8 @@ SLOPES = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5)
 """Slopes of coloured noise that are tried."""
 COLOURED = 12.0
 """Gain in -2 ln of the likelihood of the lead-ins beyond which noise counts as coloured."""
+SITES_DIFFER = 1.0
+"""Standard deviation of the logarithm of how much rougher one run's site is than the others'."""
 LEAST = 0.5
 """A lead-in that tells of less than this share of what its own top of the band shows has let the road's roughness take the noise."""
 STEADY = 3.0
@@ -44,12 +47,16 @@ LARGEST_RATIO = 4.0
 
 @dataclass(frozen=True)
 class NoiseFloor:
-    """Noise by run, what the lead-in (`lead`) and the top of the band (`top`) say of each `run: channel`, and where they disagree."""
+    """Noise by run (`quiet`: as the lead-ins show it, before any fit).
+
+    What the lead-in (`lead`) and the top of the band (`top`) say of each `run: channel`, and where they disagree.
+    """
 
     noises: Noises
     lead: dict[str, float]
     top: dict[str, float]
     corrected: tuple[str, ...]
+    quiet: Noises
 
 
 def find_noise_floor(trials: Sequence[Trial], band: tuple[float, float] = CALIBRATION_BAND_HZ) -> NoiseFloor:
@@ -95,8 +102,32 @@ def find_noise_floor(trials: Sequence[Trial], band: tuple[float, float] = CALIBR
         stated = np.array([[channel.noise or np.nan for channel in trial.recording.channels] for trial in group])
         sigma = np.where(np.isnan(stated), np.sqrt(_smooth(variance, weight, power)), stated)
         for i, trial in enumerate(group):
-            noises[trial.name] = Noise(shared.levels, sigma[i], shared.slope if np.isnan(stated).any() else 0.0)
-    return NoiseFloor(noises, lead, top, tuple(corrected))
+            own_noise = Noise(shared.levels, sigma[i], shared.slope if np.isnan(stated).any() else 0.0)
+            noises[trial.name] = _with_own_level(lead_in(trial), own_noise, band)
+    return NoiseFloor(noises, lead, top, tuple(corrected), noises)
+
+
+def _with_own_level(part: Trial | None, noise: Noise, band: tuple[float, float]) -> Noise:
+    """Return a run's noise with the roughness that its own lead-in shows, as so many times that of all runs: sites differ."""
+    if part is None or np.all(noise.levels <= 2 * SMALLEST_LEVEL):
+        return noise
+    lines, answer = _lines(part, band)
+
+    def rougher(log_factor: float) -> Noise:
+        return replace(noise, levels=np.clip(noise.levels * np.exp(log_factor), SMALLEST_LEVEL, LARGEST_LEVEL))
+
+    def loss(log_factor: float) -> float:
+        return rougher(log_factor).loss(lines, answer) + (log_factor / SITES_DIFFER) ** 2
+
+    return rougher(float(scipy.optimize.minimize_scalar(loss, bounds=(-3.0, 3.0), method="bounded", options={"xatol": 0.05}).x))
+
+
+def _lines(part: Trial, band: tuple[float, float]) -> tuple[Complex, RoadAnswer]:
+    """Return the spectral lines of a lead-in without its mean, and the road's way into them."""
+    frequency = np.asarray(np.fft.rfftfreq(len(part.recording.time), part.recording.dt), dtype=np.float64)
+    inside = (frequency >= max(band[0], 1.0)) & (frequency <= band[1])
+    lines = transform(part.recording.values - part.recording.values.mean(axis=0), part.recording.dt, inside)
+    return lines, road_answer(part, frequency[inside], part.values)
 
 
 def _smooth(variance: Array, weight: Array, power: Array) -> Array:
@@ -129,13 +160,9 @@ def _from_lead_in(
     quiet: Sequence[Trial], sigma: Array, band: tuple[float, float], slope: float, levels: Array | None = None
 ) -> tuple[Noise, float]:
     """Return the noise of lead-ins for a slope, and -2 ln of its likelihood."""
-    residuals = []
-    for part in quiet:
-        frequency = np.asarray(np.fft.rfftfreq(len(part.recording.time), part.recording.dt), dtype=np.float64)
-        inside = (frequency >= max(band[0], 1.0)) & (frequency <= band[1])
-        lines = transform(part.recording.values - part.recording.values.mean(axis=0), part.recording.dt, inside)
-        residuals.append((lines, road_answer(part, frequency[inside], part.values)))
-    noise = estimate_noise(residuals, Noise(np.full(len(EVEN), 100 * SMALLEST_LEVEL) if levels is None else levels, sigma, slope))
+    residuals = [_lines(part, band) for part in quiet]
+    start = Noise(np.full(len(EVEN), 100 * SMALLEST_LEVEL) if levels is None else levels, sigma, slope)
+    noise = estimate_noise(residuals, start, same_road=True)[0]
     return noise, sum(noise.loss(lines, answer) for lines, answer in residuals)
 
 

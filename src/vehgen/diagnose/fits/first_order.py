@@ -79,7 +79,7 @@ class ProbeMotion:
             inside = np.isin(np.fft.rfftfreq(len(trial.recording.time), trial.recording.dt), self.misfit.frequency(t))
             for number, force in forces.items():
                 lines += transform(force[:, None], trial.recording.dt, inside) * self._response(t, number)
-            parts.append(flatten(self.misfit.whiten(t, self.misfit.seen(t, lines, self.x))))
+            parts.append(flatten(self.misfit.whiten(t, self.misfit.read_at(t, lines, self.x))))
         return np.concatenate(parts)
 
     def _forces(self, t: int, model: EquationsOfMotion, values: Mapping[str, float]) -> dict[int, Array] | None:

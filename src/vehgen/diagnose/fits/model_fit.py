@@ -21,7 +21,7 @@ from vehgen.fit.trial import Trial
 from vehgen.simulate import SimulatorPool
 
 Array = NDArray[np.float64]
-NUISANCES = Nuisances()
+NUISANCES = Nuisances(roll_off=0.0, dispersion=0.0)
 """What runs and sensors may not know of themselves."""
 BASE_RANGE = 0.3
 """The base may move its parameters by this share of a logarithm about the file's values: looser, it absorbs the effect."""

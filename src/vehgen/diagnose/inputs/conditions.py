@@ -30,6 +30,8 @@ _FAULT_OF = {
     "gain": ("gain", "{place} reads {amount} {more} {where} than it should"),
     "form": ("hump_form", "the hump {where} is of another form than stated"),
     "skew": ("hump_form", "the hump {where} leans as none that was stated"),
+    "wear": ("hump_form", "the edges of the hump {where} are of another roundness than stated"),
+    "lag": ("clocks_apart", "the pitch rate of {place} comes {amount} {late} than its acceleration"),
     "tilt": ("tilt", "{place} sits tilted by {amount} {where}"),
     "position": ("position", "{place} sits {amount} off {where}"),
 }
@@ -44,6 +46,8 @@ _CURES = {
     "gain": "check the sensor's calibration and the column's unit",
     "form": "measure the hump's form and state it as points",
     "skew": "measure the hump's form and state it as points",
+    "wear": "measure the hump's form and state it as points",
+    "lag": "state what both recorders do (`acquisition`), or record both by one clock",
     "tilt": "mount the sensor level, or import the recording so that its axes are turned upright",
     "position": "measure where the sensor sits and put the run file right",
 }

@@ -28,7 +28,7 @@ AS_WELL = 3.0
 """A clock is told from a speed where it leaves less by this factor; where it leaves less at all, the two are a tie."""
 SLOW_BAND_HZ, FAST_BAND_HZ = (0.5, 4.0), (15.0, 35.0)
 """A filtered channel follows the prediction in the lower band, and lacks most of it in the upper."""
-LOW_PASSED = 0.35
+FILTERED_SHARE = 0.35
 """Share of the predicted amplitude in the upper band, over that in the lower, below which a filter is fitted."""
 FIRST_CUTOFF_HZ = 10.0
 SLOW_RECORDER_HZ = 20.0
@@ -80,7 +80,7 @@ def filter_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     found: dict[str, tuple[str, ...]] = {}
     for trial, predicted in zip(case.trials, case.predictions, strict=True):
         kept = _kept(trial, predicted)
-        slow = tuple(name for name, share in zip(trial.channels, kept, strict=True) if share < LOW_PASSED)
+        slow = tuple(name for name, share in zip(trial.channels, kept, strict=True) if share < FILTERED_SHARE)
         if slow:
             found[trial.name] = slow
     if not found:

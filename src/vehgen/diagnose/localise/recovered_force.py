@@ -204,7 +204,7 @@ def _raw(misfit: Misfit, place: Place, component: int, x: Array, kernels: dict[i
         values = trial.values | {name: value for name, value in known.items() if name not in trial.fixed}
         lined = misfit.frequency(t)
         response = force_response(model, values, place.rows, lined) * trial.channel_factors(lined)[:, :, None]
-        white = np.stack([misfit.whiten(t, misfit.seen(t, response[:, :, j], x)) for j in range(len(place.rows))], axis=2)
+        white = np.stack([misfit.whiten(t, misfit.read_at(t, response[:, :, j], x)) for j in range(len(place.rows))], axis=2)
         adjoint = white.conj().transpose(0, 2, 1)
         inverse = np.linalg.pinv(adjoint @ white, hermitian=True)
         if id(model) not in kernels:

@@ -191,7 +191,7 @@ def _basis(misfit: Misfit, x: Array, place: Place, t: int) -> Complex | None:
     else:
         return None
     white = np.stack(
-        [misfit.whiten(t, misfit.seen(t, raw[:, :, j], x) if place.rows else raw[:, :, j]) for j in range(raw.shape[2])], axis=2
+        [misfit.whiten(t, misfit.read_at(t, raw[:, :, j], x) if place.rows else raw[:, :, j]) for j in range(raw.shape[2])], axis=2
     )
     return np.asarray(np.linalg.qr(white)[0])
 

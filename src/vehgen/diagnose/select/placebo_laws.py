@@ -63,7 +63,7 @@ def decoy_shares(
                 frequency = np.fft.rfftfreq(len(d), trial.recording.dt)
                 inside = (frequency >= misfit.band[0]) & (frequency <= misfit.band[1])
                 lines = transform(force[:, None], trial.recording.dt, inside) * responses[t]
-                parts.append(flatten(misfit.whiten(t, misfit.seen(t, lines, place.x))))
+                parts.append(flatten(misfit.whiten(t, misfit.read_at(t, lines, place.x))))
             columns.append(np.concatenate(parts))
         own = projection.remainder(np.array(columns).T)
         remaining = left - own @ np.linalg.lstsq(own, left, rcond=None)[0]

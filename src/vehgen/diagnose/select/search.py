@@ -150,7 +150,7 @@ def _origins(base: ModelFit, current: CurrentModel, passed: Sequence[PlaceResult
     """Return where base parameters and nuisances may begin: at the file's values, where the place test leaves them, where they are."""
     space = current.problem.space
     fitted: StartingPoint = current.unit, current.errors
-    begun = fitted if base.effects else (space.unit(space.start), np.zeros_like(current.errors))
+    begun = fitted if base.effects else (space.unit(space.start), current.errors)
     placed = begun
     if one_force(passed):
         unit, errors = base.least_squares.misfit.split(passed[0].x)

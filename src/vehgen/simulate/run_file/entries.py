@@ -225,8 +225,8 @@ class OutputEntry(FileModel):
 class UncertaintyEntry(FileModel):
     """How well a run knows itself and its sensors: standard deviations, those of a fit's errors (docs/measurement.md).
 
-    Of the recording's begin (`delay`), the speed and how it changes along the run, the height of the road, the form of the hump, the
-    sensors' clocks against the first one's, their gains, tilts and places.
+    Of the recording's begin (`delay`), the speed and how it changes along the run, the height of the road, the form of the hump and
+    the wear of its edges, the sensors' clocks against the first one's, their gyroscopes' lags, gains, tilts and places.
     """
 
     delay: TimeDeviation | None = None
@@ -236,7 +236,9 @@ class UncertaintyEntry(FileModel):
     length: LengthSpread | None = None
     form: ShareSpread | None = None
     skew: ShareSpread | None = None
+    wear: LengthDeviation | None = None
     clock: TimeDeviation | None = None
+    lag: TimeDeviation | None = None
     gain: ShareSpread | None = None
     tilt: AngleDeviation | None = None
     position: LengthDeviation | None = None

@@ -6,7 +6,8 @@ A profiler's error is white from point to point, and drifts. Its displacement sp
 
 with the level D of the drift (as of a road of ISO 8608, n0 = 0.1 cycles/m), W = 2 d e^2 for an error e of points d apart, between which the
 profile runs straight. Both, and how much louder a sensor is on such a run than at rest, are those most likely for what a fit leaves of the
-run; no error is larger than MOST_ERROR_M, so that a wrong model does not pass for a wrong profile.
+run; no error is larger than MOST_ERROR_M, so that a wrong model does not pass for a wrong profile. The road under a hump, too, is not quite
+as rough as the one before it.
 """
 
 from __future__ import annotations
@@ -32,6 +33,8 @@ MOST_ERROR_M = 1e-3
 """A profiler's points are off by so much at most [m] ..."""
 MOST_DRIFT = 16e-6
 """... and its drift is no rougher than an even road, of class A [m^3]."""
+UNDER_HUMP = (0.6, 1.6)
+"""The road under a hump is so many times as rough (as a level) as the one before it."""
 LOUDEST = 3.0
 """A sensor's noise grows so many times at most on a rough road."""
 LEAST_ERROR_M = 1e-6
@@ -58,10 +61,12 @@ def measured_profiles(trial: Trial) -> Sequence[MeasuredProfile]:
     return [part for part in trial.scenario.track.parts if isinstance(part, MeasuredProfile)]
 
 
-def profile_noises(base: ModelFit, noises: Noises) -> Noises:
-    """Return the noise of all runs, that of runs over measured profiles with what the base model's fit says of the profile's error.
+def road_noises(base: ModelFit, noises: Noises, lead: Noises) -> Noises:
+    """Return the noise of all runs with what a model's fit says of their roads.
 
-    A sensor at rest is as loud as in the lead-ins of the runs that have one, or else as on the run itself.
+    Of runs over measured profiles that is the profile's error: a sensor at rest is as loud as in the lead-ins of the runs that have one, or
+    else as on the run itself. Of other runs it is how much rougher the road under the hump is than the one before it, whose noise is
+    `lead`: within UNDER_HUMP, no more.
     """
     found = dict(noises)
     for fit in (base.least_squares, base.validation_fit):
@@ -69,9 +74,24 @@ def profile_noises(base: ModelFit, noises: Noises) -> Noises:
             continue
         for trial, (lines, answer) in zip(fit.misfit.problem.trials, fit.misfit.residual_spectrum(fit.x), strict=True):
             if measured_profiles(trial):
-                lead = _at_rest(trial, base, noises)
-                found[trial.name] = find_profile_error(trial, lines, answer, lead).noise(lead)
+                at_rest = _at_rest(trial, base, lead)
+                found[trial.name] = find_profile_error(trial, lines, answer, at_rest).noise(at_rest)
+            elif np.any(lead[trial.name].levels > 2 * SMALLEST_LEVEL):
+                found[trial.name] = _under_hump(lines, answer, lead[trial.name])
     return found
+
+
+def _under_hump(lines: Complex, answer: RoadAnswer, lead: Noise) -> Noise:
+    """Return a run's noise with the most likely roughness, as so many times that of its lead-in."""
+
+    def rougher(log_factor: float) -> Noise:
+        return replace(lead, levels=np.clip(lead.levels * np.exp(log_factor), SMALLEST_LEVEL, LARGEST_LEVEL))
+
+    bounds = (float(np.log(UNDER_HUMP[0])), float(np.log(UNDER_HUMP[1])))
+    found = scipy.optimize.minimize_scalar(
+        lambda x: rougher(x).loss(lines, answer), bounds=bounds, method="bounded", options={"xatol": 0.02}
+    )
+    return rougher(float(found.x))
 
 
 def _at_rest(trial: Trial, base: ModelFit, noises: Noises) -> Noise:

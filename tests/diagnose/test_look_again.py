@@ -1,0 +1,61 @@
+"""A second look at what a recorder and a profile did, once a better model fits: what was taken too large is taken back."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from vehgen.diagnose.detect.detection import look_again
+from vehgen.diagnose.detect.road_error import measured_profiles
+from vehgen.fit.chain_estimate import ChainEstimate, ChainFit
+from vehgen.fit.noise import LARGEST_LEVEL
+from vehgen.fit.recorders import FoundRecorder
+from vehgen.measure.acquisition import AcquisitionChain
+
+
+@pytest.fixture(scope="module")
+def detection(detection_of):
+    return detection_of()
+
+
+def test_where_nothing_changes_there_is_no_second_look(detection):
+    assert look_again(detection, detection.base) is None
+
+
+def test_a_profile_taken_for_rough_is_measured_again(detection):
+    """As if a missing effect had passed for a profile's error; the true recordings know of none."""
+    rough = {trial.name for trial in detection.trials if measured_profiles(trial)}
+    assert rough == {"rough"}
+    noises = dict(detection.floor.noises)
+    noises["rough"] = replace(noises["rough"], levels=np.minimum(1e4 * noises["rough"].levels, LARGEST_LEVEL))
+    spoilt = replace(detection, floor=replace(detection.floor, noises=noises))
+    found = look_again(spoilt, detection.base)
+    assert found is not None
+    assert found.floor.noises["rough"].levels == pytest.approx(detection.floor.noises["rough"].levels, rel=0.5)
+    assert found.floor.noises["high"] is detection.floor.noises["high"]
+    assert found.chi == pytest.approx(detection.chi, rel=0.03)
+
+
+def spoilt_by(detection, is_clear):
+    """Return the detection as if a low-pass at 8 Hz had been found that nothing was recorded through."""
+    wrong = ChainFit(AcquisitionChain("butterworth", 2, 8.0), 1.0)
+    recorder = FoundRecorder(ChainEstimate(wrong, (), 1.0, is_clear), (0.5, 30.0), True, detection.trials[0].channels)
+    return replace(
+        detection,
+        recorder=recorder,
+        problem=detection.problem.with_trials(recorder.applied(detection.problem.trials)),
+        validation_runs=tuple(recorder.applied(detection.validation_runs)),
+        band=recorder.band,
+    )
+
+
+@pytest.mark.parametrize("is_clear", [True, False])
+def test_a_recorder_is_judged_by_the_better_model_however_clear_it_was(detection, is_clear):
+    """A missing effect can look like a low-pass that nothing else comes near."""
+    found = look_again(spoilt_by(detection, is_clear), detection.base)
+    assert found is not None
+    assert found.recorder is not None
+    assert found.recorder.chain.cut_off is None or found.recorder.chain.cut_off > 30.0
+    assert all(trial.scenario.chain(name) == found.recorder.chain for trial in found.trials for name in trial.channels)
+    assert found.band == found.recorder.band
+    assert found.chi == pytest.approx(detection.chi, rel=0.05)

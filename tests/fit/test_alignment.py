@@ -1,0 +1,71 @@
+"""Where fits begin: delays of known signals, and runs that another program drove at another speed than their files say."""
+
+import numpy as np
+import pytest
+import scipy.signal
+
+from tests.fit.profile_world import FINE, fine_channels, misfit_of, read_run, rough_road
+from tests.fit.recordings import sedan_truth, write_run
+from vehgen.fit.alignment import LATEST, align, best_delay
+from vehgen.fit.nuisances import Nuisances
+from vehgen.fit.trial import load_trials
+
+DT, BAND = 0.01, (0.5, 8.0)
+
+
+def slow_noise(n=800, channels=2):
+    """Return channels of noise below 6 Hz that rise from nothing and fade."""
+    white = np.random.default_rng(4).standard_normal((n, channels))
+    sections = scipy.signal.butter(4, 6.0, fs=1 / DT, output="sos")
+    return scipy.signal.sosfiltfilt(sections, white, axis=0) * scipy.signal.windows.tukey(n, 0.6)[:, None]
+
+
+@pytest.mark.parametrize("samples", [-60, -3, 0, 1, 25, 90])
+def test_a_delay_by_whole_samples_is_found(samples):
+    signal = slow_noise()
+    late, likeness = best_delay(np.roll(signal, samples, axis=0), signal, DT, BAND)
+    assert late == pytest.approx(samples * DT)
+    assert likeness > 0.97
+
+
+def test_the_size_of_a_channel_counts_no_more_than_of_another():
+    signal = slow_noise()
+    measured = np.roll(signal, 20, axis=0) * [1.0, 1e-4]
+    assert best_delay(measured, signal, DT, BAND)[1] < best_delay(measured, signal * [1.0, 1e-4], DT, BAND)[1]
+    assert best_delay(measured, signal * [3.0, 3e-4], DT, BAND) == pytest.approx(best_delay(measured, signal * [1.0, 1e-4], DT, BAND))
+
+
+def test_what_lies_outside_the_band_says_nothing():
+    signal, time = slow_noise(), np.arange(800)[:, None] * DT
+    measured = np.roll(signal, 20, axis=0) + 5 * np.sin(2 * np.pi * 20 * time)
+    assert best_delay(measured, signal + 5 * np.cos(2 * np.pi * 20 * time), DT, BAND)[0] == pytest.approx(0.2)
+
+
+def test_unlike_signals_are_told_by_their_likeness_and_no_delay_is_longer_than_the_longest():
+    signal, other = slow_noise(channels=1), slow_noise(channels=2)[:, 1:]
+    late, likeness = best_delay(signal, other, DT, BAND)
+    assert likeness < 0.6
+    assert abs(late) <= LATEST
+    assert best_delay(np.roll(signal, 150, axis=0), signal, DT, BAND)[1] < 0.6
+
+
+def test_a_speed_that_turns_fast_motions_by_whole_cycles_is_found(tmp_path):
+    """At 12 m/s over 8 s, 2 % of speed shift the road's end by 0.17 s: two cycles of hop."""
+    road = rough_road()
+    trial = read_run(tmp_path, fine_channels(road, 11.75)[::FINE], 12.0, road, late=0.13)
+    misfit, x = misfit_of(trial, Nuisances())
+    x[: misfit.n_parameters] += 0.02
+    errors = align(misfit, x[: misfit.n_parameters])
+    begun = np.concatenate([x[: misfit.n_parameters], errors])
+    found = {item.name: item.value for item in misfit.conditions(begun) if item.run}
+    assert found["speed"] == pytest.approx(11.75 / 12 - 1, abs=2e-3)
+    assert found["delay"] == pytest.approx(0.13, abs=0.01)
+    assert not errors[: len(misfit.sensors)].any()
+    unaligned = np.sum(misfit.residuals(x) ** 2)
+    assert np.sum(misfit.residuals(begun) ** 2) < 0.1 * unaligned
+
+
+def test_a_run_whose_begin_is_known_is_left_as_it_is(tmp_path):
+    trial = load_trials([write_run(tmp_path, "run", sedan_truth())])[0]
+    misfit, x = misfit_of(trial, Nuisances(delay=0.0))
+    assert not align(misfit, x[: misfit.n_parameters]).any()

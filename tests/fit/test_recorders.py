@@ -1,0 +1,116 @@
+"""Recorders that no run file declares: which low-pass stands for them, in which channels, and where the compared band ends."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.fit.profile_world import FINE, SIGMA, fine_channels, low_passed, misfit_of, read_run, rough_road
+from vehgen.fit.chain_estimate import ChainEstimate, ChainFit
+from vehgen.fit.nuisances import Nuisances
+from vehgen.fit.recorders import FoundRecorder, find_recorder, has_unknown
+from vehgen.measure.acquisition import POINT_SAMPLES, AcquisitionChain
+
+BESSEL = AcquisitionChain("bessel", 2, 30.0)
+SMALL = Nuisances(0.05, 0.005)
+
+
+@pytest.fixture(scope="module")
+def rough():
+    road = rough_road()
+    return road, fine_channels(road, 12.0)
+
+
+def found_of(chain, cut=False, band=(0.5, 40.0), clear=True, channels=("F_az",)):
+    return FoundRecorder(ChainEstimate(ChainFit(chain, 1.0), (), 1.0, clear), band, cut, channels)
+
+
+def smooth_swell():
+    s = np.arange(0.0, 60.0, 0.02)
+    return s, 0.01 * np.exp(-(((s - 10.0) / 1.5) ** 2))
+
+
+def test_only_what_no_run_file_states_is_unknown(tmp_path, rough):
+    road, channels = rough
+    sampled = channels[::FINE]
+    assert has_unknown([read_run(tmp_path, sampled, 12.0, road)])
+    assert not has_unknown([read_run(tmp_path, sampled, 12.0, road, extra="acquisition: none\n")])
+    assert has_unknown([read_run(tmp_path, sampled, 12.0, road, extra="acquisition: {filter: unknown}\n")])
+
+
+def late_fit(trial, seconds):
+    """Return a fit that has found the delay of the low-pass for one of the clock."""
+    misfit, x = misfit_of(trial, SMALL)
+    x[misfit.n_parameters + misfit.error_position(0, "delay")] = seconds / misfit.nuisances.delay
+    return misfit, x
+
+
+def chi2(misfit, x):
+    return np.mean(np.concatenate([np.abs(item.ravel()) ** 2 for item in misfit.whitened_spectrum(x)]))
+
+
+def test_the_low_pass_that_a_recording_was_made_through_stands_in_the_channels_that_state_none(tmp_path, rough):
+    road, channels = rough
+    late = 0.4159 / 22.0
+    own = AcquisitionChain("butterworth", 4, 22.0, -late)
+    trial = read_run(tmp_path, low_passed(channels, 4, 22.0), 12.0, road)
+    trial = replace(trial, scenario=replace(trial.scenario, chains={**trial.scenario.chains, "F_q": own}))
+    recorder = find_recorder(*late_fit(trial, late))
+    assert recorder.channels == ("F_az", "R_az", "R_q")
+    assert (recorder.chain.filter, recorder.chain.order, recorder.cut) == ("butterworth", 4, False)
+    assert recorder.chain.cut_off == pytest.approx(22.0, rel=0.03)
+    assert recorder.band == (0.5, 40.0)
+    assert "a butterworth low-pass of order 4 at 2" in recorder.describe()
+    (applied,) = recorder.applied([trial])
+    assert applied.scenario.chain("F_q") == own
+    assert {applied.scenario.chain(name) for name in ("F_az", "R_az", "R_q")} == {recorder.chain}
+    assert not has_unknown([applied])
+
+
+def test_the_low_pass_found_leaves_noise_where_the_assumed_one_does_not(tmp_path, rough):
+    road, channels = rough
+    late = 0.2251 / 18.0
+    trial = read_run(tmp_path, low_passed(channels, 2, 18.0), 12.0, road)
+    recorder = find_recorder(*late_fit(trial, late))
+    assert chi2(*late_fit(recorder.applied([trial])[0], late)) < 1.3
+    assert chi2(*late_fit(trial, late)) > 3
+
+
+def test_where_every_chain_does_and_nothing_folds_the_band_stays(tmp_path):
+    road = smooth_swell()
+    trial = read_run(tmp_path, fine_channels(road, 4.0)[::FINE], 4.0, road)
+    recorder = find_recorder(*misfit_of(trial, SMALL))
+    assert not recorder.estimate.is_clear
+    assert (recorder.band, recorder.cut) == ((0.5, 40.0), False)
+    assert "others would do as well" in recorder.describe()
+
+
+def test_where_folding_might_matter_unseen_the_band_ends_before_it(tmp_path, rough):
+    road, channels = rough
+    sigma = 2 * SIGMA
+    trial = read_run(tmp_path, channels[::FINE][:201], 12.0, road, sigma=sigma)
+    recorder = find_recorder(*misfit_of(trial, SMALL, sigma))
+    assert not recorder.estimate.is_clear
+    assert recorder.cut
+    assert 20.0 <= recorder.band[1] < 40.0
+    assert f"above {recorder.band[1]:.3g} Hz nothing is compared" in recorder.describe()
+    assert find_recorder(*misfit_of(trial, SMALL, sigma), band=(0.5, 20.0)).band == (0.5, 20.0)
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "alike"),
+    [
+        (found_of(BESSEL), found_of(replace(BESSEL, cut_off=32.0)), True),
+        (found_of(BESSEL), found_of(replace(BESSEL, cut_off=40.0)), False),
+        (found_of(BESSEL), found_of(replace(BESSEL, order=4)), False),
+        (found_of(BESSEL), found_of(BESSEL, cut=True), False),
+        (found_of(POINT_SAMPLES), found_of(POINT_SAMPLES), True),
+        (found_of(POINT_SAMPLES), found_of(BESSEL), False),
+    ],
+)
+def test_recorders_are_alike_by_kind_and_cut_off(one, other, alike):
+    assert one.is_like(other) is alike
+
+
+def test_point_samples_are_told_in_words():
+    assert "made through no low-pass at all" in found_of(POINT_SAMPLES).describe()
