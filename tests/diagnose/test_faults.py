@@ -11,9 +11,13 @@ from benchmarks.hidden_effects.generator import Effect, Hump, RunSpec, nominal, 
 from vehgen.diagnose.detect.detection import detect
 from vehgen.diagnose.inputs.conditions import findings_of_conditions, moved_roads
 from vehgen.diagnose.inputs.judging import explain_gap, plain_mistakes, recorded_mistakes, supposed_mistakes
+from vehgen.diagnose.inputs.recorders import slow_recorder
 from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.thresholds import NOISE_FLOOR
+from vehgen.fit.chain_estimate import ChainEstimate, ChainFit
 from vehgen.fit.nuisances import Condition
+from vehgen.fit.recorders import FoundRecorder
+from vehgen.measure.acquisition import AcquisitionChain
 
 RUNS = (
     RunSpec((Hump(0.5, 0.03, 4.0),), 2.0, 5.0, "low"),
@@ -188,6 +192,16 @@ def test_a_clock_that_runs_fast_is_told_or_tied_with_the_speed(plain):
     (fault,) = explain_gap(detect(edited(plain, by_a_fast_clock)))
     assert fault.kind in ("clock_rate", "clock_or_speed")
     assert fault.value == pytest.approx(1.1, abs=0.01)
+
+
+def test_a_recorder_that_hides_wheel_hop_is_told_where_it_is_clear():
+    def found(cut_off, is_clear):
+        best = ChainFit(AcquisitionChain("butterworth", 4, cut_off), 0.0)
+        return FoundRecorder(ChainEstimate(best, (), 1.0, is_clear), (0.5, 40.0), False, ("F_az", "F_q"))
+
+    (fault,) = slow_recorder(found(15.0, True), ("low", "high"))
+    assert (fault.kind, fault.runs, fault.channels, fault.value) == ("low_pass", ("low", "high"), ("F_az", "F_q"), 15.0)
+    assert slow_recorder(found(15.0, False), ("low",)) == slow_recorder(found(40.0, True), ("low",)) == slow_recorder(None, ()) == ()
 
 
 def test_a_road_that_begins_elsewhere_is_told_where_all_other_runs_agree():

@@ -17,7 +17,7 @@ from vehgen.diagnose.inputs.exchanges import exchange_hypotheses, speed_hypothes
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault
 from vehgen.diagnose.inputs.humps import hump_hypotheses, road_heights
 from vehgen.diagnose.inputs.labels import label_hypotheses
-from vehgen.diagnose.inputs.recorders import filter_hypotheses, rate_hypotheses
+from vehgen.diagnose.inputs.recorders import filter_hypotheses, rate_hypotheses, slow_recorder
 from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.diagnose.inputs.vehicle import axle_hypotheses, other_vehicle, strange_run_hypotheses, unrelated_recording
 from vehgen.diagnose.thresholds import NOISE_FLOOR
@@ -152,7 +152,8 @@ def supposed_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
     found = findings_of_conditions(conditions, [trial.name for trial in detection.trials], road_heights(detection.trials))
     speeds = {trial.name: trial.scenario.top_speed for trial in detection.trials if measured_profiles(trial)}
     told = {run for item in found if item.kind == "clock" for run in item.runs}
-    return (*found, *(item for item in moved_roads(conditions, speeds) if not told & set(item.runs)))
+    moved = (item for item in moved_roads(conditions, speeds) if not told & set(item.runs))
+    return (*found, *moved, *slow_recorder(detection.recorder, tuple(trial.name for trial in detection.trials)))
 
 
 def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:

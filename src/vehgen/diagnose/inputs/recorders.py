@@ -13,6 +13,7 @@ from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, place_wor
 from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.fit.adjustments import SpeedScale
 from vehgen.fit.noise import transform
+from vehgen.fit.recorders import FoundRecorder
 from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
@@ -30,6 +31,9 @@ SLOW_BAND_HZ, FAST_BAND_HZ = (0.5, 4.0), (15.0, 35.0)
 FILTERED_SHARE = 0.35
 """Share of the predicted amplitude in the upper band, over that in the lower, below which a filter is fitted."""
 FIRST_CUTOFF_HZ = 10.0
+SLOW_RECORDER_HZ = 20.0
+"""A recorder that cuts off below this hides wheel hop."""
+FILTER_CURE = "switch the recorder's filter off, or record faster than it filters; else compare below the cut-off with `band`"
 
 
 def rate_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
@@ -60,6 +64,17 @@ def rate_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     yield Hypothesis(case.trials, describe, RATE_LEFT, (change,), (best,))
 
 
+def slow_recorder(recorder: FoundRecorder | None, runs: tuple[str, ...]) -> tuple[MeasurementFault, ...]:
+    """Return that a recorder which nobody stated cuts off what a vehicle does, where a fit that leaves nothing has found so clearly."""
+    if recorder is None or not recorder.estimate.is_clear or recorder.chain.cut_off is None or recorder.chain.cut_off >= SLOW_RECORDER_HZ:
+        return ()
+    cutoff = recorder.chain.cut_off
+    message = (
+        f"{', '.join(recorder.channels)} {'was' if len(recorder.channels) == 1 else 'were'} low-passed at about {cutoff:.2g} Hz in all runs"
+    )
+    return (MeasurementFault("low_pass", runs, recorder.channels, message, FILTER_CURE, cutoff, "Hz"),)
+
+
 def filter_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     """Yield that channels were filtered, all of them together by one filter."""
     found: dict[str, tuple[str, ...]] = {}
@@ -76,8 +91,7 @@ def filter_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
         cutoff = float(np.exp(numbers[-1]))
         where = place_words(runs, case.runs)
         message = f"{', '.join(channels)} {'was' if len(channels) == 1 else 'were'} low-passed at about {cutoff:.2g} Hz {where}"
-        cure = "switch the recorder's filter off, or record faster than it filters; else compare below the cut-off with `band`"
-        return (MeasurementFault("low_pass", runs, channels, message, cure, cutoff, "Hz"),)
+        return (MeasurementFault("low_pass", runs, channels, message, FILTER_CURE, cutoff, "Hz"),)
 
     change = RecorderFilter("", 0.1, runs=runs, channels=channels)
     yield Hypothesis(case.trials, describe, FILTER_LEFT, (change,), (float(np.log(FIRST_CUTOFF_HZ)),))

@@ -33,7 +33,7 @@ NOTICED = 0.02
 AXLE_SHIFT_SHARE = 0.25
 """Distances between axles are changed by up to this share of themselves."""
 AXLE_SHIFT_STEP_M, FINE_STEP = 0.1, 0.01
-SPEEDS = tuple(round(0.8 + 0.01 * i, 2) for i in range(41))
+SPEED_SCALES = tuple(round(0.8 + 0.01 * i, 2) for i in range(41))
 """True speeds over stated ones that are tried in the axles' place."""
 NUDGE = 1e-3
 """Parameters are changed by this share to see which axles they move."""
@@ -63,7 +63,8 @@ def axle_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
         return
     speed = SpeedScale("runs", 0.01, 1.0)
     scores = {
-        scale: _mean([compare(trial, case.predict(trial, (speed,), (scale,)), case.band) for trial in case.trials]) for scale in SPEEDS
+        scale: _mean([compare(trial, case.predict(trial, (speed,), (scale,)), case.band) for trial in case.trials])
+        for scale in SPEED_SCALES
     }
     scale = max(scores, key=lambda key: scores[key])
     if case.refit(case.problem, (speed,), (scale,))[1] < SPEED_FITS_TOO * left:
