@@ -74,6 +74,14 @@ def test_two_sensors_go_to_the_front_of_the_tractor_and_the_rear_of_the_semitrai
     assert found.best[1].score < found.best[0].score
 
 
+def test_no_more_sensors_are_placed_than_there_are_places(tmp_path):
+    path = tmp_path / "run.yaml"
+    path.write_text(TRUCK[: TRUCK.index("sensors:")].replace("tractor5.yaml\nset: sensitivity", "quarter_car"), encoding="utf-8")
+    found = advise_sensors(path, 3)
+    assert len(found.candidates) == 1
+    assert [len(layout.places) for layout in found.best] == [1]
+
+
 def test_a_vehicle_is_valid_on_its_own_recording_and_another_is_not(tmp_path):
     truth = sedan_truth()
     path = write_run(tmp_path, "hump", truth, noise=0.001)

@@ -76,6 +76,11 @@ def test_markup_is_printed_as_it_stands(capsys: pytest.CaptureFixture[str]):
     assert MARKUP in capsys.readouterr().err
 
 
+def test_a_folder_is_named_without_what_nobody_sees(work: Path, capsys: pytest.CaptureFixture[str]):
+    assert main(["build", "quarter_car", "--no-plots", "--out", "a\ufeff\u202eb"]) == 0
+    assert "open a\\ufeff\\u202eb/index.html" in capsys.readouterr().out.splitlines()[-1]
+
+
 def test_a_progress_bar_shows_markup_as_it_stands(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
     monkeypatch.setenv("FORCE_COLOR", "1")
     monkeypatch.setenv("COLUMNS", "200")

@@ -57,7 +57,8 @@ class Faults:
             place = folder / f"{key[0]}-{i:03d}"
             shutil.rmtree(place, ignore_errors=True)
             case.write(place)
-            (place / "out").rmdir()
+            if not any((place / "out").iterdir()):
+                (place / "out").rmdir()
             (place / "case.json").write_text(case.describe(), encoding="utf-8")
             lines = [
                 f"case {number}, seen {self.counts[key]} times",

@@ -42,7 +42,7 @@ COMPILING = (
     " --out calibrated",
     "sensors car.yaml run.yaml --count 1 --parameters kS,cS",
     "sensitivity car.yaml run.yaml --parameters kS --out sensitive",
-    "bench --individuals 1 --seconds 0.05",
+    "bench --individuals 0 --seconds 0.05",
 )
 REFUSED = "diagnose car.yaml run.yaml --effects dry_friction --library effects.yaml --everywhere --out diagnosed"
 """A diagnosis of a run without recording: a whole one takes minutes and processes of its own."""
@@ -118,7 +118,7 @@ def mutate(random: Random, items: list[tuple[str, ...]]) -> list[tuple[str, ...]
         items[i] = (random.choice((option[:-1], option.upper(), option + "s", option.replace("--", "-", 1))), *item[1:])
     else:
         word = hostile_word(random)
-        stray = random.choice((word, "--", "-", "@run.yaml", "--force", "--json", f"--{MARK}", f"--set={word}", "--version"))
+        stray = random.choice((word, "--", "-", "@run.yaml", "--json", f"--{MARK}", f"--set={word}", "--version"))
         items.insert(random.choice((0, len(items))), (stray,))
     return items
 

@@ -44,3 +44,11 @@ def test_a_fault_is_kept_once_and_done_again(worker: Worker, tmp_path: Path):
     assert kept == ["mischief-001", "mischief-002"]
     assert read_case(tmp_path / kept[0]) == mischief("crash")
     assert worker.try_case(read_case(tmp_path / kept[0])).outcome == FAULT
+
+
+def test_the_files_of_a_fault_in_the_folder_of_results_are_kept(worker: Worker, tmp_path: Path):
+    case = mischief("crash")
+    case, faults = replace(case, files={**case.files, "out/given.txt": b"x"}), Faults()
+    faults.add(0, case, worker.try_case(case))
+    faults.write(tmp_path)
+    assert read_case(tmp_path / "mischief-001") == case

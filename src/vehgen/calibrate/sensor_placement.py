@@ -101,7 +101,7 @@ def advise_sensors(
     run
         The run that would be measured, or its file: speed, hump and vehicle; its own sensors are ignored.
     count
-        The largest number of sensors.
+        The largest number of sensors; no more than there are places.
     parameters
         Those that matter (default: all with a range).
     vehicle
@@ -131,7 +131,7 @@ def advise_sensors(
     basis = scipy.linalg.null_space(null) if len(null) else np.eye(len(chosen))
     best: list[Layout] = []
     taken: tuple[int, ...] = ()
-    for size in range(1, count + 1):
+    for size in range(1, min(count, len(places)) + 1):
         sets = list(combinations(range(len(places)), 2)) if size == 2 else [(*taken, i) for i in range(len(places)) if i not in taken]
         layouts = [_layout(places, information, basis, item) for item in sets]
         winner = int(np.argmin([item.score for item in layouts]))

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehgen.commands.results import add_out, folder_named
-from vehgen.commands.terminal import add_vehicle, console, load, print_json, print_table, warn
+from vehgen.commands.terminal import add_vehicle, load, print_json, print_table, say, warn
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -46,7 +46,7 @@ def run(options: argparse.Namespace) -> None:
     _show(model, found.values, found.modes, found.loads)
     print_table("Kernel", ("phase", "operations"), [(phase, str(count)) for phase, count in counts.items()], right=(1,))
     warn(found.warnings)
-    console().print(f"built in {seconds:.1f} s; open {folder / 'index.html'}", highlight=False, markup=False)
+    say(f"built in {seconds:.1f} s; open {folder / 'index.html'}")
 
 
 def _show(model: EquationsOfMotion, values: dict[str, float], modes: Sequence[Mode], loads: StaticLoads) -> None:
