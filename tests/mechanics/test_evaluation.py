@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from vehgen.files.expressions import parse
 from vehgen.mechanics import GRAVITY, derive
 from vehgen.mechanics.evaluation import PopulationValues, evaluate_array, evaluate_number
+from vehgen.mechanics.symbols import to_sympy
 from vehgen.vehicle import bundled_models, load_vehicle
 
 a, b = sp.symbols("a b", real=True)
@@ -50,3 +52,10 @@ def test_the_weight_is_that_of_all_bodies_and_axles():
     masses = [body.mass for body in vehicle.bodies.values()] + [axle.mass for axle in vehicle.axles.values() if axle.mass is not None]
     known = vehicle.all_values(vehicle.values())
     assert derive(vehicle).total_weight() == pytest.approx(GRAVITY * sum(mass.evaluate(known) for mass in masses), rel=1e-12)
+
+
+@pytest.mark.parametrize("exponent", ["0.5", "-0.5", "1e-3", "0.1", "1/3", "-2.75", "9.99999999", "2.7182818284590452", "1.41421356237310"])
+def test_an_exponent_is_the_number_that_was_written(exponent):
+    found = evaluate_number(to_sympy(parse(f"b**({exponent})")), VALUES)
+    value = float(exponent) if "/" not in exponent else 1 / 3
+    assert found == pytest.approx(0.3**value, rel=1e-15)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from functools import cache
 
 import sympy as sp
@@ -20,6 +21,11 @@ def parameter(name: str) -> sp.Symbol:
 def number(value: float) -> sp.Expr:
     """Return a number as sympy keeps it best: whole numbers exactly, others as floats."""
     return sp.Integer(int(value)) if float(value).is_integer() and abs(value) < 1e15 else sp.Float(repr(value), 17)
+
+
+def _exact(value: sp.Expr) -> sp.Expr:
+    """Return a number as the fraction that its decimal digits say: 0.5 as 1/2 (`sympy.nsimplify` would execute a text for it)."""
+    return value if value.is_Rational else sp.Rational(*Fraction(repr(float(value))).as_integer_ratio())
 
 
 def to_sympy(expression: Expression) -> sp.Expr:
@@ -41,6 +47,6 @@ def _apply(operator: str, arguments: list[sp.Expr]) -> sp.Expr:
         case "/":
             return first / arguments[1]
         case "**":
-            return first ** sp.nsimplify(arguments[1])
+            return first ** _exact(arguments[1])
         case _:
             return _SYMPY_FUNCTIONS[operator](*arguments)

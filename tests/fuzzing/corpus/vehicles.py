@@ -90,6 +90,7 @@ VEHICLES: tuple[Nasty, ...] = (
     marked("vehicle", "half a million values", f"x: [{'1,' * 490_000}1]\n{REST}"),
     marked("vehicle", "doubling", json.dumps(doubling(60, power=False), indent=1), refused=False),
     marked("vehicle", "powers", json.dumps(doubling(60, power=True), indent=1), refused=False),
+    marked("vehicle", "power of a thousandth", "parameters: {p: {value: 2}}\n" + REST.replace("1 t", "1 t*p**1e-3"), refused=False),
     marked("vehicle", "parameter of itself", f"parameters:\n  a: {{equals: b}}\n  b: {{equals: a}}\n{REST}"),
     marked("vehicle", "extends itself", "extends: §vehicle.yaml\n"),
     with_files(marked("vehicle", "extends in a circle", "extends: a.yaml\n"), a="extends: b.yaml\n", b="extends: a.yaml\n"),
