@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+import scipy.linalg
 
 from vehgen.codegen import Excitation, Kernel
 from vehgen.errors import InputError
 from vehgen.mechanics import Place, PointOutput, derive
 from vehgen.mechanics.laws import LAWS
+from vehgen.mechanics.static_loads import element_rows
 from vehgen.vehicle import load_vehicle, parse_vehicle
 
 OUTPUTS = (
@@ -63,6 +65,38 @@ def test_a_law_of_no_strength_is_the_linear_vehicle(name):
     for column in range(len(OUTPUTS)):
         expected = linear.responses[0, :, column]
         assert np.abs(found.responses[0, :, column] - expected).max() <= 1e-10 * np.abs(expected).max()
+
+
+def test_a_force_of_parameters_alone_moves_the_vehicle():
+    """A law that depends on no motion is a constant force: the answer from rest is that of the matrix exponential."""
+    vehicle = sedan("{law: {force: push/2}}", extra="parameters: {push: {value: 900 N}}\n")
+    model, found = run(vehicle, hump(derive(vehicle), height=0.0))
+    numeric, n = model.numeric(), model.n_dof
+    rows, _ = element_rows(model, model.values())
+    push = -sum(450.0 * rows[i] for i, element in enumerate(model.elements) if element.laws)
+    system = np.zeros((2 * n + 1, 2 * n + 1))
+    system[:n, n : 2 * n] = np.eye(n)
+    system[n : 2 * n, : 2 * n] = -np.linalg.solve(numeric.M, np.hstack([numeric.K, numeric.C]))
+    system[n : 2 * n, -1] = np.linalg.solve(numeric.M, push)
+    for sample in (100, 500, 2000):
+        state = scipy.linalg.expm(1e-3 * sample * system)[: 2 * n, -1]
+        expected = (numeric.outputs["displacement"] @ state[:n])[1]
+        assert found.responses[0, sample, 1] == pytest.approx(expected, rel=1e-3)
+
+
+def test_a_tyre_of_no_stiffness_carries_nothing():
+    """Its contact force is always zero, so leaving the road changes nothing."""
+    text = (
+        "bodies:\n  body: {mass: 1 t, motions: [heave]}\n"
+        "axles:\n  a: {body: body, x: 0 m, mass: 50 kg, suspension: {k: 20 kN/m, c: 1 kN s/m}, tyre: {k: 0 N/m, LAW}}\n"
+        "  b: {body: body, x: 0 m, tyre: {k: 90 kN/m, c: 1 kN s/m}}\n"
+    )
+    moved = [
+        run(vehicle, hump(derive(vehicle)), (PointOutput("z", Place("L1", "body"), "displacement"),))[1].responses
+        for vehicle in (parse_vehicle(text.replace(", LAW", law)) for law in (", laws: [{tyre_liftoff: {}}]", ""))
+    ]
+    assert np.abs(moved[1]).max() > 1e-3
+    np.testing.assert_allclose(moved[0], moved[1], rtol=0, atol=1e-12)
 
 
 def test_friction_holds_a_parked_vehicle_still():

@@ -140,7 +140,7 @@ class PythonPrinter:
                 lines.append(f"{self.name(node)} = {text}")
                 texts[node] = (self.name(node), 9)
         for node in wanted:
-            if node not in texts and self.program.operations[node] in ("leaf", "number"):
+            if node not in texts:  # a leaf, a number, or what SETUP_PHASE knows
                 texts[node] = read(node)
         return lines, {node: text for node, (text, _) in texts.items()}
 
