@@ -44,12 +44,16 @@ class Case:
     special: dict[str, str] = field(default_factory=dict)
     mutations: tuple[str, ...] = ()
 
+    @property
+    def written(self) -> dict[str, bytes]:
+        """The files without those whose names no file system holds: nobody has such files."""
+        names = (name for name in self.files if max(len(os.fsencode(part)) for part in name.split("/")) <= LONGEST_NAME)
+        return {name: self.files[name] for name in names}
+
     def write(self, folder: Path) -> None:
         """Write the case's files into an empty folder, and an empty folder `out` beside them."""
         (folder / "out").mkdir(parents=True)
-        for name, data in self.files.items():
-            if max(len(os.fsencode(part)) for part in name.split("/")) > LONGEST_NAME:
-                continue  # no file system holds such a file: nobody has it
+        for name, data in self.written.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(data)
         for name, kind in self.special.items():

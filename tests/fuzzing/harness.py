@@ -122,7 +122,7 @@ def checked_for_name(case: Case, verdict: Verdict) -> Verdict:
 
 def new_files(case: Case, folder: Path) -> list[str]:
     """Return, as faults, the files of a folder that the case did not bring, outside its folder `out`."""
-    files = {Path(name).as_posix(): data for name, data in case.files.items()}  # a name may hold `//`
+    files = {Path(name).as_posix(): data for name, data in case.written.items()}  # a name may hold `//`
     brought = {*files, *case.special}
     present = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_symlink() or not path.is_dir()}
     stray = sorted(name for name in present - brought if not name.startswith("out/"))

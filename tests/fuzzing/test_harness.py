@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,11 @@ def test_mischief_is_seen(worker: Worker, name: str):
         assert any(reason.startswith(expected) for reason in verdict.reasons), verdict.reasons
     else:
         assert verdict.outcome == (REFUSED if name == "refuse" else ACCEPTED), verdict.reasons
+
+
+def test_a_file_that_nobody_can_have_is_not_missed(worker: Worker):
+    case = mischief("refuse")
+    assert worker.try_case(replace(case, files={**case.files, "x" * 300: b""})).outcome == REFUSED
 
 
 def test_a_fault_is_kept_once_and_done_again(worker: Worker, tmp_path: Path):
