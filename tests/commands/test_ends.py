@@ -207,3 +207,14 @@ def test_a_cache_that_cannot_be_used_costs_time_only(work: Path):
     assert found.stderr.count("\n") == 1
     assert (work / "taken").read_text() == "mine"
     assert (work / "run_response.csv").exists()
+
+
+@pytest.mark.skipif(not Path("/dev/null").exists(), reason="needs a home in which nothing can be made")
+def test_a_home_that_takes_nothing_costs_time_only(work: Path):
+    (work / "run.yaml").write_text(RUN)
+    nowhere = dict.fromkeys(("VEHGEN_CACHE", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "MPLCONFIGDIR"), "")
+    found = python("-m", "vehgen", "simulate", "run.yaml", "--plot", folder=work, HOME="/dev/null", **nowhere)
+    assert found.returncode == 0
+    assert found.stderr.startswith("warning: the kernel cache /dev/null/.cache/vehgen is not used: ")
+    assert found.stderr.count("\n") == 1
+    assert {"run_response.csv", "run_response.png"} < {path.name for path in work.iterdir()}

@@ -114,14 +114,23 @@ def test_a_fault_in_a_process_of_its_own(command: str, work: Path):
     assert [path.name for path in work.iterdir()] == ["bad.yaml"]
 
 
-@pytest.mark.parametrize("arguments", [["modes"], ["mods", "tractor5"], ["modes", "tractor5", "--sett", "a"], ["models", "tractor5"]])
-def test_wrong_arguments(arguments: list[str], capsys: pytest.CaptureFixture[str]):
-    with pytest.raises(SystemExit) as left:
-        main(arguments)
-    assert left.value.code == 2
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["modes"], "the following arguments are required: FILE; `vehgen modes --help` lists what is known"),
+        (["mods", "tractor5"], "argument COMMAND: invalid choice: 'mods' (choose from "),
+        (["modes", "tractor5", "--sett", "a"], "unrecognized arguments: --sett a; "),
+        (["models", "\x1b[2J\u202e\n" + "x" * 1000], "unrecognized arguments: \\x1b[2J\\u202e\\nxxx"),
+        (["sensors", "sedan2", "run.yaml", "--count", "\u202e"], "argument --count: invalid int value: '\\u202e'; "),
+    ],
+)
+def test_wrong_arguments_are_one_line(arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]):
+    assert main(arguments) == 2
     captured = capsys.readouterr()
     assert captured.out == ""
-    assert captured.err.startswith("usage: vehgen")
+    assert captured.err.startswith(f"error: {message}")
+    assert captured.err.count("\n") == 1
+    assert len(captured.err) < 700
 
 
 def raising(error: BaseException) -> Callable[..., None]:

@@ -30,7 +30,7 @@ from vehgen.commands import (
     static,
     validate,
 )
-from vehgen.commands.faults import end_of, show_warnings
+from vehgen.commands.faults import OneLineParser, end_of, show_warnings
 from vehgen.errors import ArgumentError, InputError, shortened
 from vehgen.files import guarding_results, noting_reads
 
@@ -57,7 +57,7 @@ COMMANDS = (
 
 def make_parser() -> argparse.ArgumentParser:
     """Return the parser of `vehgen`."""
-    parser = argparse.ArgumentParser(
+    parser = OneLineParser(
         prog="vehgen",
         description="Declare a road vehicle in YAML; derive, compile and simulate its pitch-plane dynamics.",
         epilog="example: vehgen build tractor5.yaml",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import argparse
+import logging
 import os
 import select
 import signal
@@ -12,13 +14,21 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
-from typing import TextIO
+from typing import NoReturn, TextIO
 
 from vehgen.commands.terminal import one_line
-from vehgen.errors import CacheWarning, InputError, ModelWarning
+from vehgen.errors import CacheWarning, InputError, ModelWarning, shortened
 
 UNUSABLE, STOPPED, TERMINATED = 2, 130, 143
 """Exit codes; the last two are those of shells, 128 and the number of the signal."""
+
+
+class OneLineParser(argparse.ArgumentParser):
+    """A parser whose refusals are lines as all others, with what they quote escaped."""
+
+    def error(self, message: str) -> NoReturn:
+        """Refuse the arguments."""
+        raise InputError(f"{shortened(message, 300)}; `{self.prog} --help` lists what is known")
 
 
 def end_of(work: Callable[[], int | None], debug: bool = False) -> int:
@@ -85,7 +95,8 @@ def show_warning(
 
 
 def show_warnings() -> None:
-    """Print every warning of vehgen from now on."""
+    """Print every warning of vehgen from now on, and none of Matplotlib (of fonts, of a home that it cannot write to)."""
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
     for category in (ModelWarning, CacheWarning):
         warnings.simplefilter("always", category)
     warnings.showwarning = show_warning
