@@ -9,8 +9,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-FORMATS = ("vehicle", "run", "cargo", "frame", "facts", "effects", "table", "export")
-"""The six formats of YAML, the tables (CSV) that runs name, and phone exports."""
+FORMATS = ("vehicle", "run", "cargo", "frame", "facts", "effects", "table", "export", "options")
+"""The six formats of YAML, the tables (CSV) that runs name, phone exports, and the options of commands."""
 
 
 LONGEST_NAME = 255
@@ -43,6 +43,16 @@ class Case:
     command: tuple[str, ...] = ()
     special: dict[str, str] = field(default_factory=dict)
     mutations: tuple[str, ...] = ()
+
+    @property
+    def start(self) -> str:
+        """The folder below the case's own that it is read from."""
+        return "out" if self.format == "options" else "."
+
+    @property
+    def needs_place(self) -> bool:
+        """Whether a refusal must name a line: there is one in the main file, unless that is an archive, no file, or not at fault."""
+        return self.format not in {"export", "options"} and self.main in self.files and self.main not in self.special
 
     @property
     def written(self) -> dict[str, bytes]:

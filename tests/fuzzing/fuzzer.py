@@ -8,6 +8,7 @@ from random import Random
 from tests.fuzzing.bulk_mutations import bulk_entries, bulk_run, bulk_vehicle
 from tests.fuzzing.cases import FORMATS, Case, generator
 from tests.fuzzing.healthy import healthy
+from tests.fuzzing.options import hostile_options
 from tests.fuzzing.table_mutations import mutate_export, mutate_table
 from tests.fuzzing.text_mutations import TEXT_MUTATIONS
 from tests.fuzzing.tree_mutations import mutate_tree, special_file
@@ -69,6 +70,8 @@ def make_case(seed: int, number: int, compiling: float = 0.0) -> Case:
     """
     format = FORMATS[number % len(FORMATS)]
     random = generator(seed, format, number)
+    if format == "options":
+        return hostile_options(random, compiling)
     case = random.choice(healthy()[format])
     for _ in range(random.choice((1, 1, 1, 2, 2, 3))):
         case = mutate(random, case)

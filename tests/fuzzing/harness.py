@@ -17,7 +17,7 @@ from tests.fuzzing.cases import Case
 from tests.fuzzing.healthy import ROOT
 from tests.fuzzing.judge import FAULT, Answer, Limits, Verdict, judge
 
-COMPILING = {"simulate", "build", "import", "calibrate", "diagnose", "validate", "sensors"}
+COMPILING = {"simulate", "build", "import", "calibrate", "diagnose", "validate", "sensors", "sensitivity", "bench"}
 """Commands that compile kernels."""
 
 KERNEL_LIMITS = Limits(60.0, 3000.0)
@@ -94,26 +94,22 @@ class Worker:
         kernels = bool(case.command) and case.command[0] in COMPILING
         limits = limits or (KERNEL_LIMITS if kernels else Limits())
         job = {"folder": str(folder), "format": case.format, "main": case.main, "command": list(case.command), "kernels": kernels}
+        job["start"] = case.start
         job["wait"] = patience + 3 * limits.seconds
         found = self.ask({**job, "seconds": limits.seconds, "megabytes": limits.megabytes})
         new = new_files(case, folder)
         if not kernels and found.get("kernels"):
             new.append("a kernel was imported")
         answer = read_answer(found, new)
-        verdict = judge(answer, folder, limits, needs_place=case.format != "export" and is_regular(case))
+        verdict = judge(answer, folder, limits, needs_place=case.needs_place)
         verdict = replace(checked_for_name(case, verdict), compiles=kernels)
         shutil.rmtree(folder)
         return verdict
 
 
-def is_regular(case: Case) -> bool:
-    """Whether the case's main file is a file: where it is not, there is no line to name."""
-    return case.main in case.files and case.main not in case.special
-
-
 def checked_for_name(case: Case, verdict: Verdict) -> Verdict:
     """A refusal that has no line must at least name a file of the case."""
-    if verdict.answer.message is None or (case.format != "export" and is_regular(case)):
+    if verdict.answer.message is None or case.needs_place or case.format == "options":
         return verdict
     if any(Path(name).name in verdict.answer.message for name in (case.main, *case.files, *case.special)):
         return verdict
@@ -137,8 +133,8 @@ def read_answer(found: dict[str, Any], faults: list[str]) -> Answer:
     message, place = found.get("message"), found.get("place")
     crash, crash_type = found.get("crash", ""), found.get("crash_type", "")
     if (code := found.get("code")) is not None:
-        if code != 2 or not message.startswith("error: "):
-            crash, crash_type = message, f"exit code {code} without an error line"
+        if code != 2 or not message.startswith("error: ") or message.startswith("error: internal fault"):
+            crash, crash_type = message, f"exit code {code} without a clear error"
         message = message.removeprefix("error: ")
         parts = re.match(r"(?P<file>[^:\n]+):(?P<line>\d+):(?P<column>\d+): ", message)
         place = (parts["file"], int(parts["line"]), int(parts["column"])) if parts else None

@@ -55,7 +55,10 @@ def by_command(job: dict[str, Any]) -> dict[str, Any]:
     outputs = [io.TextIOWrapper(io.BytesIO(), encoding="utf-8", errors="surrogatepass") for _ in range(2)]
     sys.stdout, sys.stderr = outputs
     try:
-        code = main(job["command"])
+        try:
+            code = main(job["command"])
+        except SystemExit as left:  # --help and --version end so
+            code = left.code
         for stream in outputs:
             stream.flush()
     finally:
@@ -70,7 +73,7 @@ def by_command(job: dict[str, Any]) -> dict[str, Any]:
 def child(job: dict[str, Any], audit: Audit, pipe: int) -> None:
     """Do one job in a forked process, send the answer, and leave."""
     folder = Path(job["folder"])
-    os.chdir(folder)
+    os.chdir(folder / job["start"])
     start = address_space()
     resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(job["seconds"]) + 1, resource.RLIM_INFINITY))
     resource.setrlimit(resource.RLIMIT_AS, (start + int(job["megabytes"] * 2**20), resource.RLIM_INFINITY))
