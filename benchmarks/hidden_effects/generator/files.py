@@ -42,6 +42,7 @@ def _run_file(case: Case, recording: Recording, name: str, folder: Path) -> str:
         f"speed: {run.speed:g} m/s",
         f"duration: {run.duration:g} s",
         f"recording: {name}.csv",
+        *(["acquisition: none"] if case.sampling == "point" else []),
         "road:",
     ]
     profiles = iter(recording.profiles)

@@ -31,7 +31,7 @@ STEPS = 10
 TOLERANCE = 1e-3
 
 
-def align(misfit: Misfit, unit: Array, begun: Sequence[float] = ()) -> Array:
+def align(misfit: Misfit, unit: Array, begun: Sequence[float] = (), bands: Sequence[float] = BANDS_HZ) -> Array:
     """Return errors `shape (n_errors,)` at which each run lies over its recording; those of sensors are none.
 
     Parameters
@@ -42,15 +42,17 @@ def align(misfit: Misfit, unit: Array, begun: Sequence[float] = ()) -> Array:
         Parameters in the unit cube, `shape (n_parameters,)`.
     begun
         Shared adjustments in units of their scales (default: neutral).
+    bands
+        Highest frequencies [Hz] to which each run's errors are fitted in turn; without any, it is laid over its recording by delay and speed.
     """
     x = np.concatenate([unit, begun or np.zeros(len(misfit.shared)), np.zeros(misfit.n_errors)])
     for number in range(len(misfit.problem.trials)):
         if misfit.error_position(number, "delay") is not None:
-            x[misfit.own_columns(number)] = _laid_over(misfit, x, number)
+            x[misfit.own_columns(number)] = _laid_over(misfit, x, number, bands)
     return x[misfit.n_parameters + len(misfit.shared) :]
 
 
-def _laid_over(misfit: Misfit, x: Array, number: int) -> Array:
+def _laid_over(misfit: Misfit, x: Array, number: int, bands: Sequence[float]) -> Array:
     """Return the own errors of one run, `shape (n_own,)`."""
     trial = misfit.problem.trials[number]
     alone = misfit.alone(number, x)
@@ -69,7 +71,7 @@ def _laid_over(misfit: Misfit, x: Array, number: int) -> Array:
             best, start = likeness, tried
     if "speed" not in names:
         return start
-    for highest in BANDS_HZ:
+    for highest in bands:
         if highest < misfit.band[1]:
             start = _fitted(misfit.alone(number, x, (misfit.band[0], highest)), start)
     return start

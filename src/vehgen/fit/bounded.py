@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 FIRST_DAMPING = 1e-3
 """Damping of the first step, as a share of the diagonal of the normal equations."""
-LARGEST_DAMPING = 1e8
+LARGEST_DAMPING, LEAST_DAMPING, LESS_DAMPING = 1e8, 1e-9, 1e-2
+"""Damping that ends a fit, that is as good as none, and the factor for it where it stands in the way."""
 SMALLEST_STEP = 1e-7
 """A step that changes no unknown by more than this ends a fit: unknowns count in the unit cube or in standard deviations."""
 
@@ -63,22 +64,37 @@ def minimise(
         step = _step(point, x, bounds, damping)
         if np.abs(step).max(initial=0.0) < SMALLEST_STEP:
             break
+        expected = -2 * float(point.gradient @ step) - float(step @ point.information @ step)
+        if expected <= 0 and damping <= LARGEST_DAMPING:  # bounds have bent the step uphill: nearer to the gradient it goes down
+            damping, growth = damping * growth, growth * 2
+            continue
         moved = x + step
         then, steps = square(moved), steps + 1
-        expected = -2 * float(point.gradient @ step) - float(step @ point.information @ step)
         if np.isfinite(then) and then < now:
             gained = now - then
             x, now = moved, then
             damping *= max(1 / 3, 1 - (2 * min(gained / max(expected, 1e-300), 1.0) - 1) ** 3)
             growth = 2.0
             if gained <= tolerance * now:
-                break
+                if damping <= LEAST_DAMPING or _left(point, x, step, bounds) <= tolerance * now:
+                    break
+                damping = max(damping * LESS_DAMPING, LEAST_DAMPING)
             point = linearise(x)
         else:
             if expected <= tolerance * now or damping > LARGEST_DAMPING:
                 break
             damping, growth = damping * growth, growth * 2
     return x
+
+
+def _left(point: LinearisedPoint, x: Array, step: Array, bounds: tuple[Array, Array]) -> float:
+    """Return how much the sum of squares would fall by an undamped step from `x`, where the step `step` from `point` has led.
+
+    Damping holds what is little known as firmly as what is well known, so that a damped step along a flat valley gains little.
+    """
+    here = LinearisedPoint(point.information, point.gradient + point.information @ step)
+    full = _step(here, x, bounds, LEAST_DAMPING)
+    return -2 * float(here.gradient @ full) - float(full @ here.information @ full)
 
 
 def _step(point: LinearisedPoint, x: Array, bounds: tuple[Array, Array], damping: float) -> Array:

@@ -108,7 +108,8 @@ class Nuisances:
             quantities = {(channel.sensor, channel.quantity) for channel in trial.recording.channels}
             declared = channel_chains(trial.run, 1 / trial.recording.dt)
             for channel in trial.recording.channels:
-                if not declared[channel.name].is_known:
+                chain = declared.get(channel.name)
+                if chain is not None and not chain.is_known:
                     for name in LOW_PASS:
                         names.setdefault((name, channel.sensor), Nuisance(name, channel.sensor, spread[name]))
                 names.setdefault(("gain", channel.name), Nuisance("gain", channel.name, spread["gain"]))

@@ -29,13 +29,14 @@ from vehgen.simulate import SimulatorPool
 Array = NDArray[np.float64]
 HOPELESS = 0.5
 """A candidate that leaves more than this share of the excess after the rough fits is not refined."""
-MOST_STARTS = 8
-"""So many starts are tried, of which KEPT are followed."""
-FOLLOWED_STARTS = 2
-FEW, MORE = 4, 8
-"""Steps from every start, and from those that are followed."""
+STAGES = ((4.0, 4, 8), (10.0, 2, 8), (20.0, 1, 6), (None, 1, 8))
+"""Highest frequency [Hz] (None: the band's), how many of the best are followed so far, and so many steps of each."""
+WIDER = 1.2
+"""A stage is left out that does not reach so many times as high as the band begins, or lower than it ends."""
 CLOSED_SHARE = 0.01
 """Share of the excess at which no other start is needed."""
+Start = tuple[Array, Array, tuple[float, ...]]
+"""Where a fit begins: parameters in the unit cube, errors of runs and sensors, numbers of adjustments."""
 
 
 def fit_candidate(
@@ -88,43 +89,49 @@ class _Rough:
         self.priors = base_priors(problem.space.names[: problem.space.size - self.n_effect_parameters], (*current.effects, candidate))
 
     def search(self, origins: Sequence[StartingPoint], begin: Sequence[tuple[float, ...]]) -> LeastSquaresFit | None:
-        """Return the lowest of the rough fits."""
-        fits: list[LeastSquaresFit] = []
-        for unit, errors, numbers in self._starts(origins, begin)[:MOST_STARTS]:
-            fits.append(self._fit(unit, errors, numbers, FEW))
-            if self._closed(fits[-1]):
-                return fits[-1]
-        fits.sort(key=lambda item: item.loss)
-        followed = []
-        for fit in fits[:FOLLOWED_STARTS]:
-            unit, errors = fit.misfit.split(fit.x)
-            followed.append(self._fit(unit, errors, tuple(fit.misfit.adjusted(fit.x)), MORE))
-            if self._closed(followed[-1]):
-                break
-        return min(followed, key=lambda item: item.loss, default=None)
+        """Return the lowest of the rough fits: slow motions first, from many starts, then faster ones from the best of them.
+
+        All motions at once would turn fast ones by whole cycles and end where the errors of runs stand at their bounds; slow motions have
+        one minimum, in which each wider band begins (C. Bunks et al., Geophysics 60, 1995, doi:10.1190/1.1443880).
+        """
+        starts, fits = self._starts(origins, begin), list[LeastSquaresFit]()
+        low, high = self.band
+        for top, count, steps in STAGES:
+            if top is not None and not WIDER * low < top < high / WIDER:
+                continue
+            fits = []
+            for start in starts[:count]:
+                fits.append(self._fit(start, (low, top or high), steps))
+                if top is None and self._closed(fits[-1]):
+                    break
+            fits.sort(key=lambda item: item.loss)
+            starts = [(*fit.misfit.split(fit.x), tuple(fit.misfit.adjusted(fit.x))) for fit in fits]
+        return fits[0] if fits else None
 
     def _closed(self, fit: LeastSquaresFit) -> bool:
         return fit.chi2 - 1 <= CLOSED_SHARE * max(self.current.training - 1, 0.0)
 
-    def _fit(self, unit: Array, errors: Array, numbers: tuple[float, ...], steps: int) -> LeastSquaresFit:
+    def _fit(self, start: Start, band: tuple[float, float], steps: int) -> LeastSquaresFit:
         options = FitOptions(
             NUISANCES,
-            self.band,
+            band,
             max_steps=steps,
             tolerance=COARSE_TOLERANCE,
             jacobian_refresh=JACOBIAN_REFRESH,
             prior_sigma=self.priors,
             n_effect_parameters=self.n_effect_parameters,
         )
+        unit, errors, numbers = start
+        nearby = self.nearby if band == self.band else None
         return fit_least_squares(
-            self.problem, unit, options, noises=self.noises, start=errors, shared=self.shared, numbers=numbers, nearby=self.nearby
+            self.problem, unit, options, noises=self.noises, start=errors, shared=self.shared, numbers=numbers, nearby=nearby
         )
 
-    def _starts(self, origins: Sequence[StartingPoint], begin: Sequence[tuple[float, ...]]) -> list[tuple[Array, Array, tuple[float, ...]]]:
-        """Return the points at which fits may begin, the lowest first: parameters, nuisances, numbers of adjustments."""
+    def _starts(self, origins: Sequence[StartingPoint], begin: Sequence[tuple[float, ...]]) -> list[Start]:
+        """Return the points at which fits may begin, those of the lowest loss first."""
         n, own = len(self.current.unit), len(self.candidate.parameters)
         space = self.problem.space
-        misfit = Misfit(self.problem, self.noises, space.start, NUISANCES, self.band, self.shared)
+        misfit = Misfit(self.problem, self.noises, space.start, NUISANCES, (self.band[0], self._first_top()), self.shared)
         neutral = tuple(item.neutral for item in self.current.shared)
         ranked = []
         for base, errors in origins:
@@ -141,3 +148,7 @@ class _Rough:
                     ranked.append((loss, unit, errors, numbers))
         ranked.sort(key=lambda item: item[0])
         return [(unit, errors, numbers) for _, unit, errors, numbers in ranked]
+
+    def _first_top(self) -> float:
+        low, high = self.band
+        return next((top for top, _, _ in STAGES if top is not None and WIDER * low < top < high / WIDER), high)

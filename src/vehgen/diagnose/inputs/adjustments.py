@@ -28,6 +28,17 @@ class RunGain(Gain):
 
 
 @dataclass(frozen=True)
+class RunLevel(Adjustment):
+    """What all channels read in the run `run` over what its file lets expect: a higher road does the same."""
+
+    run: str = ""
+
+    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+        """Return the readings times its number, in its run."""
+        return np.asarray(response * numbers[0]) if trial.name == self.run else response
+
+
+@dataclass(frozen=True)
 class RunDelay(SensorDelay):
     """How late all channels of a sensor are in the run `run` only [s]."""
 

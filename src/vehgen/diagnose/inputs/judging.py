@@ -17,6 +17,7 @@ from vehgen.diagnose.inputs.exchanges import exchange_hypotheses, speed_hypothes
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault
 from vehgen.diagnose.inputs.humps import hump_hypotheses, road_heights
 from vehgen.diagnose.inputs.labels import label_hypotheses
+from vehgen.diagnose.inputs.levels import level_hypotheses
 from vehgen.diagnose.inputs.recorders import filter_hypotheses, rate_hypotheses, slow_recorder
 from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.diagnose.inputs.vehicle import axle_hypotheses, other_vehicle, strange_run_hypotheses, unrelated_recording
@@ -50,6 +51,7 @@ SUBTLE: tuple[Generator, ...] = (
     speed_hypotheses,
     lambda case: clock_hypotheses(case, decisive=False),
     gain_hypotheses,
+    level_hypotheses,
     drift_hypotheses,
     filter_hypotheses,
     axle_hypotheses,

@@ -20,6 +20,7 @@ from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.effects import EffectLocator
 from vehgen.effects.evidence import Origins, Residual, StartingPoint
+from vehgen.fit.alignment import align
 from vehgen.simulate import SimulatorPool
 
 Array = NDArray[np.float64]
@@ -148,13 +149,16 @@ class Fitter:
 
 def _origins(base: ModelFit, current: CurrentModel, passed: Sequence[PlaceResult]) -> Origins:
     """Return where base parameters and nuisances may begin: at the file's values, where the place test leaves them, where they are."""
-    space = current.problem.space
+    space, misfit = current.problem.space, base.least_squares.misfit
     fitted: StartingPoint = current.unit, current.errors
-    begun = fitted if base.effects else (space.unit(space.start), current.errors)
+    begun = fitted
+    if not base.effects:  # the errors of runs have bent to what is missing: they begin anew
+        unit = space.unit(space.start)
+        begun = unit, align(misfit, unit, bands=())
+        fitted = current.unit, begun[1]
     placed = begun
     if one_force(passed):
-        unit, errors = base.least_squares.misfit.split(passed[0].x)
-        placed = unit, errors
+        placed = misfit.split(passed[0].x)[0], begun[1]
     return Origins(begun, placed, fitted)
 
 
