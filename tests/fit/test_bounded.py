@@ -67,3 +67,28 @@ def test_where_nothing_can_be_computed_it_stays():
     nothing = LinearisedPoint(np.full((2, 2), np.nan), np.full(2, np.nan))
     found = minimise(lambda x: float("nan"), lambda x: nothing, np.array([0.3, 0.4]), (np.zeros(2), np.ones(2)), 1e-8, 20)
     assert found.tolist() == [0.3, 0.4]
+
+
+@pytest.mark.parametrize("seed", range(16))
+def test_bounds_that_hold_unknowns_alike_do_not_end_a_fit_early(seed):
+    """Unknowns that nearly undo one another: a step cut at the bounds of some, however the others follow, may lead uphill."""
+    random = np.random.default_rng(seed)
+    matrix = 10 * random.normal(size=(60, 2)) @ random.normal(size=(2, 12)) + random.normal(size=(60, 12))
+    wanted = matrix @ (4 * random.normal(size=12)) + random.normal(size=60)
+    bounds = np.full(12, -1.0), np.full(12, 1.0)
+    found = ours(lambda x: matrix @ x - wanted, lambda x: matrix, random.uniform(-0.9, 0.9, 12), bounds, 400)
+    best = scipy.optimize.lsq_linear(matrix, wanted, bounds, method="bvls", tol=1e-14)
+    assert ((matrix @ found - wanted) ** 2).sum() == pytest.approx(2 * best.cost, rel=1e-6)
+
+
+def test_a_flat_valley_is_followed_to_its_end():
+    """The sum of two unknowns is told a million times as well as their difference: damping by the one holds the other."""
+    matrix = np.array([[1e3, 1e3], [1.0, -1.0]])
+    wanted = matrix @ np.array([30.0, -30.0])
+    bounds = np.full(2, -100.0), np.full(2, 100.0)
+
+    def square(x):
+        return float(((matrix @ x - wanted) ** 2).sum()) + 1e6
+
+    found = minimise(square, lambda x: LinearisedPoint(matrix.T @ matrix, matrix.T @ (matrix @ x - wanted)), np.zeros(2), bounds, 1e-4, 60)
+    assert found == pytest.approx([30.0, -30.0], abs=0.5)

@@ -43,7 +43,7 @@ def align(misfit: Misfit, unit: Array, begun: Sequence[float] = (), bands: Seque
     begun
         Shared adjustments in units of their scales (default: neutral).
     bands
-        Highest frequencies [Hz] to which each run's errors are fitted in turn; without any, it is laid over its recording by delay and speed.
+        Highest frequencies [Hz] to which each run's errors are fitted in turn; without any, only delay and speed are looked for.
     """
     x = np.concatenate([unit, begun or np.zeros(len(misfit.shared)), np.zeros(misfit.n_errors)])
     for number in range(len(misfit.problem.trials)):

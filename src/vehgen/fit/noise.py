@@ -46,6 +46,8 @@ MOST_RUN_SIGMAS = 3.0
 """... of which it may be so many."""
 EVEN = np.full(len(KNOT_WAVENUMBERS), SMALLEST_LEVEL)
 """Levels of an even road."""
+LOUDER_HZ = (0.0, 3.0, 8.0, 15.0, 25.0)
+"""Where the bands begin in which noise may be louder than sensors and a linear vehicle make it [Hz]."""
 COLOUR_AT = 44.0
 """Frequency at which coloured noise has the density of white noise of its sigma [Hz]: the top of the band, where it is measured."""
 
@@ -69,12 +71,14 @@ class RoadAnswer:
 class Noise:
     """Roughness `levels shape (len(KNOTS),)` [m^3] of the road beneath, and noise `sigma shape (n_channels,)` [channels' units].
 
-    The noise's density falls as f^-slope; 0 is white.
+    The noise's density falls as f^-slope; 0 is white. `louder shape (len(LOUDER_HZ), n_channels)` are factors of each
+    channel's density from these frequencies on, by what no other channel shares: laws make harmonics where H has none.
     """
 
     levels: Array
     sigma: Array
     slope: float = 0.0
+    louder: Array | None = None
 
     def level(self, wavenumber: Array) -> Array:
         """Return L at wavenumbers [cycles/m]."""
@@ -82,8 +86,8 @@ class Noise:
 
     def density(self, answer: RoadAnswer) -> Complex:
         """Return S(f), `shape (n, n_channels, n_channels)`."""
-        part = self._part(answer)
-        return np.asarray(part @ _adjoint(part) + self._scale(answer)[:, :, None] ** 2 * np.eye(len(self.sigma)))
+        scale, b = self._scaled(answer)
+        return np.asarray(scale[:, :, None] * (b @ _adjoint(b) + np.eye(len(self.sigma))) * scale[:, None, :])
 
     def whitener(self, answer: RoadAnswer) -> Complex:
         """Return W(f) with W S W* = 1, `shape (n, n_channels, n_channels)`."""
@@ -115,9 +119,13 @@ class Noise:
         return scale, self._part(answer) / scale[:, :, None]
 
     def _scale(self, answer: RoadAnswer) -> Array:
-        """Return the root of the sensors' own density, `shape (n, n_channels)`."""
+        """Return the root of the density of each channel's own, `shape (n, n_channels)`: the sensors', and what makes it louder."""
         colour = (np.maximum(answer.frequency, 1e-3) / COLOUR_AT) ** (-self.slope / 2)
-        return np.asarray(np.sqrt(2 * answer.dt) * colour[:, None] * self.sigma)
+        own = np.sqrt(2 * answer.dt) * colour[:, None] * self.sigma
+        if self.louder is None:
+            return np.asarray(own)
+        more = self.louder[np.searchsorted(LOUDER_HZ, answer.frequency, side="right") - 1] - 1
+        return np.asarray(np.sqrt(own**2 + more * (own**2 + (np.abs(self._part(answer)) ** 2).sum(axis=2))))
 
     def _part(self, answer: RoadAnswer) -> Complex:
         """Return P with S = P P* + the sensors' own density, `shape (n, n_channels, n_axles + n_forces)`."""

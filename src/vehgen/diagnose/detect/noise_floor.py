@@ -17,7 +17,18 @@ from numpy.typing import NDArray
 
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.misfit import Noises
-from vehgen.fit.noise import COLOUR_AT, EVEN, LARGEST_LEVEL, SMALLEST_LEVEL, Noise, RoadAnswer, estimate_noise, road_answer, transform
+from vehgen.fit.noise import (
+    COLOUR_AT,
+    EVEN,
+    LARGEST_LEVEL,
+    LOUDER_HZ,
+    SMALLEST_LEVEL,
+    Noise,
+    RoadAnswer,
+    estimate_noise,
+    road_answer,
+    transform,
+)
 from vehgen.fit.trial import Trial
 from vehgen.measure import record_psd
 from vehgen.road import Hump
@@ -39,6 +50,8 @@ SITES_DIFFER = 1.0
 """Standard deviation of the logarithm of how much rougher one run's site is than the others'."""
 LEAST = 0.5
 """A lead-in that tells of less than this share of what its own top of the band shows has let the road's roughness take the noise."""
+CLEARLY_LOUDER = 3.0
+"""Lead-ins are louder than their noise where their mean power in a band is so many standard deviations above it."""
 STEADY = 3.0
 """The loudest quarter of a quiet lead-in is less than this many times as loud as the middling one."""
 LARGEST_RATIO = 4.0
@@ -104,7 +117,28 @@ def find_noise_floor(trials: Sequence[Trial], band: tuple[float, float] = CALIBR
         for i, trial in enumerate(group):
             own_noise = Noise(shared.levels, sigma[i], shared.slope if np.isnan(stated).any() else 0.0)
             noises[trial.name] = _with_own_level(lead_in(trial), own_noise, band)
+        if quiet:
+            louder = _louder([(part, noises[part.name]) for part in quiet], band)
+            noises |= {trial.name: replace(noises[trial.name], louder=louder) for trial in group}
     return NoiseFloor(noises, lead, top, tuple(corrected), noises)
+
+
+def _louder(quiet: Sequence[tuple[Trial, Noise]], band: tuple[float, float]) -> Array | None:
+    """Return how much louder lead-ins are than their noise has them, `shape (len(LOUDER_HZ), n_channels)`; None where they are not.
+
+    Laws make harmonics: what a rough road makes of a vehicle with laws is no answer of a linear one.
+    """
+    n_channels = len(quiet[0][1].sigma)
+    power, count = np.zeros((len(LOUDER_HZ), n_channels)), np.zeros(len(LOUDER_HZ))
+    for part, noise in quiet:
+        lines, answer = _lines(part, band)
+        own = np.diagonal(noise.density(answer), axis1=1, axis2=2).real
+        number = np.searchsorted(LOUDER_HZ, answer.frequency, side="right") - 1
+        np.add.at(power, number, np.abs(lines) ** 2 / own)
+        np.add.at(count, number, 1)
+    mean = power / np.maximum(count, 1)[:, None]
+    clear = mean > 1 + CLEARLY_LOUDER / np.sqrt(np.maximum(count, 1))[:, None]
+    return np.where(clear, mean, 1.0) if clear.any() else None
 
 
 def _with_own_level(part: Trial | None, noise: Noise, band: tuple[float, float]) -> Noise:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,6 @@ from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.least_squares import COARSE_TOLERANCE, WEAK_PRIOR_SIGMA, FitOptions, LeastSquaresFit, fit_least_squares
 from vehgen.fit.misfit import Noises
-from vehgen.fit.noise import Noise
 from vehgen.fit.problem import Problem
 from vehgen.fit.recorders import FoundRecorder
 from vehgen.fit.trial import Trial
@@ -160,5 +160,5 @@ class BaseRefits:
         for trial in trials:
             own = found[trial.name]
             factors = np.array([BLINDING if (trial.name, channel) in blind else 1.0 for channel in trial.channels])
-            blinded[trial.name] = Noise(own.levels, own.sigma * factors, own.slope)
+            blinded[trial.name] = replace(own, sigma=own.sigma * factors)
         return blinded
