@@ -1,9 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.optimize
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from vehgen.fit.noise import EVEN, KNOT_WAVENUMBERS, Noise, RoadAnswer, estimate_noise, taper, transform
+from vehgen.fit.noise import EVEN, KNOT_WAVENUMBERS, LOUDER_HZ, Noise, RoadAnswer, estimate_noise, taper, transform
 
 
 def make_answer(random, n=400, channels=4, axles=3):
@@ -25,6 +27,22 @@ def test_the_whitener_makes_the_density_one():
     white = noise.whitener(answer)
     found = white @ noise.density(answer) @ white.conj().transpose(0, 2, 1)
     assert np.abs(found - np.eye(4)).max() < 1e-6
+
+
+def test_louder_bands_add_to_the_channel_alone():
+    random = np.random.default_rng(4)
+    answer = make_answer(random)
+    plain = Noise(10.0 ** random.uniform(-6, -3, len(KNOT_WAVENUMBERS)), np.array([1e-4, 0.1, 1.0, 0.01]))
+    factors = np.ones((len(LOUDER_HZ), 4))
+    factors[2, 1] = 4.0
+    louder = replace(plain, louder=factors)
+    more = louder.density(answer) - plain.density(answer)
+    inside = (answer.frequency >= LOUDER_HZ[2]) & (answer.frequency < LOUDER_HZ[3])
+    assert more[inside, 1, 1].real == pytest.approx(3 * plain.density(answer)[inside, 1, 1].real, rel=1e-9)
+    more[inside, 1, 1] = 0
+    assert np.abs(more).max() < 1e-9
+    white = louder.whitener(answer)
+    assert np.abs(white @ louder.density(answer) @ white.conj().transpose(0, 2, 1) - np.eye(4)).max() < 1e-6
 
 
 def test_the_loss_is_minus_two_ln_of_the_likelihood_and_its_slopes_are_its_derivatives():

@@ -1,0 +1,40 @@
+"""The noise of lead-ins: what no sensor and no linear vehicle on a rough road makes is counted where it is heard."""
+
+from dataclasses import replace
+
+import numpy as np
+import scipy.signal
+
+from vehgen.diagnose.detect.noise_floor import find_noise_floor
+from vehgen.fit.noise import LOUDER_HZ
+
+R_AZ = 2
+"""The number of the rear acceleration among the channels."""
+
+
+def humming(trial, size, seed):
+    """Return a run in which one channel hums between 17 and 23 Hz, as laws make it of roughness."""
+    hum = np.random.default_rng(seed).standard_normal(len(trial.recording.values))
+    sections = scipy.signal.butter(4, (17.0, 23.0), "bandpass", fs=1 / trial.recording.dt, output="sos")
+    values = trial.recording.values.copy()
+    values[:, R_AZ] += size * scipy.signal.sosfiltfilt(sections, hum)
+    return replace(trial, recording=replace(trial.recording, values=values))
+
+
+def humps_of(trials):
+    return [trial for trial in trials if trial.scenario.humps]
+
+
+def test_a_channel_that_hums_is_louder_there_and_nowhere_else(trials_of):
+    trials = humps_of(trials_of())
+    loud = find_noise_floor([humming(trial, 0.2, seed) for seed, trial in enumerate(trials)]).noises
+    band = LOUDER_HZ.index(15.0)
+    for noise in loud.values():
+        assert noise.louder[band, R_AZ] > 3
+        others = noise.louder.copy()
+        others[band - 1 : band + 2, R_AZ] = 1.0  # a short stretch smears it
+        assert others.max() < 2
+
+
+def test_healthy_lead_ins_are_no_louder_than_their_noise(trials_of):
+    assert all(noise.louder is None for noise in find_noise_floor(humps_of(trials_of())).noises.values())
