@@ -24,7 +24,7 @@ def with_trials(fit, change):
 
 def coarser(trial):
     scenario = trial.scenario
-    return replace(trial, scenario=replace(scenario, dt=5 * scenario.dt, decimation=scenario.decimation // 5))
+    return replace(trial, scenario=replace(scenario, dt=2 * scenario.dt, decimation=scenario.decimation // 2))
 
 
 def coarse_road(trial):

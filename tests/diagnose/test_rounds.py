@@ -106,8 +106,8 @@ def test_the_order_of_runs_and_the_names_of_channels_change_nothing_but_names(re
 
 
 def test_one_sensor_late_is_the_other_one_early(trials_of):
-    found = diagnose_trials(trials_of(Effect("sensor_delay", "F", {"time": 0.015})), [EFFECTS["sensor_delay"]])
+    found = diagnose_trials(trials_of(Effect("sensor_delay", "F", {"time": 0.06})), [EFFECTS["sensor_delay"]])
     delays = {item.place: item.parameters["delay"].value for item in found.verdict.effects}
     assert found.verdict.verdict == "ambiguous"
-    assert delays == {"F": pytest.approx(0.015, rel=0.05), "R": pytest.approx(-0.015, rel=0.05)}
+    assert delays == {"F": pytest.approx(0.06, abs=0.012), "R": pytest.approx(-0.06, abs=0.012)}  # any clock may be 10 ms off
     assert "clock" in (found.verdict.next_experiment or "")

@@ -196,7 +196,7 @@ def test_answers_on_effects_are_counted(answer, expected):
 @pytest.mark.parametrize(
     ("answer", "expected"),
     [
-        ({"verdict": "measurement_fault", "faults": [{"kind": "clock", "run": "low"}]}, "fault named right, place too"),
+        ({"verdict": "measurement_fault", "faults": [{"kind": "clocks_apart", "runs": ["low"]}]}, "fault named right, place too"),
         ({"verdict": "measurement_fault", "faults": [{"kind": "unit", "run": "low"}]}, "another fault named"),
         ({"verdict": "refused", "reason": "the sensors' clocks differ"}, "refused, fault told"),
         ({"verdict": "named", "effects": [{"name": "sensor_delay", "place": "F"}]}, "named as an effect that describes it"),

@@ -32,7 +32,7 @@ from vehgen.errors import InputError
 LOOK_AGAIN_SHARE = 0.5
 """Where the best candidate leaves no more than this share of the excess, recorder and profiles are judged by it."""
 LOOKS_AGAIN = 2
-LOOKED_AT_AGAIN = 8
+LOOKED_AT_AGAIN = 4
 """So many candidates are then fitted again."""
 MOST_EFFECTS = 3
 """So many effects are added at most."""

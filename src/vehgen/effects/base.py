@@ -108,6 +108,11 @@ class Effect(ABC):
     tie_advice: str = ""
 
     @property
+    def shows_in_slow_motions(self) -> bool:
+        """Whether a fit to slow motions alone tells something of it."""
+        return True
+
+    @property
     def changes_vehicle(self) -> bool:
         """Whether it changes the vehicle; other effects change how its runs and recordings are read."""
         return False

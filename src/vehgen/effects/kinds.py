@@ -177,6 +177,11 @@ class LineEffect(Effect):
         """Return the amplitude."""
         return self.parameters[self.SEARCHED :]
 
+    @property
+    def shows_in_slow_motions(self) -> bool:
+        """Whether a fit to slow motions alone tells something of it: its line is a fast one."""
+        return False
+
     def n_numbers(self, n_runs: int) -> int:
         """Return its frequency and drift, and in every run two phases each of a force and a moment."""
         return self.SEARCHED + self.NUMBERS_PER_RUN * n_runs

@@ -157,6 +157,12 @@ class Misfit:
         found = {(item.name, item.place): item.value for item in self.conditions(x) if not item.run}
         return {**self.known, **found}
 
+    def errors_like(self, other: Misfit, x: Array) -> Array:
+        """Return errors `shape (n_errors,)` as another misfit's unknowns x have them; those that it leaves out are 0."""
+        known = {(item.run, item.name, item.place): item.sigmas for item in other.conditions(x)}
+        own = self.conditions(np.zeros(self.n_unknowns))
+        return np.array([known.get((item.run, item.name, item.place), 0.0) for item in own])
+
     def without(self, x: Array, names: Sequence[str]) -> Array:
         """Return the unknowns x with all errors of some names at 0."""
         start = self.n_parameters + len(self.shared)

@@ -278,9 +278,8 @@ class RunErrors:
     def reading(self, frequency: Array, numbers: Array) -> Complex | None:
         """Return what the channels read of what they should, line by line, `shape (n_lines, n_channels, n_channels)`; None: all of it.
 
-        A sensor tilted nose-down by t reads a cos t - g pitch sin t, one that sits d further forward
-        a - d pitch''; a late clock turns phases. What a low-pass takes off more than supposed is exp(-r x^2 - i d x^3) at x times half the
-        rate.
+        A sensor tilted nose-down by t reads a cos t - g pitch sin t, one that sits d further forward a - d pitch''; a late clock turns
+        phases. What a low-pass takes off more than supposed is exp(-r x^2 - i d x^3) at x times half the rate.
         """
         values = self._values(numbers)
         if not any(value for (name, _), value in values.items() if name in READING):

@@ -51,7 +51,7 @@ SITES_DIFFER = 1.0
 LEAST = 0.5
 """A lead-in that tells of less than this share of what its own top of the band shows has let the road's roughness take the noise."""
 CLEARLY_LOUDER = 3.0
-"""Lead-ins are louder than their noise where their mean power in a band is so many standard deviations above it."""
+"""Lead-ins are louder than their noise where their power in a band, by its median, is so many standard deviations above it."""
 STEADY = 3.0
 """The loudest quarter of a quiet lead-in is less than this many times as loud as the middling one."""
 LARGEST_RATIO = 4.0
@@ -128,17 +128,19 @@ def _louder(quiet: Sequence[tuple[Trial, Noise]], band: tuple[float, float]) -> 
 
     Laws make harmonics: what a rough road makes of a vehicle with laws is no answer of a linear one.
     """
-    n_channels = len(quiet[0][1].sigma)
-    power, count = np.zeros((len(LOUDER_HZ), n_channels)), np.zeros(len(LOUDER_HZ))
+    frequency, power = [], []
     for part, noise in quiet:
         lines, answer = _lines(part, band)
-        own = np.diagonal(noise.density(answer), axis1=1, axis2=2).real
-        number = np.searchsorted(LOUDER_HZ, answer.frequency, side="right") - 1
-        np.add.at(power, number, np.abs(lines) ** 2 / own)
-        np.add.at(count, number, 1)
-    mean = power / np.maximum(count, 1)[:, None]
-    clear = mean > 1 + CLEARLY_LOUDER / np.sqrt(np.maximum(count, 1))[:, None]
-    return np.where(clear, mean, 1.0) if clear.any() else None
+        frequency.append(answer.frequency)
+        power.append(np.abs(lines) ** 2 / np.diagonal(noise.density(answer), axis1=1, axis2=2).real)
+    number, powers = np.searchsorted(LOUDER_HZ, np.concatenate(frequency), side="right") - 1, np.concatenate(power)
+    found = np.ones((len(LOUDER_HZ), powers.shape[1]))
+    for i in range(len(LOUDER_HZ)):
+        inside = powers[number == i]
+        if len(inside):
+            usual = np.median(inside, axis=0) / np.log(2)  # an engine's line is no noise
+            found[i] = np.where(usual > 1 + CLEARLY_LOUDER / np.sqrt(len(inside)), usual, 1.0)
+    return found if found.max() > 1 else None
 
 
 def _with_own_level(part: Trial | None, noise: Noise, band: tuple[float, float]) -> Noise:

@@ -84,7 +84,7 @@ class CurrentModel:
 
     `problem` begins at that fit's parameters, of which the last `free` are the effects'; `shared` are its adjustments, whose neutral
     numbers are the fitted ones; `unit` and `errors` are where parameters and errors begin; `training` is the mean square it leaves;
-    `nearby` the last linearisation of the fit.
+    `nearby` the last linearisation of the fit, `squares` the lines' frequencies [Hz] and squares, run by run.
     """
 
     effects: tuple[Candidate, ...]
@@ -95,6 +95,12 @@ class CurrentModel:
     errors: Array
     training: float
     nearby: Linearisation | None = None
+    squares: tuple[tuple[Array, Array], ...] = ()
+
+    def slow(self, top: float) -> float:
+        """Return the mean square that it leaves of motions up to a frequency [Hz]."""
+        inside = [lines[frequency <= top].ravel() for frequency, lines in self.squares]
+        return float(np.mean(np.concatenate(inside)))
 
     @classmethod
     def of(cls, fit: ModelFit) -> CurrentModel:
@@ -109,7 +115,8 @@ class CurrentModel:
             start = np.concatenate([space.start[: space.size - free], fit.least_squares.values[space.size - free :]])
             space = replace(space, start=start)
         nearby = fit.least_squares.linearisation
-        return cls(fit.effects, Problem(misfit.problem.trials, space), shared, free, unit, errors, fit.training, nearby)
+        squares = tuple((misfit.frequency(t), fit.spectra[trial.name]) for t, trial in enumerate(misfit.problem.trials))
+        return cls(fit.effects, Problem(misfit.problem.trials, space), shared, free, unit, errors, fit.training, nearby, squares)
 
 
 def narrow(problem: Problem) -> Problem:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,8 +30,15 @@ from vehgen.simulate import SimulatorPool
 Array = NDArray[np.float64]
 HOPELESS = 0.5
 """A candidate that leaves more than this share of the excess after the rough fits is not refined."""
-STAGES = ((4.0, 4, 8), (10.0, 2, 8), (20.0, 1, 6), (None, 1, 8))
-"""Highest frequency [Hz] (None: the band's), how many of the best are followed so far, and so many steps of each."""
+SLOW_FIRST = ((4.0, 4, 8), (10.0, 2, 8), (20.0, 1, 6), (None, 1, 8))
+"""Stages of a fit to slow motions first: highest frequency [Hz] (None: the band's), how many of the best are followed, steps of each."""
+AT_ONCE = ((None, 8, 4), (None, 2, 8))
+"""Stages of a fit to all motions from near the end."""
+SLOW_HZ = 10.0
+"""Up to here runs have few errors: how a speed wanders or a hump is worn shows in faster motions."""
+FEW_NUISANCES = replace(NUISANCES, length=0, form=0, skew=0, wear=0, wander=0, lag=0, gain=0, tilt=0, position=0)
+LEAST_HOPELESS = 2.0
+"""An excess of slow motions below this may be due to the errors left out."""
 WIDER = 1.2
 """A stage is left out that does not reach so many times as high as the band begins, or lower than it ends."""
 CLOSED_SHARE = 0.01
@@ -49,6 +57,8 @@ def fit_candidate(
     simulators: SimulatorPool,
     origins: Sequence[StartingPoint],
     begin: Sequence[tuple[float, ...]] | None = None,
+    laid: Array | None = None,
+    slow_first: bool = True,
 ) -> ModelFit | None:
     """Fit a candidate's effect together with what it is added to.
 
@@ -62,13 +72,18 @@ def fit_candidate(
         Where the base begins: each is tried with each start of the effect.
     begin
         Where the effect's own numbers begin (default: its own starts).
+    laid
+        Errors at which runs lie over their recordings, `shape (n_errors,)`, where slow motions begin, with few errors (default: those of
+        the origins, with all errors).
+    slow_first
+        Fit slow motions first, not all at once.
 
     Returns
     -------
     None where the simulation fails at every start.
     """
     problem = build_problem(candidate, current.problem, locator, simulators)
-    rough = _Rough(candidate, current, problem, noises, band)
+    rough = _Rough(candidate, current, problem, noises, band, laid, slow_first)
     best = rough.search(origins, begin or candidate.effect.starts(candidate.place, locator))
     if best is None:
         return None
@@ -81,40 +96,70 @@ def fit_candidate(
 class _Rough:
     """Rough fits of one candidate."""
 
-    def __init__(self, candidate: Candidate, current: CurrentModel, problem: Problem, noises: Noises, band: tuple[float, float]) -> None:
+    def __init__(
+        self,
+        candidate: Candidate,
+        current: CurrentModel,
+        problem: Problem,
+        noises: Noises,
+        band: tuple[float, float],
+        laid: Array | None,
+        slow_first: bool,
+    ) -> None:
         self.candidate, self.current, self.problem, self.noises, self.band = candidate, current, problem, noises, band
+        self.laid = laid
+        self.stages = SLOW_FIRST if slow_first and candidate.effect.shows_in_slow_motions else AT_ONCE
         self.shared = (*current.shared, *candidate.shared)
-        self.nearby = current.nearby
         self.n_effect_parameters = current.n_effect_parameters + len(candidate.parameters)
         self.priors = base_priors(problem.space.names[: problem.space.size - self.n_effect_parameters], (*current.effects, candidate))
 
     def search(self, origins: Sequence[StartingPoint], begin: Sequence[tuple[float, ...]]) -> LeastSquaresFit | None:
-        """Return the lowest of the rough fits: slow motions first, from many starts, then faster ones from the best of them.
+        """Return the lowest of the rough fits, from many starts, of which the best are followed.
 
-        All motions at once would turn fast ones by whole cycles and end where the errors of runs stand at their bounds; slow motions have
-        one minimum, in which each wider band begins (C. Bunks et al., Geophysics 60, 1995, doi:10.1190/1.1443880).
+        Far from the truth all motions at once would turn fast ones by whole cycles and end where the errors of runs stand at their bounds;
+        slow motions have one minimum, in which each wider band begins (C. Bunks et al., Geophysics 60, 1995, doi:10.1190/1.1443880).
         """
-        starts, fits = self._starts(origins, begin), list[LeastSquaresFit]()
         low, high = self.band
-        for top, count, steps in STAGES:
-            if top is not None and not WIDER * low < top < high / WIDER:
-                continue
+        stages = [item for item in self.stages if item[0] is None or WIDER * low < item[0] < high / WIDER]
+        first = self._misfit(stages[0][0])
+        starts, fits = self._starts(first, origins, begin), list[LeastSquaresFit]()
+        for top, count, steps in stages:
+            misfit = first if top == stages[0][0] else self._misfit(top)
+            starts = [(*self._like(misfit, fit), tuple(fit.misfit.adjusted(fit.x))) for fit in fits] or starts
             fits = []
             for start in starts[:count]:
-                fits.append(self._fit(start, (low, top or high), steps))
+                fits.append(self._fit(start, misfit, steps))
                 if top is None and self._closed(fits[-1]):
                     break
             fits.sort(key=lambda item: item.loss)
-            starts = [(*fit.misfit.split(fit.x), tuple(fit.misfit.adjusted(fit.x))) for fit in fits]
-        return fits[0] if fits else None
+            if not fits:
+                return None
+            if top == SLOW_HZ and self.laid is not None and self._is_hopeless(fits[0]):
+                whole = self._misfit(None)
+                return self._fit((*self._like(whole, fits[0]), tuple(fits[0].misfit.adjusted(fits[0].x))), whole, 1)
+        return fits[0]
+
+    def _misfit(self, top: float | None) -> Misfit:
+        """Return the misfit of a stage."""
+        few = self.laid is not None and top is not None and top <= SLOW_HZ
+        band = self.band[0], top or self.band[1]
+        return Misfit(self.problem, self.noises, self.problem.space.start, FEW_NUISANCES if few else NUISANCES, band, self.shared)
+
+    def _like(self, misfit: Misfit, fit: LeastSquaresFit) -> tuple[Array, Array]:
+        """Return parameters and errors of a stage as the fit before it has them."""
+        return fit.misfit.split(fit.x)[0], misfit.errors_like(fit.misfit, fit.x)
 
     def _closed(self, fit: LeastSquaresFit) -> bool:
         return fit.chi2 - 1 <= CLOSED_SHARE * max(self.current.training - 1, 0.0)
 
-    def _fit(self, start: Start, band: tuple[float, float], steps: int) -> LeastSquaresFit:
+    def _is_hopeless(self, fit: LeastSquaresFit) -> bool:
+        """Return whether slow motions are explained no better than by the current model."""
+        return fit.chi2 - 1 > max(HOPELESS * (self.current.slow(SLOW_HZ) - 1), LEAST_HOPELESS)
+
+    def _fit(self, start: Start, misfit: Misfit, steps: int) -> LeastSquaresFit:
         options = FitOptions(
-            NUISANCES,
-            band,
+            misfit.nuisances,
+            misfit.band,
             max_steps=steps,
             tolerance=COARSE_TOLERANCE,
             jacobian_refresh=JACOBIAN_REFRESH,
@@ -122,19 +167,20 @@ class _Rough:
             n_effect_parameters=self.n_effect_parameters,
         )
         unit, errors, numbers = start
-        nearby = self.nearby if band == self.band else None
+        nearby = self.current.nearby if misfit.band == self.band else None
         return fit_least_squares(
             self.problem, unit, options, noises=self.noises, start=errors, shared=self.shared, numbers=numbers, nearby=nearby
         )
 
-    def _starts(self, origins: Sequence[StartingPoint], begin: Sequence[tuple[float, ...]]) -> list[Start]:
+    def _starts(self, misfit: Misfit, origins: Sequence[StartingPoint], begin: Sequence[tuple[float, ...]]) -> list[Start]:
         """Return the points at which fits may begin, those of the lowest loss first."""
         n, own = len(self.current.unit), len(self.candidate.parameters)
-        space = self.problem.space
-        misfit = Misfit(self.problem, self.noises, space.start, NUISANCES, (self.band[0], self._first_top()), self.shared)
+        space, whole = self.problem.space, self._misfit(None)
         neutral = tuple(item.neutral for item in self.current.shared)
         ranked = []
-        for base, errors in origins:
+        for base, begun_errors in origins:
+            errors = begun_errors if self.laid is None else self.laid
+            few = misfit.errors_like(whole, np.concatenate([np.zeros(whole.n_unknowns - len(errors)), errors]))
             for combination in begin:
                 point = space.start.copy()
                 if own:
@@ -143,12 +189,8 @@ class _Rough:
                 unit = np.concatenate([begun, space.unit(point)[n:]])
                 numbers = (*neutral, *combination[: len(self.candidate.shared)])
                 units = [(value - item.neutral) / item.scale for item, value in zip(self.shared, numbers, strict=True)]
-                loss = float((misfit.residuals(np.concatenate([unit, units, errors])) ** 2).sum())
+                loss = float((misfit.residuals(np.concatenate([unit, units, few])) ** 2).sum())
                 if np.isfinite(loss):
-                    ranked.append((loss, unit, errors, numbers))
+                    ranked.append((loss, unit, few, numbers))
         ranked.sort(key=lambda item: item[0])
         return [(unit, errors, numbers) for _, unit, errors, numbers in ranked]
-
-    def _first_top(self) -> float:
-        low, high = self.band
-        return next((top for top, _, _ in STAGES if top is not None and WIDER * low < top < high / WIDER), high)

@@ -71,6 +71,8 @@ def search_round(
     chosen = others if everything else shortlist(current, others, places, passed)
     if current.effects and not passed and not everything:
         chosen = [item for item in others if not item.effect.is_single_force]
+    alike = {item.effect.name for item in chosen if item.effect.tie_advice}  # no run tells where: all places are fitted
+    chosen = [item for item in others if item in chosen or item.effect.name in alike]
     found, stopped = fit_candidates(detection, current, passed, chosen, say, everything, workers)
     fits, idle = (found, []) if stopped else split_idle(found, Fitter(detection, current, passed).fit_roughly, LEADING)
     return SearchRound(current, tuple(places), tuple(passed), tuple(fits), tuple(idle), stopped)
@@ -102,12 +104,16 @@ def fit_candidates(
             problems = [build_problem(item, current.problem, locator, simulators) for item in candidates if item.effect.changes_vehicle]
             compile_all([trial.simulator.kernel for problem in problems for trial in problem.trials], workers)
             progress("compile", 1, 1, f"{len(problems)} vehicles")
-        for done, candidate in enumerate(candidates, start=1):
-            fit = fitter.fit(candidate)
-            if fit is not None:
-                fits.append(fit)
-            best = min(fits, key=merit, default=base)
-            progress("name", done, len(candidates), f"{best.label}, chi {np.sqrt(best.training):.3f}")
+        for slow_first in (True, False):
+            for done, candidate in enumerate(candidates, start=1):
+                if slow_first or (fitter.laid is not None and candidate.effect.changes_vehicle):
+                    fit = fitter.fit(candidate, slow_first=slow_first)
+                    fits += [] if fit is None else [fit]
+                best = min(fits, key=merit, default=base)
+                progress("name", done, len(candidates), f"{best.label}, chi {np.sqrt(best.training):.3f}")
+            if any(np.isfinite(fit.validation) for fit in fits):
+                break
+        fits = _best_of_each(fits)
         fits.sort(key=merit)
         for i, fit in enumerate(fits[:LEADING]):
             if np.isfinite(fit.validation):
@@ -115,6 +121,14 @@ def fit_candidates(
     except KeyboardInterrupt:
         return sorted(fits, key=merit), True
     return sorted(fits, key=merit), False
+
+
+def _best_of_each(fits: Sequence[ModelFit]) -> list[ModelFit]:
+    """Return the best fit of every candidate."""
+    best: dict[tuple[tuple[str, str], ...], ModelFit] = {}
+    for fit in sorted(fits, key=merit):
+        best.setdefault(fit.key, fit)
+    return list(best.values())
 
 
 class Fitter:
@@ -126,9 +140,17 @@ class Fitter:
         self.locator = EffectLocator(trial.run.vehicle, dict(trial.values))
         self.origins = _origins(base, self.current, passed)
         self.residual = Residual(base.least_squares.misfit, base.least_squares.x)
+        space = self.current.problem.space
+        self.laid = None if base.effects else align(base.least_squares.misfit, space.unit(space.start), bands=())
 
-    def fit(self, candidate: Candidate, begin: Sequence[tuple[float, ...]] = (), checked: bool = True) -> ModelFit | None:
-        """Fit one candidate from its own starts and from others; unless it is `checked`, not on the validation runs."""
+    def fit(
+        self, candidate: Candidate, begin: Sequence[tuple[float, ...]] = (), checked: bool = True, slow_first: bool = True
+    ) -> ModelFit | None:
+        """Fit one candidate from its own starts and from others; unless it is `checked`, not on the validation runs.
+
+        The errors of runs begin anew in fits of a first effect that changes the vehicle: those of the base have bent to what is missing.
+        Unless `slow_first`, all motions are fitted at once, from where the base's fit and the place test ended.
+        """
         starts = [*begin, *candidate.effect.starts(candidate.place, self.locator, self.residual)]
         return fit_candidate(
             candidate,
@@ -140,6 +162,8 @@ class Fitter:
             self.simulators,
             candidate.effect.origins(self.origins),
             starts,
+            self.laid if slow_first and candidate.effect.changes_vehicle else None,
+            slow_first,
         )
 
     def fit_roughly(self, candidate: Candidate) -> ModelFit | None:
@@ -149,16 +173,13 @@ class Fitter:
 
 def _origins(base: ModelFit, current: CurrentModel, passed: Sequence[PlaceResult]) -> Origins:
     """Return where base parameters and nuisances may begin: at the file's values, where the place test leaves them, where they are."""
-    space, misfit = current.problem.space, base.least_squares.misfit
+    space = current.problem.space
     fitted: StartingPoint = current.unit, current.errors
-    begun = fitted
-    if not base.effects:  # the errors of runs have bent to what is missing: they begin anew
-        unit = space.unit(space.start)
-        begun = unit, align(misfit, unit, bands=())
-        fitted = current.unit, begun[1]
+    begun = fitted if base.effects else (space.unit(space.start), current.errors)
     placed = begun
     if one_force(passed):
-        placed = misfit.split(passed[0].x)[0], begun[1]
+        unit, errors = base.least_squares.misfit.split(passed[0].x)
+        placed = unit, errors
     return Origins(begun, placed, fitted)
 
 
