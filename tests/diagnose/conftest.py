@@ -71,5 +71,7 @@ def told(record, tmp_path_factory):
     folder = tmp_path_factory.mktemp("told")
     paths = [str(path) for path in record(CUBIC)]
     with contextlib.redirect_stdout(io.StringIO()) as printed:
-        assert main(["diagnose", "sedan2.yaml", *paths, "--effects", "cubic_stiffness,dry_friction", "--out", str(folder), "--json"]) == 0
+        assert (
+            main(["diagnose", "sedan2.yaml", *paths, "--effects", "cubic_stiffness,quadratic_damping", "--out", str(folder), "--json"]) == 0
+        )
     return json.loads(printed.getvalue()), folder

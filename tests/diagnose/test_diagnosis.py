@@ -8,6 +8,7 @@ from benchmarks.hidden_effects.generator import Case, Effect, simulate_case
 from tests.diagnose.conftest import CUBIC, RUNS
 from vehgen.commands import main
 from vehgen.diagnose.pipeline import diagnose_trials, split_runs
+from vehgen.effects import EFFECTS
 from vehgen.fit.trial import load_trials
 from vehgen.vehicle import load_vehicle
 
@@ -64,7 +65,8 @@ def test_the_command_leaves_report_and_vehicle(told):
 
 def test_a_sensor_that_reads_too_much_is_told_from_a_force(record):
     paths = record(Effect("sensor_gain", "F_az", {"error": 0.15}))
-    found = diagnose_trials(load_trials(paths)).verdict
+    names = ("cubic_stiffness", "quadratic_damping", "tyre_damping", "sensor_gain", "sensor_position", "sensor_delay")
+    found = diagnose_trials(load_trials(paths), [EFFECTS[name] for name in names]).verdict
     assert found.verdict == "named"
     assert (found.effects[0].name, found.effects[0].place) == ("sensor_gain", "F_az")
     low, high = found.effects[0].parameters["gain"].interval

@@ -135,7 +135,7 @@ def test_a_plain_mistake_is_named_before_any_effect_is_looked_for(plain, case):
 
 def test_two_mistakes_are_both_named(plain):
     runs = edited(edited(plain, lambda values: values[:, [2, 3, 0, 1]], "low"), times(57.3, R_Q))
-    assert sorted(item.kind for item in plain_mistakes(detect(runs))) == ["exchanged", "unit"]
+    assert {item.kind for item in plain_mistakes(detect(runs))} == {"exchanged", "unit"}
 
 
 SUBTLE_CASES = {

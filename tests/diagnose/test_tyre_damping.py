@@ -8,7 +8,7 @@ from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.effects import EFFECTS
 
 RATIOS = {"front": 0.03, "rear": 0.14}
-DAMPING, OTHERS = EFFECTS["tyre_damping"], [EFFECTS[name] for name in ("tyre_footprint", "tyre_liftoff", "speed_error")]
+DAMPING, OTHERS = EFFECTS["tyre_damping"], [EFFECTS[name] for name in ("tyre_footprint", "speed_error")]
 
 
 def test_ratios_that_differ_by_axle_are_told_each(trials_of):

@@ -24,7 +24,7 @@ from vehgen.diagnose.result import Decided, DiagnosisModels
 from vehgen.diagnose.select.criteria import adds, needs_both, p_value_of, passes, seeds, unfinished
 from vehgen.diagnose.select.estimates import gain_interval
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
-from vehgen.diagnose.select.search import DiagnosisProgress, SearchRound, merit, search_round
+from vehgen.diagnose.select.search import DiagnosisProgress, Fitter, SearchRound, merit, search_round
 from vehgen.diagnose.verdict import Gap, PlaceChi, Verdict, VerdictName
 from vehgen.effects import Effect
 from vehgen.errors import InputError
@@ -33,7 +33,7 @@ LOOK_AGAIN_SHARE = 0.5
 """Where the best candidate leaves no more than this share of the excess, recorder and profiles are judged by it."""
 LOOKS_AGAIN = 2
 LOOKED_AT_AGAIN = 4
-"""So many candidates are then fitted again."""
+"""So many candidates are then fitted again, from where they are."""
 MOST_EFFECTS = 3
 """So many effects are added at most."""
 
@@ -104,11 +104,12 @@ class Decision:
         if detection is None:
             return first
         self.detection, self.base = detection, detection.base
-        leading = {fit.key for fit in first.fits[:LOOKED_AT_AGAIN]}
-        candidates = [item for item in self._candidates(self.base) if ((item.effect.name, item.place),) in leading]
-        self.rounds.clear()
-        self.rounds.append(search_round(detection, self.base, candidates, True, self.progress, self.workers))
-        self.interrupted = self.interrupted or self.rounds[-1].stopped
+        fitter = Fitter(detection, self.base, first.passed)
+        leading = [fit for fit in first.fits[:LOOKED_AT_AGAIN] if np.isfinite(fit.validation)]
+        fits = sorted((fitter.fit_again(fit) for fit in leading), key=merit)
+        self.rounds[:] = [
+            replace(first, current=self.base, fits=(*fits, *(fit for fit in first.fits if all(fit is not other for other in leading))))
+        ]
         return self.rounds[-1]
 
     def _add(self, first: SearchRound) -> Decided | None:
@@ -119,6 +120,9 @@ class Decision:
         if weak is None and good:
             self.chain = [best]
             self._further()
+            if not self.interrupted and max(self.chain[-1].training, self.chain[-1].validation) > limit.NAMED_LEFT**2:
+                self.chain = []
+                self._pair(first)
         elif weak is None:
             self._pair(first)
         return weak

@@ -23,6 +23,8 @@ TIE = 3.0
 """Candidates whose excess is within this factor of the best one's (and of the noise floor's) are tied with it."""
 SIGNIFICANT = 0.01
 """Largest p-value, times the number of candidates tried, at which an effect counts as there."""
+NAMED_LEFT = 2.0
+"""An effect that leaves more than this chi, with nothing further found, is not named: what is left may be what was taken for it."""
 AGAIN = 1.10
 """Above this chi a further effect is looked for."""
 FORM = 0.005

@@ -97,7 +97,10 @@ class FittedModel:
         scenario = replace(own, chains={**own.chains, **dict.fromkeys((item.name for item in outputs), like)})
         recording = replace(measurement, values=blank, channels=channels)
         trial = replace(self.trial, simulator=simulator, scenario=scenario, values=values, recording=recording)
-        return FittedModel(self.fit, trial, replace(self.noise, sigma=np.concatenate([self.noise.sigma, sigma])))
+        noise = replace(self.noise, sigma=np.concatenate([self.noise.sigma, sigma]))
+        if noise.louder is not None:
+            noise = replace(noise, louder=np.column_stack([noise.louder, np.ones((len(noise.louder), len(sigma)))]))
+        return FittedModel(self.fit, trial, noise)
 
     def simulator(self, outputs: Sequence[Output]) -> Simulator:
         """Compile the model with other outputs."""

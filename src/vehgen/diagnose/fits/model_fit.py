@@ -141,12 +141,12 @@ def fit_base(
         old = begin.least_squares
         unit, errors = old.misfit.split(old.x)
         steps = {trial.name: trial for trial in old.misfit.problem.trials}
-        resolved = problem.with_trials([_as_fine(trial, steps[trial.name]) for trial in problem.trials])
+        resolved = problem.with_trials([as_fine(trial, steps[trial.name]) for trial in problem.trials])
         fit = fit_least_squares(resolved, unit, options, noises=noises, start=errors, nearby=old.linearisation)
     return evaluate_fit((), fit, validation_runs, noises)
 
 
-def _as_fine(trial: Trial, other: Trial) -> Trial:
+def as_fine(trial: Trial, other: Trial) -> Trial:
     """Return a trial with the step of another one."""
     steps = replace(trial.scenario, dt=other.scenario.dt, decimation=other.scenario.decimation)
     return replace(trial, scenario=steps, jumps=other.jumps)
@@ -168,15 +168,25 @@ def base_priors(names: Sequence[str], effects: Sequence[Candidate]) -> Array:
     return np.array([WEAK_PRIOR_SIGMA if name in freed else BASE_PRIOR_SIGMA for name in names])
 
 
-def refine(problem: Problem, fit: LeastSquaresFit, x: Array, effects: Sequence[Candidate]) -> LeastSquaresFit:
-    """Fit finely from the unknowns `x` of another fit, on a problem with the same unknowns, of which the last are the effects'."""
+def refine(
+    problem: Problem,
+    fit: LeastSquaresFit,
+    x: Array,
+    effects: Sequence[Candidate],
+    noises: Noises | None = None,
+    band: tuple[float, float] | None = None,
+) -> LeastSquaresFit:
+    """Fit finely from the unknowns `x` of another fit, on a problem with the same unknowns, of which the last are the effects'.
+
+    With its noise and band, or with other ones.
+    """
     misfit = fit.misfit
     n_effect_parameters = sum(len(item.parameters) for item in effects)
     names = problem.space.names[: problem.space.size - n_effect_parameters]
     unit, errors = misfit.split(x)
     options = FitOptions(
         NUISANCES,
-        misfit.band,
+        band or misfit.band,
         max_steps=25,
         tolerance=DIAGNOSIS_TOLERANCE,
         jacobian_refresh=JACOBIAN_REFRESH,
@@ -188,12 +198,12 @@ def refine(problem: Problem, fit: LeastSquaresFit, x: Array, effects: Sequence[C
         problem,
         unit,
         options,
-        noises=misfit.noises,
+        noises=noises or misfit.noises,
         start=errors,
         shared=misfit.shared,
         numbers=numbers,
         known=misfit.known,
-        nearby=fit.linearisation,
+        nearby=None if noises else fit.linearisation,
     )
 
 

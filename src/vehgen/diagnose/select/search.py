@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.codegen import compile_all
+from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, build_problem
-from vehgen.diagnose.fits.model_fit import CurrentModel, ModelFit
+from vehgen.diagnose.fits.model_fit import CurrentModel, ModelFit, as_fine, evaluate_fit, refine
 from vehgen.diagnose.fits.multi_start import fit_candidate
 from vehgen.diagnose.fits.restarts import restart
 from vehgen.diagnose.fits.screening import screen
@@ -106,12 +107,12 @@ def fit_candidates(
             progress("compile", 1, 1, f"{len(problems)} vehicles")
         for slow_first in (True, False):
             for done, candidate in enumerate(candidates, start=1):
-                if slow_first or (fitter.laid is not None and candidate.effect.changes_vehicle):
+                if slow_first or (fitter.laid is not None and candidate.effect.shows_in_slow_motions):
                     fit = fitter.fit(candidate, slow_first=slow_first)
                     fits += [] if fit is None else [fit]
                 best = min(fits, key=merit, default=base)
                 progress("name", done, len(candidates), f"{best.label}, chi {np.sqrt(best.training):.3f}")
-            if any(np.isfinite(fit.validation) for fit in fits):
+            if any(np.isfinite(fit.validation) and fit.training < limit.NAMED_LEFT**2 for fit in fits):
                 break
         fits = _best_of_each(fits)
         fits.sort(key=merit)
@@ -148,7 +149,7 @@ class Fitter:
     ) -> ModelFit | None:
         """Fit one candidate from its own starts and from others; unless it is `checked`, not on the validation runs.
 
-        The errors of runs begin anew in fits of a first effect that changes the vehicle: those of the base have bent to what is missing.
+        The errors of runs begin anew in fits of a first effect: those of the base have bent to what is missing.
         Unless `slow_first`, all motions are fitted at once, from where the base's fit and the place test ended.
         """
         starts = [*begin, *candidate.effect.starts(candidate.place, self.locator, self.residual)]
@@ -162,9 +163,18 @@ class Fitter:
             self.simulators,
             candidate.effect.origins(self.origins),
             starts,
-            self.laid if slow_first and candidate.effect.changes_vehicle else None,
+            self.laid if slow_first and candidate.effect.shows_in_slow_motions else None,
             slow_first,
         )
+
+    def fit_again(self, fit: ModelFit) -> ModelFit:
+        """Fit a first effect anew from where it was, to runs whose recorders, or noise, have changed."""
+        problem = build_problem(fit.last, self.current.problem, self.locator, self.simulators)
+        steps = {trial.name: trial for trial in fit.least_squares.misfit.problem.trials}
+        problem = problem.with_trials([as_fine(trial, steps[trial.name]) for trial in problem.trials])
+        noises, runs = self.detection.floor.noises, self.detection.validation_runs
+        found = refine(problem, fit.least_squares, fit.least_squares.x, fit.effects, noises, self.detection.band)
+        return evaluate_fit(fit.effects, found, runs, noises)
 
     def fit_roughly(self, candidate: Candidate) -> ModelFit | None:
         """Fit one candidate from its own starts, to the training runs alone."""
