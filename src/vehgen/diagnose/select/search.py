@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -174,7 +174,7 @@ class Fitter:
         problem = problem.with_trials([as_fine(trial, steps[trial.name]) for trial in problem.trials])
         noises, runs = self.detection.floor.noises, self.detection.validation_runs
         found = refine(problem, fit.least_squares, fit.least_squares.x, fit.effects, noises, self.detection.band)
-        return evaluate_fit(fit.effects, found, runs, noises)
+        return replace(evaluate_fit(fit.effects, found, runs, noises), equivalent_minima=fit.equivalent_minima)
 
     def fit_roughly(self, candidate: Candidate) -> ModelFit | None:
         """Fit one candidate from its own starts, to the training runs alone."""
