@@ -120,6 +120,7 @@ def test_a_stopped_search_is_resumed_bit_for_bit(problem, tmp_path):
         calibrate_problem(problem, small(), checkpoint=path, resume=True)
 
 
+@pytest.mark.slow
 def test_fisher_intervals_agree_with_a_bootstrap(problem):
     found = calibrate_problem(problem, Settings(search=GeneticSearch(1, 10, 0), starts=2))
     outcome = summarise(found, replicates=30)

@@ -116,6 +116,7 @@ def test_phones_exchanged_in_an_untouched_run_only_are_named_with_the_run(plain)
     assert (finding.kind, finding.runs) == ("exchanged", (untouched,))
 
 
+@pytest.mark.slow
 def test_a_turned_axis_is_named_though_friction_hides_too(trials_of):
     (finding,) = explain_gap(detect(edited(trials_of(FRICTION, runs=RUNS), turn("F_az"))))
     assert (finding.kind, len(finding.runs), finding.channels) == ("turned", 3, ("F_az",))

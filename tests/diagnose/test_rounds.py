@@ -92,6 +92,7 @@ def test_ctrl_c_leaves_what_was_found(trials_of):
     assert found.places
 
 
+@pytest.mark.slow
 def test_the_order_of_runs_and_the_names_of_channels_change_nothing_but_names(record, two, tmp_path):
     folder = tmp_path / "renamed"
     shutil.copytree(record(*PAIR)[0].parent, folder)
@@ -105,6 +106,7 @@ def test_the_order_of_runs_and_the_names_of_channels_change_nothing_but_names(re
     assert renamed == [(item.name, item.place, item.parameters) for item in two.verdict.effects]
 
 
+@pytest.mark.slow
 def test_one_sensor_late_is_the_other_one_early(trials_of):
     found = diagnose_trials(trials_of(Effect("sensor_delay", "F", {"time": 0.06})), [EFFECTS["sensor_delay"]])
     delays = {item.place: item.parameters["delay"].value for item in found.verdict.effects}

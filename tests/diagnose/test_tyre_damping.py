@@ -22,6 +22,7 @@ def test_ratios_that_differ_by_axle_are_told_each(trials_of):
     assert np.sqrt(found.chosen[-1].training) < 1.05
 
 
+@pytest.mark.slow
 def test_one_ratio_of_all_tyres_stays_one_number(trials_of):
     found = diagnose_trials(trials_of(Effect("tyre_damping", "all", {"ratio": 0.1})), [DAMPING, *OTHERS])
     (effect,) = found.verdict.effects

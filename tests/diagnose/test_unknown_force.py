@@ -16,6 +16,7 @@ def base(detection_of):
     return detection_of(FRICTION).base
 
 
+@pytest.mark.slow
 def test_errors_stay_within_their_bounds_at_every_place(base):
     misfit, x = base.least_squares.misfit, base.least_squares.x
     results = score_locations(misfit, x, list_places(misfit))
