@@ -52,7 +52,7 @@ LEAST = 0.5
 """A lead-in that tells of less than this share of what its own top of the band shows has let the road's roughness take the noise."""
 CLEARLY_LOUDER = 3.0
 """Lead-ins are louder than their noise where their power in a band is so many standard deviations above it."""
-STANDS_OUT = 20.0
+LINE_STANDS_OUT = 20.0
 """A spectral line of more than so many times the median power of its band is none of them."""
 STEADY = 3.0
 """The loudest quarter of a quiet lead-in is less than this many times as loud as the middling one."""
@@ -140,7 +140,7 @@ def _louder(quiet: Sequence[tuple[Trial, Noise]], band: tuple[float, float]) -> 
     for i in range(len(LOUDER_HZ)):
         inside = powers[number == i]
         if len(inside):
-            ordinary = inside <= STANDS_OUT * np.median(inside, axis=0)  # an engine's line is no noise
+            ordinary = inside <= LINE_STANDS_OUT * np.median(inside, axis=0)  # an engine's line is no noise
             usual = np.mean(inside, axis=0, where=ordinary)
             found[i] = np.where(usual > 1 + CLEARLY_LOUDER / np.sqrt(len(inside)), usual, 1.0)
     return found if found.max() > 1 else None
