@@ -16,7 +16,7 @@ MOST_RESPONSES = 250_000_000
 """So many numbers may a population's answers hold: 2 GB."""
 MOST_LOOKUPS = 100_000_000
 """So often may the height of one entry of the road be looked up, by wheels and where a footprint averages: about a second of work."""
-MOST_AVERAGED = 10_000.0
+MOST_AVERAGED = 7_000.0
 """Over no longer way [m] is a road averaged over a footprint."""
 
 

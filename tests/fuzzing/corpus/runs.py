@@ -74,7 +74,7 @@ RUNS: tuple[Nasty, ...] = (
         marked("run", f"{name}, as large as it may be", f"vehicle: quarter_car\n{text}", refused=False)
         for name, text in (
             ("numbers", "speed: 8 m/s\nduration: 2480 s\nroad:\n  - iso8608: {class: B}\n"),
-            ("footprint", "speed: 8 m/s\nduration: 1240 s\nfootprint: 0.2 m\nroad:\n  - iso8608: {class: B}\n"),
+            ("footprint", "speed: 8 m/s\nduration: 870 s\nfootprint: 0.2 m\nroad:\n  - iso8608: {class: B}\n"),
             ("random road", "speed: 50 m/s\nduration: 990 s\nroad:\n  - iso8608: {class: B}\n"),
             ("many humps", f"speed: 8 m/s\nduration: 240 s\nroad:\n{''.join(HUMP.replace('at: 2', f'at: {i}') for i in range(200))}"),
         )
