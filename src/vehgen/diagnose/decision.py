@@ -93,7 +93,7 @@ class Decision:
         weak = self._add(first) if first.fits else None
         if self.interrupted:
             return self._name(self.chain) if self.chain else self._stopped()
-        return self._other_mistakes() or weak or (self._name(self.chain) if self.chain else self._unknown(first))
+        return self._other_mistakes(first) or weak or (self._name(self.chain) if self.chain else self._unknown(first))
 
     def _again(self, first: SearchRound) -> SearchRound:
         """Return a round of the leading candidates, recorder and profiles being as the best has them; the same round where they were so."""
@@ -127,14 +127,18 @@ class Decision:
             self._pair(first)
         return weak
 
-    def _other_mistakes(self) -> Decided | None:
-        """Return the verdict where a mistake that looks like an effect explains the runs, and no effect of the vehicle does."""
-        unsure = not self.chain or unfinished(self.chain[-1], self.base)
+    def _other_mistakes(self, first: SearchRound) -> Decided | None:
+        """Return the verdict where a mistake that looks like an effect explains the runs, and no effect of the vehicle does.
+
+        An effect that closes the gap, but is too weak to be named, is held against mistakes as one that is.
+        """
+        leading = self.chain[-1] if self.chain else next((fit for fit in first.fits[:1] if passes(fit, self.base)), None)
+        unsure = leading is None or (bool(self.chain) and unfinished(leading, self.base))
         named = self.chain[-1].effects if self.chain else ()
         of_vehicle = all(candidate.effect.changes_vehicle for candidate in named)
-        if self.detection.chi <= limit.WEAK or (of_vehicle and not unsure):
+        if self.detection.chi <= limit.WEAK or (self.chain and of_vehicle and not unsure):
             return None
-        mistakes = explain_gap(self.detection, self.chain[-1].chi if self.chain else None, unsure)
+        mistakes = explain_gap(self.detection, leading.chi if leading else None, unsure)
         return self._mistaken(mistakes) if mistakes else None
 
     def _too_weak(self, first: SearchRound, best: ModelFit, good: bool) -> Decided | None:
