@@ -129,7 +129,8 @@ def test_a_plain_mistake_is_named_before_any_effect_is_looked_for(plain, case):
     make, expected, value = PLAIN_CASES[case]
     (fault,) = plain_mistakes(detect(make(plain)))
     assert told([fault]) == [expected]
-    assert value is None or fault.value == pytest.approx(value, rel=0.05)
+    within = 0.05 if case == "clocks 0.1 s apart" else 0.02  # half a sample
+    assert value is None or fault.value == pytest.approx(value, rel=within)
     assert fault.cure
 
 
@@ -268,6 +269,12 @@ def test_the_verdict_names_run_channel_and_cure(plain):
     assert "F_az is 9.807 times too small in high" in data["reason"]
     assert "9.8066" in fault["cure"]
     assert type(verdict).from_dict(data) == verdict
+
+
+def test_heights_that_are_alike_are_not_exchanged():
+    conditions = [Condition("low", "height", "", -0.12, "", 0.03), Condition("fast", "height", "", 0.12, "", 0.03)]
+    faults = findings_of_conditions(conditions, ["low", "fast"], {"low": 0.05, "fast": 0.05})
+    assert [item.kind for item in faults] == ["hump_height", "hump_height"]
 
 
 def test_conditions_of_any_fit_are_read_by_name_place_and_size():

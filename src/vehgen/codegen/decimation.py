@@ -22,6 +22,8 @@ TAPS_AT_ONCE = 4
 """Taps that are added to the samples in one pass."""
 _HEAD = '''"""Decimating FIR filter of responses; written by vehgen.codegen.decimation."""
 
+from __future__ import annotations
+
 import numba
 import numpy as np
 
@@ -33,7 +35,7 @@ import numpy as np
 '''
 
 
-def filter_phases(fine, weights, last, found):  # type: ignore[no-untyped-def]
+def filter_phases(fine: Array, weights: Array, last: int, found: Array) -> None:
     """Set found[a, i, c] to the sum over phases p and shifts q of weights[c, p, q] fine[a, (i + q - last) ratio - p, c]."""
     n_fine, n_samples = fine.shape[1], found.shape[1]
     ratio, n_shifts = weights.shape[1], weights.shape[2]
@@ -58,8 +60,7 @@ def filter_phases(fine, weights, last, found):  # type: ignore[no-untyped-def]
 
 @cache
 def _module() -> ModuleType:
-    text = inspect.getsource(filter_phases).replace("  # type: ignore[no-untyped-def]", "")
-    return import_kernel(_HEAD + text)
+    return import_kernel(_HEAD + inspect.getsource(filter_phases))
 
 
 def decimate(fine: Array, filters: list[tuple[int, Array]], ratio: int, count: int, threads: int | None = None) -> Array:

@@ -76,7 +76,8 @@ def findings_of_conditions(
     known = {run: height for run, height in (heights or {}).items() if height > 0}
     for one, other in combinations([item for item in beyond if item.name == "height" and item.run in known and item.value > -1], 2):
         ratio = known[other.run] / known[one.run]
-        if abs(np.log((1 + one.value) / ratio)) < AGREE and abs(np.log((1 + other.value) * ratio)) < AGREE:
+        differ = abs(np.log(ratio)) > AGREE  # what is alike cannot be exchanged
+        if differ and abs(np.log((1 + one.value) / ratio)) < AGREE and abs(np.log((1 + other.value) * ratio)) < AGREE:
             beyond = [item for item in beyond if item not in (one, other)]
             message = (
                 f"the hump heights of {one.run} and {other.run} have been exchanged: each suits the other's recording "
