@@ -1,12 +1,15 @@
 """Diagnoses of recordings from the independent generator."""
 
 import shutil
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from benchmarks.hidden_effects.generator import Case, Effect, simulate_case
 
 from tests.diagnose.conftest import CUBIC, RUNS
 from vehgen.commands import main
+from vehgen.diagnose.detect.detection import split_by_gap
 from vehgen.diagnose.pipeline import diagnose_trials, split_runs
 from vehgen.effects import EFFECTS
 from vehgen.fit.trial import load_trials
@@ -83,6 +86,34 @@ def test_untouched_runs_lie_between_the_extremes(trials_of):
     training, held = split_runs(trials_of())
     assert [trial.name for trial in held] == ["low"]
     assert [trial.name for trial in training] == ["rough", "high", "fast"]
+
+
+def gaps(training, validation):
+    """Return what split_by_gap asks of a fit: mean squares by run, and whether there are validation runs."""
+    squares = training | validation
+    mean = [float(np.mean(list(part.values()))) if part else float("nan") for part in (training, validation)]
+    return SimpleNamespace(training=mean[0], validation=mean[1], mean_squares=squares, validation_fit=object() if validation else None)
+
+
+def test_a_validation_run_that_shows_nothing_is_changed_for_one_that_does(trials_of):
+    trials = trials_of()
+    training, held = split_by_gap(gaps({"rough": 1.0, "high": 9.0, "fast": 5.0}, {"low": 1.1}), trials)
+    assert [trial.name for trial in held] == ["fast"]
+    assert {trial.name for trial in training} == {"rough", "low", "high"}
+
+
+@pytest.mark.parametrize(
+    ("training", "validation"),
+    [
+        ({"rough": 1.0, "high": 9.0, "fast": 5.0}, {"low": 3.0}),
+        ({"rough": 1.0, "high": 9.0, "fast": 1.0}, {"low": 1.1}),
+        ({"rough": 1.0, "high": 1.1, "fast": 1.0}, {"low": 1.0}),
+        ({"rough": 1.0, "high": 9.0}, {}),
+    ],
+    ids=["it shows enough", "one run alone shows it", "there is no gap", "nothing is held"],
+)
+def test_validation_runs_stay(trials_of, training, validation):
+    assert split_by_gap(gaps(training, validation), trials_of()) is None
 
 
 def test_an_unknown_effect_is_refused_with_the_nearest_name(nothing, tmp_path, capsys):

@@ -11,7 +11,7 @@ from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose import wording
 from vehgen.diagnose.collecting import run_chis
 from vehgen.diagnose.design.experiment import VISIBLE, propose_stronger
-from vehgen.diagnose.detect.detection import Detection, look_again
+from vehgen.diagnose.detect.detection import Detection, look_again, run_gaps
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit
 from vehgen.diagnose.inputs.checks import variety_notes
@@ -50,12 +50,16 @@ class Decision:
         self.progress = progress
         self.workers = workers
         self.effects = effects
-        self.validation_runs = [trial.name for trial in detection.validation_runs]
         self.rounds: list[SearchRound] = []
         self.chain: list[ModelFit] = []
         self.notes: list[str] = []
         self.interrupted = False
         self.tried = len(self._candidates(self.base))
+
+    @property
+    def validation_runs(self) -> list[str]:
+        """Names of the validation runs."""
+        return [trial.name for trial in self.detection.validation_runs]
 
     def decide(self) -> Decided:
         """Return the verdict with the fitted models; after Ctrl-C what was found until then."""
@@ -152,6 +156,9 @@ class Decision:
             return None
         interval = gain_interval(self.base, best, self.validation_runs)
         if interval is None or interval[0] <= 0:
+            shown = [gap.run for gap in run_gaps(self.detection) if gap.chi > limit.WEAK and gap.run not in self.validation_runs]
+            if shown and chi > VISIBLE:
+                return self._end("insufficient_data", *wording.seen_once(self._words(best.last), chi, shown))
             return self._propose(wording.not_seen_again(self._words(best.last)), best)
         rivals = compare_with_placebo_laws(first, best, self.detection)
         if rivals is not None and rivals[1] >= rivals[0] - limit.DECOY:

@@ -148,6 +148,15 @@ def not_seen_again(label: str) -> str:
     return f"Too weak to name: {label} suits the runs that it was fitted to, but the other runs do not show it"
 
 
+def seen_once(label: str, chi: float, runs: Sequence[str]) -> tuple[str, str]:
+    """Return the verdict `insufficient_data` where no run is left to check the best effect, and what to record."""
+    where = join_names(runs)
+    reason = (
+        f"A gap is there (chi {chi:.2f}, where 1 is noise alone), and {label} suits it, but only {where} shows it: no other run can check"
+    )
+    return reason, f"record another run like {runs[0]}"
+
+
 def like_a_random_law(label: str, own: float, random: float) -> str:
     """Return the verdict `too_weak` where a random law does as well as the best effect; both are shares of the gap that they close."""
     return f"Too weak to name: {label} explains {share_words(own)} of what the model missed, a random law there {share_words(random)}"

@@ -15,7 +15,7 @@ them, come to the channels in the same way: H_F(f) diag(2 dt sigma_F^2) H_F(f)* 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -68,39 +68,77 @@ class RoadAnswer:
 
 
 @dataclass(frozen=True)
+class DrawnDensity:
+    """What roughness makes of the channels, from drawn roads: a density `shape (n, n_channels, n_channels)` at frequencies `(n,)` [Hz]."""
+
+    frequency: Array
+    density: Complex
+
+    def at(self, frequency: Array) -> Complex:
+        """Return the density at other frequencies [Hz], that of the nearest one it knows."""
+        middle = (self.frequency[1:] + self.frequency[:-1]) / 2
+        return np.asarray(self.density[np.searchsorted(middle, frequency)])
+
+
+@dataclass(frozen=True)
 class Noise:
     """Roughness `levels shape (len(KNOTS),)` [m^3] of the road beneath, and noise `sigma shape (n_channels,)` [channels' units].
 
     The noise's density falls as f^-slope; 0 is white. `louder shape (len(LOUDER_HZ), n_channels)` are factors of each
     channel's density from these frequencies on, by what no other channel shares: laws make harmonics where H has none.
+    `drawn` stands in for L G H R H*, and for `louder`, where H does not say what roughness makes of a vehicle with laws.
     """
 
     levels: Array
     sigma: Array
     slope: float = 0.0
     louder: Array | None = None
+    drawn: DrawnDensity | None = None
 
     def level(self, wavenumber: Array) -> Array:
         """Return L at wavenumbers [cycles/m]."""
-        return np.asarray(np.exp(_interpolation(wavenumber) @ np.log(self.levels)))
+        return np.asarray(np.exp(knot_weights(wavenumber) @ np.log(self.levels)))
+
+    def rougher(self, factor: float) -> Noise:
+        """Return the noise of a road so many times as rough (as a level)."""
+        levels = np.clip(self.levels * factor, SMALLEST_LEVEL, LARGEST_LEVEL)
+        drawn = None if self.drawn is None else DrawnDensity(self.drawn.frequency, factor * self.drawn.density)
+        return replace(self, levels=levels, drawn=drawn)
 
     def density(self, answer: RoadAnswer) -> Complex:
         """Return S(f), `shape (n, n_channels, n_channels)`."""
-        scale, b = self._scaled(answer)
-        return np.asarray(scale[:, :, None] * (b @ _adjoint(b) + np.eye(len(self.sigma))) * scale[:, None, :])
+        scale, shared = self._shared(answer)
+        return np.asarray(scale[:, :, None] * shared * scale[:, None, :])
 
     def whitener(self, answer: RoadAnswer) -> Complex:
         """Return W(f) with W S W* = 1, `shape (n, n_channels, n_channels)`."""
-        scale, b = self._scaled(answer)
-        root = np.linalg.cholesky(np.eye(len(self.sigma)) + b @ _adjoint(b))
-        return np.asarray(np.linalg.inv(root) / scale[:, None, :], dtype=np.complex128)
+        scale, shared = self._shared(answer)
+        return np.asarray(np.linalg.inv(np.linalg.cholesky(shared)) / scale[:, None, :], dtype=np.complex128)
+
+    def _shared(self, answer: RoadAnswer) -> tuple[Array, Complex]:
+        """Return d `shape (n, n_channels)` and T with S = diag(d) T diag(d), which is well conditioned however small sigma is."""
+        if self.drawn is None:
+            scale, b = self._scaled(answer)
+            return scale, np.asarray(np.eye(len(self.sigma)) + b @ _adjoint(b))
+        scale = self._scale(answer)
+        drawn = self.drawn.at(answer.frequency)
+        if answer.forced is not None:
+            drawn = drawn + answer.forced @ _adjoint(answer.forced)
+        return scale, np.asarray(np.eye(len(self.sigma)) + drawn / scale[:, :, None] / scale[:, None, :])
 
     def loss(self, lines: Complex, answer: RoadAnswer) -> float:
         """Return -2 ln of Whittle's likelihood of lines `shape (n, n_channels)`, less a constant: the sum of 2 (ln det S + R* S^-1 R)."""
-        return self.loss_and_slopes(lines, answer)[0]
+        if self.drawn is None:
+            return self.loss_and_slopes(lines, answer)[0]
+        density = self.density(answer)
+        weighted = np.linalg.solve(density, lines[:, :, None])[:, :, 0]
+        return float(2 * (np.linalg.slogdet(density)[1].sum() + (lines.conj() * weighted).real.sum()))
 
     def loss_and_slopes(self, lines: Complex, answer: RoadAnswer) -> tuple[float, Array, Array]:
-        """Return :meth:`loss` with its derivatives by ln(levels) `shape (len(KNOTS),)` and by ln(sigma) `shape (n_channels,)`."""
+        """Return :meth:`loss` with its derivatives by ln(levels) `shape (len(KNOTS),)` and by ln(sigma) `shape (n_channels,)`.
+
+        Of noise that is neither louder nor drawn: the derivatives know nothing of that.
+        """
         scale, b = self._scaled(answer)
         density = np.eye(len(self.sigma)) + b @ _adjoint(b)
         inverse = np.linalg.inv(density)
@@ -111,7 +149,7 @@ class Noise:
         rest = inverse - weighted[:, :, None] * weighted[:, None, :].conj()
         by_sigma = 4 * np.diagonal(rest, axis1=1, axis2=2).real.sum(axis=0)
         by_level = 2 * (b.conj() * (rest @ b)).real[:, :, : answer.gain.shape[2]].sum(axis=(1, 2))
-        return float(loss), _interpolation(answer.wavenumber).T @ by_level, by_sigma
+        return float(loss), knot_weights(answer.wavenumber).T @ by_level, by_sigma
 
     def _scaled(self, answer: RoadAnswer) -> tuple[Array, Complex]:
         """Return d `shape (n, n_channels)` and b with S = diag(d) (1 + b b*) diag(d), which is well conditioned however small sigma is."""
@@ -134,19 +172,16 @@ class Noise:
 
     def draw(self, answer: RoadAnswer, n_samples: int, lines: NDArray[np.intp], random: np.random.Generator) -> Array:
         """Return noise within the band of `lines` (numbers of the FFT's lines) as time histories `shape (n_samples, n_channels)`."""
-
-        def unit(shape: tuple[int, ...]) -> Complex:
-            return np.asarray((random.standard_normal(shape) + 1j * random.standard_normal(shape)) / np.sqrt(2))
-
-        part = self._part(answer)
-        road = (part @ unit((len(lines), part.shape[2], 1)))[:, :, 0]
-        spectrum = np.zeros((n_samples // 2 + 1, road.shape[1]), dtype=np.complex128)
-        spectrum[lines] = (road + unit(road.shape) * self._scale(answer)) * np.sqrt(n_samples / (2 * answer.dt))
+        scale, shared = self._shared(answer)
+        shape = (len(lines), len(self.sigma), 1)
+        unit = (random.standard_normal(shape) + 1j * random.standard_normal(shape)) / np.sqrt(2)
+        spectrum = np.zeros((n_samples // 2 + 1, len(self.sigma)), dtype=np.complex128)
+        spectrum[lines] = scale * (np.linalg.cholesky(shared) @ unit)[:, :, 0] * np.sqrt(n_samples / (2 * answer.dt))
         return np.asarray(np.fft.irfft(spectrum, n_samples, axis=0))
 
 
-def _interpolation(wavenumber: Array) -> Array:
-    """Return the weights of ln(levels) at wavenumbers, `shape (n, len(KNOTS))`."""
+def knot_weights(wavenumber: Array) -> Array:
+    """Return the weights of ln(levels) at wavenumbers [cycles/m], `shape (n, len(KNOTS))`."""
     hats = np.eye(len(KNOT_WAVENUMBERS))
     return np.column_stack([np.interp(np.log(wavenumber), np.log(KNOT_WAVENUMBERS), hat) for hat in hats])
 

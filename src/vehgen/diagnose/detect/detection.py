@@ -9,22 +9,26 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.diagnose.detect.drawn_roughness import noises_of_laws
 from vehgen.diagnose.detect.noise_floor import NoiseFloor, find_noise_floor
 from vehgen.diagnose.detect.numerical_floor import numerical_floor
 from vehgen.diagnose.detect.road_error import measured_profiles, road_noises
 from vehgen.diagnose.fits.model_fit import ModelFit, fit_base, mean_square_as_filed, narrow
-from vehgen.diagnose.thresholds import NOISE_FLOOR
+from vehgen.diagnose.thresholds import NOISE_FLOOR, WEAK
 from vehgen.errors import InputError
 from vehgen.fit.band import DIAGNOSIS_BAND_HZ, compared_band
+from vehgen.fit.misfit import Noises
 from vehgen.fit.problem import Problem, make_problem
 from vehgen.fit.recorders import FoundRecorder, find_recorder, has_unknown
 from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
-SAME_LEVELS = 0.5
-"""Levels of an error of a profile that differ by less in their logarithms are the same."""
+SAME_SQUARES = 0.1
+"""Noises by which the mean squares of what a fit leaves differ by less in their logarithms are the same."""
 ROAD_ROUNDS = 2
 """So often are the errors of measured profiles found, and the base model refitted with them; once where there are none."""
+UNSHOWN = 0.1
+"""Validation runs that show less than this share of the excess of the training runs show nothing."""
 BAND_EDGES_HZ = (0.0, 3.0, 8.0, 15.0, np.inf)
 """Bands of the table of gaps [Hz]: rigid-body motion, between, wheel hop, above."""
 
@@ -85,6 +89,23 @@ def split_runs(trials: Sequence[Trial]) -> tuple[list[Trial], list[Trial]]:
     return [trial for trial in ordered if id(trial) not in apart], held
 
 
+def split_by_gap(base: ModelFit, trials: Sequence[Trial]) -> tuple[list[Trial], list[Trial]] | None:
+    """Return other training and validation runs where those of a fit cannot show what is missing; None where they can, or none could.
+
+    They cannot where they show less than UNSHOWN of the gap's excess that the training runs show. Then every second run by gap is one, the
+    clearest and the least clear ones aside.
+    """
+    before, shown = max(base.training - 1, 0.0), max(base.validation - 1, 0.0)
+    if base.validation_fit is None or base.training <= WEAK**2 or shown >= UNSHOWN * before:
+        return None
+    ordered = sorted(trials, key=lambda trial: base.mean_squares[trial.name])
+    held = ordered[-2:0:-2]
+    if np.mean([base.mean_squares[trial.name] for trial in held]) - 1 < UNSHOWN * before:
+        return None
+    apart = {trial.name for trial in held}
+    return [trial for trial in trials if trial.name not in apart], held
+
+
 def kind_of_run(trial: Trial) -> tuple[float, ...]:
     """Return what a run is like, whatever it is called: its humps' height, its speed, what was measured."""
     return (hump_height(trial), trial.scenario.top_speed, float(np.sort(trial.recording.values**2, axis=None).sum()))
@@ -110,15 +131,16 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
         problem = problem.with_trials(training)
         base = fit_base(problem, validation_runs, floor.noises, recorder.band, base)
     for _ in range(ROAD_ROUNDS if any(measured_profiles(trial) for trial in trials) else 1):
-        floor = replace(floor, noises=road_noises(base, floor.noises, floor.quiet))
+        floor = replace(floor, noises=_noises(base, floor))
         base = fit_base(problem, validation_runs, floor.noises, band if recorder is None else recorder.band, base)
-    return _detection(problem, validation_runs, floor, base, recorder, band)
+    return _shown(_detection(problem, validation_runs, floor, base, recorder, band))
 
 
 def look_again(detection: Detection, fit: ModelFit) -> Detection | None:
     """Return a detection whose recorder and errors of profiles follow from a better model's fit; None where they stay as they are.
 
-    A missing effect passes in part for a rough profile, and for a low-pass of the recorder, however clear that one seems without it.
+    A missing effect passes in part for a rough profile, and for a low-pass of the recorder, however clear that one seems without it. What
+    roughness makes of a law that is missing is not what it makes of the base.
     """
     recorder, floor = detection.recorder, detection.floor
     problem, validation_runs = detection.problem, list(detection.validation_runs)
@@ -128,14 +150,41 @@ def look_again(detection: Detection, fit: ModelFit) -> Detection | None:
             recorder = found
             problem = problem.with_trials(found.applied(problem.trials))
             validation_runs = found.applied(validation_runs)
-    noises = road_noises(fit, floor.noises, floor.quiet)
-    changes = [np.log(noises[name].levels / floor.noises[name].levels) for name in noises]
-    if recorder is detection.recorder and all(np.abs(item).max() < SAME_LEVELS for item in changes):
+    noises = _noises(fit, floor)
+    if recorder is detection.recorder and _are_same(noises, floor.noises, fit):
         return None
     band = detection.asked_band if recorder is None else recorder.band
     floor = replace(floor, noises=noises)
     base = fit_base(problem, validation_runs, noises, band, detection.base)
-    return _detection(problem, validation_runs, floor, base, recorder, detection.asked_band)
+    return _shown(_detection(problem, validation_runs, floor, base, recorder, detection.asked_band))
+
+
+def _shown(detection: Detection) -> Detection:
+    """Return a detection with other validation runs where its own cannot show what is missing."""
+    other = split_by_gap(detection.base, detection.trials)
+    if other is None:
+        return detection
+    training, validation_runs = other
+    problem = detection.problem.with_trials(training)
+    base = fit_base(problem, validation_runs, detection.floor.noises, detection.band)
+    return _detection(problem, validation_runs, detection.floor, base, detection.recorder, detection.asked_band)
+
+
+def _noises(fit: ModelFit, floor: NoiseFloor) -> Noises:
+    """Return the noise of all runs with what a model's fit says of their roads, and of what roads make of its laws."""
+    return noises_of_laws(fit, road_noises(fit, floor.noises, floor.quiet))
+
+
+def _are_same(noises: Noises, others: Noises, fit: ModelFit) -> bool:
+    """Return whether what a fit leaves of every run is as large by one noise as by another."""
+    for part in (fit.least_squares, fit.validation_fit):
+        if part is None:
+            continue
+        for trial, (lines, answer) in zip(part.misfit.problem.trials, part.misfit.residual_spectrum(part.x), strict=True):
+            squares = [np.mean(np.abs(item[trial.name].whitener(answer) @ lines[:, :, None]) ** 2) for item in (noises, others)]
+            if abs(np.log(squares[0] / squares[1])) > SAME_SQUARES:
+                return False
+    return True
 
 
 def _detection(

@@ -20,7 +20,6 @@ from vehgen.fit.misfit import Noises
 from vehgen.fit.noise import (
     COLOUR_AT,
     EVEN,
-    LARGEST_LEVEL,
     LOUDER_HZ,
     SMALLEST_LEVEL,
     Noise,
@@ -132,7 +131,7 @@ def _louder(quiet: Sequence[tuple[Trial, Noise]], band: tuple[float, float]) -> 
     """
     frequency, power = [], []
     for part, noise in quiet:
-        lines, answer = _lines(part, band)
+        lines, answer = lead_in_lines(part, band)
         frequency.append(answer.frequency)
         power.append(np.abs(lines) ** 2 / np.diagonal(noise.density(answer), axis1=1, axis2=2).real)
     number, powers = np.searchsorted(LOUDER_HZ, np.concatenate(frequency), side="right") - 1, np.concatenate(power)
@@ -150,19 +149,17 @@ def _with_own_level(part: Trial | None, noise: Noise, band: tuple[float, float])
     """Return a run's noise with the roughness that its own lead-in shows, as so many times that of all runs: sites differ."""
     if part is None or np.all(noise.levels <= 2 * SMALLEST_LEVEL):
         return noise
-    lines, answer = _lines(part, band)
-
-    def rougher(log_factor: float) -> Noise:
-        return replace(noise, levels=np.clip(noise.levels * np.exp(log_factor), SMALLEST_LEVEL, LARGEST_LEVEL))
+    lines, answer = lead_in_lines(part, band)
 
     def loss(log_factor: float) -> float:
-        return rougher(log_factor).loss(lines, answer) + (log_factor / SITES_DIFFER) ** 2
+        return noise.rougher(float(np.exp(log_factor))).loss(lines, answer) + (log_factor / SITES_DIFFER) ** 2
 
-    return rougher(float(scipy.optimize.minimize_scalar(loss, bounds=(-3.0, 3.0), method="bounded", options={"xatol": 0.05}).x))
+    found = scipy.optimize.minimize_scalar(loss, bounds=(-3.0, 3.0), method="bounded", options={"xatol": 0.05})
+    return noise.rougher(float(np.exp(found.x)))
 
 
-def _lines(part: Trial, band: tuple[float, float]) -> tuple[Complex, RoadAnswer]:
-    """Return the spectral lines of a lead-in without its mean, and the road's way into them."""
+def lead_in_lines(part: Trial, band: tuple[float, float]) -> tuple[Complex, RoadAnswer]:
+    """Return the spectral lines within a band [Hz] of a lead-in without its mean, and the road's way into them."""
     frequency = np.asarray(np.fft.rfftfreq(len(part.recording.time), part.recording.dt), dtype=np.float64)
     inside = (frequency >= max(band[0], 1.0)) & (frequency <= band[1])
     lines = transform(part.recording.values - part.recording.values.mean(axis=0), part.recording.dt, inside)
@@ -199,7 +196,7 @@ def _from_lead_in(
     quiet: Sequence[Trial], sigma: Array, band: tuple[float, float], slope: float, levels: Array | None = None
 ) -> tuple[Noise, float]:
     """Return the noise of lead-ins for a slope, and -2 ln of its likelihood."""
-    residuals = [_lines(part, band) for part in quiet]
+    residuals = [lead_in_lines(part, band) for part in quiet]
     start = Noise(np.full(len(EVEN), 100 * SMALLEST_LEVEL) if levels is None else levels, sigma, slope)
     noise = estimate_noise(residuals, start, same_road=True)[0]
     return noise, sum(noise.loss(lines, answer) for lines, answer in residuals)

@@ -77,21 +77,20 @@ def road_noises(base: ModelFit, noises: Noises, lead: Noises) -> Noises:
                 at_rest = _at_rest(trial, base, lead)
                 found[trial.name] = find_profile_error(trial, lines, answer, at_rest).noise(at_rest)
             elif np.any(lead[trial.name].levels > 2 * SMALLEST_LEVEL):
-                found[trial.name] = _under_hump(lines, answer, lead[trial.name])
+                found[trial.name] = under_hump(lines, answer, lead[trial.name])
     return found
 
 
-def _under_hump(lines: Complex, answer: RoadAnswer, lead: Noise) -> Noise:
-    """Return a run's noise with the most likely roughness, as so many times that of its lead-in."""
+def under_hump(lines: Complex, answer: RoadAnswer, lead: Noise) -> Noise:
+    """Return a run's noise with the most likely roughness, as so many times that of its lead-in.
 
-    def rougher(log_factor: float) -> Noise:
-        return replace(lead, levels=np.clip(lead.levels * np.exp(log_factor), SMALLEST_LEVEL, LARGEST_LEVEL))
-
+    `lines shape (n, n_channels)` are what a fit leaves of the run, `answer` the road's way into them.
+    """
     bounds = (float(np.log(UNDER_HUMP[0])), float(np.log(UNDER_HUMP[1])))
     found = scipy.optimize.minimize_scalar(
-        lambda x: rougher(x).loss(lines, answer), bounds=bounds, method="bounded", options={"xatol": 0.02}
+        lambda x: lead.rougher(float(np.exp(x))).loss(lines, answer), bounds=bounds, method="bounded", options={"xatol": 0.02}
     )
-    return rougher(float(found.x))
+    return lead.rougher(float(np.exp(found.x)))
 
 
 def _at_rest(trial: Trial, base: ModelFit, noises: Noises) -> Noise:

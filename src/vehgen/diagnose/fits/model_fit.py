@@ -175,10 +175,11 @@ def refine(
     effects: Sequence[Candidate],
     noises: Noises | None = None,
     band: tuple[float, float] | None = None,
+    known_errors: Sequence[LeastSquaresFit] = (),
 ) -> LeastSquaresFit:
     """Fit finely from the unknowns `x` of another fit, on a problem with the same unknowns, of which the last are the effects'.
 
-    With its noise and band, or with other ones.
+    With its noise and band, or with other ones. Where the runs are others, `known_errors` are fits that tell where their errors begin.
     """
     misfit = fit.misfit
     n_effect_parameters = sum(len(item.parameters) for item in effects)
@@ -194,6 +195,9 @@ def refine(
         n_effect_parameters=n_effect_parameters,
     )
     numbers = tuple(misfit.adjusted(x))
+    if known_errors:
+        begun = Misfit(problem, noises or misfit.noises, problem.space.start, NUISANCES, options.band, misfit.shared, misfit.known)
+        errors = np.sum([begun.errors_like(item.misfit, item.x) for item in known_errors], axis=0)
     return fit_least_squares(
         problem,
         unit,

@@ -168,12 +168,13 @@ class Fitter:
         )
 
     def fit_again(self, fit: ModelFit) -> ModelFit:
-        """Fit a first effect anew from where it was, to runs whose recorders, or noise, have changed."""
+        """Fit a first effect anew from where it was, to runs whose recorders, noise, or part (training, validation) have changed."""
         problem = build_problem(fit.last, self.current.problem, self.locator, self.simulators)
-        steps = {trial.name: trial for trial in fit.least_squares.misfit.problem.trials}
+        parts = [part for part in (fit.least_squares, fit.validation_fit) if part is not None]
+        steps = {trial.name: trial for part in parts for trial in part.misfit.problem.trials}
         problem = problem.with_trials([as_fine(trial, steps[trial.name]) for trial in problem.trials])
         noises, runs = self.detection.floor.noises, self.detection.validation_runs
-        found = refine(problem, fit.least_squares, fit.least_squares.x, fit.effects, noises, self.detection.band)
+        found = refine(problem, fit.least_squares, fit.least_squares.x, fit.effects, noises, self.detection.band, parts)
         return replace(evaluate_fit(fit.effects, found, runs, noises), equivalent_minima=fit.equivalent_minima)
 
     def fit_roughly(self, candidate: Candidate) -> ModelFit | None:

@@ -1,0 +1,78 @@
+"""Drawn roads: for a linear vehicle they say what its frequency response says; for one with friction they find the road that was there."""
+
+import shutil
+
+import numpy as np
+import pytest
+from benchmarks.hidden_effects.generator import Effect, Hump, RandomRoad, RunSpec
+
+from vehgen.diagnose.detect.drawn_roughness import DrawnRun, find_levels, noises_of_laws
+from vehgen.diagnose.detect.noise_floor import find_noise_floor
+from vehgen.diagnose.fits.candidate import build_problem, list_candidates
+from vehgen.effects import EFFECTS, EffectLocator
+from vehgen.fit.least_squares import LeastSquaresFit
+from vehgen.fit.misfit import Misfit
+from vehgen.fit.noise import KNOT_WAVENUMBERS, Noise, road_answer
+from vehgen.fit.problem import make_problem
+from vehgen.fit.trial import load_trials
+from vehgen.simulate import SimulatorPool
+
+FORCE = 400.0
+FRICTION = Effect("dry_friction", "front", {"force": FORCE})
+STUCK = tuple(
+    RunSpec((Hump(0.5, 0.04, 4.0 * speed), RandomRoad("A", seed)), speed, 8.0, f"run{seed}") for seed, speed in ((1, 4.0), (2, 5.0))
+)
+CLASS_A = 16e-6
+BAND_HZ = 0.5, 40.0
+
+
+def test_roads_drawn_under_a_linear_vehicle_answer_as_its_frequency_response_does(detection_of):
+    fit = detection_of().base.least_squares
+    number = next(i for i, trial in enumerate(fit.misfit.problem.trials) if trial.scenario.humps)
+    trial = fit.misfit.problem.trials[number]
+    levels = CLASS_A * 2.0 ** np.arange(len(KNOT_WAVENUMBERS))
+    noise = Noise(levels, np.full(len(trial.channels), 1e-9))
+    values = fit.misfit.problem.values_of(fit.values, trial)
+    expected = noise.density(road_answer(trial, fit.misfit.frequency(number), values))
+    found = DrawnRun(fit, number, noise).density(levels, 200).density
+    frequency = fit.misfit.frequency(number)
+    for low, high in ((2.0, 6.0), (6.0, 12.0), (12.0, 25.0)):
+        inside = (frequency >= low) & (frequency < high)
+        ours, theirs = (np.mean(item[inside], axis=0) for item in (found, expected))
+        size = np.sqrt(np.diag(theirs).real)
+        assert np.abs((ours - theirs) / size[:, None] / size[None, :]).max() < 0.15
+
+
+def test_the_noise_of_a_linear_vehicle_stays_as_it_is(detection_of):
+    detection = detection_of()
+    assert noises_of_laws(detection.base, detection.floor.noises) is detection.floor.noises
+
+
+@pytest.fixture(scope="module")
+def stuck(record, tmp_path_factory):
+    """Runs with friction over humps on a road that the run files do not tell of, and the noise of a linear vehicle."""
+    folder = tmp_path_factory.mktemp("stuck")
+    shutil.copytree(record(FRICTION, runs=STUCK)[0].parent, folder, dirs_exist_ok=True)
+    for path in folder.glob("run*.yaml"):
+        path.write_text("".join(line for line in path.read_text().splitlines(keepends=True) if "profile:" not in line))
+    trials = load_trials(sorted(folder.glob("run*.yaml")))
+    return trials, find_noise_floor(trials, BAND_HZ).noises
+
+
+def test_a_smooth_road_under_stuck_friction_is_not_taken_for_a_rough_one(stuck):
+    trials, noises = stuck
+    vehicle = trials[0].run.vehicle
+    locator, base = EffectLocator(vehicle, trials[0].values), make_problem(trials)
+    (candidate,) = [item for item in list_candidates(vehicle, trials, [EFFECTS["dry_friction"]], noises) if item.place == "front"]
+    problem = build_problem(candidate, base, locator, SimulatorPool())
+    point = problem.space.start.copy()
+    point[-1] = FORCE
+    misfit = Misfit(problem, noises, point, None, BAND_HZ)
+    x = np.concatenate([problem.space.unit(point), np.zeros(misfit.n_unknowns - problem.space.size)])
+    fit = LeastSquaresFit(misfit, x, 1.0, 0.0)
+    runs = [DrawnRun(fit, number, noises[trial.name]) for number, trial in enumerate(trials)]
+    inside = (KNOT_WAVENUMBERS > 0.3) & (KNOT_WAVENUMBERS < 4)
+    for run, levels in zip(runs, find_levels(runs), strict=True):
+        linear, own = (np.exp(np.log(item[inside]).mean()) for item in (run.lead.levels, levels))
+        assert CLASS_A / 4 < own < 4 * CLASS_A
+        assert linear > 2 * own
