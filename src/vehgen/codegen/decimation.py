@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 from vehgen.codegen.cache import import_kernel
 
 Array = NDArray[np.float64]
+MANY_NUMBERS = 5_000_000
+"""Numbers below which one core is as quick as several."""
 TAPS_AT_ONCE = 4
 """Taps that are added to the samples in one pass."""
 _HEAD = '''"""Decimating FIR filter of responses; written by vehgen.codegen.decimation."""
@@ -92,7 +94,7 @@ def decimate(fine: Array, filters: list[tuple[int, Array]], ratio: int, count: i
         weights[channel, phase, last - shift] = taps
     fine = np.ascontiguousarray(fine)
     found = np.empty((len(fine), count, len(filters)))
-    workers = min(threads or os.cpu_count() or 1, len(fine))
+    workers = min(threads or os.cpu_count() or 1, len(fine)) if fine.size > MANY_NUMBERS else 1
     bounds = np.linspace(0, len(fine), workers + 1).astype(int).tolist()
     run = _module().filter_phases
 

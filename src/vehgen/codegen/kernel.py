@@ -21,6 +21,8 @@ from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
 
 Array = NDArray[np.float64]
+WORTH_THREADS = 1_000_000
+"""Blocks times steps times degrees of freedom below which one core is as quick as several."""
 UNCONVERGED = 0.01
 """Residual of the force laws over the vehicle's weight above which an individual counts as failed."""
 
@@ -231,7 +233,7 @@ class Kernel:
 
         starts = range(0, n_individuals, lanes)
         workers = min(threads or os.cpu_count() or 1, len(starts))
-        if workers > 1:
+        if workers > 1 and len(starts) * excitation.n_steps * n_dof > WORTH_THREADS:
             with ThreadPoolExecutor(workers) as pool:
                 list(pool.map(block, starts))
         else:

@@ -158,7 +158,7 @@ def _alone(models: DiagnosisModels) -> Iterator[RunAsks]:
 
 def _steps(models: DiagnosisModels) -> Iterator[StepChi]:
     detection, base = models.detection, models.detection.base
-    steps = [("as filed", detection.as_filed, detection.as_filed_validation), ("recalibrated", base.training, base.validation)]
+    steps = [("as filed", *detection.as_filed), ("recalibrated", base.training, base.validation)]
     steps += [(f"+ {fit.last.effect.name}\nat {fit.last.place}", fit.training, fit.validation) for fit in models.chosen]
     for label, training, validation in steps:
         yield StepChi(label, float(np.sqrt(training)), float(np.sqrt(validation)))

@@ -72,7 +72,7 @@ class Decision:
     def _decide(self) -> Decided:
         detection = self.detection
         self.notes += variety_notes(detection.trials)
-        quiet = max(detection.chi, float(np.sqrt(self.base.training))) <= detection.nothing_missing
+        quiet = detection.is_quiet
         mistakes = recorded_mistakes(detection) or (supposed_mistakes(detection) if quiet else plain_mistakes(detection))
         if mistakes:
             return self._mistaken(mistakes)

@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 FIRST_DAMPING = 1e-3
 """Damping of the first step, as a share of the diagonal of the normal equations."""
+RENEWED_DAMPING = 1e-6
+"""Damping of a step with renewed derivatives: what is left lies along flat valleys."""
 LARGEST_DAMPING, LEAST_DAMPING, LESS_DAMPING = 1e8, 1e-9, 1e-2
 """Damping that ends a fit, that is as good as none, and the factor for it where it stands in the way."""
 SMALLEST_EIGENVALUE = 1e-15
@@ -41,6 +43,7 @@ def minimise(
     bounds: tuple[Array, Array],
     tolerance: float,
     max_steps: int,
+    renew: Callable[[Array], LinearisedPoint] | None = None,
 ) -> Array:
     """Return where a sum of squares is least within bounds.
 
@@ -56,34 +59,39 @@ def minimise(
         Relative change of the sum of squares at which the fit ends.
     max_steps
         So many evaluations of `square` at most.
+    renew
+        Where `linearise` may use derivatives from elsewhere: returns the equations with those of the point. A fit that is to end goes on
+        with them, and ends only where they, too, lead no further.
     """
     low, high = bounds
     x = np.clip(x, low, high)
     now, damping, growth = square(x), FIRST_DAMPING, 2.0
     if not np.isfinite(now):
         return x
-    point, steps = linearise(x), 1
+    point, steps, renewed = linearise(x), 1, renew is None
     while steps < max_steps:
         step = _step(point, x, bounds, damping)
-        if np.abs(step).max(initial=0.0) < SMALLEST_STEP:
-            break
         expected = -2 * float(point.gradient @ step) - float(step @ point.information @ step)
         moved = x + step
         then, steps = square(moved), steps + 1
-        if np.isfinite(then) and then < now:
+        fell = np.isfinite(then) and then < now
+        if fell:
             gained = now - then
             x, now = moved, then
             damping *= max(1 / 3, 1 - (2 * min(gained / max(expected, 1e-300), 1.0) - 1) ** 3)
             growth = 2.0
+            ended = gained <= tolerance * now and (damping <= LEAST_DAMPING or _left(point, x, step, bounds) <= tolerance * now)
             if gained <= tolerance * now:
-                if damping <= LEAST_DAMPING or _left(point, x, step, bounds) <= tolerance * now:
-                    break
                 damping = max(damping * LESS_DAMPING, LEAST_DAMPING)
-            point = linearise(x)
         else:
-            if expected <= tolerance * now or damping > LARGEST_DAMPING:
-                break
+            ended = expected <= tolerance * now or damping > LARGEST_DAMPING
             damping, growth = damping * growth, growth * 2
+        if ended or np.abs(step).max(initial=0.0) < SMALLEST_STEP:
+            if renewed or renew is None:
+                break
+            point, renewed, damping, growth = renew(x), True, min(damping, RENEWED_DAMPING), 2.0
+        elif fell:
+            point, renewed = linearise(x), renew is None
     return x
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,7 +13,7 @@ from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.alignment import MOST_SIGMAS, align
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.bounded import LinearisedPoint, minimise
-from vehgen.fit.linearisation import Linearisation, lineariser
+from vehgen.fit.linearisation import Linearisation, Lineariser
 from vehgen.fit.misfit import Misfit, Noises, flatten
 from vehgen.fit.noise import EVEN, Noise, estimate_noise
 from vehgen.fit.nuisances import Condition, Nuisances
@@ -156,7 +156,7 @@ def _fit(
 ) -> tuple[Array, Linearisation]:
     n, space = misfit.n_parameters, misfit.problem.space
     middle, weights = space.unit(space.start), options.priors(n) ** -2.0
-    derive = lineariser(misfit, options.jacobian_refresh, nearby)
+    derive = Lineariser(misfit, options.jacobian_refresh, nearby)
     last: list[tuple[Array, list[Complex]]] = []
     kept: list[Linearisation] = []
 
@@ -167,9 +167,9 @@ def _fit(
         total = sum(float(np.vdot(line, line).real) * 2 for line in lines) + float(errors @ errors + weights @ (x[:n] - middle) ** 2)
         return total if prior_data is None else total + float((prior_data.residuals(space.values(x[:n])) ** 2).sum())
 
-    def linearised(x: Array) -> LinearisedPoint:
+    def linearised(x: Array, how: Callable[[Array], Linearisation] = derive) -> LinearisedPoint:
         lines = next((own for at, own in last if at is x), None) or misfit.whitened_spectrum(x)
-        kept[:] = [derive(x)]
+        kept[:] = [how(x)]
         information, gradient = kept[0].normal(lines, x)
         information[:n, :n] += np.diag(weights)
         gradient[:n] += weights * (x[:n] - middle)
@@ -181,7 +181,8 @@ def _fit(
         return LinearisedPoint(information, gradient)
 
     with threadpool_limits(1, user_api="blas"):  # small matrices: more threads only wait for one another
-        found = minimise(square, linearised, x, unknown_bounds(misfit), tolerance, options.max_steps)
+        renew = (lambda x: linearised(x, derive.linearise_anew)) if options.jacobian_refresh > 1 and tolerance < COARSE_TOLERANCE else None
+        found = minimise(square, linearised, x, unknown_bounds(misfit), tolerance, options.max_steps, renew)
     return found, kept[0]
 
 

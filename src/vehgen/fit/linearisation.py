@@ -6,13 +6,13 @@ little along a fit, so that one linearisation may take them from another; those 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.fit.misfit import Array, Complex, Misfit, flatten
+from vehgen.fit.nuisances import OF_TIME
 
 UNIT_DIFFERENCE = 1e-6
 """Step of the differences to each side, in the unit cube and in units of an error's uncertainty: so short that jumps of a response
@@ -70,10 +70,6 @@ class Linearisation:
         return information, gradient
 
 
-Lineariser = Callable[[Array], Linearisation]
-"""Linearises one misfit at unknowns x."""
-
-
 def linearise(misfit: Misfit, x: Array, *, one_sided: bool = False, slopes_of: Linearisation | None = None) -> Linearisation:
     """Return a misfit's linearisation at x, by differences.
 
@@ -125,7 +121,8 @@ class _Trial:
         n = len(self.by_parameter) + len(shared)
         by_error = dict(zip(slopes, lines[n:], strict=True))
         still = misfit.unread(self.number, self.centre, self.error)
-        rows = [by_error[i - len(sensors)] if item.moves_vehicle else self._read(still, i) for i, item in enumerate(items)]
+        read = misfit.read(self.number, still, self.error)
+        rows = [by_error[i - len(sensors)] if item.moves_vehicle else self._read(still, read, i) for i, item in enumerate(items)]
         return -misfit.whiten(self.number, np.concatenate([lines[:n], np.reshape(rows, (-1, *lines.shape[1:]))])), slopes
 
     def _moved(self, number: Array, error: Array) -> Array:
@@ -137,15 +134,25 @@ class _Trial:
         behind = misfit.respond(t, self.middle, self.numbers - number, self.error - error)[0]
         return np.asarray((ahead - behind) / (2 * UNIT_DIFFERENCE))
 
-    def _read(self, still: Complex, i: int) -> Complex:
-        """Return the derivative of the lines by an error that only changes readings, `still` the lines before they are read."""
+    def _read(self, still: Complex, read: Complex, i: int) -> Complex:
+        """Return the derivative of the lines by an error that only changes readings, `still` the lines before they are read.
+
+        A late clock moves the window, too: along the valley in which clocks and a sensor's delay make up for each other even that counts.
+        """
         step = READING_DIFFERENCE * np.eye(len(self.error))[i]
-        ahead, behind = (self.misfit.read(self.number, still, self.error + sign * step) for sign in (1, -1))
-        return np.asarray((ahead - behind) / (2 * READING_DIFFERENCE))
+        moves_window = self.misfit.errors[self.number].items[i].name in OF_TIME
+
+        def read_lines(error: Array) -> Complex:
+            own = self.misfit.unread(self.number, self.centre, error) if moves_window else still
+            return self.misfit.read(self.number, own, error)
+
+        if self.one_sided:
+            return np.asarray((read_lines(self.error + step) - read) / READING_DIFFERENCE)
+        return np.asarray((read_lines(self.error + step) - read_lines(self.error - step)) / (2 * READING_DIFFERENCE))
 
 
-def lineariser(misfit: Misfit, refresh: int = 1, nearby: Linearisation | None = None) -> Lineariser:
-    """Return what linearises a misfit again and again, as a fit asks for it.
+class Lineariser:
+    """Linearises a misfit again and again, as a fit asks for it.
 
     Parameters
     ----------
@@ -156,13 +163,19 @@ def lineariser(misfit: Misfit, refresh: int = 1, nearby: Linearisation | None = 
     nearby
         A linearisation whose derivatives by the runs' errors serve first.
     """
-    fresh = nearby
-    count = 1 if nearby is not None else 0
 
-    def linearise_again(x: Array) -> Linearisation:
-        nonlocal fresh, count
-        found = linearise(misfit, x, one_sided=refresh > 1, slopes_of=fresh if count % refresh else None)
-        fresh, count = found, count + 1
-        return found
+    def __init__(self, misfit: Misfit, refresh: int = 1, nearby: Linearisation | None = None) -> None:
+        self.misfit, self.refresh = misfit, refresh
+        self._last, self._age = nearby, 1 if nearby is not None else 0
 
-    return linearise_again
+    def __call__(self, x: Array) -> Linearisation:
+        """Return the linearisation at unknowns x `shape (n_unknowns,)`."""
+        known = self._last if self._age % self.refresh else None
+        self._last = linearise(self.misfit, x, one_sided=self.refresh > 1, slopes_of=known)
+        self._age += 1
+        return self._last
+
+    def linearise_anew(self, x: Array) -> Linearisation:
+        """Return the linearisation at unknowns x with all derivatives computed there."""
+        self._age = 0
+        return self(x)

@@ -2,8 +2,7 @@
 
 Of a run: when its recording began, its speed and how the driver strayed about it, height and form of its hump. Of the sensors: each one's
 clock in each run, and, the same in all runs, gains, tilts, places, how late a gyroscope is behind the accelerometer beside it, and what
-an unknown low-pass takes off. Every error counts in units of its standard deviation; a run file may state these (`uncertainty`), else they
-are the defaults of :class:`Nuisances`.
+an unknown low-pass takes off. Every error counts in units of its standard deviation: the run file's (`uncertainty`), or the default.
 """
 
 from __future__ import annotations
@@ -32,8 +31,9 @@ SHORTEST_WANDER_S = 1.0
 """Over a shorter pass [s] a speed does not change."""
 ON_ROAD_MARGIN_S = 0.3
 """The speed matters from so long before the first wheel meets the hump until so long after the last has left it [s]."""
-READING = ("clock", "lag", "gain", "tilt", "position", "roll_off", "dispersion")
-"""Errors that change what a sensor reads, not what the vehicle does."""
+OF_TIME = ("clock", "lag")
+READING = (*OF_TIME, "gain", "tilt", "position", "roll_off", "dispersion")
+"""Errors that change what a sensor reads, not what the vehicle does; the first two say how late a channel is."""
 LOW_PASS = ("roll_off", "dispersion")
 """Errors of what stands for an unknown recorder's low-pass."""
 ERROR_UNITS = {"delay": "s", "wear": "mm^2", "clock": "s", "lag": "s", "tilt": "rad", "position": "m"}

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+import scipy.fft
 from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
@@ -24,6 +26,8 @@ AT_REST_SAMPLES, AT_REST_SHARE = 3, 0.2
 """A vehicle rests at the begin of a recording whose first samples are all below this share of what it does later."""
 FORGOTTEN = 4.0
 """After so many decay times 2 % of a motion are left."""
+MOST_LEFT_OUT = 0.01
+"""No more than this share of a recording is left out at its end for quicker transforms: its last moments count little anyway."""
 MOST_SKIPPED = 0.5
 """No more than this share of a recording is left out."""
 LONGEST_STEP_S = 1e-3
@@ -134,6 +138,8 @@ def make_trial(run: Run, name: str, simulators: SimulatorPool | None = None) -> 
         Simulators that trials with the same vehicle and channels share.
     """
     measurement = read_recording(run)
+    count = _quick_count(len(measurement.time))
+    measurement = replace(measurement, time=measurement.time[:count], values=measurement.values[:count])
     dt = measurement.dt
     decimation = samples_kept(run, dt)
     step = dt / decimation
@@ -166,8 +172,15 @@ def _from_known_road(trial: Trial) -> Trial:
     rates = [2 * np.pi * mode.damped_hz * mode.damping_ratio for mode in natural_modes(trial.simulator.model, trial.values)]
     settled = arrived - float(recording.time[0]) + FORGOTTEN * max((1 / rate for rate in rates if rate > 0), default=0.0)
     skipped = min(round(settled / recording.dt), round(MOST_SKIPPED * len(recording.time)))
+    skipped = len(recording.time) - _quick_count(len(recording.time) - skipped)
     kept = replace(recording, time=recording.time[skipped:], values=recording.values[skipped:])
     return replace(trial, recording=kept, scenario=replace(scenario, skipped=skipped))
+
+
+def _quick_count(count: int) -> int:
+    """Return how many of so many samples are kept: a few less where their number has large prime factors, and Fourier transforms dawdle."""
+    least = math.ceil((1 - MOST_LEFT_OUT) * count)
+    return next((kept for kept in range(count, least - 1, -1) if scipy.fft.next_fast_len(kept) == kept), count)
 
 
 def samples_kept(run: Run, dt: float) -> int:

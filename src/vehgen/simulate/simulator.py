@@ -121,8 +121,7 @@ class Simulator:
         names = [channel.name for channel in self.model.channels]
         check_population(len(parameters), kept_samples(scenario, names, self.kernel.source.nonlinear), len(names))
         offsets = np.round(self.wheel_offsets(parameters), 12)
-        distinct, group = np.unique(offsets, axis=0, return_inverse=True)
-        group = group.ravel()
+        distinct, group = _distinct_rows(offsets)
         responses: Array | None = None
         failures: dict[int, str] = {}
         residuals = np.zeros(len(parameters))
@@ -179,9 +178,10 @@ class Simulator:
         columns = self._layout_columns
         if not columns:
             return np.repeat(self._offsets(parameters[0], ())[None, :], len(parameters), axis=0)
-        distinct, group = np.unique(parameters[:, columns], axis=0, return_index=True, return_inverse=True)[1:]
-        rows = [self._offsets(parameters[i], tuple(parameters[i, columns].tolist())) for i in distinct]
-        return np.array(rows)[group.ravel()]
+        distinct, group = _distinct_rows(parameters[:, columns])
+        first = [int(np.argmax(group == i)) for i in range(len(distinct))]
+        rows = [self._offsets(parameters[i], tuple(parameters[i, columns].tolist())) for i in first]
+        return np.array(rows)[group]
 
     def _offsets(self, individual: Array, layout: tuple[float, ...]) -> Array:
         """Return one individual's distances `shape (n_axles,)`, which its `layout` decides: the last ones are remembered."""
@@ -268,3 +268,11 @@ def write_csv(path: Path, response: Response) -> None:
     for t, row in zip(response.time, response.values[0], strict=True):
         writer.writerow([f"{t:.9g}", *(f"{value:.9g}" for value in row)])
     write_text(path, text.getvalue())
+
+
+def _distinct_rows(rows: Array) -> tuple[Array, NDArray[np.intp]]:
+    """Return the distinct rows of a matrix, and the number of each row among them; sorting is spared where all are alike."""
+    if np.all(rows == rows[0]):
+        return rows[:1], np.zeros(len(rows), dtype=np.intp)
+    distinct, group = np.unique(rows, axis=0, return_inverse=True)
+    return distinct, group.ravel()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -37,8 +38,7 @@ BAND_EDGES_HZ = (0.0, 3.0, 8.0, 15.0, np.inf)
 class Detection:
     """What the first stage finds: the noise floor and how far the base model is above it.
 
-    `base` is recalibrated; `as_filed` and `as_filed_validation` are the mean squares of the file's parameters, on the training runs and on
-    the validation runs (not a number where there are none). `recorder` stands for recorders that no run file declares; `numerical` is what
+    `base` is recalibrated. `recorder` stands for recorders that no run file declares; `numerical` is what
     the simulation's own error may add to the mean square of every run; `asked_band` the band that was asked for.
     """
 
@@ -46,8 +46,6 @@ class Detection:
     validation_runs: tuple[Trial, ...]
     floor: NoiseFloor
     base: ModelFit
-    as_filed: float
-    as_filed_validation: float
     band: tuple[float, float] = DIAGNOSIS_BAND_HZ
     recorder: FoundRecorder | None = None
     numerical: dict[str, float] = field(default_factory=dict)
@@ -59,6 +57,18 @@ class Detection:
         counts = {name: self.base.counts[name] for name in self.numerical}
         added = sum(self.numerical[name] * count for name, count in counts.items()) / max(sum(counts.values()), 1)
         return float(np.sqrt(NOISE_FLOOR**2 + added))
+
+    @cached_property
+    def as_filed(self) -> tuple[float, float]:
+        """The mean squares of the file's parameters, on training and validation runs (not a number where there are none)."""
+        parts = (self.problem.trials, self.validation_runs)
+        found = [mean_square_as_filed(part, self.floor.noises, self.band) for part in parts]
+        return found[0], found[1]
+
+    @property
+    def is_quiet(self) -> bool:
+        """Whether nothing is missing, on all runs and on the training runs."""
+        return max(self.chi, float(np.sqrt(self.base.training))) <= self.nothing_missing
 
     @property
     def chi(self) -> float:
@@ -196,10 +206,9 @@ def _detection(
     asked_band: tuple[float, float],
 ) -> Detection:
     band = base.least_squares.misfit.band
-    filed = [mean_square_as_filed(part, floor.noises, band) for part in (problem.trials, validation_runs)]
     parts = [numerical_floor(fit.misfit, fit.x) for fit in (base.least_squares, base.validation_fit) if fit is not None]
     numerical = {name: value for part in parts for name, value in part.items()}
-    return Detection(problem, tuple(validation_runs), floor, base, filed[0], filed[1], band, recorder, numerical, asked_band)
+    return Detection(problem, tuple(validation_runs), floor, base, band, recorder, numerical, asked_band)
 
 
 def band_gaps(detection: Detection, fit: ModelFit | None = None) -> list[BandGap]:

@@ -188,7 +188,7 @@ def refine(
     options = FitOptions(
         NUISANCES,
         band or misfit.band,
-        max_steps=25,
+        max_steps=40,
         tolerance=DIAGNOSIS_TOLERANCE,
         jacobian_refresh=JACOBIAN_REFRESH,
         prior_sigma=base_priors(names, effects),

@@ -167,7 +167,7 @@ class _Rough:
             n_effect_parameters=self.n_effect_parameters,
         )
         unit, errors, numbers = start
-        nearby = self.current.nearby if misfit.band == self.band else None
+        nearby = self.current.nearby if misfit.nuisances is NUISANCES else None
         return fit_least_squares(
             self.problem, unit, options, noises=self.noises, start=errors, shared=self.shared, numbers=numbers, nearby=nearby
         )

@@ -148,13 +148,14 @@ def recorded_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
 
 
 def supposed_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
-    """Return what the base fit had to suppose of the runs beyond belief."""
+    """Return what the base fit had to suppose of the runs beyond belief, or that it explains nothing of them at all."""
     fits = (detection.base.least_squares, *([detection.base.validation_fit] if detection.base.validation_fit else []))
     conditions = [item for fit in fits for item in fit.conditions()]
     found = findings_of_conditions(conditions, [trial.name for trial in detection.trials], road_heights(detection.trials))
     speeds = {trial.name: trial.scenario.top_speed for trial in detection.trials if measured_profiles(trial)}
     told = {run for item in found if item.kind == "clock" for run in item.runs}
     moved = (item for item in moved_roads(conditions, speeds) if not told & set(item.runs))
+    found = (*found, *unrelated_recording(detection.base.least_squares))
     return (*found, *moved, *slow_recorder(detection.recorder, tuple(trial.name for trial in detection.trials)))
 
 
@@ -164,7 +165,7 @@ def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
 
 
 def explain_gap(detection: Detection, chi: float | None = None, vehicle: bool = True) -> tuple[MeasurementFault, ...]:
-    """Return the mistakes that explain what the base model misses, whatever they look like; nothing where none does.
+    """Return the mistakes that explain what the base model misses, whatever they look like; nothing where none does, or nothing is missing.
 
     Parameters
     ----------
@@ -175,6 +176,8 @@ def explain_gap(detection: Detection, chi: float | None = None, vehicle: bool = 
     vehicle
         Whether the vehicle may be another one altogether.
     """
+    if detection.is_quiet:
+        return supposed_mistakes(detection)
     case = BaseRefits(detection)
     found = find_mistakes(case)
     left = case.excess / case.first_excess
@@ -183,7 +186,7 @@ def explain_gap(detection: Detection, chi: float | None = None, vehicle: bool = 
         return found
     if found or not vehicle:
         return ()
-    return other_vehicle(case) or _single_speeds(detection) or unrelated_recording(case)
+    return other_vehicle(case) or _single_speeds(detection) or unrelated_recording(case.base)
 
 
 def _single_speeds(detection: Detection) -> tuple[MeasurementFault, ...]:

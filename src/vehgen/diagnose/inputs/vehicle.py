@@ -17,6 +17,7 @@ from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always
 from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.fit.adjustments import SpeedScale
+from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.noise import transform
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import Trial
@@ -157,10 +158,10 @@ def other_vehicle(case: BaseRefits) -> tuple[MeasurementFault, ...]:
     return (MeasurementFault("other_parameters", (), (), message, "check the vehicle file, or calibrate first"),)
 
 
-def unrelated_recording(case: BaseRefits) -> tuple[MeasurementFault, ...]:
-    """Return that the recordings have nothing to do with the model, where it explains too little of every run's energy."""
-    misfit, shares = case.base.misfit, []
-    for t, (trial, (lines, _)) in enumerate(zip(misfit.problem.trials, misfit.residual_spectrum(case.base.x), strict=True)):
+def unrelated_recording(fit: LeastSquaresFit) -> tuple[MeasurementFault, ...]:
+    """Return that the recordings have nothing to do with the fitted model, where it explains too little of every run's energy."""
+    misfit, shares = fit.misfit, []
+    for t, (trial, (lines, _)) in enumerate(zip(misfit.problem.trials, misfit.residual_spectrum(fit.x), strict=True)):
         inside = np.isin(np.fft.rfftfreq(len(trial.recording.time), trial.recording.dt), misfit.frequency(t))
         recorded = transform(trial.recording.values, trial.recording.dt, inside)
         shares.append(float(np.mean((np.abs(lines) ** 2).sum(axis=0) / (np.abs(recorded) ** 2).sum(axis=0))))

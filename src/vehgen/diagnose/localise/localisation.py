@@ -9,7 +9,7 @@ from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.localise.unknown_force import Place, PlaceResult, list_places, score_locations
 from vehgen.effects.evidence import PlaceEvidence
-from vehgen.fit.linearisation import lineariser
+from vehgen.fit.linearisation import Lineariser
 
 ONCE = 1_000_000
 """The derivatives by nuisances serve for all places: they differ little, and take most of the time."""
@@ -18,7 +18,7 @@ ONCE = 1_000_000
 def localise(fit: ModelFit) -> tuple[list[PlaceResult], list[PlaceResult]]:
     """Test every place on what a fit leaves; return all results, best first, and the smallest hypotheses that reach the floor."""
     misfit = fit.least_squares.misfit
-    results = score_locations(misfit, fit.least_squares.x, list_places(misfit), lineariser(misfit, ONCE))
+    results = score_locations(misfit, fit.least_squares.x, list_places(misfit), Lineariser(misfit, ONCE))
     results.sort(key=lambda item: (item.chi, item.unknowns))
     nowhere = next(item for item in results if item.place.kind == "none")
     excess = max(nowhere.chi**2 - 1, 0.0)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.fit.least_squares import unknown_bounds
-from vehgen.fit.linearisation import Lineariser, linearise, lineariser
+from vehgen.fit.linearisation import Lineariser, linearise
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.mechanics.rows import Row
 from vehgen.simulate.frequency import force_response
@@ -97,7 +97,7 @@ def score_locations(misfit: Misfit, x: Array, places: Sequence[Place], derive: L
         What linearises the misfit (default: anew at every point, by differences to both sides).
     """
     found = []
-    derive = derive or lineariser(misfit)
+    derive = derive or Lineariser(misfit)
     lines, derivatives = misfit.whitened_spectrum(x), derive(x).spectra
     for place in places:
         result = _test(misfit, x, place, lines, derivatives, derive)
