@@ -24,7 +24,7 @@ def test_a_late_phone_beside_another_effect_is_tied_with_the_other_phone_being_e
     assert delay.alternatives == (f"sensor_delay at {'F' if delay.place == 'R' else 'R'}",)
     assert found.verdict.verdict == "ambiguous"
     assert found.verdict.next_experiment == EFFECTS["sensor_delay"].tie_advice
-    assert abs(delay.parameters["delay"].value) == pytest.approx(0.06, abs=0.006)  # any clock may be 10 ms off
+    assert abs(delay.parameters["delay"].value) == pytest.approx(0.06, abs=0.01)  # any clock may be 10 ms off
 
 
 def test_the_spring_beside_it_has_no_rival(found):

@@ -20,11 +20,11 @@ def found(trials_of):
     return diagnose_trials(trials_of(FRICTION), [EFFECTS["dry_friction"]])
 
 
-def test_friction_is_marked_as_jumping_and_needs_no_shorter_steps(found):
+def test_friction_is_marked_as_jumping_and_its_steps_are_halved_once_at_most(found):
     base, friction = found.detection.base, found.chosen[-1]
     assert not any(trial.jumps for trial in base.least_squares.misfit.problem.trials)
     assert all(trial.jumps for trial in friction.least_squares.misfit.problem.trials)
-    assert all(trial.scenario.dt == pytest.approx(1e-3) for trial in friction.least_squares.misfit.problem.trials)
+    assert all(trial.scenario.dt >= 0.499e-3 for trial in friction.least_squares.misfit.problem.trials)
 
 
 def test_at_the_truth_plain_steps_tell_the_recording_but_for_a_sample_next_to_a_jump(found):
@@ -34,7 +34,7 @@ def test_at_the_truth_plain_steps_tell_the_recording_but_for_a_sample_next_to_a_
     values = np.array([truth[name] for name in misfit.problem.space.names])
     x = np.concatenate([misfit.problem.space.unit(values), np.zeros(len(x) - len(values))])
     number = [trial.name for trial in misfit.problem.trials].index("rough")
-    assert misfit.problem.trials[number].scenario.dt == pytest.approx(1e-3)
+    assert misfit.problem.trials[number].scenario.dt >= 0.499e-3
     whole = np.mean(np.abs(misfit.whitened_spectrum(x)[number]) ** 2)
     left = (misfit.problem.trials[number].recording.values - misfit.simulate(x)[number]) / misfit.noises["rough"].sigma
     assert whole < 1.7

@@ -24,6 +24,8 @@ BANDS_HZ = (3.0, 8.0, 20.0)
 """Highest frequencies of the motions that are laid over one another, the slow ones first [Hz]."""
 MOST_SIGMAS = 4.0
 """No error of a run or a sensor is larger than so many standard deviations: what needs more is no small error."""
+MOST_SHARPENED = 1.0
+"""Edges of a hump are drawn sharp: they may be sharper still by so many standard deviations of their wear, no more."""
 LATEST = 1.0
 """Largest delay of a recording looked for [s]."""
 STEPS = 10
@@ -77,8 +79,15 @@ def _laid_over(misfit: Misfit, x: Array, number: int, bands: Sequence[float]) ->
     return start
 
 
+def error_bounds(misfit: Misfit) -> tuple[Array, Array]:
+    """Return the least and the largest errors, `shape (n_errors,)` each, in standard deviations."""
+    sharp = [item.name == "wear" for item in misfit.conditions(np.zeros(misfit.n_unknowns))]
+    return np.where(sharp, -MOST_SHARPENED, -MOST_SIGMAS), np.full(misfit.n_errors, MOST_SIGMAS)
+
+
 def _fitted(alone: Misfit, start: Array) -> Array:
-    bound = np.full(alone.n_unknowns, MOST_SIGMAS)
+    shared = np.full(len(alone.shared), MOST_SIGMAS)
+    low, high = error_bounds(alone)
     begun = np.concatenate([np.zeros(len(alone.shared)), start])
 
     def square(x: Array) -> float:
@@ -87,7 +96,7 @@ def _fitted(alone: Misfit, start: Array) -> Array:
     def linearised(x: Array) -> LinearisedPoint:
         return LinearisedPoint(*linearise(alone, x, one_sided=True).normal(alone.whitened_spectrum(x), x))
 
-    return minimise(square, linearised, begun, (-bound, bound), TOLERANCE, STEPS)[len(alone.shared) :]
+    return minimise(square, linearised, begun, (np.append(-shared, low), np.append(shared, high)), TOLERANCE, STEPS)[len(alone.shared) :]
 
 
 def best_delay(measured: Array, simulated: Array, dt: float, band: tuple[float, float]) -> tuple[float, float]:

@@ -232,12 +232,14 @@ class _Search:
             left = self.misfit.measured(t) - self.misfit.channel_lines(t, response[0], self.misfit.errors_of(self.x, t))
             residuals.append(flatten(self.misfit.whiten(t, left)))
             slopes.append(flatten(self.misfit.whiten(t, self.slopes[t] * factors), first=1).T)
-        return ChainFit(chain, _projected(np.concatenate(residuals), np.vstack(slopes), self.priors))
+        errors = self.misfit.split(self.x)[1]
+        supposed = np.concatenate([np.zeros(len(self.x) - len(errors)), errors])  # errors are held about none, not about the fit's
+        return ChainFit(chain, _projected(np.concatenate([*residuals, supposed]), np.vstack([*slopes, self.priors])))
 
 
-def _projected(residual: Array, slopes: Array, priors: Array) -> float:
-    """Return the least |residual + slopes y|^2 + |priors y|^2 over y, by the normal equations in scaled unknowns."""
-    normal, pull = slopes.T @ slopes + priors.T @ priors, slopes.T @ residual
+def _projected(residual: Array, slopes: Array) -> float:
+    """Return the least |residual + slopes y|^2 over y, by the normal equations in scaled unknowns."""
+    normal, pull = slopes.T @ slopes, slopes.T @ residual
     scale = 1 / np.sqrt(np.maximum(np.diag(normal), 1e-300))
     values, vectors = np.linalg.eigh(normal * scale[:, None] * scale)
     kept = values > UNSEEN * values[-1]

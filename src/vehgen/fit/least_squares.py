@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from vehgen.fit.adjustments import Adjustment
-from vehgen.fit.alignment import MOST_SIGMAS, align
+from vehgen.fit.alignment import align, error_bounds
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.bounded import LinearisedPoint, minimise
 from vehgen.fit.linearisation import Linearisation, Lineariser
@@ -188,10 +188,10 @@ def _fit(
 
 def unknown_bounds(misfit: Misfit) -> tuple[Array, Array]:
     """Return the least and the largest values of a misfit's unknowns, each `shape (n_unknowns,)`."""
-    n, rest = misfit.n_parameters, misfit.n_errors
+    n, errors = misfit.n_parameters, error_bounds(misfit)
     shared = np.reshape([item.bounds for item in misfit.shared], (-1, 2))
-    low = np.concatenate([np.zeros(n), shared[:, 0], np.full(rest, -MOST_SIGMAS)])
-    return low, np.concatenate([np.ones(n), shared[:, 1], np.full(rest, MOST_SIGMAS)])
+    low = np.concatenate([np.zeros(n), shared[:, 0], errors[0]])
+    return low, np.concatenate([np.ones(n), shared[:, 1], errors[1]])
 
 
 def first_noises(problem: Problem) -> Noises:

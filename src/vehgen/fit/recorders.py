@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from vehgen.fit.chain_estimate import ChainEstimate, estimate_chain, fine_response, trusted_band
+from vehgen.fit.chain_estimate import ChainEstimate, estimate_chain, fine_response, group_delay, trusted_band
 from vehgen.fit.misfit import Array, Misfit
 from vehgen.fit.trial import Trial
 from vehgen.measure.acquisition import UNKNOWN, AcquisitionChain
 
 MOST_LEFT = 2.0
 """A fit that leaves a larger mean square lacks something that passes for a low-pass: an ideal one is then taken, until more is known."""
+USUAL_SHARE, UNUSUAL_SHARE = 0.43, 0.35
+"""Recorders usually cut off at the one share of their rate, and seldom below the other."""
 SAME_CUT_OFF = 0.1
 """Cut-offs that differ by less than this share are the same."""
 
@@ -32,6 +34,25 @@ class FoundRecorder:
     def chain(self) -> AcquisitionChain:
         """The chain that stands for unknown ones."""
         return self.estimate.best.chain
+
+    def with_usual(self, rate: float) -> list[FoundRecorder]:
+        """Return it, a like one that cuts off where recorders of such a rate [Hz] usually do, and an ideal one: what refits compare.
+
+        How a chain is found supposes that all else answers in proportion. Where it does not, a low-pass that is too low, with a hump of
+        other form, or a profile of other height, stands where the recorder takes off nothing.
+        """
+        ideal = min(
+            (item for item in (self.estimate.best, *self.estimate.others) if item.chain.filter == "ideal"), key=lambda item: item.loss
+        )
+        chains = [self.chain, ideal.chain]
+        if self.chain.cut_off is not None and self.chain.filter != "ideal" and self.chain.cut_off < UNUSUAL_SHARE * rate:
+            usual = replace(self.chain, cut_off=USUAL_SHARE * rate, delay=0.0)
+            chains.insert(1, replace(usual, delay=-group_delay(usual)))
+        others = [
+            replace(self, estimate=replace(self.estimate, best=replace(self.estimate.best, chain=chain), is_clear=False))
+            for chain in chains[1:]
+        ]
+        return [self, *(item for item in others if item.chain != self.chain)]
 
     def describe(self) -> str:
         """Return it in words."""

@@ -46,8 +46,10 @@ def wheel_inputs(track: Track, speed: SpeedLaw, offsets: Array, time: Array) -> 
     half = (time[1] - time[0]) / 2 if len(time) > 1 else 0.5
     moments = np.empty(2 * len(time) + 1)  # the times, and those half a step before and after them
     moments[1::2], moments[0:-1:2], moments[-1] = time, time - half, time[-1] + half
-    heights = track.height(speed.distance(moments)[None, :] - offsets[:, None])  # axle by axle: looking up neighbours in a table is quick
-    return WheelInputs(heights[:, 1::2].T, np.diff(heights[:, ::2], axis=1).T / (2 * half))
+    way = speed.distance(moments)
+    along = way[None, 1::2] - offsets[:, None]  # axle by axle: looking up neighbours in a table is quick
+    around = track.height(way[None, ::2] - offsets[:, None])
+    return WheelInputs(track.height(along).T, np.diff(around, axis=1).T / (2 * half))
 
 
 def pass_time(track: Track, speed: SpeedLaw, offsets: Array) -> float:

@@ -26,8 +26,10 @@ from vehgen.fit.trial import Trial
 Array = NDArray[np.float64]
 SAME_SQUARES = 0.1
 """Noises by which the mean squares of what a fit leaves differ by less in their logarithms are the same."""
-ROAD_ROUNDS = 2
-"""So often are the errors of measured profiles found, and the base model refitted with them; once where there are none."""
+DETECTION_ROUNDS = 3
+"""So often at most are the roads' part of the noise and an unknown recorder found, each from the fit with those before."""
+CLEAR_RECORDER = 30.0
+"""An unusual low-pass stands where it leaves a sum of squares smaller by this than a usual one."""
 UNSHOWN = 0.1
 """Validation runs that show less than this share of the excess of the training runs show nothing."""
 BAND_EDGES_HZ = (0.0, 3.0, 8.0, 15.0, np.inf)
@@ -134,16 +136,34 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
     floor = find_noise_floor(trials, band)
     problem = narrow(make_problem(training))
     base = fit_base(problem, validation_runs, floor.noises, band)
-    recorder = None
-    if has_unknown(trials):
-        recorder = find_recorder(base.least_squares.misfit, base.least_squares.x)
-        training, validation_runs = recorder.applied(training), recorder.applied(validation_runs)
-        problem = problem.with_trials(training)
-        base = fit_base(problem, validation_runs, floor.noises, recorder.band, base)
-    for _ in range(ROAD_ROUNDS if any(measured_profiles(trial) for trial in trials) else 1):
+    recorder: FoundRecorder | None = None
+    unknown, profiles = has_unknown(trials), any(measured_profiles(trial) for trial in trials)
+    for number in range(DETECTION_ROUNDS):
         floor = replace(floor, noises=_noises(base, floor))
         base = fit_base(problem, validation_runs, floor.noises, band if recorder is None else recorder.band, base)
+        if not unknown and (number or not profiles):
+            break
+        if not unknown:
+            continue
+        found = find_recorder(base.least_squares.misfit, base.least_squares.x, None if recorder is None else recorder.channels, band)
+        if recorder is not None and found.is_like(recorder):
+            break
+        rate = min(1 / trial.recording.dt for trial in trials)
+        tried = [(item, *_recorded(item, problem, validation_runs, floor.noises, base)) for item in found.with_usual(rate)]
+        squares = [item[3].squares - (0 if item[0] is found else CLEAR_RECORDER) for item in tried]
+        before = recorder
+        recorder, problem, validation_runs, base = tried[int(np.argmin(squares))]
+        if before is not None and recorder.is_like(before):
+            break
     return _shown(_detection(problem, validation_runs, floor, base, recorder, band))
+
+
+def _recorded(
+    recorder: FoundRecorder, problem: Problem, validation_runs: Sequence[Trial], noises: Noises, base: ModelFit
+) -> tuple[Problem, list[Trial], ModelFit]:
+    """Return the problem and the validation runs through a recorder, and the base fitted to them."""
+    problem, validation_runs = problem.with_trials(recorder.applied(problem.trials)), recorder.applied(validation_runs)
+    return problem, validation_runs, fit_base(problem, validation_runs, noises, recorder.band, base)
 
 
 def look_again(detection: Detection, fit: ModelFit) -> Detection | None:

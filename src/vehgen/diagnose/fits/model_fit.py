@@ -73,6 +73,13 @@ class ModelFit:
         return sum(len(item.parameters) for item in self.effects)
 
     @property
+    def squares(self) -> float:
+        """-2 ln of the likelihood on the training runs and of the errors that it supposes, less a constant."""
+        misfit = self.least_squares.misfit
+        errors = misfit.split(self.least_squares.x)[1]
+        return self.training * sum(self.counts[trial.name] for trial in misfit.problem.trials) + float(errors @ errors)
+
+    @property
     def chi(self) -> float:
         """Its chi over all runs."""
         return float(np.sqrt(_pooled(self.mean_squares, self.counts)))

@@ -200,10 +200,9 @@ def merit(fit: ModelFit) -> float:
     That price is BIC's for the last effect's numbers. Errors count because of two effects that do as well, the one that needs a phone's
     clock to be 30 ms off in every run is the less likely one.
     """
-    errors = fit.least_squares.misfit.split(fit.least_squares.x)[1]
     training = [trial.name for trial in fit.least_squares.misfit.problem.trials]
     total = sum(fit.counts[item] for item in training)
-    return fit.training * total + float(errors @ errors) + own_numbers(fit) * float(np.log(total))
+    return fit.squares + own_numbers(fit) * float(np.log(total))
 
 
 def own_numbers(fit: ModelFit) -> int:
