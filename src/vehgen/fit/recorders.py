@@ -35,6 +35,10 @@ class FoundRecorder:
         """The chain that stands for unknown ones."""
         return self.estimate.best.chain
 
+    def is_usual(self, rate: float) -> bool:
+        """Return whether it cuts off where recorders of a rate [Hz] do, or not at all."""
+        return self.chain.cut_off is None or self.chain.filter == "ideal" or self.chain.cut_off >= UNUSUAL_SHARE * rate
+
     def with_usual(self, rate: float) -> list[FoundRecorder]:
         """Return it, a like one that cuts off where recorders of such a rate [Hz] usually do, and an ideal one: what refits compare.
 
@@ -45,7 +49,7 @@ class FoundRecorder:
             (item for item in (self.estimate.best, *self.estimate.others) if item.chain.filter == "ideal"), key=lambda item: item.loss
         )
         chains = [self.chain, ideal.chain]
-        if self.chain.cut_off is not None and self.chain.filter != "ideal" and self.chain.cut_off < UNUSUAL_SHARE * rate:
+        if not self.is_usual(rate):
             usual = replace(self.chain, cut_off=USUAL_SHARE * rate, delay=0.0)
             chains.insert(1, replace(usual, delay=-group_delay(usual)))
         others = [

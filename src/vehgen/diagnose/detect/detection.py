@@ -176,7 +176,7 @@ def look_again(detection: Detection, fit: ModelFit) -> Detection | None:
     problem, validation_runs = detection.problem, list(detection.validation_runs)
     if recorder is not None:
         found = find_recorder(fit.least_squares.misfit, fit.least_squares.x, recorder.channels, detection.asked_band)
-        if not found.is_like(recorder):
+        if not found.is_like(recorder) and found.is_usual(min(1 / trial.recording.dt for trial in detection.trials)):
             recorder = found
             problem = problem.with_trials(found.applied(problem.trials))
             validation_runs = found.applied(validation_runs)
