@@ -92,3 +92,21 @@ def test_a_flat_valley_is_followed_to_its_end():
 
     found = minimise(square, lambda x: LinearisedPoint(matrix.T @ matrix, matrix.T @ (matrix @ x - wanted)), np.zeros(2), bounds, 1e-4, 60)
     assert found == pytest.approx([30.0, -30.0], abs=0.5)
+
+
+def test_a_fit_with_derivatives_from_elsewhere_ends_only_where_those_of_the_point_lead_no_further():
+    """The derivatives from elsewhere have the second unknown's turned round, so that no step by them leads downhill along it."""
+    matrix, wanted = np.array([[1.0, 0.0], [0.0, 1.0]]), np.array([3.0, 4.0])
+    stale = np.array([[1.0, 0.0], [0.0, -1.0]])
+    bounds = np.full(2, -10.0), np.full(2, 10.0)
+
+    def square(x):
+        return float(((matrix @ x - wanted) ** 2).sum()) + 1.0
+
+    def point(x, by):
+        return LinearisedPoint(by.T @ by, by.T @ (matrix @ x - wanted))
+
+    alone = minimise(square, lambda x: point(x, stale), np.zeros(2), bounds, 1e-9, 60)
+    assert abs(alone[1] - 4.0) > 1
+    found = minimise(square, lambda x: point(x, stale), np.zeros(2), bounds, 1e-9, 60, lambda x: point(x, matrix))
+    assert found == pytest.approx([3.0, 4.0], abs=1e-4)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.fit.profile_world import FINE, SIGMA, fine_channels, low_passed, misfit_of, read_run, rough_road
-from vehgen.fit.chain_estimate import ChainEstimate, ChainFit
+from vehgen.fit.chain_estimate import ChainEstimate, ChainFit, estimate_chain, group_delay
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.recorders import FoundRecorder, find_recorder, has_unknown
 from vehgen.measure.acquisition import POINT_SAMPLES, AcquisitionChain
@@ -114,3 +114,40 @@ def test_recorders_are_alike_by_kind_and_cut_off(one, other, alike):
 
 def test_point_samples_are_told_in_words():
     assert "made through no low-pass at all" in found_of(POINT_SAMPLES).describe()
+
+
+IDEAL = AcquisitionChain("ideal", 1, 48.0)
+
+
+@pytest.mark.parametrize(
+    ("chain", "cut_offs"),
+    [
+        (AcquisitionChain("bessel", 8, 21.6), [("bessel", 21.6), ("bessel", 43.0), ("ideal", 48.0)]),
+        (AcquisitionChain("bessel", 8, 41.0), [("bessel", 41.0), ("ideal", 48.0)]),
+        (IDEAL, [("ideal", 48.0)]),
+        (POINT_SAMPLES, [("none", None), ("ideal", 48.0)]),
+    ],
+    ids=["unusually low", "usual", "ideal", "none"],
+)
+def test_an_unusually_low_cut_off_is_compared_with_a_usual_one(chain, cut_offs):
+    recorder = FoundRecorder(ChainEstimate(ChainFit(chain, 1.0), (ChainFit(IDEAL, 2.0),), 1.0, True), (0.5, 40.0), False, ("F_az",))
+    tried = recorder.with_usual(100.0)
+    assert [(item.chain.filter, item.chain.cut_off) for item in tried] == [(kind, own and pytest.approx(own)) for kind, own in cut_offs]
+    assert tried[0] is recorder
+    usual = AcquisitionChain("bessel", 8, 43.0)
+    if len(tried) == 3:
+        assert abs(group_delay(usual) + tried[1].chain.delay) < 1e-9
+
+
+def test_errors_are_held_about_none_when_a_low_pass_is_sought(tmp_path, rough):
+    """A fit with wrong errors of the sensors' gains suits another low-pass no better for it: the sum of squares counts them as they are."""
+    road, channels = rough
+    trial = read_run(tmp_path, low_passed(channels, 4, 22.0), 12.0, road)
+    misfit, x = late_fit(trial, 0.4159 / 22.0)
+    plain = estimate_chain(misfit, x).best
+    strayed = x.copy()
+    gains = [i for i, item in enumerate(misfit.conditions(x)) if item.name == "gain"]
+    strayed[misfit.n_parameters + np.array(gains)] = 2.0
+    found = estimate_chain(misfit, strayed).best
+    assert found.chain.cut_off == pytest.approx(plain.chain.cut_off, rel=0.02)
+    assert found.loss == pytest.approx(plain.loss, rel=0.02)

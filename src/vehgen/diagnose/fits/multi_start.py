@@ -175,7 +175,8 @@ class _Rough:
     def _starts(self, misfit: Misfit, origins: Sequence[StartingPoint], begin: Sequence[tuple[float, ...]]) -> list[Start]:
         """Return the points at which fits may begin, those of the lowest loss first."""
         n, own = len(self.current.unit), len(self.candidate.parameters)
-        space, whole = self.problem.space, self._misfit(None)
+        space = self.problem.space
+        whole = misfit if misfit.nuisances is NUISANCES else self._misfit(None)
         neutral = tuple(item.neutral for item in self.current.shared)
         ranked = []
         for base, begun_errors in origins:

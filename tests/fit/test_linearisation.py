@@ -1,0 +1,62 @@
+"""Derivatives of a misfit by what its sensors do not know of themselves, held against differences of the whole misfit."""
+
+import numpy as np
+import pytest
+
+from tests.fit.profile_world import FINE, fine_channels, misfit_of, read_run, rough_road
+from tests.fit.recordings import sedan_truth, write_run
+from vehgen.fit.alignment import MOST_SHARPENED, MOST_SIGMAS, error_bounds
+from vehgen.fit.linearisation import Lineariser, linearise
+from vehgen.fit.nuisances import Nuisances
+from vehgen.fit.trial import load_trials
+
+
+@pytest.fixture(scope="module")
+def late(tmp_path_factory):
+    """A misfit at a point where the second sensor's clock is 30 ms late, and its pitch rate 3 ms later still."""
+    road = rough_road()
+    sampled = fine_channels(road, 12.0)[::FINE]
+    misfit, x = misfit_of(read_run(tmp_path_factory.mktemp("late"), sampled, 12.0, road), Nuisances())
+    start = misfit.n_parameters + len(misfit.shared)
+    for i, item in enumerate(misfit.conditions(x)):
+        x[start + i] = {"clock": 3.0, "lag": 2.0, "tilt": 1.0}.get(item.name, 0.3)
+    return misfit, x
+
+
+@pytest.mark.parametrize("one_sided", [True, False])
+@pytest.mark.parametrize("name", ["clock", "lag", "tilt", "position", "gain"])
+def test_derivatives_by_errors_of_sensors_are_those_of_the_whole_misfit(late, name, one_sided):
+    """To a thousandth: a late clock moves the window under which its channels are compared, too."""
+    misfit, x = late
+    start = misfit.n_parameters + len(misfit.shared)
+    spectra = linearise(misfit, x, one_sided=one_sided).spectra[0]
+    for i, item in enumerate(misfit.conditions(x)):
+        if item.name != name:
+            continue
+        step = 1e-3 * np.eye(len(x))[start + i]
+        ahead, behind = misfit.whitened_spectrum(x + step)[0], misfit.whitened_spectrum(x - step)[0]
+        expected = (ahead - behind) / 2e-3
+        tolerance = 2e-3 if one_sided else 1e-4
+        assert np.abs(spectra[start + i] - expected).max() < tolerance * np.abs(expected).max()
+
+
+def test_derivatives_by_errors_of_runs_are_taken_anew_when_asked(late):
+    misfit, x = late
+    derive = Lineariser(misfit, 5)
+    first = derive(x)
+    moved = x + 0.2
+    kept, anew = derive(moved), derive.linearise_anew(moved)
+    own = misfit.own_columns(0).start
+    assert np.array_equal(kept.slopes[0][0], first.slopes[0][0])
+    assert not np.array_equal(anew.slopes[0][0], first.slopes[0][0])
+    assert anew.spectra[0][own] == pytest.approx(linearise(misfit, moved, one_sided=True).spectra[0][own])
+
+
+def test_a_hump_may_be_worn_more_than_it_may_be_sharpened(tmp_path):
+    misfit, x = misfit_of(load_trials([write_run(tmp_path, "hump", sedan_truth(), 2.5)])[0], Nuisances())
+    low, high = error_bounds(misfit)
+    wear = np.array([item.name == "wear" for item in misfit.conditions(x)])
+    assert wear.any()
+    assert set(low[wear]) == {-MOST_SHARPENED}
+    assert set(low[~wear]) == {-MOST_SIGMAS}
+    assert set(high) == {MOST_SIGMAS}
