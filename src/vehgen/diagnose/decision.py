@@ -11,14 +11,15 @@ from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose import wording
 from vehgen.diagnose.collecting import run_chis
 from vehgen.diagnose.design.experiment import VISIBLE, propose_stronger
-from vehgen.diagnose.detect.detection import Detection, look_again, run_gaps
+from vehgen.diagnose.detect.detection import Detection, believable, look_again, run_gaps
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit
 from vehgen.diagnose.inputs.checks import variety_notes
+from vehgen.diagnose.inputs.conditions import BEYOND
 from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.judging import explain_gap, plain_mistakes, recorded_mistakes, supposed_mistakes
 from vehgen.diagnose.localise.free_form import FreeForm, fit_free_form, recover, strongest
-from vehgen.diagnose.localise.localisation import suffices
+from vehgen.diagnose.localise.localisation import localise, suffices
 from vehgen.diagnose.naming import Naming
 from vehgen.diagnose.result import Decided, DiagnosisModels
 from vehgen.diagnose.select.criteria import adds, needs_both, p_value_of, passes, seeds, unfinished
@@ -72,19 +73,35 @@ class Decision:
     def _decide(self) -> Decided:
         detection = self.detection
         self.notes += variety_notes(detection.trials)
-        quiet = detection.is_quiet
-        mistakes = recorded_mistakes(detection) or (supposed_mistakes(detection) if quiet else plain_mistakes(detection))
-        if mistakes:
+        if mistakes := recorded_mistakes(detection):
             return self._mistaken(mistakes)
-        if quiet:
+        if detection.is_quiet:
+            if mistakes := supposed_mistakes(detection):
+                return self._strained(mistakes)
             return self._end("no_missing_effect", wording.no_missing_effect(detection.chi))
+        if mistakes := plain_mistakes(detection):
+            return self._mistaken(mistakes)
+        return self._explain_gap()
+
+    def _strained(self, mistakes: tuple[MeasurementFault, ...]) -> Decided:
+        """Return the verdict where the base explains the runs, but supposes more of them than can be believed: an effect or a mistake."""
+        believed = believable(self.detection)
+        if believed.is_quiet:
+            left = supposed_mistakes(believed)
+            return self._mistaken(left) if left else self._end("no_missing_effect", wording.no_missing_effect(believed.chi))
+        if not believed.validation_runs:
+            return self._mistaken(mistakes)
+        found = Decision(believed, self.effects, self.everything, self.progress, self.workers)._explain_gap()
+        chain = found.models.chosen
+        of_vehicle = bool(chain) and all(item.effect.changes_vehicle for item in chain[-1].effects)
+        easily = of_vehicle and all(abs(item.sigmas) <= BEYOND for item in chain[-1].least_squares.conditions())
+        return found if easily else self._mistaken(mistakes)
+
+    def _explain_gap(self) -> Decided:
+        detection = self.detection
         if not detection.validation_runs:
-            count = len(detection.trials)
-            return self._end(
-                "insufficient_data",
-                wording.too_few_runs(detection.chi, count),
-                f"record at least three runs{', with two hump heights or speeds' if detection.trials[0].run.vehicle.axles else ''}",
-            )
+            more = f"record at least three runs{', with two hump heights or speeds' if detection.trials[0].run.vehicle.axles else ''}"
+            return self._end("insufficient_data", wording.too_few_runs(detection.chi, len(detection.trials)), more)
         if not self._candidates(self.base):
             raise InputError("no effect of the library can live on this vehicle")
         first = self._search_round(self.base)
@@ -107,7 +124,11 @@ class Decision:
         detection = look_again(self.detection, best)
         if detection is None:
             return first
+        held = self.validation_runs
         self.detection, self.base = detection, detection.base
+        if self.validation_runs != held:  # what places leave is told of the runs that are fitted
+            places, passed = localise(self.base)
+            first = replace(first, places=tuple(places), passed=tuple(passed))
         fitter = Fitter(detection, self.base, first.passed)
         leading = [fit for fit in first.fits[:LOOKED_AT_AGAIN] if np.isfinite(fit.validation)]
         fits = sorted((fitter.fit_again(fit) for fit in leading), key=merit)

@@ -79,10 +79,10 @@ def _laid_over(misfit: Misfit, x: Array, number: int, bands: Sequence[float]) ->
     return start
 
 
-def error_bounds(misfit: Misfit) -> tuple[Array, Array]:
-    """Return the least and the largest errors, `shape (n_errors,)` each, in standard deviations."""
+def error_bounds(misfit: Misfit, most: float = MOST_SIGMAS) -> tuple[Array, Array]:
+    """Return the least and the largest errors, `shape (n_errors,)` each, of `most` standard deviations where nothing else is known."""
     sharp = [item.name == "wear" for item in misfit.conditions(np.zeros(misfit.n_unknowns))]
-    return np.where(sharp, -MOST_SHARPENED, -MOST_SIGMAS), np.full(misfit.n_errors, MOST_SIGMAS)
+    return np.where(sharp, -MOST_SHARPENED, -most), np.full(misfit.n_errors, most)
 
 
 def _fitted(alone: Misfit, start: Array) -> Array:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from vehgen.fit.adjustments import Adjustment
-from vehgen.fit.alignment import align, error_bounds
+from vehgen.fit.alignment import MOST_SIGMAS, align, error_bounds
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.bounded import LinearisedPoint, minimise
 from vehgen.fit.linearisation import Linearisation, Lineariser
@@ -71,9 +71,9 @@ class FitOptions:
 
     `nuisances` and `band` [Hz] as in :class:`Misfit`; the noise, where it is not known, is estimated from the residuals and the fit
     repeated `noise_rounds` times; a fit evaluates the residuals at most `max_steps` times and ends at a relative change of their sum of
-    squares of `tolerance`. `jacobian_refresh` as in :func:`vehgen.fit.linearisation.lineariser`. `prior_sigma` is the standard deviation,
+    squares of `tolerance`. `jacobian_refresh` as in :class:`vehgen.fit.linearisation.Lineariser`. `prior_sigma` is the standard deviation,
     in the unit cube, of the prior about the space's start, one for all or one each; the last `n_effect_parameters` parameters, of which it
-    says nothing, have a prior of WEAK_PRIOR_SIGMA.
+    says nothing, have a prior of WEAK_PRIOR_SIGMA. No error of a run or a sensor exceeds `most_sigmas` standard deviations.
     """
 
     nuisances: Nuisances = field(default_factory=Nuisances)
@@ -84,6 +84,7 @@ class FitOptions:
     jacobian_refresh: int = 1
     prior_sigma: float | Array = WEAK_PRIOR_SIGMA
     n_effect_parameters: int = 0
+    most_sigmas: float = MOST_SIGMAS
 
     def priors(self, n_parameters: int) -> Array:
         """Return the standard deviation of every parameter's prior, `shape (n_parameters,)`."""
@@ -182,13 +183,13 @@ def _fit(
 
     with threadpool_limits(1, user_api="blas"):  # small matrices: more threads only wait for one another
         renew = (lambda x: linearised(x, derive.linearise_anew)) if options.jacobian_refresh > 1 and tolerance < COARSE_TOLERANCE else None
-        found = minimise(square, linearised, x, unknown_bounds(misfit), tolerance, options.max_steps, renew)
+        found = minimise(square, linearised, x, unknown_bounds(misfit, options.most_sigmas), tolerance, options.max_steps, renew)
     return found, kept[0]
 
 
-def unknown_bounds(misfit: Misfit) -> tuple[Array, Array]:
+def unknown_bounds(misfit: Misfit, most_sigmas: float = MOST_SIGMAS) -> tuple[Array, Array]:
     """Return the least and the largest values of a misfit's unknowns, each `shape (n_unknowns,)`."""
-    n, errors = misfit.n_parameters, error_bounds(misfit)
+    n, errors = misfit.n_parameters, error_bounds(misfit, most_sigmas)
     shared = np.reshape([item.bounds for item in misfit.shared], (-1, 2))
     low = np.concatenate([np.zeros(n), shared[:, 0], errors[0]])
     return low, np.concatenate([np.ones(n), shared[:, 1], errors[1]])

@@ -30,6 +30,8 @@ DETECTION_ROUNDS = 3
 """So often at most are the roads' part of the noise and an unknown recorder found, each from the fit with those before."""
 CLEAR_RECORDER = 30.0
 """An unusual low-pass stands where it leaves a sum of squares smaller by this than a usual one."""
+BELIEVED_SIGMAS = 2.5
+"""Errors of so many standard deviations need no explanation."""
 UNSHOWN = 0.1
 """Validation runs that show less than this share of the excess of the training runs show nothing."""
 BAND_EDGES_HZ = (0.0, 3.0, 8.0, 15.0, np.inf)
@@ -187,6 +189,14 @@ def look_again(detection: Detection, fit: ModelFit) -> Detection | None:
     floor = replace(floor, noises=noises)
     base = fit_base(problem, validation_runs, noises, band, detection.base)
     return _shown(_detection(problem, validation_runs, floor, base, recorder, detection.asked_band))
+
+
+def believable(detection: Detection) -> Detection:
+    """Return a detection whose base supposes errors of runs and sensors of BELIEVED_SIGMAS at most."""
+    base = fit_base(
+        detection.problem, detection.validation_runs, detection.floor.noises, detection.band, detection.base, most_sigmas=BELIEVED_SIGMAS
+    )
+    return _detection(detection.problem, detection.validation_runs, detection.floor, base, detection.recorder, detection.asked_band)
 
 
 def _shown(detection: Detection) -> Detection:

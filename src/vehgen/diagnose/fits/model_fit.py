@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.fit.adjustments import Adjustment
+from vehgen.fit.alignment import MOST_SIGMAS
 from vehgen.fit.least_squares import COARSE_TOLERANCE, WEAK_PRIOR_SIGMA, FitOptions, LeastSquaresFit, fit_least_squares
 from vehgen.fit.linearisation import Linearisation
 from vehgen.fit.misfit import Misfit, Noises
@@ -137,10 +138,22 @@ def narrow(problem: Problem) -> Problem:
 
 
 def fit_base(
-    problem: Problem, validation_runs: Sequence[Trial], noises: Noises, band: tuple[float, float], begin: ModelFit | None = None
+    problem: Problem,
+    validation_runs: Sequence[Trial],
+    noises: Noises,
+    band: tuple[float, float],
+    begin: ModelFit | None = None,
+    most_sigmas: float = MOST_SIGMAS,
 ) -> ModelFit:
-    """Fit the base model, from another fit of it or from the file's values."""
-    options = FitOptions(NUISANCES, band, tolerance=DIAGNOSIS_TOLERANCE, jacobian_refresh=JACOBIAN_REFRESH, prior_sigma=BASE_PRIOR_SIGMA)
+    """Fit the base model, from another fit of it or from the file's values, with errors of at most so many standard deviations."""
+    options = FitOptions(
+        NUISANCES,
+        band,
+        tolerance=DIAGNOSIS_TOLERANCE,
+        jacobian_refresh=JACOBIAN_REFRESH,
+        prior_sigma=BASE_PRIOR_SIGMA,
+        most_sigmas=most_sigmas,
+    )
     if begin is None:
         problem = resolve(*_begin(problem, noises, band))
         fit = fit_least_squares(problem, problem.space.unit(problem.space.start), options, noises=noises)
@@ -150,7 +163,7 @@ def fit_base(
         steps = {trial.name: trial for trial in old.misfit.problem.trials}
         resolved = problem.with_trials([as_fine(trial, steps[trial.name]) for trial in problem.trials])
         fit = fit_least_squares(resolved, unit, options, noises=noises, start=errors, nearby=old.linearisation)
-    return evaluate_fit((), fit, validation_runs, noises)
+    return evaluate_fit((), fit, validation_runs, noises, most_sigmas)
 
 
 def as_fine(trial: Trial, other: Trial) -> Trial:
@@ -218,7 +231,13 @@ def refine(
     )
 
 
-def evaluate_fit(effects: tuple[Candidate, ...], fit: LeastSquaresFit, validation_runs: Sequence[Trial], noises: Noises) -> ModelFit:
+def evaluate_fit(
+    effects: tuple[Candidate, ...],
+    fit: LeastSquaresFit,
+    validation_runs: Sequence[Trial],
+    noises: Noises,
+    most_sigmas: float = MOST_SIGMAS,
+) -> ModelFit:
     """Simulate a fitted model on validation runs, of which only the clock, speed and road height are fitted, and the phase of a line."""
     powers = _powers(fit)
     runs, counts = _by_run(powers)
@@ -241,7 +260,9 @@ def evaluate_fit(effects: tuple[Candidate, ...], fit: LeastSquaresFit, validatio
             replace(item, neutral=float(value), scale=0.0) for item, value in zip(fit.misfit.shared, numbers, strict=True)
         )
         frozen = resolve(*_begin(frozen, noises, fit.misfit.band, frozen_shared))
-        options = FitOptions(NUISANCES, fit.misfit.band, tolerance=DIAGNOSIS_TOLERANCE, jacobian_refresh=JACOBIAN_REFRESH)
+        options = FitOptions(
+            NUISANCES, fit.misfit.band, tolerance=DIAGNOSIS_TOLERANCE, jacobian_refresh=JACOBIAN_REFRESH, most_sigmas=most_sigmas
+        )
         known = fit.misfit.sensor_errors(fit.x)
         again = fit_least_squares(frozen, np.zeros(0), options, noises=noises, shared=frozen_shared, known=known)
         checked = _powers(again)
