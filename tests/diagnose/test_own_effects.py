@@ -64,7 +64,7 @@ def check(fits, known, names):
     assert {fit.last.effect.name for fit in fits} == set(names)
     for fit in fits:
         twin = known[names[fit.last.effect.name]]
-        assert fit.training == pytest.approx(twin.training, rel=5e-3)
+        assert fit.training == pytest.approx(twin.training, rel=1e-3)
         assert own_numbers(fit) == own_numbers(twin)
     assert fits[0].training < 0.1 * fits[1].training
 

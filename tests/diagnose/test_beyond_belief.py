@@ -1,0 +1,57 @@
+"""A base that explains the runs, but supposes more of them than can be believed: healthy, an effect, or a mistake of the measurement."""
+
+from dataclasses import replace
+
+import pytest
+from benchmarks.hidden_effects.generator import Effect
+
+from tests.diagnose.conftest import CUBIC
+from vehgen.diagnose import decision
+from vehgen.diagnose.decision import Decision
+from vehgen.diagnose.detect.detection import Detection, believable
+from vehgen.diagnose.inputs.fault import MeasurementFault
+from vehgen.effects import EFFECTS
+
+FAULT = MeasurementFault("hump_height", ("high",), (), "the road in high is 12 % higher than stated", "measure it")
+
+
+def verdict_of(monkeypatch, detection, believed, effects, faults_of_believed=()):
+    """Return the verdict on a detection taken for quiet, with a mistake told of it, and another one where errors can be believed."""
+    monkeypatch.setattr(Detection, "is_quiet", property(lambda self: self is quiet or believed is None or self.base.training < 1.2))
+    quiet = replace(detection)
+    monkeypatch.setattr(decision, "supposed_mistakes", lambda item: (FAULT,) if item is quiet else faults_of_believed)
+    monkeypatch.setattr(decision, "believable", lambda item: believed or item)
+    chosen = [EFFECTS[name] for name in effects]
+    return Decision(quiet, chosen, False, lambda stage, done, total, best: None, 1).decide().verdict
+
+
+def test_where_believable_errors_do_as_well_nothing_is_wrong(monkeypatch, detection_of):
+    detection = detection_of()
+    found = verdict_of(monkeypatch, detection, believable(detection), ["cubic_stiffness"])
+    assert (found.verdict, found.faults) == ("no_missing_effect", ())
+
+
+def test_what_believable_errors_leave_is_told(monkeypatch, detection_of):
+    detection = detection_of()
+    found = verdict_of(monkeypatch, detection, believable(detection), ["cubic_stiffness"], (FAULT,))
+    assert (found.verdict, found.faults) == ("measurement_fault", (FAULT,))
+
+
+@pytest.mark.parametrize(
+    ("effect", "name", "verdict"),
+    [
+        (CUBIC, "cubic_stiffness", "named"),
+        (Effect("sensor_gain", "F_az", {"error": 0.15}), "sensor_gain", "measurement_fault"),
+    ],
+    ids=["of the vehicle", "of a sensor"],
+)
+def test_an_effect_of_the_vehicle_is_told_in_place_of_a_mistake(monkeypatch, detection_of, effect, name, verdict):
+    detection = detection_of(effect)
+    found = verdict_of(monkeypatch, detection, replace(detection), [name])
+    assert found.verdict == verdict
+
+
+def test_believable_errors_are_small(detection_of):
+    believed = believable(detection_of(CUBIC))
+    for part in (believed.base.least_squares, believed.base.validation_fit):
+        assert max(abs(item.sigmas) for item in part.conditions()) <= 2.5 + 1e-9
