@@ -3,26 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, DIAGNOSIS_TOLERANCE, JACOBIAN_REFRESH, as_fine
 from vehgen.diagnose.inputs.adjustments import ClockRate, RecorderFilter
 from vehgen.diagnose.inputs.comparison import compare
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, place_words
 from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.fit.adjustments import SpeedScale
-from vehgen.fit.least_squares import FitOptions, LeastSquaresFit, fit_least_squares
-from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import transform
-from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.recorders import FoundRecorder
 from vehgen.fit.trial import Trial
-
-if TYPE_CHECKING:
-    from vehgen.diagnose.detect.detection import Detection
 
 Array = NDArray[np.float64]
 RATE_LEFT = 0.25
@@ -115,22 +107,3 @@ def _kept(trial: Trial, predicted: Array) -> Array:
         measured, model = (transform(item, dt, inside) for item in (trial.recording.values[:n], predicted))
         shares.append(np.sqrt((np.abs(measured) ** 2).sum(axis=0) / np.maximum((np.abs(model) ** 2).sum(axis=0), 1e-300)))
     return np.asarray(shares[0] / np.maximum(shares[1], 1e-300))
-
-
-def fit_with_free_recorder(detection: Detection) -> LeastSquaresFit:
-    """Return the base fitted to all runs with what is not known of an unknown recorder's low-pass fitted along.
-
-    A low-pass that was found a little too low passes for a hump with sharper edges, or for a sensor elsewhere on its body.
-    """
-    base = detection.base
-    parts = [part for part in (base.least_squares, base.validation_fit) if part is not None]
-    steps = {trial.name: trial for part in parts for trial in part.misfit.problem.trials}
-    problem = detection.problem.with_trials([as_fine(trial, steps[trial.name]) for trial in detection.trials])
-    unit, _ = base.least_squares.misfit.split(base.least_squares.x)
-    noises, nuisances = detection.floor.noises, Nuisances()
-    misfit = Misfit(problem, noises, problem.space.start, nuisances, detection.band)
-    begun = np.sum([misfit.errors_like(part.misfit, part.x) for part in parts], axis=0)
-    options = FitOptions(
-        nuisances, detection.band, tolerance=DIAGNOSIS_TOLERANCE, jacobian_refresh=JACOBIAN_REFRESH, prior_sigma=BASE_PRIOR_SIGMA
-    )
-    return fit_least_squares(problem, unit, options, noises=noises, start=begun)
