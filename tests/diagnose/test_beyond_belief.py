@@ -17,10 +17,10 @@ FAULT = MeasurementFault("hump_height", ("high",), (), "the road in high is 12 %
 
 def verdict_of(monkeypatch, detection, believed, effects, faults_of_believed=()):
     """Return the verdict on a detection taken for quiet, with a mistake told of it, and another one where errors can be believed."""
-    monkeypatch.setattr(Detection, "is_quiet", property(lambda self: self is quiet or believed is None or self.base.training < 1.2))
+    monkeypatch.setattr(Detection, "is_quiet", property(lambda self: self is quiet or self.base.training < 1.2))
     quiet = replace(detection)
     monkeypatch.setattr(decision, "supposed_mistakes", lambda item: (FAULT,) if item is quiet else faults_of_believed)
-    monkeypatch.setattr(decision, "believable", lambda item: believed or item)
+    monkeypatch.setattr(decision, "believable", lambda item: believed)
     chosen = [EFFECTS[name] for name in effects]
     return Decision(quiet, chosen, False, lambda stage, done, total, best: None, 1).decide().verdict
 

@@ -5,8 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.diagnose.conftest import CUBIC
+from vehgen.diagnose import decision
+from vehgen.diagnose.decision import Decision
 from vehgen.diagnose.detect.detection import look_again
 from vehgen.diagnose.detect.road_error import measured_profiles
+from vehgen.diagnose.fits.model_fit import fit_base
+from vehgen.diagnose.pipeline import with_evidence
+from vehgen.effects import EFFECTS
 from vehgen.fit.chain_estimate import ChainEstimate, ChainFit
 from vehgen.fit.noise import LARGEST_LEVEL
 from vehgen.fit.recorders import FoundRecorder
@@ -59,3 +65,20 @@ def test_a_recorder_is_judged_by_the_better_model_however_clear_it_was(detection
     assert all(trial.scenario.chain(name) == found.recorder.chain for trial in found.trials for name in trial.channels)
     assert found.band == found.recorder.band
     assert found.chi == pytest.approx(detection.chi, rel=0.05)
+
+
+def test_a_second_look_may_check_the_effect_by_another_run(monkeypatch, detection_of):
+    """What places leave is told of the runs that are fitted: with the old runs' errors it could not be used any more."""
+    first = detection_of(CUBIC)
+    others = [trial for trial in first.trials if trial.name != "high"]
+    held = [trial for trial in first.trials if trial.name == "high"]
+    problem = first.problem.with_trials(others)
+    base = fit_base(problem, held, first.floor.noises, first.band)
+    second = [replace(first, problem=problem, validation_runs=tuple(held), base=base)]
+    assert [trial.name for trial in first.validation_runs] != ["high"]
+    monkeypatch.setattr(decision, "look_again", lambda detection, fit: second.pop() if second else None)
+    decided = Decision(first, [EFFECTS["cubic_stiffness"]], False, lambda stage, done, total, best: None, 1).decide()
+    found = with_evidence(decided, lambda stage, done, total, best: None)
+    assert not second
+    assert [(item.name, item.place) for item in found.verdict.effects] == [("cubic_stiffness", "rear")]
+    assert {run.run for run in found.verdict.gap.runs if run.validation} == {"high"}

@@ -13,7 +13,7 @@ from vehgen.fit.least_squares import fit_least_squares
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.problem import make_problem
 from vehgen.fit.recording import read_recording
-from vehgen.fit.trial import FORGOTTEN, _quick_count, load_trials
+from vehgen.fit.trial import FORGOTTEN, MOST_LEFT_OUT, _quick_count, load_trials
 
 TRUTH = sedan_truth()
 
@@ -61,7 +61,7 @@ def driven_on_from_an_unknown_road(tmp_path, hump=False):
     return load_trials([path])[0]
 
 
-MORE_LEFT_OUT_S = 0.01 * 8.0 + 0.02
+MORE_LEFT_OUT_S = MOST_LEFT_OUT * 8.0 + 2 / RATE
 """As many samples more may be left out as make transforms quick: 1 % of the recording, and one sample to each side."""
 
 

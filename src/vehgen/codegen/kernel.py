@@ -186,7 +186,7 @@ class Kernel:
         initial
             `shape (n_individuals, 2 n_dof)`: displacements then velocities at the start (default: at rest in equilibrium).
         threads
-            How many cores to use (default: all).
+            How many cores to use at most (default: all).
 
         Returns
         -------

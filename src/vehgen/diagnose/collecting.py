@@ -114,9 +114,7 @@ def _parameters(models: DiagnosisModels) -> Iterator[BaseParameter]:
 
 
 def _conditions(fit: ModelFit) -> Iterator[RunConditions]:
-    for part in (fit.least_squares, fit.validation_fit):
-        if part is None:
-            continue
+    for part in fit.parts:
         for trial in part.misfit.problem.trials:
             known = {item.name: item.value for item in part.conditions() if item.run == trial.name and item.name != "wander"}
             yield RunConditions(trial.name, *(known.get(name, 0.0) for name in ("delay", "speed", "height")))

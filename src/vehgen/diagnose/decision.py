@@ -89,9 +89,10 @@ class Decision:
         if believed.is_quiet:
             left = supposed_mistakes(believed)
             return self._mistaken(left) if left else self._end("no_missing_effect", wording.no_missing_effect(believed.chi))
-        if not believed.validation_runs:
-            return self._mistaken(mistakes)
-        found = Decision(believed, self.effects, self.everything, self.progress, self.workers)._explain_gap()
+        other = Decision(believed, self.effects, self.everything, self.progress, self.workers)
+        other.notes += self.notes
+        found = other._explain_gap()
+        self.interrupted = found.stopped
         chain = found.models.chosen
         of_vehicle = bool(chain) and all(item.effect.changes_vehicle for item in chain[-1].effects)
         easily = of_vehicle and all(abs(item.sigmas) <= BEYOND for item in chain[-1].least_squares.conditions())

@@ -139,7 +139,7 @@ def estimate_chain(
     every = dict.fromkeys(name for trial in trials for name in trial.channels)
     unknown = [name for name in every if any(name in trial.channels and not trial.scenario.chain(name).is_known for trial in trials)]
     search = _Search.of(misfit, x, tuple(channels or unknown or every), prior_sigma)
-    rate = min(1 / trial.recording.dt for trial in trials)
+    rate = slowest_rate(trials)
     with threadpool_limits(1, user_api="blas"):  # tall and thin matrices: more threads only wait for one another
         families = [search.fit(POINT_SAMPLES), search.fit(UNKNOWN.assumed(rate))]
         families += [_best_cut_off(search, kind, order, rate) for kind, order in LOW_PASSES]
@@ -148,6 +148,11 @@ def estimate_chain(
     rivals = (item for item in others if item.loss - best.loss < CLEAR_LOSS * scale)
     clear = all(_alike(item.chain, best.chain, misfit.band) for item in rivals)
     return ChainEstimate(best, tuple(others), scale, clear)
+
+
+def slowest_rate(trials: Sequence[Trial]) -> float:
+    """Return the lowest rate at which any of the recordings was sampled [Hz]."""
+    return min(1 / trial.recording.dt for trial in trials)
 
 
 def trusted_band(trial: Trial, fine: FineResponse, noise: Noise) -> float:

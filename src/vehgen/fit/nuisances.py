@@ -194,7 +194,7 @@ def wander_knots(trial: Trial) -> list[float]:
     """Return the times between which the speed of a run may change [s]: while its wheels are on humps, or all along."""
     scenario = trial.scenario
     first, last = scenario.start, scenario.start + scenario.duration
-    if scenario.humps and len(scenario.humps) == len(scenario.track.parts):
+    if scenario.over_humps_alone:
         offsets = trial.simulator.model.wheel_offsets(trial.values)
         along = scenario.speed.distance(scenario.time)
         left = float(np.interp(scenario.track.end + float(offsets.max(initial=0.0)), along, scenario.time))

@@ -100,6 +100,11 @@ class Scenario:
         """The humps of the track, in its order."""
         return tuple(part for part in self.track.parts if isinstance(part, Hump))
 
+    @property
+    def over_humps_alone(self) -> bool:
+        """Whether the track has humps, and no road of known profile."""
+        return 0 < len(self.humps) == len(self.track.parts)
+
     @cached_property
     def nulls(self) -> tuple[float, ...]:
         """The frequencies [Hz], rounded to mHz, up to NULLS_TO at which a hump of the track excites nothing; found when first asked for."""

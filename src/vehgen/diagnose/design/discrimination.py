@@ -78,7 +78,8 @@ class FittedModel:
         misfit = fit.least_squares.misfit
         group = [trial for trial in misfit.problem.trials if trial.channels == channels]
         noises = [misfit.noises[trial.name] for trial in group]
-        return cls(fit, group[0], replace(noises[0], sigma=np.max([item.sigma for item in noises], axis=0)))
+        loudest = np.max([item.sigma for item in noises], axis=0)
+        return cls(fit, group[0], replace(noises[0], sigma=loudest, drawn=None))  # what is drawn is of one run and its channels
 
     def with_outputs(self, outputs: Sequence[PointOutput]) -> FittedModel:
         """Return the rival with more channels, as noisy as its own of the same quantity, on its first recorder; compiles a simulator."""

@@ -18,6 +18,7 @@ from vehgen.diagnose.fits.model_fit import ModelFit, fit_base, mean_square_as_fi
 from vehgen.diagnose.thresholds import NOISE_FLOOR, WEAK
 from vehgen.errors import InputError
 from vehgen.fit.band import DIAGNOSIS_BAND_HZ, compared_band
+from vehgen.fit.chain_estimate import slowest_rate
 from vehgen.fit.misfit import Noises
 from vehgen.fit.problem import Problem, make_problem
 from vehgen.fit.recorders import FoundRecorder, find_recorder, has_unknown
@@ -150,14 +151,13 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
         found = find_recorder(base.least_squares.misfit, base.least_squares.x, None if recorder is None else recorder.channels, band)
         if recorder is not None and found.is_like(recorder):
             break
-        rate = min(1 / trial.recording.dt for trial in trials)
-        tried = [(item, *_recorded(item, problem, validation_runs, floor.noises, base)) for item in found.with_usual(rate)]
+        tried = [(item, *_recorded(item, problem, validation_runs, floor.noises, base)) for item in found.with_usual(slowest_rate(trials))]
         squares = [item[3].squares - (0 if item[0] is found else CLEAR_RECORDER) for item in tried]
         before = recorder
         recorder, problem, validation_runs, base = tried[int(np.argmin(squares))]
         if before is not None and recorder.is_like(before):
             break
-    return _shown(_detection(problem, validation_runs, floor, base, recorder, band))
+    return _with_telling_runs(_detection(problem, validation_runs, floor, base, recorder, band))
 
 
 def _recorded(
@@ -178,7 +178,7 @@ def look_again(detection: Detection, fit: ModelFit) -> Detection | None:
     problem, validation_runs = detection.problem, list(detection.validation_runs)
     if recorder is not None:
         found = find_recorder(fit.least_squares.misfit, fit.least_squares.x, recorder.channels, detection.asked_band)
-        if not found.is_like(recorder) and found.is_usual(min(1 / trial.recording.dt for trial in detection.trials)):
+        if not found.is_like(recorder) and found.is_usual(slowest_rate(detection.trials)):
             recorder = found
             problem = problem.with_trials(found.applied(problem.trials))
             validation_runs = found.applied(validation_runs)
@@ -188,7 +188,7 @@ def look_again(detection: Detection, fit: ModelFit) -> Detection | None:
     band = detection.asked_band if recorder is None else recorder.band
     floor = replace(floor, noises=noises)
     base = fit_base(problem, validation_runs, noises, band, detection.base)
-    return _shown(_detection(problem, validation_runs, floor, base, recorder, detection.asked_band))
+    return _with_telling_runs(_detection(problem, validation_runs, floor, base, recorder, detection.asked_band))
 
 
 def believable(detection: Detection) -> Detection:
@@ -199,7 +199,7 @@ def believable(detection: Detection) -> Detection:
     return _detection(detection.problem, detection.validation_runs, detection.floor, base, detection.recorder, detection.asked_band)
 
 
-def _shown(detection: Detection) -> Detection:
+def _with_telling_runs(detection: Detection) -> Detection:
     """Return a detection with other validation runs where its own cannot show what is missing."""
     other = split_by_gap(detection.base, detection.trials)
     if other is None:
@@ -217,9 +217,7 @@ def _noises(fit: ModelFit, floor: NoiseFloor) -> Noises:
 
 def _are_same(noises: Noises, others: Noises, fit: ModelFit) -> bool:
     """Return whether what a fit leaves of every run is as large by one noise as by another."""
-    for part in (fit.least_squares, fit.validation_fit):
-        if part is None:
-            continue
+    for part in fit.parts:
         for trial, (lines, answer) in zip(part.misfit.problem.trials, part.misfit.residual_spectrum(part.x), strict=True):
             squares = [np.mean(np.abs(item[trial.name].whitener(answer) @ lines[:, :, None]) ** 2) for item in (noises, others)]
             if abs(np.log(squares[0] / squares[1])) > SAME_SQUARES:
@@ -236,8 +234,7 @@ def _detection(
     asked_band: tuple[float, float],
 ) -> Detection:
     band = base.least_squares.misfit.band
-    parts = [numerical_floor(fit.misfit, fit.x) for fit in (base.least_squares, base.validation_fit) if fit is not None]
-    numerical = {name: value for part in parts for name, value in part.items()}
+    numerical = {name: value for part in base.parts for name, value in numerical_floor(part.misfit, part.x).items()}
     return Detection(problem, tuple(validation_runs), floor, base, band, recorder, numerical, asked_band)
 
 

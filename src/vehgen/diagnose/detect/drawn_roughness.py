@@ -45,11 +45,10 @@ SMOOTHED = 5
 
 def noises_of_laws(fit: ModelFit, noises: Noises) -> Noises:
     """Return noises with what roughness makes of the fitted vehicle's laws under humps; those of a linear vehicle as they are."""
-    parts = [part for part in (fit.least_squares, fit.validation_fit) if part is not None]
     if not any(item.laws for item in fit.least_squares.misfit.problem.trials[0].simulator.model.elements):
         return noises
-    runs = [DrawnRun(part, number, noises[trial.name]) for part in parts for number, trial in enumerate(part.misfit.problem.trials)]
-    rough = [run for run in runs if run.over_humps_alone and np.any(run.lead.levels > 2 * SMALLEST_LEVEL)]
+    runs = [DrawnRun(part, number, noises[trial.name]) for part in fit.parts for number, trial in enumerate(part.misfit.problem.trials)]
+    rough = [run for run in runs if run.trial.scenario.over_humps_alone and np.any(run.lead.levels > 2 * SMALLEST_LEVEL)]
     if not rough:
         return noises
     found = {}
@@ -102,11 +101,6 @@ class DrawnRun:
     def trial(self) -> Trial:
         """The run itself."""
         return self.fit.misfit.problem.trials[self.number]
-
-    @property
-    def over_humps_alone(self) -> bool:
-        """Whether it drives over humps, and over no road of known profile."""
-        return 0 < len(self.trial.scenario.humps) == len(self.trial.scenario.track.parts)
 
     def density(self, levels: Array, count: int, *, hump: bool = True) -> DrawnDensity:
         """Return what `count` roads of such levels `shape (len(KNOTS),)` [m^3] add to the channels, on the run's humps or without them."""

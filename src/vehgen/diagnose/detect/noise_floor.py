@@ -30,7 +30,6 @@ from vehgen.fit.noise import (
 )
 from vehgen.fit.trial import Trial
 from vehgen.measure import record_psd
-from vehgen.road import Hump
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -204,10 +203,9 @@ def _from_lead_in(
 
 def lead_in(trial: Trial) -> Trial | None:
     """Return what a run recorded before its first wheel met the first hump, or None where that is too short or unknown."""
-    humps = [part for part in trial.scenario.track.parts if isinstance(part, Hump)]
-    if not humps or len(humps) < len(trial.scenario.track.parts):
+    if not trial.scenario.over_humps_alone:
         return None
-    first = min(hump.at for hump in humps) - trial.scenario.track.footprint
+    first = min(hump.at for hump in trial.scenario.humps) - trial.scenario.track.footprint
     time = trial.recording.time
     quiet = trial.scenario.speed.distance(time + LEAD_IN_MARGIN_S) < first
     count = int(quiet.sum())

@@ -69,9 +69,7 @@ def road_noises(base: ModelFit, noises: Noises, lead: Noises) -> Noises:
     `lead`: within UNDER_HUMP, no more.
     """
     found = dict(noises)
-    for fit in (base.least_squares, base.validation_fit):
-        if fit is None:
-            continue
+    for fit in base.parts:
         for trial, (lines, answer) in zip(fit.misfit.problem.trials, fit.misfit.residual_spectrum(fit.x), strict=True):
             if measured_profiles(trial):
                 at_rest = _at_rest(trial, base, lead)
@@ -95,8 +93,7 @@ def under_hump(lines: Complex, answer: RoadAnswer, lead: Noise) -> Noise:
 
 def _at_rest(trial: Trial, base: ModelFit, noises: Noises) -> Noise:
     """Return the noise of a run's sensors in the quietest run without a profile that has the same channels, or in the run itself."""
-    fits = [fit for fit in (base.least_squares, base.validation_fit) if fit is not None]
-    others = [other for fit in fits for other in fit.misfit.problem.trials if other.channels == trial.channels]
+    others = [other for fit in base.parts for other in fit.misfit.problem.trials if other.channels == trial.channels]
     quiet = [noises[other.name] for other in others if not measured_profiles(other)]
     own = noises[trial.name]
     if not quiet:

@@ -32,6 +32,8 @@ JACOBIAN_REFRESH = 5
 """The derivatives by nuisances serve for so many steps of a fit: saves two thirds of the time."""
 DIAGNOSIS_TOLERANCE = 1e-6
 """Relative change of the sum of squares at which a fit of a diagnosis ends."""
+OPTIONS = FitOptions(NUISANCES, tolerance=DIAGNOSIS_TOLERANCE, jacobian_refresh=JACOBIAN_REFRESH)
+"""How a diagnosis fits."""
 
 
 @dataclass(frozen=True)
@@ -74,11 +76,20 @@ class ModelFit:
         return sum(len(item.parameters) for item in self.effects)
 
     @property
+    def parts(self) -> tuple[LeastSquaresFit, ...]:
+        """The fit to the training runs and, where there are any, that to the validation runs."""
+        return (self.least_squares,) if self.validation_fit is None else (self.least_squares, self.validation_fit)
+
+    @property
+    def n_residuals(self) -> int:
+        """How many residuals the training runs have."""
+        return sum(self.counts[trial.name] for trial in self.least_squares.misfit.problem.trials)
+
+    @property
     def squares(self) -> float:
         """-2 ln of the likelihood on the training runs and of the errors that it supposes, less a constant."""
-        misfit = self.least_squares.misfit
-        errors = misfit.split(self.least_squares.x)[1]
-        return self.training * sum(self.counts[trial.name] for trial in misfit.problem.trials) + float(errors @ errors)
+        errors = self.least_squares.misfit.split(self.least_squares.x)[1]
+        return self.training * self.n_residuals + float(errors @ errors)
 
     @property
     def chi(self) -> float:
@@ -146,14 +157,7 @@ def fit_base(
     most_sigmas: float = MOST_SIGMAS,
 ) -> ModelFit:
     """Fit the base model, from another fit of it or from the file's values, with errors of at most so many standard deviations."""
-    options = FitOptions(
-        NUISANCES,
-        band,
-        tolerance=DIAGNOSIS_TOLERANCE,
-        jacobian_refresh=JACOBIAN_REFRESH,
-        prior_sigma=BASE_PRIOR_SIGMA,
-        most_sigmas=most_sigmas,
-    )
+    options = replace(OPTIONS, band=band, prior_sigma=BASE_PRIOR_SIGMA, most_sigmas=most_sigmas)
     if begin is None:
         problem = resolve(*_begin(problem, noises, band))
         fit = fit_least_squares(problem, problem.space.unit(problem.space.start), options, noises=noises)
@@ -177,7 +181,7 @@ def mean_square_as_filed(trials: Sequence[Trial], noises: Noises, band: tuple[fl
     if not trials:
         return float("nan")
     problem = resolve(*_begin(Problem(tuple(trials), _nothing()), noises, band))
-    options = FitOptions(NUISANCES, band, tolerance=COARSE_TOLERANCE, jacobian_refresh=JACOBIAN_REFRESH)
+    options = replace(OPTIONS, band=band, tolerance=COARSE_TOLERANCE)
     fit = fit_least_squares(problem, np.zeros(0), options, noises=noises)
     return _pooled(*_by_run(_powers(fit)))
 
@@ -205,15 +209,8 @@ def refine(
     n_effect_parameters = sum(len(item.parameters) for item in effects)
     names = problem.space.names[: problem.space.size - n_effect_parameters]
     unit, errors = misfit.split(x)
-    options = FitOptions(
-        NUISANCES,
-        band or misfit.band,
-        max_steps=40,
-        tolerance=DIAGNOSIS_TOLERANCE,
-        jacobian_refresh=JACOBIAN_REFRESH,
-        prior_sigma=base_priors(names, effects),
-        n_effect_parameters=n_effect_parameters,
-    )
+    priors = base_priors(names, effects)
+    options = replace(OPTIONS, band=band or misfit.band, max_steps=40, prior_sigma=priors, n_effect_parameters=n_effect_parameters)
     numbers = tuple(misfit.adjusted(x))
     if known_errors:
         begun = Misfit(problem, noises or misfit.noises, problem.space.start, NUISANCES, options.band, misfit.shared, misfit.known)
@@ -260,9 +257,7 @@ def evaluate_fit(
             replace(item, neutral=float(value), scale=0.0) for item, value in zip(fit.misfit.shared, numbers, strict=True)
         )
         frozen = resolve(*_begin(frozen, noises, fit.misfit.band, frozen_shared))
-        options = FitOptions(
-            NUISANCES, fit.misfit.band, tolerance=DIAGNOSIS_TOLERANCE, jacobian_refresh=JACOBIAN_REFRESH, most_sigmas=most_sigmas
-        )
+        options = replace(OPTIONS, band=fit.misfit.band, most_sigmas=most_sigmas)
         known = fit.misfit.sensor_errors(fit.x)
         again = fit_least_squares(frozen, np.zeros(0), options, noises=noises, shared=frozen_shared, known=known)
         checked = _powers(again)

@@ -18,7 +18,7 @@ from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault
 from vehgen.diagnose.inputs.humps import hump_hypotheses, road_heights
 from vehgen.diagnose.inputs.labels import label_hypotheses
 from vehgen.diagnose.inputs.levels import level_hypotheses
-from vehgen.diagnose.inputs.recorders import filter_hypotheses, fit_with_free_recorder, rate_hypotheses, slow_recorder
+from vehgen.diagnose.inputs.recorders import filter_hypotheses, rate_hypotheses, slow_recorder
 from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.diagnose.inputs.vehicle import axle_hypotheses, other_vehicle, strange_run_hypotheses, unrelated_recording
 from vehgen.diagnose.thresholds import NOISE_FLOOR
@@ -149,18 +149,13 @@ def recorded_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
 
 def supposed_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
     """Return what the base fit had to suppose of the runs beyond belief, or that it explains nothing of them at all."""
-    fits = (detection.base.least_squares, *([detection.base.validation_fit] if detection.base.validation_fit else []))
-    conditions = [item for fit in fits for item in fit.conditions()]
-    names, heights = [trial.name for trial in detection.trials], road_heights(detection.trials)
-    found = findings_of_conditions(conditions, names, heights)
-    if found and detection.recorder is not None:
-        conditions = list(fit_with_free_recorder(detection).conditions())
-        found = findings_of_conditions(conditions, names, heights)
+    conditions = [item for part in detection.base.parts for item in part.conditions()]
+    found = findings_of_conditions(conditions, [trial.name for trial in detection.trials], road_heights(detection.trials))
     speeds = {trial.name: trial.scenario.top_speed for trial in detection.trials if measured_profiles(trial)}
     told = {run for item in found if item.kind == "clock" for run in item.runs}
     moved = (item for item in moved_roads(conditions, speeds) if not told & set(item.runs))
-    found = (*found, *unrelated_recording(detection.base.least_squares))
-    return (*found, *moved, *slow_recorder(detection.recorder, tuple(trial.name for trial in detection.trials)))
+    slow = slow_recorder(detection.recorder, tuple(trial.name for trial in detection.trials))
+    return (*found, *unrelated_recording(detection.base.least_squares), *moved, *slow)
 
 
 def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:

@@ -170,11 +170,10 @@ class Fitter:
     def fit_again(self, fit: ModelFit) -> ModelFit:
         """Fit a first effect anew from where it was, to runs whose recorders, noise, or part (training, validation) have changed."""
         problem = build_problem(fit.last, self.current.problem, self.locator, self.simulators)
-        parts = [part for part in (fit.least_squares, fit.validation_fit) if part is not None]
-        steps = {trial.name: trial for part in parts for trial in part.misfit.problem.trials}
+        steps = {trial.name: trial for part in fit.parts for trial in part.misfit.problem.trials}
         problem = problem.with_trials([as_fine(trial, steps[trial.name]) for trial in problem.trials])
         noises, runs = self.detection.floor.noises, self.detection.validation_runs
-        found = refine(problem, fit.least_squares, fit.least_squares.x, fit.effects, noises, self.detection.band, parts)
+        found = refine(problem, fit.least_squares, fit.least_squares.x, fit.effects, noises, self.detection.band, fit.parts)
         return replace(evaluate_fit(fit.effects, found, runs, noises), equivalent_minima=fit.equivalent_minima)
 
     def fit_roughly(self, candidate: Candidate) -> ModelFit | None:
@@ -200,9 +199,7 @@ def merit(fit: ModelFit) -> float:
     That price is BIC's for the last effect's numbers. Errors count because of two effects that do as well, the one that needs a phone's
     clock to be 30 ms off in every run is the less likely one.
     """
-    training = [trial.name for trial in fit.least_squares.misfit.problem.trials]
-    total = sum(fit.counts[item] for item in training)
-    return fit.squares + own_numbers(fit) * float(np.log(total))
+    return fit.squares + own_numbers(fit) * float(np.log(fit.n_residuals))
 
 
 def own_numbers(fit: ModelFit) -> int:
