@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 from vehgen.fit.alignment import align
+from vehgen.fit.chain_estimate import slowest_rate
 from vehgen.fit.least_squares import COARSE_TOLERANCE, FitOptions, LeastSquaresFit, first_noises, fit_least_squares
 from vehgen.fit.misfit import Array, Misfit
 from vehgen.fit.nuisances import LOW_PASS, Nuisances
 from vehgen.fit.parallel import Runner
 from vehgen.fit.prior_data import PriorData
 from vehgen.fit.problem import Problem
-from vehgen.fit.recorders import FoundRecorder, find_recorder, has_unknown
+from vehgen.fit.recorders import FoundRecorder, clearest, find_recorder, has_unknown
 
 FIRST_ROUNDS, LAST_ROUNDS = 2, 2
 """So often is the noise estimated before the recorder is known, and after."""
+JACOBIAN_REFRESH = 4
+"""Derivatives by errors of runs serve for so many steps."""
 Told = Callable[[int, float], None]
 """Called with how many starts are polished, and the least loss."""
 
@@ -63,7 +66,7 @@ def polish(
     noises = first_noises(problem)
     errors = align(Misfit(problem, noises, problem.space.values(points[0]), nuisances, band), points[0])
     unknown = has_unknown(problem.trials)
-    own = FitOptions(nuisances, band)
+    own = FitOptions(nuisances, band, jacobian_refresh=JACOBIAN_REFRESH)
     if unknown:
         own = replace(own, noise_rounds=FIRST_ROUNDS, tolerance=COARSE_TOLERANCE)
     fits: list[LeastSquaresFit] = []
@@ -71,19 +74,25 @@ def polish(
         fits.append(fit)
         if told is not None:
             told(len(fits), min(item.loss for item in fits))
-    recorder = None
-    if unknown:
-        best = min(fits, key=lambda fit: fit.loss)
-        recorder = find_recorder(best.misfit, best.x)
-        through = problem.with_trials(recorder.applied(problem.trials))
-        again = partial(
-            _again, through, replace(own, band=recorder.band, noise_rounds=LAST_ROUNDS, tolerance=FitOptions().tolerance), prior_data
-        )
-        fits = list(options.runner.map(again, fits))
+    if not unknown:
+        return _sorted(fits, None)
+    best = min(fits, key=lambda fit: fit.loss)
+    found = find_recorder(best.misfit, best.x).with_usual(slowest_rate(problem.trials))
+    tried = list(options.runner.map(partial(_through, problem, own, prior_data, best), found))
+    recorder = found[clearest(found, [fit.loss for fit in tried])]
+    last = replace(own, noise_rounds=LAST_ROUNDS, tolerance=FitOptions().tolerance)
+    return _sorted(options.runner.map(partial(_through, problem, last, prior_data, recorder=recorder), fits), recorder)
+
+
+def _sorted(fits: Iterable[LeastSquaresFit], recorder: FoundRecorder | None) -> Polish:
     return Polish(tuple(sorted(fits, key=lambda fit: fit.loss)), recorder)
 
 
-def _again(problem: Problem, options: FitOptions, prior_data: PriorData | None, fit: LeastSquaresFit) -> LeastSquaresFit:
-    """Return a fit polished through the recorders that the problem's trials now have."""
+def _through(
+    problem: Problem, options: FitOptions, prior_data: PriorData | None, fit: LeastSquaresFit, recorder: FoundRecorder
+) -> LeastSquaresFit:
+    """Return a fit polished through a recorder."""
+    through = problem.with_trials(recorder.applied(problem.trials))
     unit, errors = fit.misfit.split(fit.misfit.without(fit.x, LOW_PASS))
-    return fit_least_squares(problem, unit, options, first=fit.misfit.noises, start=errors, prior_data=prior_data)
+    options = replace(options, band=recorder.band)
+    return fit_least_squares(through, unit, options, first=fit.misfit.noises, start=errors, prior_data=prior_data)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from vehgen.fit.chain_estimate import ChainEstimate, estimate_chain, fine_response, group_delay, trusted_band
 from vehgen.fit.misfit import Array, Misfit
 from vehgen.fit.trial import Trial
@@ -16,6 +18,9 @@ USUAL_SHARE, UNUSUAL_SHARE = 0.43, 0.35
 """Recorders usually cut off at the one share of their rate, and seldom below the other."""
 SAME_CUT_OFF = 0.1
 """Cut-offs that differ by less than this share are the same."""
+
+CLEAR_RECORDER = 30.0
+"""One found by its low-pass stands where it leaves a sum of squares smaller by this than those that are usual."""
 
 
 @dataclass(frozen=True)
@@ -92,6 +97,12 @@ class FoundRecorder:
         one, two = self.chain, other.chain
         same = (one.filter, one.order, self.cut) == (two.filter, two.order, other.cut)
         return same and abs((one.cut_off or 0.0) - (two.cut_off or 0.0)) <= SAME_CUT_OFF * (two.cut_off or 1.0)
+
+
+def clearest(recorders: Sequence[FoundRecorder], squares: Sequence[float]) -> int:
+    """Return which of recorders from :meth:`FoundRecorder.with_usual` stands, by the sums of squares that refits through them leave."""
+    less = [0.0, *[CLEAR_RECORDER] * (len(recorders) - 1)]
+    return int(np.argmin(np.subtract(squares, less)))
 
 
 def has_unknown(trials: Sequence[Trial]) -> bool:

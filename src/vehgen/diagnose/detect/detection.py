@@ -21,7 +21,7 @@ from vehgen.fit.band import DIAGNOSIS_BAND_HZ, compared_band
 from vehgen.fit.chain_estimate import slowest_rate
 from vehgen.fit.misfit import Noises
 from vehgen.fit.problem import Problem, make_problem
-from vehgen.fit.recorders import FoundRecorder, find_recorder, has_unknown
+from vehgen.fit.recorders import FoundRecorder, clearest, find_recorder, has_unknown
 from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
@@ -29,8 +29,6 @@ SAME_SQUARES = 0.1
 """Noises by which the mean squares of what a fit leaves differ by less in their logarithms are the same."""
 DETECTION_ROUNDS = 3
 """So often at most are the roads' part of the noise and an unknown recorder found, each from the fit with those before."""
-CLEAR_RECORDER = 30.0
-"""An unusual low-pass stands where it leaves a sum of squares smaller by this than a usual one."""
 BELIEVED_SIGMAS = 2.5
 """Errors of so many standard deviations need no explanation."""
 UNSHOWN = 0.1
@@ -151,10 +149,11 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
         found = find_recorder(base.least_squares.misfit, base.least_squares.x, None if recorder is None else recorder.channels, band)
         if recorder is not None and found.is_like(recorder):
             break
-        tried = [(item, *_recorded(item, problem, validation_runs, floor.noises, base)) for item in found.with_usual(slowest_rate(trials))]
-        squares = [item[3].squares - (0 if item[0] is found else CLEAR_RECORDER) for item in tried]
-        before = recorder
-        recorder, problem, validation_runs, base = tried[int(np.argmin(squares))]
+        recorders = found.with_usual(slowest_rate(trials))
+        tried = [_recorded(item, problem, validation_runs, floor.noises, base) for item in recorders]
+        which = clearest(recorders, [refit.squares for _, _, refit in tried])
+        before, recorder = recorder, recorders[which]
+        problem, validation_runs, base = tried[which]
         if before is not None and recorder.is_like(before):
             break
     return _with_telling_runs(_detection(problem, validation_runs, floor, base, recorder, band))
