@@ -7,10 +7,13 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
 
 from benchmarks.measured_world.accepted import judged_effect, judged_fault
 
@@ -71,13 +74,26 @@ def rows(truth: Data, answer: Data) -> list[Data]:
         item = answer["combinations"].get(name) or answer["parameters"].get(name)
         found.append(_row(family(name), name, right, item))
     bodies = 2 if truth["vehicle"] == "sedan2" else 3
+    ratios = damping_ratios(truth["modes"], answer["modes"])
     for i, (right, mode) in enumerate(zip(truth["modes"], answer["modes"], strict=True)):
         kind = "body modes" if i < bodies else "hop modes"
         hz = {"value": mode["undamped_hz"], "interval": mode["interval"]}
         ratio = {"value": mode["damping_ratio"], "interval": mode["damping_interval"]}
         found.append(_row(f"{kind}, frequency", f"mode {i + 1}", right["frequency"], hz))
-        found.append(_row(f"{kind}, damping ratio", f"mode {i + 1} damping", right["damping_ratio"], ratio))
+        found.append(_row(f"{kind}, damping ratio", f"mode {i + 1} damping", ratios[i], ratio))
     return found
+
+
+def damping_ratios(true_modes: Sequence[Data], found: Sequence[Data]) -> list[float]:
+    """Return the true damping ratio of each mode that was found.
+
+    Frequencies are in order. Which heavily damped pole belongs to which of two frequencies a few percent apart is a matter of how poles are
+    followed, so that poles go to the modes that are nearest in frequency and damping together.
+    """
+    truth = np.log([[mode["frequency"], mode["damping_ratio"]] for mode in true_modes])
+    answer = np.log([[mode["undamped_hz"], mode["damping_ratio"]] for mode in found])
+    owners = linear_sum_assignment(np.abs(answer[:, None] - truth[None]).sum(axis=2))[1]
+    return [float(true_modes[owner]["damping_ratio"]) for owner in owners]
 
 
 def _row(kind: str, name: str, right: float, item: Data | None) -> Data:

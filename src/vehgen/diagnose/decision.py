@@ -279,10 +279,10 @@ class Decision:
             self.notes.append(
                 f"the refit, within 35 % of the file's values, ends at its edge for {edge}: if they are uncertain, calibrate first"
             )
-        ended = self._end(
-            "not_in_library",
-            wording.not_in_library(best, [wording.force_words(item.place.kind, item.place.name) for item in first.passed[:3]]),
-        )
+        if strained := [item.message for item in supposed_mistakes(self.detection)]:
+            self.notes.append(wording.supposed(strained))
+        causes = [wording.force_words(item.place.kind, item.place.name) for item in first.passed[:3]]
+        ended = self._end("not_in_library", wording.not_in_library(best, causes))
         shown = strongest(first.passed)
         law = None if shown is None else fit_free_form(recover(self.detection, shown))
         if law is None:

@@ -178,6 +178,11 @@ def mistaken(faults: Sequence[str]) -> str:
     return f"The measurement is at fault: {'; '.join(faults)}"
 
 
+def supposed(messages: Sequence[str]) -> str:
+    """Return the note on what fits suppose of the measurement beyond belief, where a missing effect may have bent them to it."""
+    return f"The refit supposes more than can be believed, for want of the effect or because it is so: {'; '.join(messages)}"
+
+
 def out_of_range(ratios: Mapping[str, float]) -> str:
     """Return the verdict `insufficient_data` where base parameters far from the file's values explain the gap as well as an effect.
 

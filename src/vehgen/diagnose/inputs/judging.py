@@ -185,10 +185,4 @@ def explain_gap(detection: Detection, chi: float | None = None, vehicle: bool = 
         return found
     if found or not vehicle:
         return ()
-    return other_vehicle(case) or _single_speeds(detection) or unrelated_recording(case.base)
-
-
-def _single_speeds(detection: Detection) -> tuple[MeasurementFault, ...]:
-    """Return speeds that the base fit had to suppose beyond belief in some runs only: arrivals tell them, whatever is missing."""
-    count = len(detection.trials)
-    return tuple(item for item in supposed_mistakes(detection) if item.kind == "speed" and len(item.runs) < count)
+    return other_vehicle(case) or unrelated_recording(case.base)
