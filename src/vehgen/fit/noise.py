@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -190,13 +191,16 @@ def _adjoint(matrices: Complex) -> Complex:
     return np.asarray(matrices.conj().transpose(0, 2, 1))
 
 
+@lru_cache(maxsize=64)
 def taper(n_samples: int, dt: float) -> Array:
     """Return the window under which records are compared: cosine ramps of RAMP [s], or an eighth of a short record, at both ends.
 
-    What the vehicle did before the record began is unknown, and so are its first and last moments.
+    What the vehicle did before the record began is unknown, and so are its first and last moments. The array is not to be written to.
     """
     share = min(2 * RAMP / (n_samples * dt), 0.25)
-    return np.asarray(scipy.signal.windows.tukey(n_samples, share))
+    window = np.asarray(scipy.signal.windows.tukey(n_samples, share))
+    window.setflags(write=False)
+    return window
 
 
 def transform(values: Array, dt: float, inside: NDArray[np.bool_], late: Array | None = None) -> Complex:

@@ -284,17 +284,17 @@ class RunErrors:
         values = self._values(numbers)
         if not any(value for (name, _), value in values.items() if name in READING):
             return None
-        turning = 2j * np.pi * frequency
-        pitch = np.divide(1.0, turning, out=np.zeros_like(turning), where=frequency > 0)
+        omega, x = 2 * np.pi * frequency, 2 * frequency / self.rate
+        pitch = np.divide(1.0, omega, out=np.zeros_like(omega), where=omega > 0)
         columns = {(sensor, quantity): i for i, (_, sensor, quantity) in enumerate(self.channels)}
         found = np.zeros((len(frequency), len(self.channels), len(self.channels)), dtype=np.complex128)
-        late, share = self._late(values), 2 * frequency / self.rate
+        late = self._late(values)
         for i, (name, sensor, quantity) in enumerate(self.channels):
-            own = np.exp(-turning * late[i]) * (1 + values.get(("gain", name), 0.0))
-            own *= np.exp(-values.get(("roll_off", sensor), 0.0) * share**2 - 1j * values.get(("dispersion", sensor), 0.0) * share**3)
+            own = np.exp(-1j * (late[i] * omega + values.get(("dispersion", sensor), 0.0) * x**3))
+            own *= np.exp(-values.get(("roll_off", sensor), 0.0) * x**2) * (1 + values.get(("gain", name), 0.0))
             found[:, i, i] = own
             if quantity == "acceleration" and (sensor, "pitch_rate") in columns:
                 tilt, shift = values.get(("tilt", sensor), 0.0), values.get(("position", sensor), 0.0)
                 found[:, i, i] *= math.cos(tilt)
-                found[:, i, columns[sensor, "pitch_rate"]] = own * (-shift * turning - GRAVITY * math.sin(tilt) * pitch)
+                found[:, i, columns[sensor, "pitch_rate"]] = own * 1j * (GRAVITY * math.sin(tilt) * pitch - shift * omega)
         return found
