@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from vehgen.calibrate.calibration import Calibration, StepResult
 from vehgen.calibrate.objective import PsdObjective
 from vehgen.calibrate.result import ConditionSummary
-from vehgen.fit.nuisances import RunErrors
+from vehgen.fit.run_errors import RunErrors
 from vehgen.fit.trial import Trial
 from vehgen.measure import record_psd
 from vehgen.measure.curves import ChannelCurves

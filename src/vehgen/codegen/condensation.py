@@ -119,6 +119,8 @@ class Condensation:
             self.static_travels[index] = rest = program.leaf(f"rest{number}", SETUP_PHASE)
             carried = element.k * REST + sp.Add(*(term.preload() for term in element.laws))
             force = program.label(program.convert(carried, {**self.symbols, REST: rest}), f"static{number}")
+        elif not self.model.vehicle.gravity:
+            force = rest = program.number(0.0)
         elif static is not None:
             force = program.label(
                 program.multiply(program.convert(element.k, self.symbols, self.memo), self._times(row, static)), f"static{number}"
@@ -142,6 +144,8 @@ class Condensation:
         if not any(term.asks_static for element in self.model.elements for term in element.laws):
             return None
         program = self.program
+        if not self.model.weight_entries:
+            return [program.number(0.0)] * self.model.n_dof
         factor = factorise(program, self.model.n_dof, stiffness, "K_")
         weight = [program.convert(self.model.weight_entries.get(i, sp.S.Zero), self.symbols, self.memo) for i in range(self.model.n_dof)]
         return factor.solve(program, weight)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from vehgen.codegen.cache import cache_folder, import_kernel, is_compiled, kernel_name
 from vehgen.codegen.kernel_source import KernelSource, Precision, write_kernel
 from vehgen.errors import InputError, did_you_mean, shown
-from vehgen.mechanics.equations_of_motion import EquationsOfMotion
+from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
 
 Array = NDArray[np.float64]
@@ -252,7 +252,7 @@ class Kernel:
 
     @cached_property
     def _weight(self) -> float:
-        return self.model.total_weight()
+        return GRAVITY * self.model.total_mass()
 
     def _check(self, parameters: Array, excitation: Excitation, decimation: int) -> None:
         expected = len(self.model.parameters)

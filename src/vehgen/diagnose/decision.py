@@ -164,7 +164,7 @@ class Decision:
         of_vehicle = all(candidate.effect.changes_vehicle for candidate in named)
         if self.detection.chi <= limit.WEAK or (self.chain and of_vehicle and not unsure):
             return None
-        mistakes = explain_gap(self.detection, leading.chi if leading else None, unsure)
+        mistakes = explain_gap(self.detection, leading, unsure)
         return self._mistaken(mistakes) if mistakes else None
 
     def _too_weak(self, first: SearchRound, best: ModelFit, good: bool) -> Decided | None:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from vehgen.diagnose.fits.model_fit import ModelFit
+from vehgen.diagnose.fits.occurring import occurring
 from vehgen.diagnose.select.estimates import estimate
 from vehgen.diagnose.verdict import Verdict
 from vehgen.effects import EffectLocator
@@ -36,7 +37,7 @@ def effect_file(fit: ModelFit, base: Problem, verdict: Verdict, folder: Path, na
             told = ", ".join(f"{key} = {item.value:.5g} {item.unit}".strip() for key, item in estimate(fit, candidate).items())
             comments.append(f"{candidate.label} is an effect of the runs, to be corrected there: {told}")
             continue
-        site = EffectLocator(extended, dict(trial.values)).site(candidate.place)
+        site = EffectLocator(extended, dict(trial.values), occurring(fit)).site(candidate.place)
         own = {parameter.name: values[symbol] for parameter, symbol in zip(candidate.effect.parameters, candidate.parameters, strict=True)}
         change = candidate.effect.change(site, own)
         _merge(data, change)

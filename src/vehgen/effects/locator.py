@@ -19,12 +19,20 @@ Size = Literal["k", "c", "kt"]
 
 
 @dataclass(frozen=True)
+class Occurring:
+    """The largest force [N] and travel [m] that occur at a spring."""
+
+    force: float
+    travel: float
+
+
+@dataclass(frozen=True)
 class EffectSite:
     """A place of a vehicle with its sizes.
 
     `load` [N] is the static load of the axle (of the hinge, the link, the body's weight); `k` [N/m], `c` [N s/m] its suspension's
     or link's; `kt` [N/m] its tyre's; `mass` [kg] and `inertia` [kg m^2] its body's; `length` [m] the distance between the body's
-    outermost supports.
+    outermost supports. Where no weight acts, `load` is the largest force that occurs, and `stroke` the largest travel [m].
     """
 
     vehicle: Vehicle
@@ -36,10 +44,13 @@ class EffectSite:
     mass: float
     inertia: float
     length: float
+    stroke: float = 0.0
 
     @property
     def travel(self) -> float:
-        """A typical dynamic travel: a tenth of what the static load compresses the spring by, between 2 and 20 mm [m]."""
+        """A typical dynamic travel: a tenth of what the static load compresses the spring by, between 2 and 20 mm; half the stroke [m]."""
+        if self.stroke > 0:
+            return self.stroke / 2
         return min(max(0.1 * self.load / self.k, 0.002), 0.02) if self.k > 0 else 0.005
 
     @property
@@ -95,10 +106,12 @@ class EffectLocator:
         The vehicle.
     values
         Its free parameters [SI].
+    occurring
+        What occurs at suspensions and links that no weight loads, by name.
     """
 
-    def __init__(self, vehicle: Vehicle, values: Mapping[str, float]) -> None:
-        self.vehicle = vehicle
+    def __init__(self, vehicle: Vehicle, values: Mapping[str, float], occurring: Mapping[str, Occurring] | None = None) -> None:
+        self.vehicle, self._occurring = vehicle, dict(occurring or {})
         self._model: EquationsOfMotion = derive(vehicle)
         known = {name: values.get(name, 0.0) for name in self._model.parameters}
         self._known = vehicle.all_values({name: known[name] for name in vehicle.free_parameters})
@@ -135,6 +148,8 @@ class EffectLocator:
             elif name in vehicle.hinges:
                 load += abs(self._loads.hinges[name])
                 body = vehicle.hinges[name].ends[1][0]
+        occurs = [self._occurring[name] for name in names if name in self._occurring]
+        load += sum(item.force for item in occurs)
         if body not in vehicle.bodies:
             body = next(iter(vehicle.bodies))
         mass = vehicle.bodies[body].mass.evaluate(known)
@@ -145,4 +160,7 @@ class EffectLocator:
             load = mass * GRAVITY
         if place in EVERY_TYRE:
             load, k, c, kt = (size / len(names) for size in (load, k, c, kt))
-        return EffectSite(vehicle, place, load, k, c, kt, mass, self._inertias[body], length)
+        stroke = max((item.travel for item in occurs), default=0.0)
+        if stroke > 0 and k == 0:
+            k = load / stroke  # a scale for springs where there is none
+        return EffectSite(vehicle, place, load, k, c, kt, mass, self._inertias[body], length, stroke)

@@ -125,6 +125,7 @@ def _spread_of(dimension: Dimension) -> tuple[BeforeValidator, WithJsonSchema]:
 
 ShareSpread = Annotated[Spread, *_spread_of(NONE)]
 SpeedSpread = Annotated[Spread, *_spread_of(limits.SPEED_LIMIT.dimension)]
+ForceSpread = Annotated[Spread, *_spread_of(limits.FORCE_LIMIT.dimension)]
 LengthSpread = Annotated[Spread, *_spread_of(limits.HUMP_LENGTH.dimension)]
 TimeDeviation = Annotated[
     float, BeforeValidator(lambda value: _from(value, limits.DURATION.dimension, 10.0)), _schema(limits.DURATION.dimension)

@@ -49,7 +49,7 @@ def align(misfit: Misfit, unit: Array, begun: Sequence[float] = (), bands: Seque
     """
     x = np.concatenate([unit, begun or np.zeros(len(misfit.shared)), np.zeros(misfit.n_errors)])
     for number in range(len(misfit.problem.trials)):
-        if misfit.error_position(number, "delay") is not None:
+        if misfit.error_position(number, "delay") is not None and misfit.problem.trials[number].scenario.track.parts:
             x[misfit.own_columns(number)] = _laid_over(misfit, x, number, bands)
     return x[misfit.n_parameters + len(misfit.shared) :]
 

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.noise import Noise, RoadAnswer, road_answer, transform
-from vehgen.fit.nuisances import Condition, Nuisances, RunErrors
+from vehgen.fit.nuisances import Condition, Nuisances
 from vehgen.fit.problem import Problem
+from vehgen.fit.run_errors import RunErrors
 from vehgen.fit.trial import Trial
 from vehgen.simulate import Scenario
 

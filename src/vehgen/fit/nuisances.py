@@ -8,17 +8,15 @@ an unknown low-pass takes off. Every error counts in units of its standard devia
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.files.quantities import Spread
 from vehgen.fit.trial import Trial
-from vehgen.mechanics import GRAVITY
-from vehgen.road import Wander
-from vehgen.simulate import Scenario
+from vehgen.mechanics import is_held
 from vehgen.simulate.run_file.acquisition import channel_chains
 
 Array = NDArray[np.float64]
@@ -34,9 +32,11 @@ ON_ROAD_MARGIN_S = 0.3
 OF_TIME = ("clock", "lag")
 READING = (*OF_TIME, "gain", "tilt", "position", "roll_off", "dispersion")
 """Errors that change what a sensor reads, not what the vehicle does; the first two say how late a channel is."""
+OF_FORCES = ("force_gain", "force_offset")
+"""Errors of measured forces."""
 LOW_PASS = ("roll_off", "dispersion")
 """Errors of what stands for an unknown recorder's low-pass."""
-ERROR_UNITS = {"delay": "s", "wear": "mm^2", "clock": "s", "lag": "s", "tilt": "rad", "position": "m"}
+ERROR_UNITS = {"delay": "s", "wear": "mm^2", "clock": "s", "lag": "s", "tilt": "rad", "position": "m", "force_offset": "N"}
 """Units of the errors; all others are relative."""
 
 
@@ -63,6 +63,9 @@ class Nuisances:
         exp(-r - i d) (see :meth:`RunErrors.reading`). Declared recorders have neither.
     gain, tilt, position
         Of each channel's gain (relative), of each sensor's nose-down tilt [rad] and place along its body [m].
+    force_gain, force_offset
+        Of each measured force's gain, relative, and of a constant force beside it, relative to its root mean square. What a spring holds
+        has no offset: it would have settled.
     asked
         Names of those that hold whatever run files state of theirs.
     """
@@ -82,6 +85,8 @@ class Nuisances:
     position: float = 0.02
     roll_off: float = 0.3
     dispersion: float = 1.5
+    force_gain: float = 0.01
+    force_offset: float = 0.1
     asked: tuple[str, ...] = ()
 
     def of_run(self, trial: Trial) -> tuple[Nuisance, ...]:
@@ -116,6 +121,12 @@ class Nuisances:
                 if {(channel.sensor, "acceleration"), (channel.sensor, "pitch_rate")} <= quantities:
                     for name in ("lag", "tilt", "position"):
                         names.setdefault((name, channel.sensor), Nuisance(name, channel.sensor, spread[name]))
+        for trial in trials:
+            for force, rms in measured_forces(trial).items():
+                spread = self._stated(trial)
+                names.setdefault(("force_gain", force), Nuisance("force_gain", force, spread["force_gain"]))
+                if not is_held(trial.simulator.model, trial.values):
+                    names.setdefault(("force_offset", force), Nuisance("force_offset", force, rms * spread["force_offset"]))
         return tuple(item for item in names.values() if item.sigma > 0)
 
     def _stated(self, trial: Trial) -> dict[str, float]:
@@ -124,6 +135,8 @@ class Nuisances:
         found: dict[str, float] = {}
         for name in (item.name for item in fields(self) if item.name != "asked"):
             default = getattr(self, name)
+            if name == "delay" and not trial.scenario.track.parts:
+                default = min(default, trial.recording.dt)  # one recorder keeps what pushes and what answers
             stated = getattr(own, name, None) if own is not None and name not in self.asked else None
             if isinstance(stated, Spread):
                 stated = stated.share_of(_size(trial, name))
@@ -179,9 +192,17 @@ class Condition:
         return self.value / self.sigma
 
 
+def measured_forces(trial: Trial) -> dict[str, float]:
+    """Return the root mean square [N] of a run's measured forces, by name."""
+    named = zip(trial.simulator.model.forces, trial.scenario.forces, strict=True)
+    return {name: float(np.sqrt(np.mean(item.values**2))) for name, item in named if item.values is not None}
+
+
 def _size(trial: Trial, name: str) -> float:
-    """Return what a run's stated deviation is a share of: its speed [m/s], or its hump's height or length [m]."""
+    """Return what a run's stated deviation is a share of: its speed [m/s], its hump's height or length [m], its largest force [N]."""
     humps = trial.scenario.humps
+    if name == "force_offset":
+        return max(measured_forces(trial).values(), default=1.0)
     if name in ("speed", "wander"):
         return trial.scenario.top_speed
     if name == "length" and humps:
@@ -203,98 +224,3 @@ def wander_knots(trial: Trial) -> list[float]:
         return []
     intervals = min(math.ceil((last - first) / KNOT_SPACING_S), MOST_INTERVALS)
     return [round(float(knot), 9) for knot in np.linspace(first, last, intervals + 1)]
-
-
-@dataclass(frozen=True)
-class RunErrors:
-    """The errors of one run: those of the sensors in all runs (`sensors`), then its own (`own`).
-
-    Numbers of errors `shape (size,)` count in standard deviations, the sensors' first. `channels` holds name, sensor and quantity of every
-    channel; `known` errors of sensors [units], by name and place, that stand; `rate` is the recording's [Hz].
-    """
-
-    sensors: tuple[Nuisance, ...]
-    own: tuple[Nuisance, ...]
-    channels: tuple[tuple[str, str, str], ...]
-    known: Mapping[tuple[str, str], float] = field(default_factory=dict)
-    rate: float = 100.0
-
-    @classmethod
-    def of(
-        cls, trial: Trial, sensors: tuple[Nuisance, ...], own: tuple[Nuisance, ...], known: Mapping[tuple[str, str], float]
-    ) -> RunErrors:
-        """Return the errors of a trial."""
-        channels = tuple((item.name, item.sensor, item.quantity) for item in trial.recording.channels)
-        return cls(sensors, own, channels, known, 1 / trial.recording.dt)
-
-    @property
-    def items(self) -> tuple[Nuisance, ...]:
-        """All errors, the sensors' first."""
-        return (*self.sensors, *self.own)
-
-    def scenario(self, scenario: Scenario, numbers: Array) -> Scenario:
-        """Return the scenario with the errors."""
-        found = dict.fromkeys(("delay", "speed", "height", "length", "form", "skew", "wear"), 0.0)
-        knots, strayed = [], []
-        for item, number in zip(self.items, numbers, strict=True):
-            value = float(number) * item.sigma
-            if item.name == "wander":
-                knots.append(item.knot)
-                strayed.append(value)
-            elif item.name in found:
-                found[item.name] = value
-        mean = sum(strayed) / max(len(strayed), 1)
-        form = 1 + found["length"], math.exp(found["form"]), found["skew"], 1e-6 * found["wear"]
-        return scenario.adjusted(
-            found["delay"],
-            1 + found["speed"],
-            1 + found["height"],
-            anchor=scenario.first_arrival,
-            wander=Wander(tuple(knots), tuple(value - mean for value in strayed)) if any(strayed) else None,
-            deformation=form if scenario.humps else None,
-        )
-
-    def _values(self, numbers: Array) -> dict[tuple[str, str], float]:
-        own = {(item.name, item.place): float(number) * item.sigma for item, number in zip(self.items, numbers, strict=True)}
-        return {**self.known, **own}
-
-    def clocks(self, numbers: Array) -> Array:
-        """Return how late every channel's clock is [s], `shape (n_channels,)`."""
-        return self._late(self._values(numbers))
-
-    def _late(self, values: Mapping[tuple[str, str], float]) -> Array:
-        lags = [values.get(("lag", sensor), 0.0) if quantity == "pitch_rate" else 0.0 for _, sensor, quantity in self.channels]
-        return np.asarray(np.array([values.get(("clock", sensor), 0.0) for _, sensor, _ in self.channels]) + lags, dtype=np.float64)
-
-    def read(self, motion: Array, dt: float, numbers: Array) -> Array:
-        """Return what the sensors read, `shape (n_samples, n_channels)`, where they should read `motion` at samples `dt` [s] apart."""
-        length = 2 * len(motion)
-        reading = self.reading(np.asarray(np.fft.rfftfreq(length, dt), dtype=np.float64), numbers)
-        if reading is None:
-            return motion
-        lines = (reading @ np.fft.rfft(motion, length, axis=0)[..., None])[..., 0]
-        return np.asarray(np.fft.irfft(lines, length, axis=0)[: len(motion)])
-
-    def reading(self, frequency: Array, numbers: Array) -> Complex | None:
-        """Return what the channels read of what they should, line by line, `shape (n_lines, n_channels, n_channels)`; None: all of it.
-
-        A sensor tilted nose-down by t reads a cos t - g pitch sin t, one that sits d further forward a - d pitch''; a late clock turns
-        phases. What a low-pass takes off more than supposed is exp(-r x^2 - i d x^3) at x times half the rate.
-        """
-        values = self._values(numbers)
-        if not any(value for (name, _), value in values.items() if name in READING):
-            return None
-        omega, x = 2 * np.pi * frequency, 2 * frequency / self.rate
-        pitch = np.divide(1.0, omega, out=np.zeros_like(omega), where=omega > 0)
-        columns = {(sensor, quantity): i for i, (_, sensor, quantity) in enumerate(self.channels)}
-        found = np.zeros((len(frequency), len(self.channels), len(self.channels)), dtype=np.complex128)
-        late = self._late(values)
-        for i, (name, sensor, quantity) in enumerate(self.channels):
-            own = np.exp(-1j * (late[i] * omega + values.get(("dispersion", sensor), 0.0) * x**3))
-            own *= np.exp(-values.get(("roll_off", sensor), 0.0) * x**2) * (1 + values.get(("gain", name), 0.0))
-            found[:, i, i] = own
-            if quantity == "acceleration" and (sensor, "pitch_rate") in columns:
-                tilt, shift = values.get(("tilt", sensor), 0.0), values.get(("position", sensor), 0.0)
-                found[:, i, i] *= math.cos(tilt)
-                found[:, i, columns[sensor, "pitch_rate"]] = own * 1j * (GRAVITY * math.sin(tilt) * pitch - shift * omega)
-        return found

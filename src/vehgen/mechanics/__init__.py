@@ -8,7 +8,7 @@ from vehgen.mechanics.equations_of_motion import GRAVITY, Channel, EquationsOfMo
 from vehgen.mechanics.kinematics import Coordinate
 from vehgen.mechanics.model_like import ModelLike, all_values, as_model
 from vehgen.mechanics.outputs import ElementOutput, Output, Place, PointOutput
-from vehgen.mechanics.static_loads import StaticLoads, static_loads
+from vehgen.mechanics.static_loads import StaticLoads, is_held, static_loads
 
 __all__ = [
     "GRAVITY",
@@ -25,5 +25,6 @@ __all__ = [
     "all_values",
     "as_model",
     "derive",
+    "is_held",
     "static_loads",
 ]

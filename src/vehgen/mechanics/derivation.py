@@ -83,7 +83,7 @@ def derive(vehicle: VehicleLike, outputs: Iterable[Output] = (), forces: Iterabl
         input_entries=input_entries,
         input_rate_entries=input_rate_entries,
         force_entries=force_entries,
-        weight_entries=weight(energies),
+        weight_entries=weight(energies) if vehicle.gravity else {},
     )
 
 

@@ -102,7 +102,7 @@ class EquationsOfMotion:
     @property
     def is_preloaded(self) -> bool:
         """Whether a force law counts its travel from the unloaded position, so that laws share in carrying the weight."""
-        return any(term.origin == "unloaded" for element in self.elements for term in element.laws)
+        return self.vehicle.gravity and any(term.origin == "unloaded" for element in self.elements for term in element.laws)
 
     @property
     def n_dof(self) -> int:
@@ -221,8 +221,12 @@ class EquationsOfMotion:
         return found
 
     def total_weight(self, values: Mapping[str, float] | None = None) -> float:
-        """Return the weight of all bodies and axles [N]."""
-        return GRAVITY * sum(self.evaluate_list((term.inertia for term in self.energies.weights), values or self.values()))
+        """Return the weight of all bodies and axles [N], none without gravity."""
+        return GRAVITY * self.total_mass(values) if self.vehicle.gravity else 0.0
+
+    def total_mass(self, values: Mapping[str, float] | None = None) -> float:
+        """Return the mass of all bodies and axles [kg]."""
+        return float(sum(self.evaluate_list((term.inertia for term in self.energies.weights), values or self.values())))
 
     def wheel_offsets(self, values: Mapping[str, float] | None = None) -> NDArray[np.float64]:
         """Return how far each axle runs behind the first to arrive, `shape (n_axles,)` [m]."""

@@ -42,7 +42,7 @@ class StaticLoads(Result):
 
 
 def static_loads(model: ModelLike, values: Mapping[str, float] | None = None, *, parameter_set: str | None = None) -> StaticLoads:
-    """Solve K q = weight, with the laws that count from the unloaded position.
+    """Solve K q = weight, with the laws that count from the unloaded position; without gravity all loads are zero.
 
     Parameters
     ----------
@@ -66,6 +66,8 @@ def static_loads(model: ModelLike, values: Mapping[str, float] | None = None, *,
         if found.failures:
             raise InputError(f"{model.vehicle.name}: {found.failures[0]}", model.vehicle.position())
         displacement, forces = found.displacement[0], found.forces[0]
+    elif not model.vehicle.gravity:
+        displacement, forces = np.zeros(model.n_dof), np.zeros(len(model.elements))
     else:
         numeric = model.numeric(values)
         displacement = _solve(model, numeric.K, numeric.weight)
@@ -86,17 +88,27 @@ def element_rows(model: EquationsOfMotion, values: Mapping[str, float]) -> tuple
     return rows, np.array(model.evaluate_list((element.k for element in model.elements), values))
 
 
-def _solve(model: EquationsOfMotion, K: NDArray[np.float64], weight: NDArray[np.float64]) -> NDArray[np.float64]:
+def is_held(model: EquationsOfMotion, values: Mapping[str, float]) -> bool:
+    """Return whether springs hold the vehicle in every motion, at values of its parameters [SI]."""
+    return _scaled_modes(model.numeric(values).K)[2]
+
+
+def _scaled_modes(K: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], bool]:
+    """Return what scales coordinates alike `shape (n_dof,)`, the softest direction, and whether a spring holds it."""
     scale = np.sqrt(np.maximum(np.diag(K), np.finfo(float).tiny))
-    scaled = K / np.outer(scale, scale)
-    eigenvalues, vectors = scipy.linalg.eigh(scaled)
-    if eigenvalues[0] < 1e-12 * max(eigenvalues[-1], 1.0):
-        free = model.coordinates[int(np.argmax(np.abs(vectors[:, 0])))]
+    eigenvalues, vectors = scipy.linalg.eigh(K / np.outer(scale, scale))
+    return scale, vectors[:, 0], bool(eigenvalues[0] >= 1e-12 * max(eigenvalues[-1], 1.0))
+
+
+def _solve(model: EquationsOfMotion, K: NDArray[np.float64], weight: NDArray[np.float64]) -> NDArray[np.float64]:
+    scale, softest, held = _scaled_modes(K)
+    if not held:
+        free = model.coordinates[int(np.argmax(np.abs(softest)))]
         raise InputError(
             f"singular stiffness: nothing holds {free.name} against gravity; give it a spring, a tyre or a link",
             model.vehicle.position("axles" if free.motion == "hop" else "bodies", free.owner, key=True),
         )
-    return np.asarray(scipy.linalg.solve(scaled, weight / scale, assume_a="pos") / scale, dtype=np.float64)
+    return np.asarray(scipy.linalg.solve(K / np.outer(scale, scale), weight / scale, assume_a="pos") / scale, dtype=np.float64)
 
 
 def _hinge_force(model: EquationsOfMotion, name: str, elements: Mapping[tuple[str, str], float], values: Mapping[str, float]) -> float:
@@ -111,7 +123,7 @@ def _hinge_force(model: EquationsOfMotion, name: str, elements: Mapping[tuple[st
         wider = side.union(*(pair for pair in joined if pair & side))
         grown, side = wider != side, wider
     parameters = vehicle.all_values({key: values[key] for key in vehicle.free_parameters})
-    load = sum(vehicle.bodies[body].mass.evaluate(parameters) for body in side) * GRAVITY
+    load = sum(vehicle.bodies[body].mass.evaluate(parameters) for body in side) * GRAVITY * vehicle.gravity
     for axle_name, axle in vehicle.axles.items():
         if axle.body in side:
             load -= elements["suspension" if axle.suspension is not None else "tyre", axle_name]

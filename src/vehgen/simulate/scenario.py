@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -35,36 +35,17 @@ from vehgen.simulate.budgets import check_run, placed
 from vehgen.simulate.excitation_cache import ExcitationCache
 from vehgen.simulate.run_file import Run
 from vehgen.simulate.run_file.acquisition import channel_chains
-from vehgen.simulate.run_file.entries import DisplacementHarmonic, ForceHarmonic, HumpEntry
+from vehgen.simulate.run_file.entries import HumpEntry
+from vehgen.simulate.signals import Signal
 
 Array = NDArray[np.float64]
 AFTER_LAST_HUMP = 3.0
 """Seconds simulated after the last wheel left the last hump, where a run does not say how long it is."""
-
-
 NULLS_TO = 30.0
 """Above it [Hz] no axle hops."""
 LOBES_SOUGHT = 2000.0
 """So many lobes of all humps' spectra together are searched for nulls: a second of work."""
 _EXCITATIONS = ExcitationCache()
-
-
-@dataclass(frozen=True)
-class Signal:
-    """A force or displacement over time, harmonic or measured (linear between samples, constant outside)."""
-
-    harmonic: ForceHarmonic | DisplacementHarmonic | None = None
-    time: Array | None = None
-    values: Array | None = None
-
-    def at(self, t: Array) -> Array:
-        """Return its values at times t [s]."""
-        if self.harmonic is not None:
-            item = self.harmonic
-            return np.asarray(item.amplitude * np.sin(2 * np.pi * item.frequency * t + item.phase))
-        assert self.time is not None
-        assert self.values is not None
-        return np.interp(t, self.time, self.values)
 
 
 @dataclass(frozen=True)
@@ -135,16 +116,25 @@ class Scenario:
         anchor: float = 0.0,
         wander: Wander | None = None,
         deformation: tuple[float, float, float, float] | None = None,
+        forces: Sequence[tuple[float, float]] = (),
     ) -> Scenario:
         """Return the same run, `delay` [s] later, at `speed` times the speed, on a road `height` times as high.
 
         Speed and `wander` are seen from where the vehicle is at the time `anchor` [s]; `deformation` is that of the humps
-        (length, form, skew, rounding; default: as it is).
+        (length, form, skew, rounding; default: as it is). `forces` are gains and offsets [N] of the forces; on a rig without a road
+        forces and displacements, too, come `delay` later.
         """
+        late = delay if not self.track.parts else 0.0
         same = (delay, speed, wander) == (0.0, 1.0, None)
         law = self.speed if same else AdjustedSpeed(self.speed, delay, speed, anchor, wander)
         track = replace(self.track, scale=self.track.scale * height, deformation=deformation or self.track.deformation)
-        return replace(self, speed=law, track=track)
+        found = replace(self, speed=law, track=track)
+        if not (forces or late):
+            return found
+        errors = forces or [(1.0, 0.0)] * len(self.forces)
+        pushed = tuple(item.with_errors(gain, offset, late) for item, (gain, offset) in zip(self.forces, errors, strict=True))
+        moved = tuple(None if item is None else item.with_errors(late=late) for item in self.ground)
+        return replace(found, forces=pushed, ground=moved)
 
     def excitation(self, offsets: Array) -> Excitation:
         """Return the inputs of a vehicle whose axles run `offsets shape (n_axles,)` [m] behind the first to arrive.

@@ -35,6 +35,7 @@ class Vehicle(FileModel):
     title: FreeText = ""
     source: FreeText = ""
     description: FreeText = ""
+    gravity: bool = Field(True, description="false where no weight acts along the motions, as in a rig on a rail")
     parameters: dict[Name, Parameter] = Field(default_factory=dict)
     bodies: dict[Name, Body]
     hinges: dict[Name, Hinge] = Field(default_factory=dict)

@@ -34,6 +34,8 @@ _FAULT_OF = {
     "lag": ("clocks_apart", "the pitch rate of {place} comes {amount} {late} than its acceleration"),
     "tilt": ("tilt", "{place} sits tilted by {amount} {where}"),
     "position": ("position", "{place} sits {amount} off {where}"),
+    "force_gain": ("gain", "the force {place} is {amount} {more} {where} than recorded"),
+    "force_offset": ("force_offset", "a constant force of {amount} acts beside {place} {where}"),
 }
 """The kind of fault, and what is wrong, by the condition's name."""
 _CURES = {
@@ -50,6 +52,8 @@ _CURES = {
     "lag": "state what both recorders do (`acquisition`), or record both by one clock",
     "tilt": "mount the sensor level, or import the recording so that its axes are turned upright",
     "position": "measure where the sensor sits and put the run file right",
+    "force_gain": "check the force sensor's calibration and the column's unit",
+    "force_offset": "take the force sensor's zero while nothing pushes, or state how well it is known (`uncertainty: {force_offset: 5 N}`)",
 }
 
 

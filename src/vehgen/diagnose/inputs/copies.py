@@ -27,6 +27,8 @@ def find_copies(
     for one, other in combinations(trials, 2):
         if one.channels != other.channels or abs(one.recording.dt / other.recording.dt - 1) > 1e-6:
             continue
+        if _pushed_differently(one, other):
+            continue
         expected = noises[one.name].sigma ** 2 + noises[other.name].sigma ** 2
         if _difference(one, other, expected, band) < OWN_NOISE:
             yield MeasurementFault(
@@ -36,6 +38,13 @@ def find_copies(
                 f"{one.name} and {other.name} record one pass: they differ by less than the noise of two passes would",
                 "leave one of them out: a copy can neither teach nor check",
             )
+
+
+def _pushed_differently(one: Trial, other: Trial) -> bool:
+    """Return whether two rigs that moved alike recorded forces of their own: a drive repeats its motion, a copy repeats the force, too."""
+    pairs = [(a.values, b.values) for a, b in zip(one.scenario.forces, other.scenario.forces, strict=False)]
+    measured = [(a, b) for a, b in pairs if a is not None and b is not None]
+    return any(len(a) != len(b) or not np.array_equal(a, b) for a, b in measured)
 
 
 def _difference(one: Trial, other: Trial, expected: Array, band: tuple[float, float]) -> float:

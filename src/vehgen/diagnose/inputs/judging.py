@@ -26,6 +26,7 @@ from vehgen.fit.least_squares import LeastSquaresFit
 
 if TYPE_CHECKING:
     from vehgen.diagnose.detect.detection import Detection
+    from vehgen.diagnose.fits.model_fit import ModelFit
 
 MOST_MISTAKES = 3
 """So many mistakes told end the search."""
@@ -163,15 +164,16 @@ def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
     return find_mistakes(BaseRefits(detection), plain_only=True)
 
 
-def explain_gap(detection: Detection, chi: float | None = None, vehicle: bool = True) -> tuple[MeasurementFault, ...]:
+def explain_gap(detection: Detection, leading: ModelFit | None = None, vehicle: bool = True) -> tuple[MeasurementFault, ...]:
     """Return the mistakes that explain what the base model misses, whatever they look like; nothing where none does, or nothing is missing.
 
     Parameters
     ----------
     detection
         The base model's gap.
-    chi
-        What effects leave; mistakes must leave a clearly smaller excess (default: no effects were found).
+    leading
+        What effects explain best; mistakes must leave a clearly smaller excess (default: no effects were found). Recordings that it
+        explains are no stranger's.
     vehicle
         Whether the vehicle may be another one altogether.
     """
@@ -181,8 +183,8 @@ def explain_gap(detection: Detection, chi: float | None = None, vehicle: bool = 
     found = find_mistakes(case)
     left = case.excess / case.first_excess
     better = 1.0 if {item.kind for item in found} == {"clock_or_speed"} else CLEARLY_BETTER  # a tie with the effect is a tie
-    if found and (chi is None or better * left < (chi**2 - 1) / (detection.chi**2 - 1)):
+    if found and (leading is None or better * left < (leading.chi**2 - 1) / (detection.chi**2 - 1)):
         return found
     if found or not vehicle:
         return ()
-    return other_vehicle(case) or unrelated_recording(case.base)
+    return other_vehicle(case) or unrelated_recording(case.base if leading is None else leading.least_squares)

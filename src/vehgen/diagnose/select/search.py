@@ -14,6 +14,7 @@ from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, build_problem
 from vehgen.diagnose.fits.model_fit import CurrentModel, ModelFit, as_fine, evaluate_fit, refine
 from vehgen.diagnose.fits.multi_start import fit_candidate
+from vehgen.diagnose.fits.occurring import occurring
 from vehgen.diagnose.fits.restarts import restart
 from vehgen.diagnose.fits.screening import screen
 from vehgen.diagnose.localise.localisation import localise, one_force, shortlist
@@ -138,7 +139,7 @@ class Fitter:
     def __init__(self, detection: Detection, base: ModelFit, passed: Sequence[PlaceResult]) -> None:
         self.detection, self.current, self.simulators = detection, CurrentModel.of(base), SimulatorPool()
         trial = self.current.problem.trials[0]
-        self.locator = EffectLocator(trial.run.vehicle, dict(trial.values))
+        self.locator = EffectLocator(trial.run.vehicle, dict(trial.values), occurring(base))
         self.origins = _origins(base, self.current, passed)
         self.residual = Residual(base.least_squares.misfit, base.least_squares.x)
         space = self.current.problem.space

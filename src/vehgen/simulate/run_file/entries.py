@@ -21,6 +21,7 @@ from vehgen.files.quantities import (
     FileName,
     Footprint,
     Force,
+    ForceSpread,
     Frequency,
     HumpHeight,
     HumpLength,
@@ -226,7 +227,8 @@ class UncertaintyEntry(FileModel):
     """How well a run knows itself and its sensors: standard deviations, those of a fit's errors (docs/measurement.md).
 
     Of the recording's begin (`delay`), the speed and how it changes along the run, the height of the road, the form of the hump and
-    the wear of its edges, the sensors' clocks against the first one's, their gyroscopes' lags, gains, tilts and places.
+    the wear of its edges, the sensors' clocks against the first one's, their gyroscopes' lags, gains, tilts and places, gain and offset of
+    measured forces.
     """
 
     delay: TimeDeviation | None = None
@@ -242,6 +244,8 @@ class UncertaintyEntry(FileModel):
     gain: ShareSpread | None = None
     tilt: AngleDeviation | None = None
     position: LengthDeviation | None = None
+    force_gain: ShareSpread | None = None
+    force_offset: ForceSpread | None = None
 
 
 class RunFile(FileModel):

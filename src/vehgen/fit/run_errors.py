@@ -1,0 +1,124 @@
+"""The errors of one run applied: what they make of its scenario, and of what its sensors read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.fit.nuisances import OF_FORCES, READING, Nuisance
+from vehgen.fit.trial import Trial
+from vehgen.mechanics import GRAVITY
+from vehgen.road import Wander
+from vehgen.simulate import Scenario
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class RunErrors:
+    """The errors of one run: those of the sensors in all runs (`sensors`), then its own (`own`).
+
+    Numbers of errors `shape (size,)` count in standard deviations, the sensors' first. `channels` holds name, sensor and quantity of every
+    channel; `known` errors of sensors [units], by name and place, that stand; `rate` is the recording's [Hz]; `forces` names the forces
+    that act, in the model's order.
+    """
+
+    sensors: tuple[Nuisance, ...]
+    own: tuple[Nuisance, ...]
+    channels: tuple[tuple[str, str, str], ...]
+    known: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    rate: float = 100.0
+    forces: tuple[str, ...] = ()
+
+    @classmethod
+    def of(
+        cls, trial: Trial, sensors: tuple[Nuisance, ...], own: tuple[Nuisance, ...], known: Mapping[tuple[str, str], float]
+    ) -> RunErrors:
+        """Return the errors of a trial."""
+        channels = tuple((item.name, item.sensor, item.quantity) for item in trial.recording.channels)
+        return cls(sensors, own, channels, known, 1 / trial.recording.dt, trial.simulator.model.forces)
+
+    @property
+    def items(self) -> tuple[Nuisance, ...]:
+        """All errors, the sensors' first."""
+        return (*self.sensors, *self.own)
+
+    def scenario(self, scenario: Scenario, numbers: Array) -> Scenario:
+        """Return the scenario with the errors."""
+        found = dict.fromkeys(("delay", "speed", "height", "length", "form", "skew", "wear"), 0.0)
+        knots, strayed = [], []
+        for item, number in zip(self.items, numbers, strict=True):
+            value = float(number) * item.sigma
+            if item.name == "wander":
+                knots.append(item.knot)
+                strayed.append(value)
+            elif item.name in found:
+                found[item.name] = value
+        mean = sum(strayed) / max(len(strayed), 1)
+        form = 1 + found["length"], math.exp(found["form"]), found["skew"], 1e-6 * found["wear"]
+        return scenario.adjusted(
+            found["delay"],
+            1 + found["speed"],
+            1 + found["height"],
+            anchor=scenario.first_arrival,
+            wander=Wander(tuple(knots), tuple(value - mean for value in strayed)) if any(strayed) else None,
+            deformation=form if scenario.humps else None,
+            forces=self._forces(numbers),
+        )
+
+    def _forces(self, numbers: Array) -> list[tuple[float, float]]:
+        """Return gain and offset [N] of every force; nothing where none has errors."""
+        if not any(name in OF_FORCES for name, _ in (*self.known, *((item.name, item.place) for item in self.items))):
+            return []
+        values = self._values(numbers)
+        return [(1 + values.get(("force_gain", name), 0.0), values.get(("force_offset", name), 0.0)) for name in self.forces]
+
+    def _values(self, numbers: Array) -> dict[tuple[str, str], float]:
+        own = {(item.name, item.place): float(number) * item.sigma for item, number in zip(self.items, numbers, strict=True)}
+        return {**self.known, **own}
+
+    def clocks(self, numbers: Array) -> Array:
+        """Return how late every channel's clock is [s], `shape (n_channels,)`."""
+        return self._late(self._values(numbers))
+
+    def _late(self, values: Mapping[tuple[str, str], float]) -> Array:
+        lags = [values.get(("lag", sensor), 0.0) if quantity == "pitch_rate" else 0.0 for _, sensor, quantity in self.channels]
+        return np.asarray(np.array([values.get(("clock", sensor), 0.0) for _, sensor, _ in self.channels]) + lags, dtype=np.float64)
+
+    def read(self, motion: Array, dt: float, numbers: Array) -> Array:
+        """Return what the sensors read, `shape (n_samples, n_channels)`, where they should read `motion` at samples `dt` [s] apart."""
+        length = 2 * len(motion)
+        reading = self.reading(np.asarray(np.fft.rfftfreq(length, dt), dtype=np.float64), numbers)
+        if reading is None:
+            return motion
+        lines = (reading @ np.fft.rfft(motion, length, axis=0)[..., None])[..., 0]
+        return np.asarray(np.fft.irfft(lines, length, axis=0)[: len(motion)])
+
+    def reading(self, frequency: Array, numbers: Array) -> Complex | None:
+        """Return what the channels read of what they should, line by line, `shape (n_lines, n_channels, n_channels)`; None: all of it.
+
+        A sensor tilted nose-down by t reads a cos t - g pitch sin t, one that sits d further forward a - d pitch''; a late clock turns
+        phases. What a low-pass takes off more than supposed is exp(-r x^2 - i d x^3) at x times half the rate.
+        """
+        values = self._values(numbers)
+        if not any(value for (name, _), value in values.items() if name in READING):
+            return None
+        omega, x = 2 * np.pi * frequency, 2 * frequency / self.rate
+        pitch = np.divide(1.0, omega, out=np.zeros_like(omega), where=omega > 0)
+        columns = {(sensor, quantity): i for i, (_, sensor, quantity) in enumerate(self.channels)}
+        found = np.zeros((len(frequency), len(self.channels), len(self.channels)), dtype=np.complex128)
+        late = self._late(values)
+        for i, (name, sensor, quantity) in enumerate(self.channels):
+            own = np.exp(-1j * (late[i] * omega + values.get(("dispersion", sensor), 0.0) * x**3))
+            own *= np.exp(-values.get(("roll_off", sensor), 0.0) * x**2) * (1 + values.get(("gain", name), 0.0))
+            found[:, i, i] = own
+            if quantity == "acceleration" and (sensor, "pitch_rate") in columns:
+                tilt, shift = values.get(("tilt", sensor), 0.0), values.get(("position", sensor), 0.0)
+                found[:, i, i] *= math.cos(tilt)
+                found[:, i, columns[sensor, "pitch_rate"]] = own * 1j * (GRAVITY * math.sin(tilt) * pitch - shift * omega)
+        return found
