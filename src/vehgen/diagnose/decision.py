@@ -25,7 +25,7 @@ from vehgen.diagnose.result import Decided, DiagnosisModels
 from vehgen.diagnose.select.criteria import adds, needs_both, p_value_of, passes, seeds, unfinished
 from vehgen.diagnose.select.estimates import gain_interval
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
-from vehgen.diagnose.select.search import DiagnosisProgress, Fitter, SearchRound, merit, search_round
+from vehgen.diagnose.select.search import DiagnosisProgress, Fitter, SearchRound, fit_leading_again, merit, search_round
 from vehgen.diagnose.verdict import Gap, PlaceChi, Verdict, VerdictName
 from vehgen.effects import Effect
 from vehgen.errors import InputError
@@ -33,8 +33,8 @@ from vehgen.errors import InputError
 LOOK_AGAIN_SHARE = 0.5
 """Where the best candidate leaves no more than this share of the excess, recorder and profiles are judged by it."""
 LOOKS_AGAIN = 2
-LOOKED_AT_AGAIN = 4
-"""So many candidates are then fitted again, from where they are."""
+MUCH_QUIETER = 2.0
+"""Where noise is found to be less by so much, all candidates are weighed anew by it."""
 MOST_EFFECTS = 3
 """So many effects are added at most."""
 
@@ -125,17 +125,14 @@ class Decision:
         detection = look_again(self.detection, best)
         if detection is None:
             return first
-        held = self.validation_runs
+        held, before = self.validation_runs, self.base.training
         self.detection, self.base = detection, detection.base
         if self.validation_runs != held:  # what places leave is told of the runs that are fitted
             places, passed = localise(self.base)
             first = replace(first, places=tuple(places), passed=tuple(passed))
         fitter = Fitter(detection, self.base, first.passed)
-        leading = [fit for fit in first.fits[:LOOKED_AT_AGAIN] if np.isfinite(fit.validation)]
-        fits = sorted((fitter.fit_again(fit) for fit in leading), key=merit)
-        self.rounds[:] = [
-            replace(first, current=self.base, fits=(*fits, *(fit for fit in first.fits if all(fit is not other for other in leading))))
-        ]
+        fits = fit_leading_again(fitter, first.fits, self.base.training > MUCH_QUIETER * before)
+        self.rounds[:] = [replace(first, current=self.base, fits=fits)]
         return self.rounds[-1]
 
     def _add(self, first: SearchRound) -> Decided | None:

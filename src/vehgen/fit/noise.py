@@ -58,7 +58,8 @@ class RoadAnswer:
     """The channels' answer to roughness in one trial, at spectral lines.
 
     `frequency shape (n,)` [Hz]; `wavenumber shape (n,)` [cycles/m]; `gain shape (n, n_channels, n_axles)` with gain gain* = G H R H*; `dt`
-    the samples' spacing [s]; `forced shape (n, n_channels, n_forces)` likewise for the stated errors of applied forces, levels apart.
+    the samples' spacing [s]; `forced shape (n, n_channels, n_forces)` likewise for stated errors of applied forces, levels apart, and
+    `unstated` for errors as large as the measured forces that state none.
     """
 
     frequency: Array
@@ -66,6 +67,7 @@ class RoadAnswer:
     gain: Complex
     dt: float
     forced: Complex | None = None
+    unstated: Complex | None = None
 
 
 @dataclass(frozen=True)
@@ -87,7 +89,8 @@ class Noise:
 
     The noise's density falls as f^-slope; 0 is white. `louder shape (len(LOUDER_HZ), n_channels)` are factors of each
     channel's density from these frequencies on, by what no other channel shares: laws make harmonics where H has none.
-    `drawn` stands in for L G H R H*, and for `louder`, where H does not say what roughness makes of a vehicle with laws.
+    `drawn` stands in for L G H R H*, and for `louder`, where H does not say what roughness makes of a vehicle with laws. `acting` is
+    the unstated error of measured forces, white, as a share of them.
     """
 
     levels: Array
@@ -95,6 +98,7 @@ class Noise:
     slope: float = 0.0
     louder: Array | None = None
     drawn: DrawnDensity | None = None
+    acting: float = 0.0
 
     def level(self, wavenumber: Array) -> Array:
         """Return L at wavenumbers [cycles/m]."""
@@ -123,8 +127,8 @@ class Noise:
             return scale, np.asarray(np.eye(len(self.sigma)) + b @ _adjoint(b))
         scale = self._scale(answer)
         drawn = self.drawn.at(answer.frequency)
-        if answer.forced is not None:
-            drawn = drawn + answer.forced @ _adjoint(answer.forced)
+        for part in self._forced(answer):
+            drawn = drawn + part @ _adjoint(part)
         return scale, np.asarray(np.eye(len(self.sigma)) + drawn / scale[:, :, None] / scale[:, None, :])
 
     def loss(self, lines: Complex, answer: RoadAnswer) -> float:
@@ -169,7 +173,10 @@ class Noise:
     def _part(self, answer: RoadAnswer) -> Complex:
         """Return P with S = P P* + the sensors' own density, `shape (n, n_channels, n_axles + n_forces)`."""
         road = np.sqrt(self.level(answer.wavenumber))[:, None, None] * answer.gain
-        return np.asarray(road if answer.forced is None else np.concatenate([road, answer.forced], axis=2))
+        return np.concatenate([road, *self._forced(answer)], axis=2)
+
+    def _forced(self, answer: RoadAnswer) -> list[Complex]:
+        return [scale * part for scale, part in ((1.0, answer.forced), (self.acting, answer.unstated)) if part is not None and scale]
 
     def draw(self, answer: RoadAnswer, n_samples: int, lines: NDArray[np.intp], random: np.random.Generator) -> Array:
         """Return noise within the band of `lines` (numbers of the FFT's lines) as time histories `shape (n_samples, n_channels)`."""
@@ -195,7 +202,7 @@ def _adjoint(matrices: Complex) -> Complex:
 def taper(n_samples: int, dt: float) -> Array:
     """Return the window under which records are compared: cosine ramps of RAMP [s], or an eighth of a short record, at both ends.
 
-    What the vehicle did before the record began is unknown, and so are its first and last moments. The array is not to be written to.
+    What the vehicle did before the record began is unknown, and so are its first and last moments. Not to be written to.
     """
     share = min(2 * RAMP / (n_samples * dt), 0.25)
     window = np.asarray(scipy.signal.windows.tukey(n_samples, share))
@@ -223,7 +230,6 @@ def road_answer(trial: Trial, frequency: Array, values: dict[str, float]) -> Roa
     model = trial.simulator.model
     acquired = trial.channel_factors(frequency)[:, :, None]
     displaced, pushed = (item * acquired for item in transfer_functions(model.numeric(values), frequency))
-    response = displaced[:, :, : len(trial.run.vehicle.axles)]
     speed, dt = trial.scenario.top_speed, trial.recording.dt
     late = model.wheel_offsets(values) / speed
     window = taper(len(trial.recording.time), dt)
@@ -231,10 +237,12 @@ def road_answer(trial: Trial, frequency: Array, values: dict[str, float]) -> Roa
     shared = np.interp(np.abs(late[:, None] - late[None, :]), np.arange(len(window)) * dt, correlation)
     root = np.linalg.cholesky(shared + 1e-9 * np.eye(len(late)))
     delayed = np.exp(-2j * np.pi * frequency[:, None] * late)
-    gain = (response * delayed[:, None, :] * (REFERENCE_CYCLES_PER_M * np.sqrt(speed) / frequency)[:, None, None]) @ root
+    gain = (displaced[..., : len(late)] * delayed[:, None] * (REFERENCE_CYCLES_PER_M * np.sqrt(speed) / frequency)[:, None, None]) @ root
     errors = np.array([entry.noise or 0.0 for entry in trial.run.file.forces.values()])
     forced = np.asarray(pushed * errors * np.sqrt(2 * dt)) if errors.any() else None
-    return RoadAnswer(frequency, frequency / speed, np.asarray(gain), dt, forced)
+    sizes = np.array([0.0 if item.values is None else np.std(item.values) for item in trial.scenario.forces]) * (errors == 0)
+    unstated = np.asarray(pushed * sizes * np.sqrt(2 * dt)) if sizes.any() else None
+    return RoadAnswer(frequency, frequency / speed, np.asarray(gain), dt, forced, unstated)
 
 
 def estimate_noise(residuals: Sequence[tuple[Complex, RoadAnswer]], start: Noise, *, same_road: bool = False) -> tuple[Noise, ...]:

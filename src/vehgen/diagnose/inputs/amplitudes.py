@@ -13,6 +13,7 @@ from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always, p
 from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.files.units import STANDARD_GRAVITY, read_unit
 from vehgen.fit.trial import Trial
+from vehgen.mechanics import is_held
 
 Array = NDArray[np.float64]
 ACCELERATION_UNITS = {"m/s^2": 1.0, "g": STANDARD_GRAVITY, "mm/s^2": 1e-3, "mg": STANDARD_GRAVITY / 1000}
@@ -115,6 +116,8 @@ def drift_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     trials = []
     largest = 0.0
     for trial, predicted in zip(case.trials, case.predictions, strict=True):
+        if not is_held(trial.simulator.model, trial.values):
+            return  # what nothing holds drifts by itself
         n = len(trial.recording.time)
         columns = np.column_stack([np.ones(n), np.linspace(-1, 1, n)])
         line = columns @ np.linalg.lstsq(columns, trial.recording.values - predicted[:n], rcond=None)[0]

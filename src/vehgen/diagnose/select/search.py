@@ -23,11 +23,16 @@ from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.effects import EffectLocator
 from vehgen.effects.evidence import Origins, Residual, StartingPoint
 from vehgen.fit.alignment import align
+from vehgen.fit.misfit import Misfit
 from vehgen.simulate import SimulatorPool
 
 Array = NDArray[np.float64]
 DiagnosisProgress = Callable[[str, int, int, str], None]
 """Called with the stage, how many of how many, and the best so far."""
+LOOKED_AT_AGAIN = 4
+"""So many candidates are fitted again, from where they are, when recorder or noise turn out to be others."""
+CONTENDER = 1.5
+"""Beside those a candidate is fitted again that leaves less than so many times the mean square of the best."""
 LEADING = 3
 """So many of the best fits are settled, where their response jumps."""
 
@@ -177,6 +182,14 @@ class Fitter:
         found = refine(problem, fit.least_squares, fit.least_squares.x, fit.effects, noises, self.detection.band, fit.parts)
         return replace(evaluate_fit(fit.effects, found, runs, noises), equivalent_minima=fit.equivalent_minima)
 
+    def weigh_again(self, fit: ModelFit) -> ModelFit:
+        """Return a first effect's fit to the training runs as it is, by the noise that is now known."""
+        old = fit.least_squares.misfit
+        misfit = Misfit(
+            old.problem, self.detection.floor.noises, fit.least_squares.values, old.nuisances, self.detection.band, old.shared, old.known
+        )
+        return evaluate_fit(fit.effects, replace(fit.least_squares, misfit=misfit), (), self.detection.floor.noises)
+
     def fit_roughly(self, candidate: Candidate) -> ModelFit | None:
         """Fit one candidate from its own starts, to the training runs alone."""
         return self.fit(candidate, checked=False)
@@ -206,3 +219,19 @@ def merit(fit: ModelFit) -> float:
 def own_numbers(fit: ModelFit) -> int:
     """Return how many numbers the last effect of a fit added."""
     return fit.last.effect.n_numbers(len(fit.least_squares.misfit.problem.trials))
+
+
+def fit_leading_again(fitter: Fitter, fits: Sequence[ModelFit], weigh: bool) -> tuple[ModelFit, ...]:
+    """Return fits of first effects, the leading ones fitted again from where they are.
+
+    Where noise is much less than they were ranked by (`weigh`), all are weighed by it, and contenders fitted again, too.
+    """
+    leading = [fit for fit in fits[:LOOKED_AT_AGAIN] if np.isfinite(fit.validation)]
+    rest = [fit for fit in fits if all(fit is not other for other in leading)]
+    found = [fitter.fit_again(fit) for fit in leading]
+    if weigh and found:
+        rest = [fitter.weigh_again(fit) for fit in rest]
+        near = CONTENDER * min(fit.training for fit in found)
+        found += [fitter.fit_again(fit) for fit in rest if fit.training <= near]
+        rest = [fit for fit in rest if fit.training > near]
+    return (*sorted(found, key=merit), *(sorted(rest, key=merit) if weigh else rest))
