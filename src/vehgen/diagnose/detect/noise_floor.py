@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.optimize
+import scipy.signal
 from numpy.typing import NDArray
 
 from vehgen.fit.band import CALIBRATION_BAND_HZ
@@ -225,7 +226,8 @@ def _steady(values: Array) -> bool:
 
 def top_of_band(trial: Trial, band: tuple[float, float] = CALIBRATION_BAND_HZ) -> Array:
     """Return the standard deviation of white noise that the top of a band [Hz] shows, `shape (n_channels,)`."""
-    frequency, density = record_psd(trial.recording.values, trial.recording.dt, axis=0)
+    values = trial.recording.values if trial.scenario.track.parts else scipy.signal.detrend(trial.recording.values, axis=0)
+    frequency, density = record_psd(values, trial.recording.dt, axis=0)
     top = min(TOP_BAND_RATIO[1] * band[1], frequency[-1])  # a slow recording shows less
     inside = (frequency >= top * TOP_BAND_RATIO[0] / TOP_BAND_RATIO[1]) & (frequency <= top)
     # the median of an exponential variable is ln 2 of its mean; it forgives a line within the band
