@@ -18,7 +18,7 @@ from vehgen.fit.recorders import FoundRecorder, clearest, find_recorder, has_unk
 
 FIRST_ROUNDS, LAST_ROUNDS = 2, 2
 """So often is the noise estimated before the recorder is known, and after."""
-JACOBIAN_REFRESH = 4
+REFRESHED_EVERY = 4
 """Derivatives by errors of runs serve for so many steps."""
 Told = Callable[[int, float], None]
 """Called with how many starts are polished, and the least loss."""
@@ -66,7 +66,7 @@ def polish(
     noises = first_noises(problem)
     errors = align(Misfit(problem, noises, problem.space.values(points[0]), nuisances, band), points[0])
     unknown = has_unknown(problem.trials)
-    own = FitOptions(nuisances, band, jacobian_refresh=JACOBIAN_REFRESH)
+    own = FitOptions(nuisances, band, jacobian_refresh=REFRESHED_EVERY)
     if unknown:
         own = replace(own, noise_rounds=FIRST_ROUNDS, tolerance=COARSE_TOLERANCE)
     fits: list[LeastSquaresFit] = []
