@@ -109,7 +109,7 @@ def under_hump(folder, lead_level):
     problem = make_problem([trial], SEARCHED)
     misfit = Misfit(problem, lead, np.array([TRUTH[name] for name in SEARCHED]), QUIET, STEADY_WALK_HZ)
     fit = SimpleNamespace(misfit=misfit, x=np.concatenate([problem.space.unit(problem.space.start), np.zeros(misfit.n_errors)]))
-    return road_noises(SimpleNamespace(least_squares=fit, validation_fit=None), lead, lead)["run"], lead["run"]
+    return road_noises(SimpleNamespace(least_squares=fit, validation_fit=None, parts=(fit,)), lead, lead)["run"], lead["run"]
 
 
 @pytest.mark.parametrize(("share", "found"), [(0.75, 0.75), (1.3, 1.3), (0.1, 0.6), (6.0, 1.6)])

@@ -121,6 +121,7 @@ class Naming:
             told += [f"{candidate.label}: {text}" for text in unstable(fit, candidate)]
         if fit.least_squares.on_bound:
             told.append(f"on the bound of its range: {', '.join(fit.least_squares.on_bound)}")
+        told += [wording.constant_force(item) for item in fit.least_squares.conditions() if item.name == "force_offset"]
         left = excess(fit.training)
         if left > limit.AGAIN**2 - 1:
             told.append(f"chi {np.sqrt(1 + left):.2f} is left unexplained")

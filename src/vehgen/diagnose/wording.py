@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.verdict import NamedParameter
 from vehgen.effects.places import ALL_RUNS, ALL_TYRES, EACH_TYRE
+from vehgen.fit.nuisances import Condition
 from vehgen.vehicle import Vehicle
 
 SHARE_CALLED_ALL = 0.995
@@ -181,6 +182,11 @@ def mistaken(faults: Sequence[str]) -> str:
 def supposed(messages: Sequence[str]) -> str:
     """Return the note on what fits suppose of the measurement beyond belief, where a missing effect may have bent them to it."""
     return f"The refit supposes more than can be believed, for want of the effect or because it is so: {'; '.join(messages)}"
+
+
+def constant_force(found: Condition) -> str:
+    """Return the note on what acts beside a measured force all along."""
+    return f"the fit supposes a constant force of {found.value:.3g} N beside {found.place}"
 
 
 def out_of_range(ratios: Mapping[str, float]) -> str:

@@ -99,8 +99,9 @@ def sensors_on_bodies(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, .
 
 
 def channels(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
-    """Return every channel of the runs."""
-    return tuple(dict.fromkeys(name for trial in trials for name in trial.channels))
+    """Return every channel of the runs; not the only one of a rig: its gain is like masses, springs and dampers times a factor."""
+    found = tuple(dict.fromkeys(name for trial in trials for name in trial.channels))
+    return found if vehicle.axles or len(found) > 1 else ()
 
 
 def runs(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:

@@ -78,6 +78,8 @@ Force = Annotated[float, *_any(limits.FORCE_LIMIT)]
 Mass = Annotated[float, *_positive(limits.VEHICLE_LIMITS[MASS])]
 PositiveForce = Annotated[float, *_positive(limits.FORCE_LIMIT)]
 RecorderDelay = Annotated[float, *_any(limits.RECORDER_DELAY)]
+Velocity = Annotated[float, *_any(limits.VELOCITY_LIMIT)]
+PitchRate = Annotated[float, *_any(limits.PITCH_RATE)]
 Angle = Annotated[float, *_any(limits.ANGLE)]
 FileName = Annotated[str, Field(max_length=limits.LONGEST_PATH)]
 

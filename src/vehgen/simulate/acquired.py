@@ -74,12 +74,17 @@ def acquire(kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Arra
 
 def _acquired(kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, threads: int | None) -> KernelResult:
     chains = [chain.filtering() for chain in assumed_chains(scenario, [channel.name for channel in kernel.model.channels])]
-    distinct = set(chains)
+    distinct, begin = set(chains), _initial(scenario, len(parameters))
     if all(chain.is_point_sample for chain in distinct):
-        return kernel.run(parameters, scenario.excitation(offsets), scenario.decimation, threads=threads)
-    if len(distinct) == 1 and not kernel.source.nonlinear:
+        return kernel.run(parameters, scenario.excitation(offsets), scenario.decimation, begin, threads)
+    if len(distinct) == 1 and not kernel.source.nonlinear and begin is None:
         return _filtered_input(kernel, parameters, scenario, offsets, chains[0], threads)
     return _filtered_output(kernel, parameters, scenario, offsets, chains, threads)
+
+
+def _initial(scenario: Scenario, count: int) -> Array | None:
+    """Return the state in which every individual begins, `shape (count, 2 n_dof)`; None at rest."""
+    return None if scenario.initial is None else np.repeat(scenario.initial[None], count, axis=0)
 
 
 def extended(scenario: Scenario, samples: int) -> Scenario:
@@ -140,6 +145,6 @@ def _filtered_output(
     ratio = scenario.decimation // stride
     filters = {chain: chain.taps(scenario.dt * stride) for chain in dict.fromkeys(chains)}
     ahead = math.ceil(max(0, *(-first for first, _ in filters.values())) / ratio)
-    result = kernel.run(parameters, extended(scenario, ahead).excitation(offsets), stride, threads=threads)
+    result = kernel.run(parameters, extended(scenario, ahead).excitation(offsets), stride, _initial(scenario, len(parameters)), threads)
     count = (len(scenario.time) - 1) // scenario.decimation + 1
     return replace(result, responses=decimate(result.responses, [filters[chain] for chain in chains], ratio, count, threads))

@@ -33,6 +33,7 @@ from vehgen.road import (
 )
 from vehgen.simulate.budgets import check_run, placed
 from vehgen.simulate.excitation_cache import ExcitationCache
+from vehgen.simulate.initial_state import initial_state
 from vehgen.simulate.run_file import Run
 from vehgen.simulate.run_file.acquisition import channel_chains
 from vehgen.simulate.run_file.entries import HumpEntry
@@ -53,7 +54,8 @@ class Scenario:
     """What happens to a vehicle from `start` [s]: a track at a speed, signals at ground links and forces, step and samples.
 
     `ground` and `forces` are in the order of the model's inputs and forces; `chains` says by a channel's name what acquires it: channels
-    without one are sampled at their instants. The first `skipped` samples are simulated but not kept.
+    without one are sampled at their instants. The first `skipped` samples are simulated but not kept. `initial` are displacements, then
+    velocities, at the start, `shape (2 n_dof,)` (default: at rest).
     """
 
     track: Track
@@ -66,6 +68,7 @@ class Scenario:
     start: float = 0.0
     chains: Mapping[str, AcquisitionChain] = field(default_factory=dict)
     skipped: int = 0
+    initial: Array | None = None
     time: Array = field(init=False)
 
     def __post_init__(self) -> None:
@@ -196,7 +199,7 @@ def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) 
         for name, entry in file.forces.items()
     )
     chains = channel_chains(run, 1 / (file.step * run.decimation))
-    return Scenario(track, speed, duration, file.step, run.decimation, ground, forces, chains=chains)
+    return Scenario(track, speed, duration, file.step, run.decimation, ground, forces, chains=chains, initial=initial_state(run, model))
 
 
 def _check_cost(run: Run, duration: float, speed: SpeedLaw, model: EquationsOfMotion) -> None:

@@ -18,6 +18,7 @@ from vehgen.diagnose.fits.model_fit import (
     evaluate_fit,
     refine,
 )
+from vehgen.diagnose.fits.released import release
 from vehgen.effects import EffectLocator
 from vehgen.effects.evidence import StartingPoint
 from vehgen.fit.least_squares import COARSE_TOLERANCE, FitOptions, LeastSquaresFit, fit_least_squares
@@ -90,7 +91,9 @@ def fit_candidate(
     effects = (*current.effects, candidate)
     if best.chi2 - 1 > HOPELESS * max(current.training - 1, 0.0):
         return evaluate_fit(effects, best, (), noises)
-    return evaluate_fit(effects, refine(resolve(best.misfit, best.x), best, best.x, effects), validation_runs, noises)
+    fit = refine(resolve(best.misfit, best.x), best, best.x, effects)
+    candidate, fit = release(candidate, current, fit, locator, simulators)
+    return evaluate_fit((*current.effects, candidate), fit, validation_runs, noises)
 
 
 class _Rough:

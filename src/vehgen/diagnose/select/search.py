@@ -15,6 +15,7 @@ from vehgen.diagnose.fits.candidate import Candidate, build_problem
 from vehgen.diagnose.fits.model_fit import CurrentModel, ModelFit, as_fine, evaluate_fit, refine
 from vehgen.diagnose.fits.multi_start import fit_candidate
 from vehgen.diagnose.fits.occurring import occurring
+from vehgen.diagnose.fits.released import release
 from vehgen.diagnose.fits.restarts import restart
 from vehgen.diagnose.fits.screening import screen
 from vehgen.diagnose.localise.localisation import localise, one_force, shortlist
@@ -180,7 +181,8 @@ class Fitter:
         problem = problem.with_trials([as_fine(trial, steps[trial.name]) for trial in problem.trials])
         noises, runs = self.detection.floor.noises, self.detection.validation_runs
         found = refine(problem, fit.least_squares, fit.least_squares.x, fit.effects, noises, self.detection.band, fit.parts)
-        return replace(evaluate_fit(fit.effects, found, runs, noises), equivalent_minima=fit.equivalent_minima)
+        last, found = release(fit.last, self.current, found, self.locator, self.simulators)
+        return replace(evaluate_fit((*fit.effects[:-1], last), found, runs, noises), equivalent_minima=fit.equivalent_minima)
 
     def weigh_again(self, fit: ModelFit) -> ModelFit:
         """Return a first effect's fit to the training runs as it is, by the noise that is now known."""

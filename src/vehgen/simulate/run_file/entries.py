@@ -27,6 +27,7 @@ from vehgen.files.quantities import (
     HumpLength,
     LengthDeviation,
     LengthSpread,
+    PitchRate,
     PlaceLength,
     PositiveForce,
     RoadPosition,
@@ -36,6 +37,7 @@ from vehgen.files.quantities import (
     SpeedSpread,
     Step,
     TimeDeviation,
+    Velocity,
 )
 from vehgen.mechanics.outputs import Place
 from vehgen.simulate.run_file.acquisition import AcquisitionEntry
@@ -248,6 +250,15 @@ class UncertaintyEntry(FileModel):
     force_offset: ForceSpread | None = None
 
 
+class InitialEntry(FileModel):
+    """How a body's centre of gravity, or an axle, is displaced and moves as the run begins, from static equilibrium; upwards, nose down."""
+
+    displacement: Displacement | None = None
+    velocity: Velocity | None = None
+    pitch: Angle | None = None
+    pitch_rate: PitchRate | None = None
+
+
 class RunFile(FileModel):
     """A run as its file declares it, quantities in SI units."""
 
@@ -263,6 +274,7 @@ class RunFile(FileModel):
     footprint: Footprint | None = None
     forces: dict[Name, ForceEntry] = Field(default_factory=dict)
     displacements: dict[Name, DisplacementEntry] = Field(default_factory=dict)
+    initial: dict[Name, InitialEntry] = Field(default_factory=dict)
     sensors: dict[Name, SensorEntry] = Field(default_factory=dict)
     acquisition: str | AcquisitionEntry | None = None
     outputs: dict[Name, OutputEntry] = Field(default_factory=dict)

@@ -1,0 +1,79 @@
+"""A carriage that a motor drives along a rail, simulated by another hand's rules: friction that truly sticks, a ripple, a false zero."""
+
+import numpy as np
+import pytest
+
+from vehgen.diagnose.api import diagnose
+
+VEHICLE = """name: carriage
+gravity: false
+parameters:
+  M: {value: 110 kg, range: [40 kg, 200 kg]}
+  c: {value: 150 N s/m, range: [50 N s/m, 600 N s/m]}
+bodies: {carriage: {mass: M, motions: [heave]}}
+links: {rail: {ground: {}, carriage: {}, c: c}}
+"""
+RUN = """vehicle: carriage.yaml
+step: 1 ms
+sample: 10 ms
+acquisition: none
+forces: {{motor: {{body: carriage, file: {name}_force.csv, time: t, force: F}}}}
+sensors: {{encoder: {{body: carriage, channels: {{displacement: q}}}}}}
+recording: {name}.csv
+"""
+MASS, DAMPING, FINE = 90.0, 200.0, 10
+OFFSET = 3.0
+"""What acts beside the recorded force [N]."""
+
+
+def drive(friction, amplitude, seed, seconds=6.0, dt=1e-3):
+    """Return times, recorded forces and places of a carriage under a position controller; Karnopp's friction, explicit small steps."""
+    random = np.random.default_rng(seed)
+    t = np.arange(0.0, seconds + dt / 2, dt)
+    asked = amplitude * (1 - np.cos(2 * np.pi * t / 3.0)) / 2 + 0.05 * amplitude * np.sin(2 * np.pi * 1.7 * t)
+    ripple = np.convolve(random.standard_normal(len(t)), np.ones(10) / 10, "same") * 2.0
+    q = v = 0.0
+    force, place, h = np.zeros(len(t)), np.zeros(len(t)), dt / FINE
+    for i in range(len(t)):
+        place[i] = q
+        force[i] = np.clip(4e3 * (asked[i] - q) - 900.0 * v, -150, 150)
+        for _ in range(FINE):
+            push = force[i] + ripple[i] + OFFSET
+            if abs(v) < 1e-5 and abs(push) <= friction:
+                v = 0.0
+            else:
+                slide = friction * np.sign(v if abs(v) >= 1e-5 else push)
+                new = v + h * (push - DAMPING * v - slide) / MASS
+                v = 0.0 if new * v < 0 and abs(push) <= friction else new
+            q += h * v
+    return t, force, place
+
+
+def write(folder, friction):
+    (folder / "carriage.yaml").write_text(VEHICLE, encoding="utf-8")
+    runs = []
+    for number, amplitude in enumerate((0.15, 0.25, 0.2)):
+        name = f"run{number}"
+        t, force, place = drive(friction, amplitude, number)
+        held = np.column_stack([t, force])
+        np.savetxt(folder / f"{name}_force.csv", held, delimiter=",", header="t,F", comments="", fmt="%.9g")
+        recorded = place + 1e-6 * np.random.default_rng(number + 50).standard_normal(len(t))
+        np.savetxt(folder / f"{name}.csv", np.column_stack([t, recorded])[::10], delimiter=",", header="t,q", comments="", fmt="%.9g")
+        (folder / f"{name}.yaml").write_text(RUN.format(name=name), encoding="utf-8")
+        runs.append(folder / f"{name}.yaml")
+    return runs
+
+
+def test_friction_of_a_driven_carriage_is_named_with_the_force_beside_the_recorded_one(tmp_path):
+    runs = write(tmp_path, 20.0)
+    found = diagnose(tmp_path / "carriage.yaml", runs)
+    assert (found.verdict.verdict, [item.name for item in found.verdict.effects]) == ("named", ["dry_friction"])
+    force = found.verdict.effects[0].parameters["force"]
+    assert force.value == pytest.approx(20.0, rel=0.1)
+    zero = next(item for item in found.models.chosen[-1].least_squares.conditions() if item.name == "force_offset")
+    assert zero.value == pytest.approx(OFFSET, abs=0.6)
+    assert any("constant force" in note for note in found.verdict.notes)
+
+
+def test_a_carriage_without_friction_lacks_nothing(tmp_path):
+    assert diagnose(tmp_path / "carriage.yaml", write(tmp_path, 0.0)).verdict.verdict == "no_missing_effect"

@@ -1,0 +1,67 @@
+"""Gain, zero and clock of a measured force, found by a fit from what a rig does under it."""
+
+import numpy as np
+import pytest
+
+from vehgen.fit.least_squares import FitOptions, fit_least_squares
+from vehgen.fit.noise import EVEN, Noise
+from vehgen.fit.nuisances import Nuisances
+from vehgen.fit.problem import Problem
+from vehgen.fit.space import SearchSpace
+from vehgen.fit.trial import load_trials
+
+RIG = """name: rig
+gravity: {gravity}
+bodies: {{block: {{mass: 20 kg, motions: [heave]}}}}
+links: {{mount: {{ground: {{}}, block: {{}}, k: {k}, c: 80 N s/m}}}}
+"""
+RUN = """vehicle: rig.yaml
+band: [0.3 Hz, 40 Hz]
+acquisition: none
+forces: {shaker: {body: block, file: force.csv, time: t, force: F}}
+sensors: {gauge: {body: block, channels: {displacement: y, velocity: v}}}
+recording: recording.csv
+"""
+NOTHING = SearchSpace((), np.zeros(0), np.zeros(0), np.zeros(0))
+
+
+def exact(time, force, dt, k):
+    """Return displacement and velocity of the block under a force, by small explicit steps (classical Runge-Kutta)."""
+    state, found = np.zeros(2), np.zeros((len(time), 2))
+
+    def slope(y, push):
+        return np.array([y[1], (push - k * y[0] - 80.0 * y[1]) / 20.0])
+
+    for i in range(len(time)):
+        found[i] = state
+        a, b, c = force(time[i]), force(time[i] + dt / 2), force(time[i] + dt)
+        one = slope(state, a)
+        two = slope(state + dt / 2 * one, b)
+        three = slope(state + dt / 2 * two, b)
+        state = state + dt / 6 * (one + 2 * two + 2 * three + slope(state + dt * three, c))
+    return found
+
+
+@pytest.mark.parametrize(("gravity", "k", "offset"), [("true", 40e3, 0.0), ("false", 0.0, 4.0)], ids=["held", "free"])
+def test_errors_of_a_force_are_found(tmp_path, gravity, k, offset):
+    dt, t = 1e-3, np.arange(0.0, 8.0, 1e-3)
+    random = np.random.default_rng(5)
+    parts = [(a, f, p) for a, f, p in zip(random.uniform(5, 15, 12), np.linspace(0.4, 20, 12), random.uniform(0, 6, 12), strict=True)]
+    recorded = lambda s: sum(a * np.sin(2 * np.pi * f * s + p) for a, f, p in parts) * (1 - np.exp(-2 * s))  # noqa: E731
+    acting = lambda s: 1.02 * recorded(s - 0.004) * (s >= 0.004) + offset  # noqa: E731
+    motion = exact(t, acting, dt, k)
+    np.savetxt(tmp_path / "force.csv", np.column_stack([t, recorded(t)]), delimiter=",", header="t,F", comments="")
+    sigma = np.array([2e-6, 2e-4])
+    noisy = motion + sigma * random.standard_normal(motion.shape)
+    np.savetxt(tmp_path / "recording.csv", np.column_stack([t, noisy])[::10], delimiter=",", header="t,y,v", comments="")
+    (tmp_path / "rig.yaml").write_text(RIG.format(gravity=gravity, k=f"{k} N/m"), encoding="utf-8")
+    (tmp_path / "run.yaml").write_text(RUN, encoding="utf-8")
+    (trial,) = load_trials([tmp_path / "run.yaml"])
+    options = FitOptions(Nuisances(gain=0, clock=0), (0.3, 40.0))
+    fit = fit_least_squares(Problem((trial,), NOTHING), np.zeros(0), options, noises={trial.name: Noise(EVEN, sigma)})
+    found = {item.name: item.value for item in fit.conditions()}
+    assert found["force_gain"] == pytest.approx(0.02, abs=2e-3)
+    assert found["delay"] == pytest.approx(0.004, abs=2e-4)
+    assert ("force_offset" in found) == (offset > 0)
+    assert found.get("force_offset", 0.0) == pytest.approx(offset, abs=0.02)
+    assert fit.chi2 < 1.3
