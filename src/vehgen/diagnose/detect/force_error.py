@@ -19,11 +19,11 @@ from vehgen.fit.noise import Noise, RoadAnswer
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-SHARES = (1e-5, 0.3)
+SHARES = (1e-5, 0.05)
 """Errors of a force beside it: smaller ones do not count, larger ones are no errors."""
 QUIETEST = 1e-6
 """The sensors may be quieter than the top of the band shows by this factor: it holds the force's error, too."""
-STARTS = tuple((share, own) for share in (1e-4, 0.01, 0.1) for own in (0.0, -4.0, -8.0, -12.0))
+STARTS = tuple((share, own) for share in (1e-4, 1e-3, 0.01, 0.03) for own in (0.0, -3.0, -6.0, -9.0, -12.0))
 """Where the search for both may begin: the force's error beside it, and the logarithm of the sensors' noise over the loudest."""
 
 
@@ -77,4 +77,5 @@ def _likeliest(runs: Sequence[_Left], noises: Noises, quiet: Noises) -> Array:
         return sum(_noise(run.name, x, noises, quiet).loss(run.lines, run.answer) for run in runs)
 
     start = min((np.array([np.log(share), *[own] * n_channels]) for share, own in STARTS), key=loss)
-    return np.asarray(scipy.optimize.minimize(loss, start, method="L-BFGS-B", bounds=bounds).x)
+    options = {"xatol": 0.02, "fatol": 0.1, "initial_simplex": start + np.vstack([np.zeros(len(start)), 0.7 * np.eye(len(start))])}
+    return np.asarray(scipy.optimize.minimize(loss, start, method="Nelder-Mead", bounds=bounds, options=options).x)
