@@ -77,3 +77,40 @@ def test_friction_of_a_driven_carriage_is_named_with_the_force_beside_the_record
 
 def test_a_carriage_without_friction_lacks_nothing(tmp_path):
     assert diagnose(tmp_path / "carriage.yaml", write(tmp_path, 0.0)).verdict.verdict == "no_missing_effect"
+
+
+DYNO = """name: dyno
+gravity: false
+parameters: {c: {value: 2.6 kN s/m, range: [0.3 kN s/m, 8 kN s/m]}}
+bodies: {head: {mass: 5 kg, motions: [heave]}}
+links:
+  damper: {ground: {}, head: {}, c: c}
+  load_cell: {head: {}, ground: {}, k: 50 MN/m, c: 5 kN s/m}
+"""
+STROKE = """vehicle: dyno.yaml
+step: 0.5 ms
+sample: 5 ms
+acquisition: none
+displacements: {{damper: {{file: {name}_stroke.csv, time: t, displacement: x}}}}
+sensors: {{cell: {{link: load_cell, channels: {{link_force: F}}}}}}
+recording: {name}.csv
+"""
+
+
+def test_friction_of_a_damper_is_named_from_its_load_cell(tmp_path):
+    (tmp_path / "dyno.yaml").write_text(DYNO, encoding="utf-8")
+    random, runs = np.random.default_rng(3), []
+    for name, amplitude, f in (("slow", 10e-3, 1.0), ("long", 20e-3, 1.5), ("fast", 5e-3, 3.0)):
+        t = np.arange(0.0, 6.0, 1e-3)
+        x = amplitude * (np.sin(2 * np.pi * f * t) + 0.3 * np.sin(5.4 * np.pi * f * t + 1)) * (1 - np.exp(-3 * t))
+        v = np.gradient(x, t)
+        force = -(2e3 * v + 80.0 * np.sign(v))  # the load cell is stiff: it reads what the damper passes on
+        np.savetxt(tmp_path / f"{name}_stroke.csv", np.column_stack([t, x]), delimiter=",", header="t,x", comments="")
+        noisy = np.column_stack([t, force + 2.0 * random.standard_normal(len(t))])[::5]
+        np.savetxt(tmp_path / f"{name}.csv", noisy, delimiter=",", header="t,F", comments="")
+        (tmp_path / f"{name}.yaml").write_text(STROKE.format(name=name), encoding="utf-8")
+        runs.append(tmp_path / f"{name}.yaml")
+    verdict = diagnose(tmp_path / "dyno.yaml", runs).verdict
+    assert (verdict.verdict, [item.name for item in verdict.effects]) == ("named", ["dry_friction"])
+    assert verdict.effects[0].parameters["force"].value == pytest.approx(80.0, rel=0.05)
+    assert 0.8 < verdict.gap.after < 1.3

@@ -16,7 +16,7 @@ from vehgen.files.units import UNITS, read_unit
 from vehgen.measure.acquisition import AcquisitionChain
 from vehgen.measure.quality import find_clipping
 from vehgen.mechanics import GRAVITY
-from vehgen.mechanics.outputs import POINT_QUANTITIES, PointOutput
+from vehgen.mechanics.outputs import Output
 from vehgen.simulate import Run
 from vehgen.simulate.run_file.acquisition import channel_chains, check_nyquist
 from vehgen.simulate.run_file.checks import TIME_COLUMN
@@ -43,7 +43,7 @@ class RecordedChannel:
     name: str
     sensor: str
     quantity: str
-    output: PointOutput
+    output: Output
     noise: float | None = None
 
 
@@ -105,15 +105,14 @@ def read_recording(run: Run) -> Recording:
 
 
 def _channel(sensor_name: str, sensor: SensorEntry, quantity: str) -> RecordedChannel:
-    name = sensor.channel(sensor_name, quantity)
-    return RecordedChannel(name, sensor_name, quantity, PointOutput(name, sensor.place(sensor_name), quantity))
+    return RecordedChannel(sensor.channel(sensor_name, quantity), sensor_name, quantity, sensor.output(sensor_name, quantity))
 
 
 def _noise(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> float | None:
     """Return the noise that a run file gives with its unit."""
     if isinstance(entry, str) or entry.noise is None:
         return None
-    expected = read_unit(POINT_QUANTITIES[quantity])
+    expected = read_unit(run.file.sensors[sensor].quantities[quantity])
     assert expected is not None
     place = run.document.find(("sensors", sensor, "channels", quantity, "noise"))
     try:
@@ -131,14 +130,13 @@ def _factor(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> 
     factor = float(entry.sign)
     if entry.unit is not None:
         place = run.document.find(("sensors", sensor, "channels", quantity, "unit"))
-        expected, unit = read_unit(POINT_QUANTITIES[quantity]), read_unit(entry.unit)
+        usual = run.file.sensors[sensor].quantities[quantity]
+        expected, unit = read_unit(usual), read_unit(entry.unit)
         if unit is None or unit[2] != len(entry.unit):
             raise InputError(f"{shown(entry.unit)} is not a unit vehgen knows; {did_you_mean(entry.unit, UNITS)}", place)
         assert expected is not None
         if unit[1] != expected[1]:
-            raise InputError(
-                f"{quantity} is measured in {POINT_QUANTITIES[quantity]}, found {shown(entry.unit)}, a unit of {unit[1]}", place
-            )
+            raise InputError(f"{quantity} is measured in {usual}, found {shown(entry.unit)}, a unit of {unit[1]}", place)
         factor *= unit[0]
     return factor
 

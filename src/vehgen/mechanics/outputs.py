@@ -26,7 +26,11 @@ POINT_QUANTITIES = {
     "fore_aft_acceleration": "m/s^2",
 }
 AXLE_QUANTITIES = {"suspension_travel": "m", "suspension_force": "N", "tyre_force": "N", "tyre_load": "N"}
+AXLE_MOTIONS = {name: POINT_QUANTITIES[name] for name in ("acceleration", "velocity", "displacement")}
+"""Vertical motions of an axle of its own mass."""
 LINK_QUANTITIES = {"link_travel": "m", "link_force": "N"}
+QUANTITIES = {**POINT_QUANTITIES, **AXLE_QUANTITIES, **LINK_QUANTITIES}
+"""All that can be recorded, with SI units."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +76,7 @@ class PointOutput:
 
 @dataclass(frozen=True)
 class ElementOutput:
-    """A quantity of AXLE_QUANTITIES or LINK_QUANTITIES of an axle or link, written to the channel `name`."""
+    """A quantity of AXLE_QUANTITIES, AXLE_MOTIONS or LINK_QUANTITIES of an axle or link, written to the channel `name`."""
 
     name: str
     owner: str
@@ -102,9 +106,16 @@ def fore_aft_row(place: Place, x: sp.Expr, motion: Kinematics, energies: Energie
     return combine((sp.S.One, energies.eliminated(motion.groups[place.body])), (sp.S.One, own))
 
 
-def element_channel(output: ElementOutput, elements: tuple[Element, ...]) -> Channel:
-    """Return the row of a travel or force of a suspension, tyre or link (compression positive)."""
+def element_channel(output: ElementOutput, elements: tuple[Element, ...], motion: Kinematics) -> Channel:
+    """Return the row of a travel or force of a suspension, tyre or link (compression positive), or of an axle's motion."""
     quantity = output.quantity
+    if quantity in AXLE_MOTIONS:
+        names = [item.owner for item in motion.coordinates if item.motion == "hop"]
+        if output.owner not in names:
+            hint = did_you_mean(output.owner, names) if names else "none of the vehicle's axles has"
+            raise InputError(f"{output.name}: {shown(output.owner)} is no axle with a mass of its own; {hint}")
+        row: Row = {motion.index(f"hop.{output.owner}"): sp.S.One}
+        return Channel(output.name, quantity, AXLE_MOTIONS[quantity], output.owner, **{quantity: row})
     known = {**AXLE_QUANTITIES, **LINK_QUANTITIES}
     if quantity not in known:
         raise InputError(f"{output.name}: unknown quantity {shown(quantity)} of an axle or link; {did_you_mean(quantity, known)}")

@@ -90,11 +90,11 @@ def _scenario(trial: Trial, hump: Hump, scale: float, speed: float) -> Scenario:
 def free_places(trial: Trial) -> list[PointOutput]:
     """Return sensors that could be added: of acceleration at each end of a body that has none there, of pitch rate on one without."""
     vehicle, model = trial.run.vehicle, trial.simulator.model
-    layout, channels = model.layout, trial.recording.channels
+    layout, outputs = model.layout, [item.output for item in trial.recording.channels if isinstance(item.output, PointOutput)]
     names = (*vehicle.axles, *vehicle.hinges)
     known = dict(zip(names, model.evaluate_list((layout.place(vehicle, name) for name in names), trial.values), strict=True))
-    own = (item.output.place.locate(vehicle, layout) + layout.bodies[item.output.place.body][0] for item in channels)
-    mounted = list(zip(channels, model.evaluate_list(own, trial.values), strict=True))
+    own = (item.place.locate(vehicle, layout) + layout.bodies[item.place.body][0] for item in outputs)
+    mounted = list(zip(outputs, model.evaluate_list(own, trial.values), strict=True))
     found = []
     for body in vehicle.bodies:
         supports = [name for name, axle in vehicle.axles.items() if axle.body == body]
@@ -104,10 +104,10 @@ def free_places(trial: Trial) -> list[PointOutput]:
             continue
         ends = dict.fromkeys((max(x, key=lambda name: x[name]), min(x, key=lambda name: x[name])))
         reach = NEAREST_HEIGHT_RATIO * max(max(x.values()) - min(x.values()), 1.0)
-        taken = [place for item, place in mounted if item.output.place.body == body and item.quantity == "acceleration"]
+        taken = [place for item, place in mounted if item.place.body == body and item.quantity == "acceleration"]
         free = [end for end in ends if all(abs(x[end] - place) > reach for place in taken)]
         found += [PointOutput(f"{body}_{end}_acceleration", Place(f"{body}_{end}", body, behind=end), "acceleration") for end in free]
-        if not any(item.output.place.body == body and item.quantity == "pitch_rate" for item in channels):
+        if not any(item.place.body == body and item.quantity == "pitch_rate" for item in outputs):
             end = next(iter(ends))
             found.append(PointOutput(f"{body}_{end}_pitch_rate", Place(f"{body}_{end}", body, behind=end), "pitch_rate"))
     return found

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.detect.drawn_roughness import noises_of_laws
-from vehgen.diagnose.detect.force_error import force_noises
 from vehgen.diagnose.detect.noise_floor import NoiseFloor, find_noise_floor
 from vehgen.diagnose.detect.numerical_floor import numerical_floor
+from vehgen.diagnose.detect.rig_noise import rig_noises
 from vehgen.diagnose.detect.road_error import measured_profiles, road_noises
 from vehgen.diagnose.fits.model_fit import ModelFit, fit_base, mean_square_as_filed, narrow
 from vehgen.diagnose.thresholds import NOISE_FLOOR, WEAK
@@ -212,7 +212,7 @@ def _with_telling_runs(detection: Detection) -> Detection:
 
 def _noises(fit: ModelFit, floor: NoiseFloor) -> Noises:
     """Return the noise of all runs with what a model's fit says of their roads, and of what roads make of its laws."""
-    return force_noises(fit, noises_of_laws(fit, road_noises(fit, floor.noises, floor.quiet)), floor.quiet)
+    return rig_noises(fit, noises_of_laws(fit, road_noises(fit, floor.noises, floor.quiet)), floor.quiet)
 
 
 def _are_same(noises: Noises, others: Noises, fit: ModelFit) -> bool:

@@ -15,7 +15,7 @@ from vehgen.files.quantities import Frequency, RecorderDelay
 from vehgen.files.units import Dimension, read_unit
 from vehgen.measure.acquisition import FILTER_KINDS, MAX_ORDER, POINT_SAMPLES, UNKNOWN, AcquisitionChain, FilterKind
 from vehgen.measure.recorders import RECORDERS
-from vehgen.mechanics.outputs import POINT_QUANTITIES
+from vehgen.mechanics.outputs import QUANTITIES
 
 if TYPE_CHECKING:
     from vehgen.simulate.run_file.loading import Run
@@ -117,7 +117,7 @@ def _chain(run: Run, entry: str | AcquisitionEntry, path: Path, quantity: str, r
 def _check_size(run: Run, text: str | float | None, path: Path, quantities: list[str]) -> None:
     """Refuse a range or resolution of none of the quantities, and one that is not above 0."""
     if text is not None and all(_size(run, text, path, quantity) is None for quantity in quantities):
-        units = " or ".join(dict.fromkeys(POINT_QUANTITIES[quantity] for quantity in quantities))
+        units = " or ".join(dict.fromkeys(QUANTITIES[quantity] for quantity in quantities))
         raise InputError(f"a {path[-1]} in {units} was expected, found {shown(text)}", run.document.find(path))
 
 
@@ -138,6 +138,6 @@ def _size(run: Run, text: str | float | None, path: Path, quantity: str) -> floa
 
 
 def _dimension(quantity: str) -> Dimension:
-    found: Any = read_unit(POINT_QUANTITIES[quantity])
+    found: Any = read_unit(QUANTITIES[quantity])
     dimension: Dimension = found[1]
     return dimension

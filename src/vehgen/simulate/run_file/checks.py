@@ -8,7 +8,7 @@ from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.checks import check_dimension, check_known, plain_quantity, value_of
 from vehgen.files.limits import MOST_CHANNELS, VEHICLE_LENGTH
 from vehgen.files.units import LENGTH
-from vehgen.mechanics.outputs import AXLE_QUANTITIES, LINK_QUANTITIES, POINT_QUANTITIES
+from vehgen.mechanics.outputs import AXLE_QUANTITIES, LINK_QUANTITIES
 from vehgen.simulate.run_file.acquisition import check_acquisition
 from vehgen.simulate.run_file.entries import OutputEntry, PlaceEntry
 from vehgen.vehicle.checks import check_values
@@ -27,9 +27,8 @@ def check_run(run: Run) -> None:
     _check_settings(run)
     _check_parameters(run)
     _check_vehicle(run)
-    for kind, entries in (("forces", run.file.forces), ("sensors", run.file.sensors)):
-        for name, entry in entries.items():
-            _check_place(run, entry, kind, name)
+    for name, entry in run.file.forces.items():
+        _check_place(run, entry, "forces", name)
     _check_displacements(run)
     _check_sensors(run)
     check_acquisition(run)
@@ -93,12 +92,19 @@ def _check_displacements(run: Run) -> None:
 
 
 def _check_sensors(run: Run) -> None:
-    """Check that sensors record quantities of points."""
+    """Check that sensors sit on parts of the vehicle and record what there is to be recorded there."""
+    vehicle, document = run.vehicle, run.document
     for name, sensor in run.file.sensors.items():
+        if sensor.axle is not None:
+            check_known(sensor.axle, vehicle.axles, f"{vehicle.name} has no axle", document, "sensors", name, "axle")
+        elif sensor.link is not None:
+            check_known(sensor.link, vehicle.links, f"{vehicle.name} has no link", document, "sensors", name, "link")
+        else:
+            _check_place(run, sensor, "sensors", name)
         for quantity in sensor.channels:
-            if quantity not in POINT_QUANTITIES:
+            if quantity not in sensor.quantities:
                 raise InputError(
-                    f"unknown quantity {shown(quantity)} of a sensor; {did_you_mean(quantity, POINT_QUANTITIES)}",
+                    f"unknown quantity {shown(quantity)} of a sensor; {did_you_mean(quantity, sensor.quantities)}",
                     run.document.find(("sensors", name, "channels", quantity), key=True),
                 )
 

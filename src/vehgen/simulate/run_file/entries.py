@@ -14,33 +14,34 @@ from vehgen.files.limits import LARGEST_SEED, MOST_ROADS
 from vehgen.files.names import Column, FreeText, Name, is_name
 from vehgen.files.quantities import (
     Angle,
-    AngleDeviation,
     Displacement,
     Duration,
     EdgeRadius,
     FileName,
     Footprint,
     Force,
-    ForceSpread,
     Frequency,
     HumpHeight,
     HumpLength,
-    LengthDeviation,
-    LengthSpread,
-    PitchRate,
     PlaceLength,
     PositiveForce,
     RoadPosition,
     Sample,
-    ShareSpread,
     Speed,
-    SpeedSpread,
     Step,
-    TimeDeviation,
-    Velocity,
 )
-from vehgen.mechanics.outputs import Place
+from vehgen.mechanics.outputs import (
+    AXLE_MOTIONS,
+    AXLE_QUANTITIES,
+    LINK_QUANTITIES,
+    POINT_QUANTITIES,
+    ElementOutput,
+    Output,
+    Place,
+    PointOutput,
+)
 from vehgen.simulate.run_file.acquisition import AcquisitionEntry
+from vehgen.simulate.run_file.knowledge import InitialEntry, UncertaintyEntry
 
 DEFAULT_STEP = 1e-3
 DEFAULT_SPEED = 1.0
@@ -190,15 +191,43 @@ def _default_channels() -> dict[str, Column | ChannelEntry]:
 
 
 class SensorEntry(PlaceEntry):
-    """A sensor: a place, its height above the body's COG, the column of each quantity it records, and what acquires them."""
+    """A sensor: a place, its height above the body's COG, the column of each quantity it records, and what acquires them.
 
+    In place of a body an axle or a link, whose forces, travels and motions it records.
+    """
+
+    body: str | None = None  # type: ignore[assignment]
+    axle: str | None = None
+    link: str | None = None
     height: PlaceLength = 0.0
     channels: dict[Name, Column | ChannelEntry] = Field(default_factory=_default_channels)
     acquisition: str | AcquisitionEntry | None = None
 
+    @model_validator(mode="after")
+    def _one_place(self) -> SensorEntry:
+        if sum(item is not None for item in (self.body, self.axle, self.link)) != 1:
+            raise PydanticCustomError("joint", "a sensor sits on a `body`, or belongs to an `axle` or a `link`")
+        if self.body is None and (self.x is not None or self.behind is not None or "channels" not in self.model_fields_set):
+            raise PydanticCustomError("joint", "a sensor of an axle or link has `channels`, and no place along a body")
+        return self
+
+    @property
+    def quantities(self) -> dict[str, str]:
+        """What it may record, with SI units."""
+        if self.body is not None:
+            return POINT_QUANTITIES
+        return {**AXLE_QUANTITIES, **AXLE_MOTIONS} if self.axle is not None else LINK_QUANTITIES
+
     def place(self, name: str) -> Place:
         """Return the place under its name."""
         return replace(super().place(name), height=self.height)
+
+    def output(self, name: str, quantity: str) -> Output:
+        """Return what stands for a quantity in a simulation; `name` is the sensor's."""
+        channel = self.channel(name, quantity)
+        if self.body is not None:
+            return PointOutput(channel, self.place(name), quantity)
+        return ElementOutput(channel, self.axle or self.link or "", quantity)
 
     def column(self, name: str, quantity: str) -> str:
         """Return the column that holds a quantity; `name` is the sensor's."""
@@ -223,40 +252,6 @@ class OutputEntry(FileModel):
         if (self.axle is None) == (self.link is None):
             raise PydanticCustomError("joint", "an output belongs to an `axle` or a `link`")
         return self
-
-
-class UncertaintyEntry(FileModel):
-    """How well a run knows itself and its sensors: standard deviations, those of a fit's errors (docs/measurement.md).
-
-    Of the recording's begin (`delay`), the speed and how it changes along the run, the height of the road, the form of the hump and
-    the wear of its edges, the sensors' clocks against the first one's, their gyroscopes' lags, gains, tilts and places, gain and offset of
-    measured forces.
-    """
-
-    delay: TimeDeviation | None = None
-    speed: SpeedSpread | None = None
-    wander: SpeedSpread | None = None
-    height: LengthSpread | None = None
-    length: LengthSpread | None = None
-    form: ShareSpread | None = None
-    skew: ShareSpread | None = None
-    wear: LengthDeviation | None = None
-    clock: TimeDeviation | None = None
-    lag: TimeDeviation | None = None
-    gain: ShareSpread | None = None
-    tilt: AngleDeviation | None = None
-    position: LengthDeviation | None = None
-    force_gain: ShareSpread | None = None
-    force_offset: ForceSpread | None = None
-
-
-class InitialEntry(FileModel):
-    """How a body's centre of gravity, or an axle, is displaced and moves as the run begins, from static equilibrium; upwards, nose down."""
-
-    displacement: Displacement | None = None
-    velocity: Velocity | None = None
-    pitch: Angle | None = None
-    pitch_rate: PitchRate | None = None
 
 
 class RunFile(FileModel):

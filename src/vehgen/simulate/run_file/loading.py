@@ -41,8 +41,7 @@ class Run:
         """Return every channel the run asks for; with no sensor and no output, the acceleration of every body's COG."""
         found: list[Output] = []
         for name, sensor in self.file.sensors.items():
-            place = sensor.place(name)
-            found += [PointOutput(sensor.channel(name, quantity), place, quantity) for quantity in sensor.channels]
+            found += [sensor.output(name, quantity) for quantity in sensor.channels]
         for name, output in self.file.outputs.items():
             found.append(ElementOutput(name, output.axle or output.link or "", output.quantity))
         if not found:

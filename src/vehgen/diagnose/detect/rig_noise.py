@@ -1,0 +1,114 @@
+"""The noise of rigs, which have no quiet road before a hump: sensors', and that of measured forces whose files state none.
+
+Ripple of a drive, or noise of a load cell, shakes a rig as a white force would. How large it is, and how quiet the sensors are, shows in
+the upper half of the band in what a fit leaves: what is missing from a model mostly shows below, at the motion's own frequencies. Where
+the whole band has less of it, that counts. So noise that was overrated, by harmonics above the band, comes down once the best model is
+known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.optimize
+from numpy.typing import NDArray
+
+from vehgen.diagnose.fits.model_fit import ModelFit
+from vehgen.fit.misfit import Noises
+from vehgen.fit.noise import Noise, RoadAnswer
+from vehgen.fit.trial import Trial
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+SHARES = (1e-5, 0.05)
+"""Errors of a force beside it: smaller ones do not count, larger ones are no errors."""
+QUIETEST = 1e-6
+"""Sensors may be quieter than the top of the band shows by this factor: it holds the force's error, and harmonics, too."""
+STARTS = tuple((share, own) for share in (1e-4, 1e-3, 0.01, 0.03) for own in (0.0, -1.0, -3.0, -6.0, -9.0, -12.0))
+"""Where the search may begin: the force's error beside it, and the logarithm of the sensors' noise over the loudest."""
+
+
+def rig_noises(fit: ModelFit, noises: Noises, quiet: Noises) -> Noises:
+    """Return noises with what a fit's runs without a road show; others keep theirs, and so does what run files state.
+
+    Forces have an error that is the same share of them in all runs with the same channels. `quiet` is the noise of the sensors before any
+    fit, which they do not exceed.
+    """
+    groups: dict[tuple[str, ...], list[_Left]] = {}
+    for part in fit.parts:
+        for trial, (lines, answer) in zip(part.misfit.problem.trials, part.misfit.residual_spectrum(part.x), strict=True):
+            if not trial.scenario.track.parts:
+                left = _Left(trial, lines, answer, answer.frequency >= part.misfit.band[1] / 2)
+                groups.setdefault(trial.channels, []).append(left)
+    found = dict(noises)
+    for runs in groups.values():
+        search = _Search.of(runs, noises, quiet)
+        if search.size:
+            x = np.min([search.likeliest(part) for part in ([run.upper for run in runs], runs)], axis=0)
+            found |= {run.trial.name: search.noise(run, x) for run in runs}
+    return found
+
+
+@dataclass(frozen=True)
+class _Left:
+    """What a fit leaves of a run, lines `shape (n, n_channels)`, the way of roads and forces into them, and which lines are upper ones."""
+
+    trial: Trial
+    lines: Complex
+    answer: RoadAnswer
+    above: NDArray[np.bool_]
+
+    @property
+    def upper(self) -> _Left:
+        """Its upper lines alone."""
+        forced, unstated = (None if item is None else item[self.above] for item in (self.answer.forced, self.answer.unstated))
+        gain, along = self.answer.gain[self.above], self.answer.wavenumber[self.above]
+        answer = RoadAnswer(self.answer.frequency[self.above], along, gain, self.answer.dt, forced, unstated)
+        return _Left(self.trial, self.lines[self.above], answer, self.above[self.above])
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Noise of runs with the same channels, by numbers.
+
+    They are the logarithm of the force's error, where there is one, and those of the `free` channels' noise over the `loudest`, which is
+    that of the quietest run.
+    """
+
+    noises: Noises
+    quiet: Noises
+    loudest: Array
+    free: NDArray[np.intp]
+    has_force: bool
+
+    @classmethod
+    def of(cls, runs: Sequence[_Left], noises: Noises, quiet: Noises) -> _Search:
+        free = [i for i, channel in enumerate(runs[0].trial.recording.channels) if channel.noise is None]
+        loudest = np.min([quiet[run.trial.name].sigma for run in runs], axis=0)
+        return cls(noises, quiet, loudest, np.array(free, dtype=np.intp), any(run.answer.unstated is not None for run in runs))
+
+    @property
+    def size(self) -> int:
+        return self.has_force + len(self.free)
+
+    def noise(self, run: _Left, x: Array) -> Noise:
+        """Return a run's noise by the numbers `shape (size,)`."""
+        sigma = self.quiet[run.trial.name].sigma.copy()
+        sigma[self.free] = self.loudest[self.free] * np.exp(x[int(self.has_force) :])
+        acting = float(np.exp(x[0])) if self.has_force else 0.0
+        return replace(self.noises[run.trial.name], acting=acting, sigma=sigma)
+
+    def likeliest(self, runs: Sequence[_Left]) -> Array:
+        """Return the most likely numbers."""
+        bounds = [*[tuple(np.log(SHARES))] * self.has_force, *[(float(np.log(QUIETEST)), 0.0)] * len(self.free)]
+
+        def loss(x: Array) -> float:
+            return sum(self.noise(run, x).loss(run.lines, run.answer) for run in runs)
+
+        starts = [np.array([*[np.log(share)] * self.has_force, *[own] * len(self.free)]) for share, own in STARTS]
+        start = min(starts, key=loss)
+        simplex = start + np.vstack([np.zeros(self.size), 0.7 * np.eye(self.size)])
+        options = {"xatol": 0.02, "fatol": 0.1, "initial_simplex": simplex}
+        return np.asarray(scipy.optimize.minimize(loss, start, method="Nelder-Mead", bounds=bounds, options=options).x)
