@@ -28,7 +28,7 @@ def plot_places(places: Sequence[PlaceEvidence]) -> Figure:
     axes.barh(range(len(shown)), [item.chi for item in shown], color=[SIMULATED if item.passes else "#c3ccd3" for item in shown])
     axes.axvline(1.0, color=INK, lw=0.9, ls=(0, (4, 2)))
     for row, item in enumerate(shown):
-        axes.text(item.chi * 1.03, row, f"{item.chi:.2f}", va="center", fontsize=8.5, color=INK)
+        axes.text(max(item.chi, 1.0) * 1.03, row, f"{item.chi:.2f}", va="center", fontsize=8.5, color=INK)
     labels = [f"{item.label}{', 2 unknowns' if item.unknowns == 2 and item.is_force else ''}" for item in shown]
     axes.set_yticks(range(len(shown)), labels, fontsize=8.5, parse_math=False)
     axes.set_ylim(len(shown) - 0.4, -0.6)
@@ -64,7 +64,7 @@ def _bars(axes: Axes, pairs: Sequence[Pair], labels: tuple[str, str]) -> None:
         chis = [float(pair[column]) for pair in pairs]
         axes.bar(place + side, chis, 0.38, color=colour, label=label)
         for x, chi in zip(place + side, chis, strict=True):
-            axes.text(x, chi * 1.05, f"{chi:.2f}", ha="center", va="bottom", fontsize=8, color=INK)
+            axes.text(x, max(chi, 1.0) * 1.05, f"{chi:.2f}", ha="center", va="bottom", fontsize=8, color=INK)
     axes.axhline(1.0, color=REFERENCE_COLOUR, lw=1.1, ls=(0, (4, 2)), label="noise floor")
     axes.set_yscale("log")
     axes.set_ylim(0.7, 2.0 * max(value for pair in pairs for value in pair[1:] if np.isfinite(value)))
