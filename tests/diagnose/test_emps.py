@@ -1,0 +1,37 @@
+"""The carriage of docs/emps.md, where its recordings are at hand: friction named from the raw file, and as good on pulses never seen."""
+
+import importlib
+from pathlib import Path
+
+import pytest
+
+from vehgen.commands import main
+
+FOLDER = Path(__file__).parents[2] / "docs" / "examples" / "emps"
+DATA = "shared/data/emps/DATA_EMPS.mat"
+
+
+@pytest.fixture(scope="module")
+def emps():
+    path = next((parent / DATA for parent in Path(__file__).parents if (parent / DATA).is_file()), None)
+    if path is None:
+        pytest.skip("no EMPS data here")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(FOLDER))
+        for name in ("prepare", "force_error"):
+            patch.delitem(importlib.sys.modules, name, raising=False)
+        yield importlib.import_module("prepare"), importlib.import_module("force_error"), path
+        for name in ("prepare", "force_error"):
+            importlib.sys.modules.pop(name, None)
+
+
+def test_friction_of_a_real_carriage_is_named_from_its_raw_file(emps, tmp_path):
+    prepare, force_error, path = emps
+    runs = prepare.write_runs(path, tmp_path / "runs")
+    out = tmp_path / "diagnosis"
+    main(["diagnose", str(FOLDER / "emps.yaml"), *map(str, runs), "--out", str(out)])
+    vehicle = out / "emps_with_dry_friction.yaml"
+    assert vehicle.is_file()
+    share, constant = force_error.force_error(vehicle, path.with_name("DATA_EMPS_PULSES.mat"))
+    assert share < 0.065
+    assert constant == pytest.approx(3.2, abs=0.3)

@@ -1,0 +1,42 @@
+"""The rigs of docs/rigs.md, against what a pencil says."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from vehgen.simulate import load_run, simulate
+
+RIGS = Path(__file__).parents[2] / "docs" / "examples" / "rigs"
+
+
+def response(name):
+    return simulate(load_run(RIGS / f"{name}_run.yaml"))
+
+
+def test_a_dropped_car_falls_lands_and_comes_to_rest_on_its_weight():
+    found = response("drop_test")
+    _, load = found.values[0].T
+    assert load[:8] == pytest.approx(0.0, abs=1e-6)
+    assert load.max() > 1.2 * load[-1]
+    weight = 9.81 * (600 * 1.4 / 2.6 + 40)
+    assert load[-1] == pytest.approx(weight, rel=2e-3)
+
+
+def test_a_damper_pushes_its_load_cell_by_its_rate():
+    found = response("damper_dyno")
+    force, stroke = found.values[0, found.time > 0.5].T
+    assert np.ptp(stroke) == pytest.approx(0.04, rel=1e-3)
+    assert np.ptp(force) == pytest.approx(2 * 2500 * 0.02 * 2 * np.pi * 1.5, rel=2e-3)
+
+
+def test_a_shaken_machine_answers_as_its_frequency_response():
+    found = response("shaker")
+    late = found.time > 2.0
+    w = 2 * np.pi * 7.0
+    heave = 100.0 / (2 * (180e3 + 400j * w) - 120 * w**2)
+    pitch = -0.3 * 100.0 / (2 * 0.25**2 * (180e3 + 400j * w) - 6 * w**2)
+    expected = abs(-(w**2) * (heave - 0.2 * pitch))
+    basis = np.column_stack([np.sin(w * found.time[late]), np.cos(w * found.time[late])])
+    found_amplitude = np.hypot(*np.linalg.lstsq(basis, found.values[0, late, 0], rcond=None)[0])
+    assert found_amplitude == pytest.approx(expected, rel=0.02)
