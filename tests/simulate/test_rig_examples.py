@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from vehgen.commands import main
 from vehgen.simulate import load_run, simulate
 
 RIGS = Path(__file__).parents[2] / "docs" / "examples" / "rigs"
@@ -40,3 +41,18 @@ def test_a_shaken_machine_answers_as_its_frequency_response():
     basis = np.column_stack([np.sin(w * found.time[late]), np.cos(w * found.time[late])])
     found_amplitude = np.hypot(*np.linalg.lstsq(basis, found.values[0, late, 0], rcond=None)[0])
     assert found_amplitude == pytest.approx(expected, rel=0.02)
+
+
+def test_what_a_rig_has_not_is_left_out_of_tables_and_page(tmp_path, capsys):
+    vehicle = str(RIGS / "damper_dyno.yaml")
+    main(["build", vehicle, "--out", str(tmp_path / "built"), "--no-plots"])
+    printed = capsys.readouterr().out
+    page = (tmp_path / "built" / "index.html").read_text(encoding="utf-8")
+    assert "Static loads" not in printed
+    assert "body mode outside" not in printed
+    assert "Static loads" not in page
+    assert "; 5 kg." in page
+    main(["static", vehicle])
+    words = " ".join(capsys.readouterr().out.split())
+    assert "static forces in its links" in words
+    assert "load_cell 0.0" in words

@@ -82,12 +82,9 @@ def _show(model: EquationsOfMotion, values: dict[str, float], modes: Sequence[Mo
     mode_rows = [(mode.name, f"{mode.undamped_hz:.3f}", f"{mode.damped_hz:.3f}", f"{mode.damping_ratio:.3f}") for mode in modes]
     print_table("Modes", ("mode", "undamped, Hz", "damped, Hz", "damping ratio"), mode_rows, right=(1, 2, 3))
     load_rows = [*loads.axles.items(), *loads.hinges.items()]
-    print_table(
-        "Static loads",
-        ("axle or hinge", "force, N"),
-        [(name, f"{force:,.0f}") for name, force in load_rows],
-        right=(1,),
-    )
+    if load_rows:
+        rows_of_loads = [(name, f"{force:,.0f}") for name, force in load_rows]
+        print_table("Static loads", ("axle or hinge", "force, N"), rows_of_loads, right=(1,))
 
 
 def _summary(model: EquationsOfMotion, found: Build, counts: dict[str, int], folder: Path, written: list[Path]) -> dict[str, object]:

@@ -27,14 +27,14 @@ def run(options: argparse.Namespace) -> None:
     if options.json:
         print_json({"axles": loads.axles, "hinges": loads.hinges, "warnings": findings})
         return
-    total = sum(loads.axles.values())
-    rows = [(name, f"{force:,.1f}", f"{force / total:.1%}" if total else "") for name, force in loads.axles.items()]
-    print_table(
-        f"{vehicle.title or vehicle.name}: static axle loads",
-        ("axle", "load, N", "share"),
-        [*rows, ("all", f"{total:,.1f}", "")],
-        right=(1, 2),
-    )
+    title = vehicle.title or vehicle.name
+    if loads.axles:
+        total = sum(loads.axles.values())
+        rows = [(name, f"{force:,.1f}", f"{force / total:.1%}" if total else "") for name, force in loads.axles.items()]
+        print_table(f"{title}: static axle loads", ("axle", "load, N", "share"), [*rows, ("all", f"{total:,.1f}", "")], right=(1, 2))
+    else:
+        links = [(name, f"{force:,.1f}") for (_, name), force in loads.elements.items()]
+        print_table(f"{title}: static forces in its links", ("link", "force, N"), links, right=(1,))
     if loads.hinges:
         hinge_rows = [(name, f"{force:,.1f}", _who(vehicle.hinges[name].points)) for name, force in loads.hinges.items()]
         print_table("Hinge forces", ("hinge", "force, N", ""), hinge_rows, right=(1,))

@@ -70,6 +70,8 @@ def _gaps(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[str
 
 def _modes(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[str]:
     vehicle = model.vehicle
+    if not vehicle.axles:
+        return  # a rig may move as fast or as slowly as it likes
     unsprung = {axle.body for axle in vehicle.axles.values() if axle.suspension is None and len(vehicle.axles) > 1}
     body = np.array([item.motion != "hop" and item.owner not in unsprung for item in model.coordinates])
     for mode in natural_modes(model, values):

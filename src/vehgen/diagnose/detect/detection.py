@@ -274,8 +274,8 @@ def _refuse_copies(trials: Sequence[Trial]) -> None:
 class RunGap:
     """How large a run's gap is beside its amplitude and speed.
 
-    `height` of its highest hump [m] (0 without one), `speed` [m/s], `chi`, and `share`, the gap's root mean square over that of the
-    recording, both in units of the noise: a linear cause keeps the share over amplitudes, a stop's grows, friction's falls.
+    `height` of its highest hump [m] (0 without one), `speed` [m/s] (0 of a rig), `chi`, and `share`, the gap's root mean square over that
+    of the recording, both in units of the noise: a linear cause keeps the share over amplitudes, a stop's grows, friction's falls.
     """
 
     run: str
@@ -293,5 +293,6 @@ def run_gaps(detection: Detection) -> list[RunGap]:
         loudness = float(np.sqrt(np.mean((trial.recording.values / sigma) ** 2)))
         square = detection.base.mean_squares[trial.name]
         share = float(np.sqrt(max(square - 1.0, 0.0))) / loudness
-        found.append(RunGap(trial.name, hump_height(trial), trial.scenario.top_speed, float(np.sqrt(square)), share))
+        speed = trial.scenario.top_speed if trial.run.vehicle.axles else 0.0
+        found.append(RunGap(trial.name, hump_height(trial), speed, float(np.sqrt(square)), share))
     return found

@@ -39,6 +39,7 @@ def write_diagnosis_page(diagnosis: Diagnosis, path: Path) -> None:
         corrected=evidence.corrected,
         figures=_figures(diagnosis),
         force="" if evidence.force is None else evidence.force.description,
+        on_road=any(size.speed for size in evidence.runs),
         runs=_runs(diagnosis),
         bands=_bands(evidence),
         distortions=evidence.distortions,
