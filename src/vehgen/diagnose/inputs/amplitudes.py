@@ -26,6 +26,8 @@ COHERENT = 0.4
 """A channel's unit is judged where it correlates this well with its prediction."""
 ALIVE, DEAD = 0.6, 0.35
 """A dead channel correlates below the one while its like correlate above the other: channels of its quantity, or else all others."""
+SLOW_MOTIONS_HZ, FOLLOWS = 10.0, 0.3
+"""Channels of one vehicle follow one another in motions up to the one; noise, over ten seconds, correlates by 0.2 at most."""
 NEIGHBOURS = 0.05
 """A dead channel's correlation is looked at within this of the others' lag [s]."""
 OTHER_UNIT = 0.5
@@ -68,7 +70,8 @@ def dead_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
             others = [j for j in range(len(channels)) if j != i]
             like = [j for j in others if channels[j].quantity == channel.quantity] or others
             late = np.abs(item.own[:, i]).max() > ALIVE  # it follows at another lag: a clock is wrong
-            if around[i] < DEAD and not late and like and around[like].min() > ALIVE:
+            unlike = around[i] < DEAD and not late and like and around[like].min() > ALIVE
+            if unlike and not _follows_another(trial, i, reach):
                 found.setdefault(channel.name, []).append(trial.name)
     if not found:
         return
@@ -84,6 +87,20 @@ def dead_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     )
     blind = frozenset((run, name) for name, runs in found.items() for run in runs)
     yield Hypothesis(case.trials, always(*faults), ONE_CHANNEL, blind=blind)
+
+
+def _follows_another(trial: Trial, channel: int, reach: int) -> bool:
+    """Return whether a channel's slow motions follow those of another one, up to `reach` samples apart.
+
+    A missing effect may spoil the prediction of a channel, but not what its sensor feels.
+    """
+    values = trial.recording.values - trial.recording.values.mean(axis=0)
+    frequency = np.fft.rfftfreq(2 * len(values), trial.recording.dt)
+    lines = np.fft.rfft(values, 2 * len(values), axis=0) * (frequency <= SLOW_MOTIONS_HZ)[:, None]
+    power = np.sqrt(np.sum(np.abs(lines) ** 2, axis=0))
+    both = np.fft.irfft(lines * lines[:, [channel]].conj(), axis=0) * len(values) / np.maximum(power * power[channel], 1e-300)
+    near = np.abs(np.concatenate([both[-reach:], both[: reach + 1]])).max(axis=0)
+    return bool(np.delete(near, channel).max(initial=0.0) > FOLLOWS)
 
 
 def gain_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
