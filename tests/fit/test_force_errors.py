@@ -47,8 +47,13 @@ def test_errors_of_a_force_are_found(tmp_path, gravity, k, offset):
     dt, t = 1e-3, np.arange(0.0, 8.0, 1e-3)
     random = np.random.default_rng(5)
     parts = [(a, f, p) for a, f, p in zip(random.uniform(5, 15, 12), np.linspace(0.4, 20, 12), random.uniform(0, 6, 12), strict=True)]
-    recorded = lambda s: sum(a * np.sin(2 * np.pi * f * s + p) for a, f, p in parts) * (1 - np.exp(-2 * s))  # noqa: E731
-    acting = lambda s: 1.02 * recorded(s - 0.004) * (s >= 0.004) + offset  # noqa: E731
+
+    def recorded(s):
+        return sum(a * np.sin(2 * np.pi * f * s + p) for a, f, p in parts) * (1 - np.exp(-2 * s))
+
+    def acting(s):
+        return 1.02 * recorded(s - 0.004) * (s >= 0.004) + offset
+
     motion = exact(t, acting, dt, k)
     np.savetxt(tmp_path / "force.csv", np.column_stack([t, recorded(t)]), delimiter=",", header="t,F", comments="")
     sigma = np.array([2e-6, 2e-4])

@@ -82,7 +82,7 @@ def near_parameters(problem: Problem, sensor: str) -> tuple[str, ...]:
     """Return the searched parameters of the axle nearest to a sensor on its body, and of that body's pitch inertia."""
     trial = problem.trials[0]
     vehicle, place = trial.run.vehicle, trial.run.file.sensors[sensor].place(sensor)
-    if place.body is None:
+    if not place.body:
         return ()
     model = trial.simulator.model
     axles = [name for name, axle in vehicle.axles.items() if axle.body == place.body]

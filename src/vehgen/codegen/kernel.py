@@ -244,14 +244,14 @@ class Kernel:
     def _failures(self, parameters: Array, responses: Array, residuals: Array) -> dict[int, str]:
         failures = find_failures(self.model.parameters, parameters, responses)
         if self.source.nonlinear:
-            limit = UNCONVERGED * self._weight
+            limit = UNCONVERGED * self._force_scale
             for individual in np.flatnonzero(residuals > limit):
                 reason = f"its force laws did not converge: {residuals[individual]:.3g} N were left in the worst step; take a smaller step"
                 failures.setdefault(int(individual), reason)
         return failures
 
     @cached_property
-    def _weight(self) -> float:
+    def _force_scale(self) -> float:
         return GRAVITY * self.model.total_mass()
 
     def _check(self, parameters: Array, excitation: Excitation, decimation: int) -> None:

@@ -196,7 +196,7 @@ class SensorEntry(PlaceEntry):
     In place of a body an axle or a link, whose forces, travels and motions it records.
     """
 
-    body: str | None = None  # type: ignore[assignment]
+    body: str = ""
     axle: str | None = None
     link: str | None = None
     height: PlaceLength = 0.0
@@ -205,16 +205,16 @@ class SensorEntry(PlaceEntry):
 
     @model_validator(mode="after")
     def _one_place(self) -> SensorEntry:
-        if sum(item is not None for item in (self.body, self.axle, self.link)) != 1:
+        if bool(self.body) + (self.axle is not None) + (self.link is not None) != 1:
             raise PydanticCustomError("joint", "a sensor sits on a `body`, or belongs to an `axle` or a `link`")
-        if self.body is None and (self.x is not None or self.behind is not None or "channels" not in self.model_fields_set):
+        if not self.body and (self.x is not None or self.behind is not None or "channels" not in self.model_fields_set):
             raise PydanticCustomError("joint", "a sensor of an axle or link has `channels`, and no place along a body")
         return self
 
     @property
     def quantities(self) -> dict[str, str]:
         """What it may record, with SI units."""
-        if self.body is not None:
+        if self.body:
             return POINT_QUANTITIES
         return {**AXLE_QUANTITIES, **AXLE_MOTIONS} if self.axle is not None else LINK_QUANTITIES
 
@@ -225,7 +225,7 @@ class SensorEntry(PlaceEntry):
     def output(self, name: str, quantity: str) -> Output:
         """Return what stands for a quantity in a simulation; `name` is the sensor's."""
         channel = self.channel(name, quantity)
-        if self.body is not None:
+        if self.body:
             return PointOutput(channel, self.place(name), quantity)
         return ElementOutput(channel, self.axle or self.link or "", quantity)
 
