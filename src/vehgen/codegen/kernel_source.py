@@ -20,7 +20,7 @@ from vehgen.codegen.program import SAMPLE_PHASE, STEP_PHASE, Node
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 
 Precision = Literal["double", "single"]
-LANES = 32
+LANES = 16
 """Individuals that advance side by side in the innermost loop."""
 NONLINEAR_LANES = 16
 """The same with force laws, whose many constants would not stay in the first cache otherwise."""

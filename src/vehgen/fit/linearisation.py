@@ -18,7 +18,7 @@ UNIT_DIFFERENCE = 1e-6
 """Step of the differences to each side, in the unit cube and in units of an error's uncertainty: so short that jumps of a response
 seldom cross a sample."""
 READING_DIFFERENCE = 1e-3
-"""The same for what only changes readings."""
+"""The same for what only changes when a channel is read."""
 Slopes = dict[int, Array]
 """Derivatives of a run's motions `shape (n_samples, n_channels)` by its own errors, by their number."""
 
@@ -120,9 +120,11 @@ class _Trial:
         lines = misfit.channel_lines(self.number, motions, self.error)
         n = len(self.by_parameter) + len(shared)
         by_error = dict(zip(slopes, lines[n:], strict=True))
-        still = misfit.unread(self.number, self.centre, self.error)
-        read = misfit.read(self.number, still, self.error)
-        rows = [by_error[i - len(sensors)] if item.moves_vehicle else self._read(still, read, i) for i, item in enumerate(items)]
+        read = misfit.read_slopes(self.number, misfit.unread(self.number, self.centre, self.error), self.error)
+        for i in read:
+            if items[i].name in OF_TIME:
+                read[i] = self._late(i)
+        rows = [by_error[i - len(sensors)] if item.moves_vehicle else read[i] for i, item in enumerate(items)]
         return -misfit.whiten(self.number, np.concatenate([lines[:n], np.reshape(rows, (-1, *lines.shape[1:]))])), slopes
 
     def _moved(self, number: Array, error: Array) -> Array:
@@ -134,21 +136,14 @@ class _Trial:
         behind = misfit.respond(t, self.middle, self.numbers - number, self.error - error)[0]
         return np.asarray((ahead - behind) / (2 * UNIT_DIFFERENCE))
 
-    def _read(self, still: Complex, read: Complex, i: int) -> Complex:
-        """Return the derivative of the lines by an error that only changes readings, `still` the lines before they are read.
+    def _late(self, i: int) -> Complex:
+        """Return the derivative of the lines by an error of time.
 
         A late clock moves the window, too: along the valley in which clocks and a sensor's delay make up for each other even that counts.
         """
         step = READING_DIFFERENCE * np.eye(len(self.error))[i]
-        moves_window = self.misfit.errors[self.number].items[i].name in OF_TIME
-
-        def read_lines(error: Array) -> Complex:
-            own = self.misfit.unread(self.number, self.centre, error) if moves_window else still
-            return self.misfit.read(self.number, own, error)
-
-        if self.one_sided:
-            return np.asarray((read_lines(self.error + step) - read) / READING_DIFFERENCE)
-        return np.asarray((read_lines(self.error + step) - read_lines(self.error - step)) / (2 * READING_DIFFERENCE))
+        late, early = (self.misfit.channel_lines(self.number, self.centre, self.error + own) for own in (step, -step))
+        return np.asarray((late - early) / (2 * READING_DIFFERENCE))
 
 
 class Lineariser:

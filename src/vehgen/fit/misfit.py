@@ -202,7 +202,14 @@ class Misfit:
     def read(self, number: int, lines: Complex, error: Array) -> Complex:
         """Return what trial `number`'s sensors make of spectral lines of motions `shape (..., n_lines, n_channels)`."""
         reading = self.errors[number].reading(self.frequency(number), error)
-        return lines if reading is None else _apply(reading, lines)
+        return lines if reading is None else reading.apply(lines)
+
+    def read_slopes(self, number: int, lines: Complex, error: Array) -> dict[int, Complex]:
+        """Return the derivatives of :meth:`read` of lines `shape (n_lines, n_channels)` by errors of readings alone, by their number.
+
+        Those of time are for windows that stand.
+        """
+        return self.errors[number].read_slopes(self.frequency(number), error, lines)
 
     def read_at(self, number: int, lines: Complex, x: Array) -> Complex:
         """Return :meth:`read` of lines at all unknowns x."""

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.fit.nuisances import OF_FORCES, READING, Nuisance
+from vehgen.fit.reading import Reading
 from vehgen.fit.trial import Trial
-from vehgen.mechanics import GRAVITY
 from vehgen.road import Wander
 from vehgen.simulate import Scenario
 
@@ -96,29 +96,23 @@ class RunErrors:
         reading = self.reading(np.asarray(np.fft.rfftfreq(length, dt), dtype=np.float64), numbers)
         if reading is None:
             return motion
-        lines = (reading @ np.fft.rfft(motion, length, axis=0)[..., None])[..., 0]
+        lines = reading.apply(np.asarray(np.fft.rfft(motion, length, axis=0)))
         return np.asarray(np.fft.irfft(lines, length, axis=0)[: len(motion)])
 
-    def reading(self, frequency: Array, numbers: Array) -> Complex | None:
-        """Return what the channels read of what they should, line by line, `shape (n_lines, n_channels, n_channels)`; None: all of it.
-
-        A sensor tilted nose-down by t reads a cos t - g pitch sin t, one that sits d further forward a - d pitch''; a late clock turns
-        phases. What a low-pass takes off more than supposed is exp(-r x^2 - i d x^3) at x times half the rate.
-        """
+    def reading(self, frequency: Array, numbers: Array) -> Reading | None:
+        """Return what the channels read of what they should at lines of frequencies `shape (n_lines,)` [Hz]; None: all of it."""
         values = self._values(numbers)
         if not any(value for (name, _), value in values.items() if name in READING):
             return None
-        omega, x = 2 * np.pi * frequency, 2 * frequency / self.rate
-        pitch = np.divide(1.0, omega, out=np.zeros_like(omega), where=omega > 0)
-        columns = {(sensor, quantity): i for i, (_, sensor, quantity) in enumerate(self.channels)}
-        found = np.zeros((len(frequency), len(self.channels), len(self.channels)), dtype=np.complex128)
-        late = self._late(values)
-        for i, (name, sensor, quantity) in enumerate(self.channels):
-            own = np.exp(-1j * (late[i] * omega + values.get(("dispersion", sensor), 0.0) * x**3))
-            own *= np.exp(-values.get(("roll_off", sensor), 0.0) * x**2) * (1 + values.get(("gain", name), 0.0))
-            found[:, i, i] = own
-            if quantity == "acceleration" and (sensor, "pitch_rate") in columns:
-                tilt, shift = values.get(("tilt", sensor), 0.0), values.get(("position", sensor), 0.0)
-                found[:, i, i] *= math.cos(tilt)
-                found[:, i, columns[sensor, "pitch_rate"]] = own * 1j * (GRAVITY * math.sin(tilt) * pitch - shift * omega)
-        return found
+        return Reading.of(frequency, self.rate, self.channels, values, self._late(values))
+
+    def read_slopes(self, frequency: Array, numbers: Array, lines: Complex) -> dict[int, Complex]:
+        """Return the derivatives of what is read by the errors that change readings alone, by their number, `shape (n_lines, n_channels)`.
+
+        Of lines of motions `shape (n_lines, n_channels)`, under windows that stand.
+        """
+        values = self._values(numbers)
+        reading = Reading.of(frequency, self.rate, self.channels, values, self._late(values))
+        read = reading.apply(lines)
+        named = ((i, item) for i, item in enumerate(self.items) if item.name in READING)
+        return {i: item.sigma * reading.slope(item.name, item.place, lines, read) for i, item in named}

@@ -1,0 +1,58 @@
+"""What sensors read, line by line, and its derivatives by their errors."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vehgen.fit.reading import Reading
+
+FREQUENCY, RATE = np.linspace(0.5, 20.0, 40), 100.0
+CHANNELS = (("a1", "a", "acceleration"), ("q1", "a", "pitch_rate"), ("a2", "b", "acceleration"))
+ERRORS = {
+    ("gain", "a1"): 0.02,
+    ("gain", "a2"): -0.01,
+    ("tilt", "a"): 0.05,
+    ("position", "a"): 0.03,
+    ("roll_off", "a"): 0.2,
+    ("dispersion", "a"): 0.4,
+    ("dispersion", "b"): 0.1,
+    ("lag", "a"): 0.002,
+    ("clock", "b"): 0.004,
+}
+
+
+def reading(errors: dict[tuple[str, str], float]) -> Reading:
+    """Return what the channels read with these errors."""
+    clocks = [errors.get(("clock", sensor), 0.0) for _, sensor, _ in CHANNELS]
+    late = np.array([clocks[0], clocks[1] + errors.get(("lag", "a"), 0.0), clocks[2]])
+    return Reading.of(FREQUENCY, RATE, CHANNELS, errors, late)
+
+
+def test_a_tilted_sensor_reads_its_part_of_gravity() -> None:
+    """A body that pitches by e^(iwt) tilts its sensor's view of gravity; a place further forward feels the pitch acceleration."""
+    omega = 2 * np.pi * FREQUENCY
+    motion = np.column_stack([np.ones(40), 1j * omega, np.zeros(40)])
+    read = reading({("tilt", "a"): 0.05, ("position", "a"): 0.1}).apply(motion)
+    assert np.allclose(read[:, 0], np.cos(0.05) - 9.81 * np.sin(0.05) + 0.1 * omega**2, rtol=1e-3)
+    assert np.allclose(read[:, 1:], motion[:, 1:])
+
+
+def test_a_late_channel_turns_by_its_delay() -> None:
+    """A sine that comes 4 ms late is e^(-iw 4 ms) of the one that came in time."""
+    read = reading({("clock", "b"): 0.004}).apply(np.ones((40, 3), dtype=np.complex128))
+    assert np.allclose(read[:, 2], np.exp(-2j * np.pi * FREQUENCY * 0.004))
+    assert np.array_equal(read[:, :2], np.ones((40, 2)))
+
+
+@pytest.mark.parametrize("error", ERRORS)
+def test_derivatives_are_those_of_differences(error: tuple[str, str]) -> None:
+    """Moving one error by a little changes what is read as its derivative says."""
+    random = np.random.default_rng(3)
+    lines = random.normal(size=(40, 3)) + 1j * random.normal(size=(40, 3))
+    step = 1e-6
+    ahead, behind = (reading(ERRORS | {error: ERRORS[error] + own}).apply(lines) for own in (step, -step))
+    middle = reading(ERRORS)
+    found = middle.slope(*error, lines, middle.apply(lines))
+    assert np.abs(found).max() > 0.01
+    assert np.allclose(found, (ahead - behind) / (2 * step), rtol=1e-5, atol=1e-5)
