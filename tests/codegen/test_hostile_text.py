@@ -71,7 +71,22 @@ LABEL = re.compile(
     r"([pqf]_\d+|d?w_input_\d+|[uvxrafghWGMCKPQF]\d+(_\d+)*|vm\d+|s\d+_\d+_\d+|(static|rest)\d+|[AMK]_?_(inv|l)\d+(_\d+)?)\Z"
 )
 OWN = {"work", "j", "dt", "drives", "math", "lower", "upper", "sign", "step", "abs", "float32", "float64", "residual"}
-LOOP_NAMES = OWN | {"inputs", "rates", "forces", "keep", "responses", "n_steps", "n", "sample", "channel", "range", "KEPT"}
+LOOP_NAMES = OWN | {
+    "inputs",
+    "rates",
+    "forces",
+    "keep",
+    "responses",
+    "n_steps",
+    "n",
+    "sample",
+    "channel",
+    "range",
+    "KEPT",
+    "k",
+    "last",
+    "min",
+}
 
 
 @pytest.fixture(scope="module")
@@ -108,7 +123,7 @@ def check_source(text: str) -> None:
         if isinstance(statement, ast.Import | ast.ImportFrom):
             seen.append(ast.unparse(statement))
         elif isinstance(statement, ast.Assign):
-            assert ast.unparse(statement.targets[0]) in {"LANES", "PARAMETERS", "CONSTANTS", "STATE", "KEPT", "SCRATCH", "WORK"}
+            assert ast.unparse(statement.targets[0]) in {"LANES", "PARAMETERS", "CONSTANTS", "STATE", "DRIVES", "KEPT", "SCRATCH", "WORK"}
             assert type(statement.value.value) is int
         else:
             assert isinstance(statement, ast.FunctionDef)
@@ -121,7 +136,8 @@ def check_source(text: str) -> None:
                 continue
             assert ast.unparse(decorator.func) == "numba.njit"
             assert re.sub(r"\d+", "0", statement.body.pop(0).value.value) == (
-                "Advance 0 individuals over all steps; responses has shape (0, samples, 0)."
+                "Advance 0 individuals over all steps, each driven by its own inputs or all by one set.\n\n"
+                "    inputs, rates and forces have shape (sets, steps + 0, width), responses (0, samples, 0).\n    "
             )
             check_function(statement, LOOPS, LOOP_NAMES)
     assert set(seen) <= {

@@ -85,6 +85,21 @@ def test_blocks_threads_and_steps_do_not_change_an_individual(tractor):
     np.testing.assert_array_equal(fine[::10], one[0])
 
 
+def test_individuals_may_each_have_inputs_of_their_own(tractor):
+    model, kernel = tractor
+    excitation = hump_excitation(model, 1e-3, 3.0)
+    parameters = np.repeat([list(model.values().values())], 21, axis=0)
+    parameters[:, 0] *= np.linspace(0.9, 1.1, 21)
+    factors = np.linspace(-1.0, 1.0, 21)[:, None, None]
+    own = Excitation(1e-3, excitation.inputs * factors, excitation.rates * factors, np.zeros((21, *excitation.forces.shape)))
+    found = kernel.run(parameters, own, 10).responses
+    for i in (0, 3, 16, 20):
+        alone = Excitation(1e-3, own.inputs[i], own.rates[i], own.forces[i])
+        np.testing.assert_array_equal(found[i], kernel.run(parameters[i : i + 1], alone, 10).responses[0])
+    with pytest.raises(InputError, match="inputs"):
+        kernel.run(parameters[:20], own)
+
+
 def test_a_failed_individual_is_named_and_harms_no_other(tractor):
     model, kernel = tractor
     excitation = hump_excitation(model, 1e-3, 4.0)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.optimize
 
-from vehgen.fit.bounded import LinearisedPoint, minimise
+from vehgen.fit.bounded import LinearisedPoint, _slowly_within, _within, minimise
 
 
 def problem(seed, n=6):
@@ -110,3 +110,27 @@ def test_a_fit_with_derivatives_from_elsewhere_ends_only_where_those_of_the_poin
     assert abs(alone[1] - 4.0) > 1
     found = minimise(square, lambda x: point(x, stale), np.zeros(2), bounds, 1e-9, 60, lambda x: point(x, matrix))
     assert found == pytest.approx([3.0, 4.0], abs=1e-4)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_the_quick_way_within_bounds_ends_where_the_sure_one_does(seed):
+    """Nearly singular matrices of unknowns that undo one another included; both are the least within the bounds."""
+    random = np.random.default_rng(seed)
+    n = int(random.integers(2, 40))
+    rows = random.normal(size=(n, n)) * 10.0 ** random.uniform(-2, 2, n)
+    matrix = rows.T @ rows
+    size = 1 / np.sqrt(np.diagonal(matrix))
+    matrix = matrix * size[:, None] * size + 10.0 ** random.uniform(-8, -1) * np.eye(n)
+    right, low, high = 3 * random.normal(size=n), -random.uniform(0, 1, n), random.uniform(0, 1, n)
+    low[0] = high[0] = 0.25
+
+    def least(y):
+        return y @ matrix @ y / 2 - right @ y
+
+    quick, sure = _within(matrix, right, low, high), _slowly_within(matrix, right, low, high)
+    assert quick is not None
+    assert (low - 1e-9 <= quick).all()
+    assert (quick <= high + 1e-9).all()
+    assert least(quick) <= least(sure) + 1e-9 * abs(least(sure))
+    pull = right - matrix @ quick
+    assert np.abs(pull[(low + 1e-9 < quick) & (quick < high - 1e-9)]).max(initial=0.0) < 1e-6

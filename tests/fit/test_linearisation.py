@@ -40,6 +40,23 @@ def test_derivatives_by_errors_of_sensors_are_those_of_the_whole_misfit(late, na
         assert np.abs(spectra[start + i] - expected).max() < tolerance * np.abs(expected).max()
 
 
+@pytest.mark.parametrize("one_sided", [True, False])
+def test_derivatives_by_errors_of_runs_are_those_of_whole_simulations(late, tmp_path, one_sided):
+    """Of speed, wander and road, which one simulation of several individuals takes together: over a rough road and over a hump."""
+    hump = load_trials(write_run(tmp_path, "hump", sedan_truth()))[0]
+    whole, _ = misfit_of(hump, Nuisances())
+    error = np.concatenate([np.zeros(whole.n_parameters), np.full(whole.n_unknowns - whole.n_parameters, 0.3)])
+    for misfit, x in (late, (whole, error)):
+        found = linearise(misfit, x, one_sided=one_sided)
+        names = [item.name for item in misfit.errors[0].own]
+        assert {names[i] for i in found.slopes[0]} == set(names) - {"clock"}
+        for i in found.slopes[0]:
+            column = misfit.own_columns(0).start + i
+            step = 1e-5 * np.eye(len(x))[column]
+            expected = (misfit.whitened_spectrum(x + step)[0] - misfit.whitened_spectrum(x - step)[0]) / 2e-5
+            assert np.linalg.norm(found.spectra[0][column] - expected) < 1e-2 * np.linalg.norm(expected), names[i]
+
+
 def test_derivatives_by_errors_of_runs_are_taken_anew_when_asked(late):
     misfit, x = late
     derive = Lineariser(misfit, 5)

@@ -32,7 +32,7 @@ class Excitation:
     """What moves a vehicle, at the ends of every step of `dt` [s].
 
     `inputs`, `rates` `shape (n_steps + 1, n_inputs)`: displacement inputs [m] and their rates [m/s]; `forces` `shape (n_steps + 1,
-    n_forces)` [N].
+    n_forces)` [N]. All three may have an axis more ahead, of individuals each with inputs of its own.
     """
 
     dt: float
@@ -43,12 +43,12 @@ class Excitation:
     @property
     def n_steps(self) -> int:
         """Number of time steps."""
-        return int(self.inputs.shape[0]) - 1
+        return int(self.inputs.shape[-2]) - 1
 
     @property
     def time(self) -> Array:
         """Times of the inputs [s]."""
-        return np.arange(self.inputs.shape[0], dtype=np.float64) * self.dt
+        return np.arange(self.n_steps + 1, dtype=np.float64) * self.dt
 
 
 @dataclass(frozen=True)
@@ -180,7 +180,7 @@ class Kernel:
         parameters
             `shape (n_individuals, n_parameters)` in the order of `model.parameters`, SI units.
         excitation
-            Inputs and step, the same for all individuals.
+            Inputs and step, the same for all individuals or each one's own.
         decimation
             Every how many steps a sample is kept.
         initial
@@ -213,19 +213,21 @@ class Kernel:
         responses = np.empty((n_individuals, n_samples, n_channels))
         residuals = np.zeros(n_individuals)
         module = self._module
-        arrays = tuple(np.ascontiguousarray(item, dtype=number) for item in (excitation.inputs, excitation.rates, excitation.forces))
+        arrays = [np.ascontiguousarray(item, dtype=number) for item in (excitation.inputs, excitation.rates, excitation.forces)]
+        own = excitation.inputs.ndim == 3
 
         def block(first: int) -> None:
             last = min(first + lanes, n_individuals)
             rows = np.minimum(np.arange(first, first + lanes), last - 1)
             work = aligned(module.WORK, number)
             work[: columns.shape[1] * lanes] = np.ascontiguousarray(columns[rows].T).ravel()
-            state = work[module.STATE : module.KEPT]
+            state = work[module.STATE : module.DRIVES]
             if initial is not None:
                 state[: 2 * n_dof * lanes] = np.ascontiguousarray(initial[rows].T).ravel()
             direct = last - first == lanes and number is np.float64
             target = responses[first:last] if direct else np.empty((lanes, n_samples, n_channels), dtype=number)
-            module.advance(work, *arrays, excitation.dt, decimation, target)
+            drives = (item[first:last] if own else item[None] for item in arrays)
+            module.advance(work, *drives, excitation.dt, decimation, target)
             if not direct:
                 responses[first:last] = target[: last - first]
             if self.source.nonlinear:
@@ -263,7 +265,7 @@ class Kernel:
         shapes = {"inputs": len(self.model.inputs), "rates": len(self.model.inputs), "forces": len(self.model.forces)}
         for key, width in shapes.items():
             found = getattr(excitation, key).shape
-            if found != (excitation.n_steps + 1, width):
+            if found not in ((excitation.n_steps + 1, width), (len(parameters), excitation.n_steps + 1, width)):
                 raise InputError(f"the excitation's {key} have shape {found}; ({excitation.n_steps + 1}, {width}) was expected")
         if not (excitation.dt > 0 and decimation >= 1):
             raise InputError(

@@ -99,12 +99,13 @@ from vehgen.codegen.emit_llvm import emit_llvm'''
 
 
 class _WorkArray:
-    """Where the values of a kernel stand in its one array: parameters, constants, states, kept channels, scratch, in rows of lanes."""
+    """Where the values of a kernel stand in its one array, in rows of lanes."""
 
     def __init__(self, step: StepProgram, printer: PythonPrinter, lanes: int) -> None:
         self.step, self.printer, self.lanes = step, printer, lanes
         self.parameters = {node: i for i, node in enumerate([*step.parameters.values(), *step.static_travels.values()])}
         self.states = {step.program.labels[leaf]: i for i, (leaf, _) in enumerate(step.states)}
+        self.drives = {node: i for nodes in (step.drives, step.sample_drives) for i, node in enumerate(nodes)}
 
     def place(self, section: str, row: int) -> str:
         """Return a row of a section, as it is read and written."""
@@ -121,6 +122,8 @@ class _WorkArray:
         """Return how a leaf or a constant is read in a step or at a sample; None for what is already a variable."""
         if node in self.printer.constants:
             return self.place("CONSTANTS", self.printer.constants[node])
+        if node in self.drives:
+            return f"({self.printer.name(node)} + {self.place('DRIVES', self.drives[node])})"
         name = self.step.program.labels.get(node, "")
         if self.step.program.operations[node] == "leaf" and name in self.states:
             return self.place("STATE", self.states[name])
@@ -155,12 +158,13 @@ def _code(model: EquationsOfMotion, step: StepProgram, printer: PythonPrinter, l
     advance, advance_scratch = work.loops(printer.needed[STEP_PHASE], states, "STATE", work.loop_read)
     sample, sample_scratch = work.loops(printer.needed[SAMPLE_PHASE], step.channels, "KEPT", work.loop_read)
     scratch = max(setup_scratch, advance_scratch, sample_scratch)
-    sections = _sections(len(work.parameters), len(constants), len(states), len(step.channels), scratch)
-    means = _drive_reads(printer, step.drives, STEP_PHASE, f"{printer.number(0.5)}*({{array}}[n, {{i}}] + {{array}}[n + 1, {{i}}])", model)
-    values = _drive_reads(printer, step.sample_drives, SAMPLE_PHASE, "{array}[n, {i}]", model)
+    sections = _sections(len(work.parameters), len(constants), len(states), len(step.drives), len(step.channels), scratch)
+    mean = f"{printer.number(0.5)}*({{array}}[{{k}}, n, {{i}}] + {{array}}[{{k}}, n + 1, {{i}}])"
+    means, mean_names = _drive_reads(work, step.drives, STEP_PHASE, mean, len(model.inputs))
+    values, value_names = _drive_reads(work, step.sample_drives, SAMPLE_PHASE, "{array}[{k}, n, {i}]", len(model.inputs))
     setup_functions, setup_calls = _lane_functions("setup", setup, lanes, 1)
-    sample_functions, sample_calls = _lane_functions("sample", sample, lanes, 3, _names(values))
-    advance_functions, advance_calls = _lane_functions("advance", advance, lanes, 3, _names(means))
+    sample_functions, sample_calls = _lane_functions("sample", sample, lanes, 3, value_names)
+    advance_functions, advance_calls = _lane_functions("advance", advance, lanes, 3, mean_names)
     return [
         "",
         "LANES = " + str(lanes),
@@ -190,31 +194,32 @@ def _signature(n_channels: int, lanes: int, single: bool) -> list[str]:
         "",
         "",
         "@numba.njit(",
-        '    "void(f8[::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], f8, i8, f8[:, :, ::1])",'.replace("f8", "f4" if single else "f8"),
+        '    "void(f8[::1], f8[:, :, ::1], f8[:, :, ::1], f8[:, :, ::1], f8, i8, f8[:, :, ::1])",'.replace("f8", "f4" if single else "f8"),
         '    nogil=True, cache=True, fastmath={"contract", "nsz"}, error_model="numpy",',
         ")",
         "def advance(work, inputs, rates, forces, dt, keep, responses):",
-        f'    """Advance {lanes} individuals over all steps; responses has shape ({lanes}, samples, {n_channels})."""',
-        "    n_steps = inputs.shape[0] - 1",
+        f'    """Advance {lanes} individuals over all steps, each driven by its own inputs or all by one set.',
+        "",
+        f"    inputs, rates and forces have shape (sets, steps + 1, width), responses ({lanes}, samples, {n_channels}).",
+        '    """',
+        "    n_steps = inputs.shape[1] - 1",
+        "    last = inputs.shape[0] - 1",
     ]
-
-
-def _names(assignments: list[str]) -> list[str]:
-    return [line.partition(" = ")[0] for line in assignments]
 
 
 def _fold(text: str) -> str:
     """Write `work[STATE + 96 + j]` as `work[1248 + j]`, the one form of it that :func:`vehgen.codegen.emit_llvm.emit_llvm` reads."""
-    starts = {name: int(value) for name, value in re.findall(r"^(PARAMETERS|CONSTANTS|STATE|KEPT|SCRATCH) = (\d+)$", text, re.M)}
+    starts = {name: int(value) for name, value in re.findall(r"^(PARAMETERS|CONSTANTS|STATE|DRIVES|KEPT|SCRATCH) = (\d+)$", text, re.M)}
     return re.sub(r"work\[([A-Z]+) \+ (\d+) \+ j\]", lambda match: f"work[{starts[match[1]] + int(match[2])} + j]", text)
 
 
-def _sections(n_parameters: int, n_constants: int, n_states: int, n_channels: int, n_scratch: int) -> dict[str, int]:
+def _sections(n_parameters: int, n_constants: int, n_states: int, n_drives: int, n_channels: int, n_scratch: int) -> dict[str, int]:
     """Return where each section of the work array starts, in rows of lanes; WORK is its whole length.
 
     One array instead of several lets the compiler see from constant distances that no two accesses overlap.
     """
-    sizes = {"PARAMETERS": n_parameters, "CONSTANTS": n_constants, "STATE": n_states, "KEPT": n_channels, "SCRATCH": n_scratch}
+    sizes = {"PARAMETERS": n_parameters, "CONSTANTS": n_constants, "STATE": n_states, "DRIVES": n_drives, "KEPT": n_channels}
+    sizes["SCRATCH"] = n_scratch
     starts, start = {}, 0
     for name, size in sizes.items():
         starts[name] = start
@@ -222,15 +227,29 @@ def _sections(n_parameters: int, n_constants: int, n_states: int, n_channels: in
     return {**starts, "WORK": start}
 
 
-def _drive_reads(printer: PythonPrinter, drives: list[Node], phase: int, pattern: str, model: EquationsOfMotion) -> list[str]:
-    """Read the drives that a loop uses, once for all lanes."""
-    used = set(printer.needed[phase])
-    width = len(model.inputs)
-    lines = []
-    for place, node in enumerate(drives):
-        if node in used:
-            array = "inputs" if place < width else "rates" if place < 2 * width else "forces"
-            lines.append(
-                f"{printer.name(node)} = {pattern.format(array=array, i=place % width if place < 2 * width else place - 2 * width)}"
-            )
-    return lines
+def _drive_reads(work: _WorkArray, drives: list[Node], phase: int, pattern: str, width: int) -> tuple[list[str], list[str]]:
+    """Read the drives that a loop uses; return the lines and the names of what all lanes share.
+
+    A drive is the sum of what all lanes share and of each lane's own: where there is one set of drives, the latter stays 0, else the
+    former does, and lanes beyond the last set take that one.
+    """
+    used = set(work.printer.needed[phase])
+    found = [(place, *_source(place, width)) for place, node in enumerate(drives) if node in used]
+    if not found:
+        return [], []
+    names = [work.printer.name(drives[place]) for place, _, _ in found]
+    texts = [pattern.format(array=array, k="{k}", i=i) for _, array, i in found]
+    return [
+        *(f"{name} = {work.printer.number(0.0)}" for name in names),
+        "if last == 0:",
+        *(f"    {name} = {text.format(k=0)}" for name, text in zip(names, texts, strict=True)),
+        "else:",
+        f"    for j in range({work.lanes}):",
+        "        k = min(j, last)",
+        *(f"        {work.place('DRIVES', place)} = {text.format(k='k')}" for (place, _, _), text in zip(found, texts, strict=True)),
+    ], names
+
+
+def _source(place: int, width: int) -> tuple[str, int]:
+    """Return the array and the column of a drive: displacement inputs, then their rates, then forces."""
+    return ("forces", place - 2 * width) if place >= 2 * width else (("inputs", "rates")[place // width], place % width)

@@ -24,6 +24,8 @@ LARGEST_DAMPING, LEAST_DAMPING, LESS_DAMPING = 1e8, 1e-9, 1e-2
 """Damping that ends a fit, that is as good as none, and the factor for it where it stands in the way."""
 SMALLEST_EIGENVALUE = 1e-15
 """Curvature, as a share of the largest, that counts as none."""
+MOST_SETS = 20
+"""After so many sets of unknowns held at their bounds, another method looks for the right one."""
 SMALLEST_STEP = 1e-7
 """A step that changes no unknown by more than this ends a fit: unknowns count in the unit cube or in standard deviations."""
 
@@ -113,14 +115,47 @@ def _step(point: LinearisedPoint, x: Array, bounds: tuple[Array, Array], damping
     if np.all((low <= x + step) & (x + step <= high)):
         return step
     size = 1 / np.sqrt(scale)
-    values, vectors = np.linalg.eigh(point.information * size[:, None] * size + damping * np.eye(len(x)))
-    root = np.sqrt(np.maximum(values, SMALLEST_EIGENVALUE * values[-1]))
-    matrix, right = root[:, None] * vectors.T, -(vectors.T @ (point.gradient * size)) / root
+    matrix, right = point.information * size[:, None] * size + damping * np.eye(len(x)), -point.gradient * size
     room = (low - x) / size, (high - x) / size
-    apart = room[1] > room[0]
-    found = np.zeros_like(x)
-    found[apart] = scipy.optimize.lsq_linear(matrix[:, apart], right, (room[0][apart], room[1][apart]), method="bvls").x
-    return np.asarray(np.clip(x + found * size, low, high) - x)
+    found = _within(matrix, right, *room)
+    return np.asarray(np.clip(x + (_slowly_within(matrix, right, *room) if found is None else found) * size, low, high) - x)
+
+
+def _within(matrix: Array, right: Array, low: Array, high: Array) -> Array | None:
+    """Return where y'My/2 - b'y is least between bounds, of a positive definite M, b = `right`; None where that is not found quickly.
+
+    Unknowns are held at the bounds that they cross, and let go where they would leave them, until the sets stay as they are
+    (M. Hintermueller, K. Ito, K. Kunisch, SIAM J. Optim. 13, 2002, doi:10.1137/S1052623401383558).
+    """
+    held = low >= high
+    below, above = held.copy(), np.zeros_like(held)
+    for _ in range(MOST_SETS):
+        free = ~(below | above)
+        found = np.where(above, high, low)
+        if free.any():
+            try:
+                factor = scipy.linalg.cho_factor(matrix[np.ix_(free, free)])
+            except np.linalg.LinAlgError:
+                return None
+            found[free] = scipy.linalg.cho_solve(factor, right[free] - matrix[np.ix_(free, ~free)] @ found[~free])
+        pull = right - matrix @ found
+        now = held | np.where(free, found < low, below & (pull < 0)), ~held & np.where(free, found > high, above & (pull > 0))
+        if np.array_equal(now[0], below) and np.array_equal(now[1], above):
+            return found
+        below, above = now
+    return None
+
+
+def _slowly_within(matrix: Array, right: Array, low: Array, high: Array) -> Array:
+    """Return what :func:`_within` looks for by a method that always ends."""
+    values, vectors = np.linalg.eigh(matrix)
+    root = np.sqrt(np.maximum(values, SMALLEST_EIGENVALUE * values[-1]))
+    apart = high > low
+    found = np.where(apart, 0.0, low)
+    rows = root[:, None] * vectors.T
+    sides = (vectors.T @ right) / root - rows @ found
+    found[apart] = scipy.optimize.lsq_linear(rows[:, apart], sides, (low[apart], high[apart]), method="bvls").x
+    return found
 
 
 def _solve(matrix: Array, right: Array) -> Array:

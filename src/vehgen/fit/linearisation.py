@@ -109,11 +109,9 @@ class _Trial:
         misfit, shared, sensors = self.misfit, self.misfit.shared, self.misfit.sensors
         items = misfit.errors[self.number].items
         steps = UNIT_DIFFERENCE * np.eye(len(shared))
-        by_shared = [self._moved(step * item.scale, np.zeros(len(items))) for item, step in zip(shared, steps, strict=True)]
-        slopes: Slopes = dict(known or {})
-        for i, item in enumerate(items):
-            if item.moves_vehicle and i - len(sensors) not in slopes:
-                slopes[i - len(sensors)] = self._moved(np.zeros(len(shared)), UNIT_DIFFERENCE * np.eye(len(items))[i])
+        by_shared = [self._by_shared(step * item.scale) for item, step in zip(shared, steps, strict=True)]
+        wanted = [i for i, item in enumerate(items) if item.moves_vehicle and i - len(sensors) not in (known or {})]
+        slopes: Slopes = {**(known or {}), **{i - len(sensors): own for i, own in self._by_errors(wanted).items()}}
         motions = np.concatenate(
             [self.by_parameter, np.reshape(by_shared, (-1, *self.centre.shape)), *(own[None] for own in slopes.values())]
         )
@@ -127,14 +125,24 @@ class _Trial:
         rows = [by_error[i - len(sensors)] if item.moves_vehicle else read[i] for i, item in enumerate(items)]
         return -misfit.whiten(self.number, np.concatenate([lines[:n], np.reshape(rows, (-1, *lines.shape[1:]))])), slopes
 
-    def _moved(self, number: Array, error: Array) -> Array:
-        """Return the change of the motions per UNIT_DIFFERENCE, when adjustments and errors are moved by these steps."""
-        misfit, t = self.misfit, self.number
-        ahead = misfit.respond(t, self.middle, self.numbers + number, self.error + error)[0]
+    def _by_shared(self, step: Array) -> Array:
+        """Return the change of the motions per UNIT_DIFFERENCE, when adjustments are moved by these steps."""
+        ahead = self.misfit.respond(self.number, self.middle, self.numbers + step, self.error)[0]
         if self.one_sided:
             return np.asarray((ahead - self.centre) / UNIT_DIFFERENCE)
-        behind = misfit.respond(t, self.middle, self.numbers - number, self.error - error)[0]
+        behind = self.misfit.respond(self.number, self.middle, self.numbers - step, self.error)[0]
         return np.asarray((ahead - behind) / (2 * UNIT_DIFFERENCE))
+
+    def _by_errors(self, wanted: list[int]) -> Slopes:
+        """Return the derivatives of the motions by these errors, all from one simulation of several individuals."""
+        if not wanted:
+            return {}
+        steps = UNIT_DIFFERENCE * np.eye(len(self.error))[wanted]
+        moved = np.vstack([np.zeros((1, len(self.error))), steps] + ([] if self.one_sided else [-steps]))
+        responses, n = self.misfit.respond_nearby(self.number, self.middle[0], self.numbers, self.error + moved), len(wanted)
+        if self.one_sided:
+            return dict(zip(wanted, (responses[1:] - responses[0]) / UNIT_DIFFERENCE, strict=True))
+        return dict(zip(wanted, (responses[1 : n + 1] - responses[n + 1 :]) / (2 * UNIT_DIFFERENCE), strict=True))
 
     def _late(self, i: int) -> Complex:
         """Return the derivative of the lines by an error of time.

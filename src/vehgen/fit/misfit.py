@@ -138,10 +138,7 @@ class Misfit:
 
     def scenario(self, x: Array, number: int) -> Scenario:
         """Return what trial `number` drives through, with its errors and the adjustments."""
-        scenario = self.errors[number].scenario(self.problem.trials[number].scenario, self.errors_of(x, number))
-        for item, value in zip(self.shared, self.adjusted(x), strict=True):
-            scenario = item.scenario(scenario, float(value))
-        return scenario
+        return self._driven(number, self.problem.trials[number], self.adjusted(x), self.errors_of(x, number))
 
     def conditions(self, x: Array) -> tuple[Condition, ...]:
         """Return what the unknowns say of sensors and runs."""
@@ -182,10 +179,27 @@ class Misfit:
         left to :meth:`channel_lines`. `trial` stands in for the trial itself, with another step.
         """
         trial = trial or self.problem.trials[number]
+        response = self.problem.respond(values, trial, self._driven(number, trial, numbers, error))[0]
+        return self._adjust(trial, response, numbers)
+
+    def respond_nearby(self, number: int, values: Array, numbers: Array, errors: Array) -> Array:
+        """Return how the places of trial `number`'s sensors move at several errors of the trial that hardly differ.
+
+        As :meth:`respond` at searched values `shape (n_parameters,)` [SI], at errors `shape (n, n_errors)` of the trial; differences from
+        the first are right to the first order. `shape (n, n_samples, n_channels)`.
+        """
+        trial = self.problem.trials[number]
+        first, *others = (self._driven(number, trial, numbers, error) for error in errors)
+        return self._adjust(trial, self.problem.respond_nearby(values, trial, first, others), numbers)
+
+    def _driven(self, number: int, trial: Trial, numbers: Array, error: Array) -> Scenario:
+        """Return what a trial drives through, at adjustments and errors."""
         scenario = self.errors[number].scenario(trial.scenario, error)
         for item, value in zip(self.shared, numbers, strict=True):
             scenario = item.scenario(scenario, float(value))
-        response = self.problem.respond(values, trial, scenario)[0]
+        return scenario
+
+    def _adjust(self, trial: Trial, response: Array, numbers: Array) -> Array:
         for i, item in enumerate(self.shared):
             response = item.response(trial, response, numbers[i:])
         return response

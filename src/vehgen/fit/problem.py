@@ -57,6 +57,15 @@ class Problem:
         failed[list(result.failures)] = True
         return result.responses, failed
 
+    def respond_nearby(self, values: Array, trial: Trial, scenario: Scenario, others: Sequence[Scenario]) -> Array:
+        """Simulate searched values `shape (space.size,)` [SI] over a scenario of a trial and others that hardly differ from it.
+
+        Returns
+        -------
+        Responses `shape (1 + len(others), n_samples, n_channels)`, that of `scenario` first (see :meth:`Simulator.run_nearby`).
+        """
+        return trial.simulator.run_nearby(self.population(values[None], trial)[0], scenario, others)
+
     def with_trials(self, trials: Sequence[Trial]) -> Problem:
         """Return the problem over other trials."""
         return replace(self, trials=tuple(trials))

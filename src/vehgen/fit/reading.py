@@ -57,7 +57,9 @@ class Reading:
             lost = values.get(("roll_off", sensor), 0.0) * square
             turned[:, i] = np.exp(-lost - 1j * phase) * (1 + values.get(("gain", name), 0.0))
         columns = {sensor: i for i, (_, sensor, quantity) in enumerate(channels) if quantity == "pitch_rate"}
-        beside = {i: columns[sensor] for i, (_, sensor, quantity) in enumerate(channels) if quantity == "acceleration" and sensor in columns}
+        beside = {
+            i: columns[sensor] for i, (_, sensor, quantity) in enumerate(channels) if quantity == "acceleration" and sensor in columns
+        }
         return cls(frequency, rate, channels, values, turned, beside)
 
     def apply(self, lines: Complex) -> Complex:
@@ -67,11 +69,13 @@ class Reading:
             tilt, shift = self._mounting(self.channels[i][1])
             found[..., i] *= math.cos(tilt)
             if tilt or shift:
-                found[..., i] += self.turned[:, i] * 1j * (GRAVITY * math.sin(tilt) * self._pitch - shift * self._omega) * lines[..., column]
+                found[..., i] += (
+                    self.turned[:, i] * 1j * (GRAVITY * math.sin(tilt) * self._pitch - shift * self._omega) * lines[..., column]
+                )
         return np.asarray(found)
 
     def slope(self, name: str, place: str, lines: Complex, read: Complex) -> Complex:
-        """Return the derivative of what is read by an error [per its unit], `shape (n_lines, n_channels)`; a clock's for a window that stands.
+        """Return the derivative of what is read by an error [per its unit], `shape (n_lines, n_channels)`; windows stand.
 
         Parameters
         ----------

@@ -4,7 +4,7 @@ from vehgen.road.humps import Hump
 from vehgen.road.iso8608 import CLASSES, Iso8608Road, check_length, displacement_psd
 from vehgen.road.speed import AdjustedSpeed, ConstantSpeed, SpeedHistory, SpeedLaw, Wander
 from vehgen.road.track import UNDEFORMED, MeasuredProfile, Profile, Track
-from vehgen.road.wheels import WheelInputs, pass_time, wheel_inputs
+from vehgen.road.wheels import WheelInputs, nearby_inputs, pass_time, wheel_inputs
 
 __all__ = [
     "CLASSES",
@@ -22,6 +22,7 @@ __all__ = [
     "WheelInputs",
     "check_length",
     "displacement_psd",
+    "nearby_inputs",
     "pass_time",
     "wheel_inputs",
 ]

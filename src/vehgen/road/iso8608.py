@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,11 +68,18 @@ class Iso8608Road:
     def height(self, s: Array) -> Array:
         """Return the height [m] at positions s along the road [m]: zero before it starts, periodic beyond its length."""
         s = np.asarray(s, dtype=np.float64)
-        period = len(self._heights) * self.spacing
-        grid = np.arange(len(self._heights) + 1) * self.spacing
-        closed = np.append(self._heights, self._heights[0])
-        taper = 0.5 - 0.5 * np.cos(np.pi * np.clip(s / TAPER, 0.0, 1.0))
-        return np.asarray(taper * np.interp(np.mod(s, period), grid, closed))
+        grid, closed = self._closed
+        first, last, period = float(s.min(initial=0.0)), float(s.max(initial=0.0)), float(grid[-1])
+        heights = np.interp(s if first >= 0 and last < period else np.mod(s, period), grid, closed)
+        if first < TAPER:
+            heights *= 0.5 - 0.5 * np.cos(np.pi * np.clip(s / TAPER, 0.0, 1.0))
+        return np.asarray(heights)
+
+    @cached_property
+    def _closed(self) -> tuple[Array, Array]:
+        """Places and heights of one period, both ends included."""
+        heights = np.append(self._heights, self._heights[0])
+        return np.asarray(np.arange(len(heights)) * self.spacing, dtype=np.float64), np.asarray(heights, dtype=np.float64)
 
 
 def check_length(length: float) -> None:

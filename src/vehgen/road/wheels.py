@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,9 +17,13 @@ LONGEST_PASS_S = 1e6
 """Longer than this nobody drives to a hump [s]."""
 
 
+_SLOPE_STEP_M = 1e-6
+"""Distance over which a road's slope is taken [m]: a wheel's way between two simulations of a difference is as short."""
+
+
 @dataclass(frozen=True)
 class WheelInputs:
-    """Road `heights` [m] and their `rates` [m/s] under every axle, both `shape (n_steps + 1, n_axles)`."""
+    """Road `heights` [m] and their `rates` [m/s] under every axle, both `shape (..., n_steps + 1, n_axles)`."""
 
     heights: Array
     rates: Array
@@ -42,14 +47,57 @@ def wheel_inputs(track: Track, speed: SpeedLaw, offsets: Array, time: Array) -> 
     -------
     Heights at these times, and central differences over half a step to both sides (second order).
     """
-    offsets = np.asarray(offsets, dtype=np.float64)
-    half = (time[1] - time[0]) / 2 if len(time) > 1 else 0.5
-    moments = np.empty(2 * len(time) + 1)  # the times, and those half a step before and after them
-    moments[1::2], moments[0:-1:2], moments[-1] = time, time - half, time[-1] + half
+    way = speed.distance(_moments(time))
+    return _inputs(track.height(_under(way, offsets)), _step(time))
+
+
+def nearby_inputs(track: Track, speed: SpeedLaw, others: Sequence[SpeedLaw], offsets: Array, time: Array) -> WheelInputs:
+    """Return the road under every axle at speeds that hardly differ from another one.
+
+    Heights change as the road slopes where the wheels are: exact to the first order in how far the ways differ, which derivatives by
+    differences need, at the price of two looks at the road for all of them.
+
+    Parameters
+    ----------
+    track, speed, offsets, time
+        As in :func:`wheel_inputs`.
+    others
+        Speeds that hardly differ from `speed`.
+
+    Returns
+    -------
+    Heights and rates, both `shape (len(others), n_steps + 1, n_axles)`.
+    """
+    moments = _moments(time)
     way = speed.distance(moments)
-    along = way[None, 1::2] - offsets[:, None]  # axle by axle: looking up neighbours in a table is quick
-    around = track.height(way[None, ::2] - offsets[:, None])
-    return WheelInputs(track.height(along).T, np.diff(around, axis=1).T / (2 * half))
+    under = _under(way, offsets)
+    heights = track.height(under)
+    slopes = (track.height(under + _SLOPE_STEP_M) - heights) / _SLOPE_STEP_M
+    farther = np.stack([other.distance(moments) - way for other in others])
+    return _inputs(heights + slopes * farther[:, None, :], _step(time))
+
+
+def _moments(time: Array) -> Array:
+    """Return the times, and those half a step before and after them, in turn."""
+    half = _step(time) / 2
+    moments = np.empty(2 * len(time) + 1)
+    moments[1::2], moments[0:-1:2], moments[-1] = time, time - half, time[-1] + half
+    return moments
+
+
+def _step(time: Array) -> float:
+    return float(time[1] - time[0]) if len(time) > 1 else 1.0
+
+
+def _under(way: Array, offsets: Array) -> Array:
+    """Return where every axle is, `shape (n_axles, n_moments)`: axle by axle, as looking up neighbours in a table is quick."""
+    return np.asarray(way[None, :] - np.asarray(offsets, dtype=np.float64)[:, None])
+
+
+def _inputs(heights: Array, step: float) -> WheelInputs:
+    """Return what heights `shape (..., n_axles, n_moments)` at the moments of a run make."""
+    rates = (heights[..., 2::2] - heights[..., :-2:2]) / step
+    return WheelInputs(np.swapaxes(heights[..., 1::2], -1, -2), np.swapaxes(rates, -1, -2))
 
 
 def pass_time(track: Track, speed: SpeedLaw, offsets: Array) -> float:

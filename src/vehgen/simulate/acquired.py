@@ -8,7 +8,7 @@ vehicle rests before the run begins; a chain that looks ahead sees the excitatio
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,10 +19,13 @@ from vehgen.codegen import Excitation, Kernel, KernelResult
 from vehgen.codegen.decimation import decimate
 from vehgen.measure.acquisition import AcquisitionChain
 from vehgen.simulate.excitation_cache import ExcitationCache
+from vehgen.simulate.nearby import nearby_excitation
 from vehgen.simulate.scenario import Scenario
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+Driven = Callable[[int], Excitation]
+"""What drives a population, so many samples longer than its scenario."""
 LEAST_RATIO = 5
 """Kept steps per sample, at least, of what a FIR filter decimates ..."""
 LEAST_RATE = 500.0
@@ -52,7 +55,14 @@ def kept_samples(scenario: Scenario, channels: Sequence[str], nonlinear: bool) -
     return len(scenario.time) // (kept_stride(scenario) if fine else scenario.decimation) + 1
 
 
-def acquire(kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, threads: int | None = None) -> KernelResult:
+def acquire(
+    kernel: Kernel,
+    parameters: Array,
+    scenario: Scenario,
+    offsets: Array,
+    threads: int | None = None,
+    nearby: Sequence[Scenario] = (),
+) -> KernelResult:
     """Run a population whose axles stand alike and return what its recorders keep.
 
     Parameters
@@ -67,19 +77,29 @@ def acquire(kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Arra
         Each axle's distance behind the first to arrive `shape (n_axles,)` [m].
     threads
         How many cores to use (default: all).
+    nearby
+        Scenarios that hardly differ: the first individual is run over `scenario`, each other one over one of these.
     """
-    found = _acquired(kernel, parameters, scenario, offsets, threads)
+    found = _acquired(kernel, parameters, scenario, offsets, threads, nearby)
     return replace(found, responses=found.responses[:, scenario.skipped :]) if scenario.skipped else found
 
 
-def _acquired(kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, threads: int | None) -> KernelResult:
+def _acquired(
+    kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, threads: int | None, nearby: Sequence[Scenario]
+) -> KernelResult:
     chains = [chain.filtering() for chain in assumed_chains(scenario, [channel.name for channel in kernel.model.channels])]
     distinct, begin = set(chains), _initial(scenario, len(parameters))
+
+    def excitation(ahead: int) -> Excitation:
+        """Return what drives the individuals, so many samples longer than the scenario."""
+        longer = extended(scenario, ahead)
+        return nearby_excitation(longer, [extended(item, ahead) for item in nearby], offsets) if nearby else longer.excitation(offsets)
+
     if all(chain.is_point_sample for chain in distinct):
-        return kernel.run(parameters, scenario.excitation(offsets), scenario.decimation, begin, threads)
-    if len(distinct) == 1 and not kernel.source.nonlinear and begin is None:
-        return _filtered_input(kernel, parameters, scenario, offsets, chains[0], threads)
-    return _filtered_output(kernel, parameters, scenario, offsets, chains, threads)
+        return kernel.run(parameters, excitation(0), scenario.decimation, begin, threads)
+    if len(distinct) == 1 and not kernel.source.nonlinear and begin is None and not nearby:
+        return _filtered_input(kernel, parameters, scenario, excitation, chains[0], threads)
+    return _filtered_output(kernel, parameters, scenario, excitation, chains, threads)
 
 
 def _initial(scenario: Scenario, count: int) -> Array | None:
@@ -93,14 +113,14 @@ def extended(scenario: Scenario, samples: int) -> Scenario:
 
 
 def _filtered_input(
-    kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, chain: AcquisitionChain, threads: int | None
+    kernel: Kernel, parameters: Array, scenario: Scenario, excitation: Driven, chain: AcquisitionChain, threads: int | None
 ) -> KernelResult:
     """Run over the filtered excitation, from as many samples before the run as the chain looks ahead."""
     ahead = math.ceil(max(-chain.taps(scenario.dt)[0], 0) / scenario.decimation)
-    raw = extended(scenario, ahead).excitation(offsets)
+    raw = excitation(ahead)
     lead, last = ahead * scenario.decimation, len(scenario.time)
-    excitation = _FILTERED.find((id(raw), chain, lead, last), raw, lambda: _filtered(raw, chain, lead, last))
-    result = kernel.run(parameters, excitation, scenario.decimation, threads=threads)
+    filtered = _FILTERED.find((id(raw), chain, lead, last), raw, lambda: _filtered(raw, chain, lead, last))
+    result = kernel.run(parameters, filtered, scenario.decimation, threads=threads)
     return replace(result, responses=result.responses[:, ahead:]) if ahead else result
 
 
@@ -138,13 +158,13 @@ def kept_stride(scenario: Scenario) -> int:
 
 
 def _filtered_output(
-    kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, chains: Sequence[AcquisitionChain], threads: int | None
+    kernel: Kernel, parameters: Array, scenario: Scenario, excitation: Driven, chains: Sequence[AcquisitionChain], threads: int | None
 ) -> KernelResult:
     """Run with kept steps between the samples and decimate every channel by its own chain."""
     stride = kept_stride(scenario)
     ratio = scenario.decimation // stride
     filters = {chain: chain.taps(scenario.dt * stride) for chain in dict.fromkeys(chains)}
     ahead = math.ceil(max(0, *(-first for first, _ in filters.values())) / ratio)
-    result = kernel.run(parameters, extended(scenario, ahead).excitation(offsets), stride, _initial(scenario, len(parameters)), threads)
+    result = kernel.run(parameters, excitation(ahead), stride, _initial(scenario, len(parameters)), threads)
     count = (len(scenario.time) - 1) // scenario.decimation + 1
     return replace(result, responses=decimate(result.responses, [filters[chain] for chain in chains], ratio, count, threads))

@@ -144,17 +144,33 @@ class Scenario:
 
         Neither they nor the arrays of the scenario are to be written to: the last excitations are remembered.
         """
+        road = (*self._road_key, self.track.scale, *self._speed_key, np.asarray(offsets, dtype=float).tobytes())
+        key = (*road, self.start, self.dt, len(self.time), id(self.ground), id(self.forces))
+        return _EXCITATIONS.find(key, (self.track, self.speed, self.ground, self.forces), lambda: self.new_excitation(offsets))
+
+    @property
+    def _road_key(self) -> tuple[object, ...]:
+        return id(self.track.parts), self.track.footprint, self.track.deformation
+
+    @property
+    def _speed_key(self) -> tuple[object, ...]:
         law: SpeedLaw = self.speed
         errors: tuple[object, ...] = ()
         while isinstance(law, AdjustedSpeed):
             errors = (*errors, law.delay, law.scale, law.anchor, law.wander)
             law = law.law
-        track = (id(self.track.parts), self.track.footprint, self.track.scale, self.track.deformation)
-        road = (*track, id(law), errors, np.asarray(offsets, dtype=float).tobytes())
-        key = (*road, self.start, self.dt, len(self.time), id(self.ground), id(self.forces))
-        return _EXCITATIONS.find(key, (self.track, self.speed, self.ground, self.forces), lambda: self._excitation(offsets))
+        return id(law), errors
 
-    def _excitation(self, offsets: Array) -> Excitation:
+    def same_road(self, other: Scenario, *, but_height: bool = False) -> bool:
+        """Whether the vehicle of another scenario drives over the same road, or one that differs in its height alone."""
+        return self._road_key == other._road_key and (but_height or self.track.scale == other.track.scale)
+
+    def same_speed(self, other: Scenario) -> bool:
+        """Whether the vehicle of another scenario is always where this one is."""
+        return self._speed_key == other._speed_key
+
+    def new_excitation(self, offsets: Array) -> Excitation:
+        """Return what :meth:`excitation` does, neither looked up nor remembered."""
         wheels = wheel_inputs(self.track, self.speed, offsets, self.time)
         half = self.dt / 2
         ground, ground_rates = [], []

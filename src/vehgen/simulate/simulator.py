@@ -141,6 +141,27 @@ class Simulator:
         _warn_of(failures, len(parameters))
         return KernelResult(self._add_static(parameters, responses, failures), failures, residuals)
 
+    def run_nearby(self, individual: Array, scenario: Scenario, others: Sequence[Scenario]) -> Array:
+        """Simulate one individual over a scenario and others that hardly differ from it, all at once.
+
+        What differs is right to the first order: for derivatives by differences.
+
+        Parameters
+        ----------
+        individual
+            `shape (n_parameters,)`.
+        scenario, others
+            Scenarios of the same length, step and chains.
+
+        Returns
+        -------
+        Responses `shape (1 + len(others), n_samples, n_channels)`, that of `scenario` first.
+        """
+        parameters = np.repeat(individual[None, :], 1 + len(others), axis=0)
+        layout = np.round(self.wheel_offsets(parameters[:1]), 12)[0]
+        result = acquire(self.kernel, parameters, scenario, layout, 1, others)
+        return self._add_static(parameters, result.responses, result.failures)
+
     def jacobian(self, parameters: Array, scenario: Scenario, names: Sequence[str], relative_step: float = 1e-4) -> tuple[Array, Array]:
         """Return one individual's response and its derivatives, by perturbed lanes of one population.
 
