@@ -14,7 +14,8 @@ from vehgen.mechanics import derive
 from vehgen.road import ConstantSpeed, Hump, Iso8608Road, SpeedHistory, Track, pass_time
 from vehgen.simulate import load_run
 from vehgen.simulate.budgets import check_population
-from vehgen.simulate.scenario import Scenario, make_scenario
+from vehgen.simulate.run_scenario import make_scenario
+from vehgen.simulate.scenario import Scenario
 from vehgen.vehicle import load_vehicle, parse_vehicle
 
 ENTRY = "{hump: {shape: half_sine, length: 0.5 m, height: 0.03 m, at: 4 m}}"
@@ -133,7 +134,7 @@ def test_the_worst_are_refused_within_little_memory_and_time(name, tmp_path):
         "from vehgen.errors import InputError\n"
         "from vehgen.mechanics import derive\n"
         "from vehgen.simulate import load_run\n"
-        "from vehgen.simulate.scenario import make_scenario\n"
+        "from vehgen.simulate.run_scenario import make_scenario\n"
         "used = int(open('/proc/self/statm').read().split()[0]) * resource.getpagesize()\n"
         "seconds = int(sum(resource.getrusage(resource.RUSAGE_SELF)[:2])) + 6\n"
         "resource.setrlimit(resource.RLIMIT_AS, (used + 2**28, used + 2**28))\n"

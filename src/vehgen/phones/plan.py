@@ -22,7 +22,7 @@ from vehgen.mechanics import Place, PointOutput
 from vehgen.phones.csv_table import ColumnMap
 from vehgen.road import Hump, MeasuredProfile, Profile
 from vehgen.simulate.run_file.entries import HumpEntry
-from vehgen.simulate.scenario import check_hump_points
+from vehgen.simulate.run_scenario import check_hump_points
 from vehgen.vehicle import Vehicle
 
 HUMP_KEYS = ("shape", "length", "height", "ramp", "radius", "file", "distance", "height_column")

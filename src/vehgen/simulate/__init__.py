@@ -10,7 +10,8 @@ from vehgen.simulate.modes import Mode, Modes, natural_modes
 from vehgen.simulate.pool import SimulatorPool
 from vehgen.simulate.run_file import Run, load_run
 from vehgen.simulate.run_like import RunLike, as_run
-from vehgen.simulate.scenario import Scenario, make_scenario
+from vehgen.simulate.run_scenario import make_scenario
+from vehgen.simulate.scenario import Scenario
 from vehgen.simulate.signals import Signal
 from vehgen.simulate.simulator import Response, Simulator, simulate, write_csv
 from vehgen.simulate.state_space import StateSpace, state_space

@@ -1,47 +1,29 @@
-"""From a run file to what drives the vehicle: road under every wheel, forces, moving ground."""
+"""What drives the vehicle in a run: road under every wheel, forces, moving ground."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.codegen import Excitation
-from vehgen.errors import InputError
-from vehgen.files.limits import HUMP_HEIGHT, HUMP_LENGTH, SPEED_LIMIT
-from vehgen.files.tables import TableColumns, read_columns
 from vehgen.measure.acquisition import POINT_SAMPLES, AcquisitionChain
-from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.road import (
     AdjustedSpeed,
-    ConstantSpeed,
     Hump,
-    Iso8608Road,
     MeasuredProfile,
-    Profile,
-    SpeedHistory,
     SpeedLaw,
     Track,
     Wander,
-    check_length,
-    pass_time,
     wheel_inputs,
 )
-from vehgen.simulate.budgets import check_run, placed
 from vehgen.simulate.excitation_cache import ExcitationCache
-from vehgen.simulate.initial_state import initial_state
-from vehgen.simulate.run_file import Run
-from vehgen.simulate.run_file.acquisition import channel_chains
-from vehgen.simulate.run_file.entries import HumpEntry
 from vehgen.simulate.signals import Signal
 
 Array = NDArray[np.float64]
-AFTER_LAST_HUMP = 3.0
-"""Seconds simulated after the last wheel left the last hump, where a run does not say how long it is."""
 NULLS_TO = 30.0
 """Above it [Hz] no axle hops."""
 LOBES_SOUGHT = 2000.0
@@ -183,120 +165,3 @@ class Scenario:
         inputs = np.column_stack([wheels.heights, *ground])
         rates = np.column_stack([wheels.rates, *ground_rates])
         return Excitation(self.dt, inputs, rates, forces)
-
-
-def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) -> Scenario:
-    """Build the scenario of a run file.
-
-    Raises
-    ------
-    InputError
-        For files that cannot be read, dimensions that do not fit, a run with no end, and one that would cost too much.
-    """
-    file = run.file
-    offsets = model.wheel_offsets(values)
-    speed = _speed(run)
-    if file.duration is not None:
-        _check_cost(run, file.duration, speed, model)
-    parts = tuple(_road_part(number, run, speed, offsets) for number in range(len(file.road)))
-    track = Track(parts, footprint=file.footprint or 0.0)
-    if file.duration is not None:
-        duration = file.duration
-    elif any(isinstance(part, Hump) for part in parts):
-        with placed(run, "road", key=True):
-            duration = pass_time(track, speed, offsets) + AFTER_LAST_HUMP
-        _check_cost(run, duration, speed, model)
-    else:
-        raise InputError("a run without a hump needs `duration`, e.g. 10 s", run.document.position)
-    names = model.inputs[len(run.vehicle.axles) :]
-    ground = tuple(_ground(run, name.partition(".")[2]) for name in names)
-    forces = tuple(
-        Signal(harmonic=entry.harmonic) if entry.harmonic else _measured(run, entry.file or "", entry.time, entry.force, ("forces", name))
-        for name, entry in file.forces.items()
-    )
-    chains = channel_chains(run, 1 / (file.step * run.decimation))
-    return Scenario(track, speed, duration, file.step, run.decimation, ground, forces, chains=chains, initial=initial_state(run, model))
-
-
-def _check_cost(run: Run, duration: float, speed: SpeedLaw, model: EquationsOfMotion) -> None:
-    check_run(run, duration, float(speed.distance(np.array([duration]))[0]), len(model.inputs))
-
-
-def _speed(run: Run) -> SpeedLaw:
-    spec = run.file.speed
-    if isinstance(spec, float):
-        return ConstantSpeed(spec)
-    found = _columns(run, spec.file, (spec.time, spec.speed), ("speed", "file"))
-    found.check_ascending()
-    if (stands := np.flatnonzero(found.values[1] <= 0)).size:
-        raise InputError("every speed of a history must be above 0", found.place(int(stands[0]), 1))
-    found.check_limit(1, SPEED_LIMIT)
-    return SpeedHistory(*found.values)
-
-
-def _road_part(number: int, run: Run, speed: SpeedLaw, offsets: Array) -> Profile:
-    entry = run.file.road[number]
-    if entry.hump is not None:
-        return _hump(entry.hump, run, ("road", number, "hump"))
-    if entry.profile is not None:
-        names = entry.profile.distance, entry.profile.height
-        found = _columns(run, entry.profile.file, names, ("road", number, "profile", "file"))
-        found.check_ascending()
-        return MeasuredProfile(*found.values)
-    assert entry.iso8608 is not None
-    with placed(run, "road", number, "iso8608", key=True):
-        return Iso8608Road(entry.iso8608.class_, entry.iso8608.seed, _random_length(run, speed, offsets))
-
-
-def _random_length(run: Run, speed: SpeedLaw, offsets: Array) -> float:
-    """Return how long random roads must be [m]; raises InputError where all of them together would be too long."""
-    if run.file.duration is None:
-        length = 100.0 + float(offsets.max(initial=0.0))
-        length = max([length, *(item.hump.at + 100.0 for item in run.file.road if item.hump is not None)])
-    else:
-        length = float(speed.distance(np.array([run.file.duration]))[0]) + 10.0
-    check_length(length * sum(entry.iso8608 is not None for entry in run.file.road))
-    return length
-
-
-def _hump(entry: HumpEntry, run: Run, place: tuple[str | int, ...]) -> Hump:
-    if entry.shape == "points":
-        found = _columns(run, entry.file or "", (entry.distance, entry.height_column), (*place, "file"))
-        check_hump_points(found)
-        return Hump.from_points(entry.at, *found.values)
-    extra = {"ramp": entry.ramp} if entry.ramp is not None else {}
-    if entry.radius is not None:
-        extra["radius"] = entry.radius
-    assert entry.length is not None
-    assert entry.height is not None
-    with placed(run, *place, "radius" if entry.shape == "rectangle" else "length"):
-        return Hump.from_shape(entry.shape, entry.at, entry.length, entry.height, **extra)
-
-
-def _ground(run: Run, link: str) -> Signal | None:
-    entry = run.file.displacements.get(link)
-    if entry is None:
-        return None
-    if entry.harmonic is not None:
-        return Signal(harmonic=entry.harmonic)
-    return _measured(run, entry.file or "", entry.time, entry.displacement, ("displacements", link))
-
-
-def _measured(run: Run, file: str, time: str, column: str, place: tuple[str, ...]) -> Signal:
-    found = _columns(run, file, (time, column), (*place, "file"))
-    found.check_ascending(least=1)
-    return Signal(time=found.values[0], values=found.values[1])
-
-
-def _columns(run: Run, file: str, names: tuple[str, str], place: tuple[str | int, ...]) -> TableColumns:
-    with placed(run, *place):
-        return read_columns(Path(run.folder) / file, names)
-
-
-def check_hump_points(points: TableColumns) -> None:
-    """Check the points of a hump, distance and height [m]; raises InputError at the row that is wrong."""
-    points.check_ascending()
-    points.check_limit(1, HUMP_HEIGHT)
-    length = float(np.ptp(points.values[0]))
-    if (reason := HUMP_LENGTH.refusal(length)) is not None:
-        raise InputError(reason, points.place(-1))

@@ -24,7 +24,8 @@ from vehgen.mechanics import ElementOutput, EquationsOfMotion, Output, Place, de
 from vehgen.simulate.acquired import acquire, kept_samples
 from vehgen.simulate.budgets import check_population
 from vehgen.simulate.run_like import RunLike, as_run
-from vehgen.simulate.scenario import Scenario, make_scenario
+from vehgen.simulate.run_scenario import make_scenario
+from vehgen.simulate.scenario import Scenario
 from vehgen.simulate.warnings import lift_off, spectral_nulls, step_too_coarse
 from vehgen.vehicle import VehicleLike
 
