@@ -80,7 +80,7 @@ An entry is one of three kinds:
   its amplitude and phase, is solved for in every run. It has no parameters of its own.
 
 `low`, `high` and `starts` count in `unit`, or with `times` as multiples of a size of the place: an expression of its static `load`, its
-suspension's `k` and `c`, its tyre's `kt`, its body's `mass`, `inertia` and `length`, and a typical `travel` (of all tyres: their mean).
+suspension's `k` and `c`, its tyre's `kt`, its body's `mass`, `inertia` and `length`, and a typical `travel` (of all tyres, or of a group of axles: their mean).
 Runs and sensors have no sizes. `signature`, `source` and `global` may be left out. `global: true` says that no single place explains the
 effect: it is tried wherever a force at one place does not suffice. Units are checked when the file is read.
 `vehgen schema --effects` prints the JSON Schema.
@@ -129,7 +129,8 @@ def page() -> str:
         "",
         "What `vehgen diagnose` can name. Ranges are what it searches, as multiples of the place's own size where it has one",
         "(static load, stiffness, typical travel). Every picture shows tractor5 over a hump of 50 mm at 2.5 m/s, without the",
-        "effect (grey) and with it (blue), at the strength at which a search begins.",
+        "effect (grey) and with it (blue), at the strength at which a search begins. What lives at a suspension is also looked for in",
+        "all suspensions alike (`all suspensions`), and in those of a body's axles behind the first (`axle4 and axle5`).",
         "",
         *OWN.splitlines(),
         "",

@@ -26,6 +26,11 @@ def test_a_named_effect_reads_as_a_sentence():
         (found("cubic_stiffness", "axle2", k3=1.02e8), "Cubic stiffness of about 1.02e+08 N/m^3 in the axle2 suspension"),
         (found("dry_friction", "rear", force=12345.0), "Dry friction of about 12300 N in the rear suspension"),
         (found("tyre_footprint", "all tyres", length=0.12), "Tyre footprint of about 0.12 m in all tyres"),
+        (found("dry_friction", "all suspensions", force=400.0), "Dry friction of about 400 N in all suspensions, alike"),
+        (
+            found("dry_friction", "axle4 and axle5", force=400.0),
+            "Dry friction of about 400 N in the suspensions of axle4 and axle5, alike",
+        ),
         (found("tyre_liftoff", "front"), "Tyre that leaves the road in the front tyre"),
         (found("hinge_stiffness", "fifth_wheel", k=5e5), "Hinge stiffness of about 500000 N m in the hinge fifth_wheel"),
         (found("sensor_gain", "F_az", gain=1.2), "Sensor gain of about 1.2 at F_az"),
@@ -61,3 +66,15 @@ def test_what_is_in_no_library_is_told_by_where_it_is():
     assert "of 12 tried, dry friction in the front suspension comes nearest and leaves chi 3.21" in text
     assert text.endswith("an unknown force in the rear suspension, an unknown force in the rear tyre or leaving out the sensor F would")
     assert "would not either" in wording.not_in_library(None, [])
+
+
+def test_parts_of_a_gap_are_told_with_what_each_leaves():
+    friction, gain = found("dry_friction", "rear", force=446.0), found("sensor_gain", "F_az", gain=1.2)
+    assert wording.several_effects([friction, gain], [9.66, 3.0, 1.04], 0.99) == (
+        "Dry friction of about 446 N in the rear suspension (9.66 to 3) and sensor gain of about 1.2 at F_az (3 to 1.04), in brackets the "
+        "chi before and after each: together they explain 99 % of what the model missed on runs that they were not fitted to, none does alone"
+    )
+    assert wording.ranked([(friction, 0.62), (gain, -0.1)]) == (
+        "by the share of the gap that each would close alone: Dry friction of about 446 N in the rear suspension 62 % and sensor gain of "
+        "about 1.2 at F_az 0 %"
+    )

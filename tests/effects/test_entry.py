@@ -52,7 +52,7 @@ def test_the_pages_example_begins_with_two_laws_of_a_suspension(file, site):
     assert list(effects) == ["soft_damper", "symmetric_stop", "stiff_carcass", "late_phone", "cooling_fan"]
     damper, stop, *_ = effects.values()
     assert damper.equation == "f = c3*v^3 + k3*d^3"
-    assert damper.places(site.vehicle, ()) == ("front", "rear")
+    assert damper.places(site.vehicle, ()) == ("front", "rear", "all suspensions")
     c3, k3 = damper.parameters
     assert c3.bounds(site) == pytest.approx((0.01 * site.c / 0.01, 100 * site.c / 0.01))
     assert k3.first(site) == (1e7,)

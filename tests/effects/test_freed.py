@@ -69,7 +69,7 @@ def test_a_hard_mount_is_none():
 def test_only_a_suspension_with_a_dashpot_has_a_mount_for_it():
     bare = parse_vehicle("extends: sedan2\naxles:\n  rear: {suspension: {c: 0 N s/m}}\n")
     assert dampers(bare, ()) == ("front",)
-    assert dampers(load_vehicle("sedan2"), ()) == ("front", "rear")
+    assert dampers(load_vehicle("sedan2"), ()) == ("front", "rear", "all suspensions")
 
 
 def test_what_is_freed_are_the_parameters_that_the_file_names_there():

@@ -56,6 +56,10 @@ def test_fits_begin_where_what_they_add_was_not_absorbed():
         ("dry_friction", "rear", found(parts=["rear"]), True),
         ("dry_friction", "rear", found(parts=["front"]), False),
         ("dry_friction", "rear", found(parts=["front"], one_force=False), False),
+        ("dry_friction", "all suspensions", found(parts=["rear"]), False),
+        ("dry_friction", "all suspensions", found(parts=["body"], one_force=False), True),
+        ("dry_friction", "axle4 and axle5", found(parts=["axle5"], one_force=False), True),
+        ("dry_friction", "axle4 and axle5", found(parts=["axle2"], one_force=False), False),
         ("walking_beam", "axle4+axle5", found(parts=["axle5"]), True),
         ("cargo_module", "semitrailer", found(parts=["axle1"], one_force=False), True),
         ("cargo_module", "semitrailer", found(parts=["axle1"]), False),
@@ -127,3 +131,21 @@ def test_what_packages_add_must_be_effects_with_names_of_their_own(monkeypatch):
     install(monkeypatch, "dry_friction")
     with pytest.raises(InputError, match="is not an Effect"):
         registry.library()
+
+
+@pytest.mark.parametrize("name", ["dry_friction", "asymmetric_damping", "damper_mount"])
+def test_a_group_of_suspensions_changes_as_its_members_do_with_one_set_of_numbers(name):
+    vehicle = load_vehicle("tractor5")
+    assert [place for place in EFFECTS[name].places(vehicle, ()) if " " in place] == [
+        "all suspensions",
+        "axle2 and axle3",
+        "axle4 and axle5",
+    ]
+    locator = EffectLocator(vehicle, vehicle.values())
+    group = EFFECTS[name].change(locator.site("axle4 and axle5"))
+    changed = vehicle.with_changes(group)
+    assert len(group["parameters"]) == len(EFFECTS[name].parameters)
+    for axle in vehicle.axles:
+        alone = vehicle.with_changes(EFFECTS[name].change(locator.site(axle)))
+        kinds = [[key for law in item.axles[axle].suspension.laws for key in law] for item in (alone, changed)]
+        assert kinds[1] == (kinds[0] if axle in ("axle4", "axle5") else [])

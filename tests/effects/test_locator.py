@@ -34,3 +34,13 @@ def test_all_tyres_are_sized_as_their_mean():
     assert every.kt == pytest.approx(sum(site.kt for site in each) / 5)
     assert every.load == pytest.approx(sum(site.load for site in each) / 5)
     assert min(site.travel for site in each) <= every.travel <= max(site.travel for site in each)
+
+
+def test_a_group_of_suspensions_is_sized_as_their_mean_and_axles_of_a_beam_as_their_sum():
+    vehicle = load_vehicle("tractor5")
+    locator = EffectLocator(vehicle, vehicle.values())
+    each = [locator.site(name) for name in ("axle4", "axle5")]
+    group, beam = locator.site("axle4 and axle5"), locator.site("axle4+axle5")
+    assert group.load == pytest.approx(sum(site.load for site in each) / 2)
+    assert beam.k == pytest.approx(2 * group.k) == pytest.approx(sum(site.k for site in each))
+    assert locator.site("all suspensions").c == pytest.approx(sum(locator.site(name).c for name in vehicle.axles) / 5)

@@ -10,19 +10,20 @@ import numpy as np
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose import wording
 from vehgen.diagnose.collecting import run_chis
+from vehgen.diagnose.combining import Combiner
 from vehgen.diagnose.design.experiment import VISIBLE, propose_stronger
 from vehgen.diagnose.detect.detection import Detection, believable, look_again, run_gaps
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
-from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit
+from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.checks import variety_notes
 from vehgen.diagnose.inputs.conditions import BEYOND
 from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.judging import explain_gap, plain_mistakes, recorded_mistakes, supposed_mistakes
 from vehgen.diagnose.localise.free_form import FreeForm, fit_free_form, recover, strongest
-from vehgen.diagnose.localise.localisation import localise, suffices
+from vehgen.diagnose.localise.localisation import localise
 from vehgen.diagnose.naming import Naming
 from vehgen.diagnose.result import Decided, DiagnosisModels
-from vehgen.diagnose.select.criteria import adds, needs_both, p_value_of, passes, seeds, unfinished
+from vehgen.diagnose.select.criteria import excess, p_value_of, passes, unfinished
 from vehgen.diagnose.select.estimates import gain_interval
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.search import DiagnosisProgress, Fitter, SearchRound, fit_leading_again, merit, search_round
@@ -33,10 +34,10 @@ from vehgen.errors import InputError
 LOOK_AGAIN_SHARE = 0.5
 """Where the best candidate leaves no more than this share of the excess, recorder and profiles are judged by it."""
 LOOKS_AGAIN = 2
+NEAREST = 4
+"""So many of the effects that come nearest are told where nothing can be named."""
 MUCH_QUIETER = 2.0
 """Where noise is found to be less by so much, all candidates are weighed anew by it."""
-MOST_EFFECTS = 3
-"""So many effects are added at most."""
 
 
 class Decision:
@@ -53,6 +54,7 @@ class Decision:
         self.effects = effects
         self.rounds: list[SearchRound] = []
         self.chain: list[ModelFit] = []
+        self.parts = False
         self.notes: list[str] = []
         self.interrupted = False
         self.tried = len(self._candidates(self.base))
@@ -141,13 +143,11 @@ class Decision:
         good = passes(best, self.base)
         weak = self._too_weak(first, best, good)
         if weak is None and good:
-            self.chain = [best]
-            self._further()
+            self.chain = self._combiner().further([best])
             if not self.interrupted and max(self.chain[-1].training, self.chain[-1].validation) > limit.NAMED_LEFT**2:
-                self.chain = []
-                self._pair(first)
+                self._combine(first)
         elif weak is None:
-            self._pair(first)
+            self._combine(first)
         return weak
 
     def _other_mistakes(self, first: SearchRound) -> Decided | None:
@@ -161,7 +161,7 @@ class Decision:
         of_vehicle = all(candidate.effect.changes_vehicle for candidate in named)
         if self.detection.chi <= limit.WEAK or (self.chain and of_vehicle and not unsure):
             return None
-        mistakes = explain_gap(self.detection, leading, unsure)
+        mistakes = explain_gap(self.detection, leading, unsure, leading or next(iter(first.fits), None))
         return self._mistaken(mistakes) if mistakes else None
 
     def _too_weak(self, first: SearchRound, best: ModelFit, good: bool) -> Decided | None:
@@ -202,39 +202,15 @@ class Decision:
         self.interrupted = self.interrupted or found.stopped
         return found
 
-    def _further(self) -> None:
-        """Look again on what the last fit leaves, until nothing is left or nothing passes."""
-        while len(self.chain) < MOST_EFFECTS and unfinished(self.chain[-1], self.base):
-            found = self._search_round(self.chain[-1])
-            if found.stopped or not found.fits or not adds(found, found.fits[0]):
-                return
-            if p_value_of(found, found.fits[0], self.tried) > limit.SIGNIFICANT:
-                return
-            self.chain.append(found.fits[0])
+    def _combiner(self) -> Combiner:
+        return Combiner(self.detection, self.base, self.tried, self._search_round, self.rounds)
 
-    def _pair(self, first: SearchRound) -> None:
-        """Look for a pair of effects that passes; where one force leaves noise, only a tyre and its suspension can be two."""
-        tried = seeds(first)[:1] if suffices(first.passed, self.base) else seeds(first)
-        for seed in tried:
-            known = evaluate_fit(seed.effects, seed.least_squares, self.detection.validation_runs, self.detection.floor.noises)
-            found = self._search_round(known)
-            if found.stopped:
-                return
-            if found.fits and self._both(first, found, found.fits[0]):
-                self.chain = [known, found.fits[0]]
-                self._further()
-                return
-
-    def _both(self, first: SearchRound, found: SearchRound, pair: ModelFit) -> bool:
-        interval = gain_interval(self.base, pair, self.validation_runs)
-        return (
-            passes(pair, self.base)
-            and adds(found, pair)
-            and needs_both(pair, first.fits)
-            and p_value_of(found, pair, self.tried) <= limit.SIGNIFICANT
-            and interval is not None
-            and interval[0] > 0
-        )
+    def _combine(self, first: SearchRound) -> None:
+        """Look for a pair of effects that passes, then for a set of parts."""
+        self.chain = self._combiner().pair(first)
+        if not self.chain and not self.interrupted:
+            self.chain = self._combiner().together(first)
+            self.parts = bool(self.chain)
 
     def _gap(self, fit: ModelFit | None = None) -> Gap:
         last = fit or self.base
@@ -278,6 +254,9 @@ class Decision:
             )
         if strained := [item.message for item in supposed_mistakes(self.detection)]:
             self.notes.append(wording.supposed(strained))
+        if first.fits:
+            shares = [1 - excess(fit.training) / max(excess(self.base.training), 1e-9) for fit in first.fits[:NEAREST]]
+            self.notes.append(wording.ranked([(self._words(fit.last), share) for fit, share in zip(first.fits, shares, strict=False)]))
         causes = [wording.force_words(item.place.kind, item.place.name) for item in first.passed[:3]]
         ended = self._end("not_in_library", wording.not_in_library(best, causes))
         shown = strongest(first.passed)
@@ -289,7 +268,7 @@ class Decision:
 
     def _name(self, chain: list[ModelFit]) -> Decided:
         naming = Naming(self.detection, self.rounds, self.tried, self.progress, self.interrupted)
-        named = naming.verdict(chain)
+        named = naming.parts(chain) if self.parts else naming.verdict(chain)
         verdict = replace(named, gap=self._gap(chain[-1]), places=self._places(), notes=(*self.notes, *named.notes))
         return self._decided(verdict, chain)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -63,6 +64,15 @@ class Naming:
         told = [item.sentence for item in effects]
         reason = wording.named(told, validation_gain(self.base, last), [self._words(item.candidate) for item in ties])
         return self._named(last, ties, effects, reason)
+
+    def parts(self, chain: Sequence[ModelFit]) -> Verdict:
+        """Return the verdict `several_effects`, of effects of which only all together close the gap, with what each closes."""
+        last = chain[-1]
+        effects = [self._effect(self._round_of(chain[i]), last, i, []) for i in range(len(chain))]
+        left = [float(np.sqrt(fit.training)) for fit in (self.base, *chain)]
+        reason = wording.several_effects([item.sentence for item in effects], left, validation_gain(self.base, last))
+        found = Verdict("several_effects", reason, tuple(effects), Gap(self.base.chi, last.chi, 1.0, ()), notes=self._notes(last))
+        return replace(found, next_experiment=wording.ONE_AT_A_TIME)
 
     def _alternatives(self, chain: Sequence[ModelFit], number: int) -> list[Alternative]:
         """Return what ties with an effect: the last one's in its round, earlier ones' beside all that were found after them."""

@@ -10,7 +10,16 @@ from pydantic import Field
 from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.files.results import Result, Table
 
-VerdictName = Literal["no_missing_effect", "named", "ambiguous", "not_in_library", "too_weak", "insufficient_data", "measurement_fault"]
+VerdictName = Literal[
+    "no_missing_effect",
+    "named",
+    "several_effects",
+    "ambiguous",
+    "not_in_library",
+    "too_weak",
+    "insufficient_data",
+    "measurement_fault",
+]
 
 
 @dataclass(frozen=True)

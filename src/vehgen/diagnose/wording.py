@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.verdict import NamedParameter
-from vehgen.effects.places import ALL_RUNS, ALL_TYRES, EACH_TYRE
+from vehgen.effects.places import ALIKE, ALL_RUNS, ALL_SUSPENSIONS, ALL_TYRES, EACH_TYRE
 from vehgen.fit.nuisances import Condition
 from vehgen.vehicle import Vehicle
 
@@ -35,6 +36,10 @@ def place_words(attaches: str, place: str) -> str:
         return "in all tyres"
     if place == EACH_TYRE:
         return "in all tyres, of each its own"
+    if place == ALL_SUSPENSIONS:
+        return "in all suspensions, alike"
+    if ALIKE in place:
+        return f"in the suspensions of {join_names(place.split(ALIKE), 'and')}, alike"
     if place == ALL_RUNS:
         return "in all runs"
     if attaches == "axles":
@@ -96,6 +101,35 @@ def named(effects: Sequence[str], gain: float | None, ties: Sequence[str] = ()) 
     what = what or f"{share_words(gain or 0.0)} of what the model missed {fitted}"
     more = f"; {join_names([*map(_inner, ties)])} would do as well as one of these" if ties else ""
     return f"{join_names([effects[0], *map(_inner, effects[1:])], 'and')}: {who} {what}{more}"
+
+
+def several_effects(effects: Sequence[str], left: Sequence[float], gain: float | None) -> str:
+    """Return the verdict `several_effects`.
+
+    Parameters
+    ----------
+    effects
+        What was found, of :func:`effect_words`, each beside those before it.
+    left
+        The chi of the base, then what each effect leaves.
+    gain
+        The share of the excess on validation runs that they close together; None where these show no gap.
+    """
+    steps = [f"{before:.3g} to {after:.3g}" for before, after in pairwise(left)]
+    told = [f"{_inner(text) if i else text} ({step})" for i, (text, step) in enumerate(zip(effects, steps, strict=True))]
+    what = "what the model missed on the runs for fitting" if gain is None else ""
+    what = what or f"{share_words(gain or 0.0)} of what the model missed {UNSEEN_RUNS.replace('it was', 'they were')}"
+    return f"{join_names(told, 'and')}, in brackets the chi before and after each: together they explain {what}, none does alone"
+
+
+ONE_AT_A_TIME = "runs that move one part at a time (one axle, slow and fast, small and large) tell whether each of these is there"
+"""What to do where only several effects together explain the recordings."""
+
+
+def ranked(effects: Sequence[tuple[str, float]]) -> str:
+    """Return the note of effects that come nearest, with the share of the gap that each would close."""
+    told = join_names([f"{_inner(text) if i else text} {max(100 * share, 0):.0f} %" for i, (text, share) in enumerate(effects)], "and")
+    return f"by the share of the gap that each would close alone: {told}"
 
 
 def ambiguous(effects: Sequence[str]) -> str:

@@ -11,6 +11,7 @@ from vehgen.diagnose.fits.occurring import occurring
 from vehgen.diagnose.select.estimates import estimate
 from vehgen.diagnose.verdict import Verdict
 from vehgen.effects import EffectLocator
+from vehgen.effects.base import merge
 from vehgen.files.names import MAX_TEXT, joined_name
 from vehgen.files.yaml_writer import yaml_document
 from vehgen.fit.problem import Problem
@@ -40,22 +41,13 @@ def effect_file(fit: ModelFit, base: Problem, verdict: Verdict, folder: Path, na
         site = EffectLocator(extended, dict(trial.values), occurring(fit)).site(candidate.place)
         own = {parameter.name: values[symbol] for parameter, symbol in zip(candidate.effect.parameters, candidate.parameters, strict=True)}
         change = candidate.effect.change(site, own)
-        _merge(data, change)
+        merge(data, change)
         extended = extended.with_changes(change)
     for effect in verdict.effects:
         for key, item in effect.parameters.items():
             interval = "" if item.interval is None else f", 90 % interval {item.interval[0]:.5g} to {item.interval[1]:.5g}"
             comments.append(f"{effect.name} at {effect.place}: {key} = {item.value:.5g} {item.unit}{interval}")
     return yaml_document(data, comments)
-
-
-def _merge(data: dict[str, Any], change: dict[str, Any]) -> None:
-    """Lay a change over data, mapping by mapping; a list replaces the one before, which it repeats."""
-    for key, value in change.items():
-        if isinstance(value, dict) and isinstance(data.get(key), dict):
-            _merge(data[key], value)
-        else:
-            data[key] = value
 
 
 def file_name(vehicle: str, fit: ModelFit) -> str:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from vehgen.effects.evidence import Origins, PlaceEvidence, Residual, StartingPoint
 from vehgen.effects.locator import EffectLocator, EffectSite, Size, base_parameters
-from vehgen.effects.places import EVERY_TYRE, Places
+from vehgen.effects.places import ALIKE, ALL_SUSPENSIONS, EVERY_TYRE, Places
 from vehgen.files.expressions import Expression
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.trial import Trial
@@ -187,6 +187,8 @@ class Effect(ABC):
         """Return whether it is worth fitting at a place, by what the place test found."""
         if place in EVERY_TYRE:
             return not evidence.one_force or "tyre" in evidence.kinds
+        if place == ALL_SUSPENSIONS or ALIKE in place:
+            return not evidence.one_force and (place == ALL_SUSPENSIONS or not evidence.parts.isdisjoint(place.split(ALIKE)))
         touches = not evidence.parts.isdisjoint(place.split("+"))
         return touches or (self.is_global and not evidence.one_force)
 
@@ -210,3 +212,12 @@ class Effect(ABC):
 def distinct(*points: StartingPoint) -> list[StartingPoint]:
     """Return starting points, each once."""
     return [point for i, point in enumerate(points) if all(point is not other for other in points[:i])]
+
+
+def merge(data: Change, change: Change) -> None:
+    """Lay a change over data, mapping by mapping; a list replaces the one before, which it repeats."""
+    for key, value in change.items():
+        if isinstance(value, dict) and isinstance(data.get(key), dict):
+            merge(data[key], value)
+        else:
+            data[key] = value

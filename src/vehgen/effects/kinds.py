@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.effects.base import Change, Effect, EffectParameter, SearchDimension, Symbols, distinct
+from vehgen.effects.base import Change, Effect, EffectParameter, SearchDimension, Symbols, distinct, merge
 from vehgen.effects.evidence import Origins, PlaceEvidence, Residual, StartingPoint
 from vehgen.effects.locator import EffectLocator, EffectSite
+from vehgen.effects.places import alike
 from vehgen.errors import InputError
 from vehgen.files.expressions import Expression
 from vehgen.files.names import MAX_TEXT, joined_name
@@ -72,7 +73,10 @@ class VehicleEffect(Effect):
                 "range": [Expression.quantity(low, parameter.unit), Expression.quantity(high, parameter.unit)],
                 "meaning": f"{self.title}: {parameter.meaning}"[:MAX_TEXT],
             }
-        change = self.edit(site, {name: Expression.symbol(symbol) for name, symbol in symbols.items()})
+        named = {name: Expression.symbol(symbol) for name, symbol in symbols.items()}
+        change: Change = {}
+        for place in alike(site.vehicle, site.place) or (site.place,):
+            merge(change, self.edit(replace(site, place=place), named))
         change["parameters"] = {**declared, **change.get("parameters", {})}
         return change
 

@@ -8,7 +8,7 @@ from typing import Literal
 
 import sympy as sp
 
-from vehgen.effects.places import EVERY_TYRE
+from vehgen.effects.places import EVERY_TYRE, alike, members
 from vehgen.mechanics import GRAVITY, EquationsOfMotion, derive, static_loads
 from vehgen.mechanics.energies import pitch_inertia
 from vehgen.vehicle import Vehicle
@@ -80,12 +80,12 @@ def base_parameters(vehicle: Vehicle, place: str, sizes: Sequence[Size]) -> tupl
     vehicle
         The vehicle.
     place
-        An axle, link, hinge, axles joined by `+`, or all tyres; at any other place there are none.
+        An axle, link, hinge, a group of axles, or all tyres; at any other place there are none.
     sizes
         Which of them.
     """
     wanted: set[str] = set()
-    for name in vehicle.axles if place in EVERY_TYRE else place.split("+"):
+    for name in members(vehicle, place):
         axle = vehicle.axles.get(name)
         spring = axle.suspension if axle is not None else vehicle.links.get(name) or vehicle.hinges.get(name)
         known = {} if spring is None else {"k": spring.k, "c": spring.c}
@@ -125,9 +125,9 @@ class EffectLocator:
         return dict(zip(expressions, self._model.evaluate_list(expressions.values(), values), strict=True))
 
     def site(self, place: str) -> EffectSite:
-        """Return the site of an axle, link, hinge, body, group of axles joined by `+`, or of all tyres, sized as their mean."""
+        """Return the site of an axle, link, hinge, body, axles joined by `+`; of all tyres or a group of axles, sized as their mean."""
         vehicle, known = self.vehicle, self._known
-        names = list(vehicle.axles) if place in EVERY_TYRE else place.split("+")
+        names = members(vehicle, place)
         load = k = c = kt = 0.0
         body = names[0]
         for name in names:
@@ -158,7 +158,7 @@ class EffectLocator:
         length = max(marks) - min(marks) if len(marks) > 1 else 1.0
         if names[0] in vehicle.bodies:
             load = mass * GRAVITY
-        if place in EVERY_TYRE:
+        if place in EVERY_TYRE or alike(vehicle, place):
             load, k, c, kt = (size / len(names) for size in (load, k, c, kt))
         stroke = max((item.travel for item in occurs), default=0.0)
         if stroke > 0 and k == 0:

@@ -15,7 +15,44 @@ ALL_TYRES = "all tyres"
 EACH_TYRE = "each tyre"
 """All tyres as well, each with numbers of its own."""
 EVERY_TYRE = (ALL_TYRES, EACH_TYRE)
+ALL_SUSPENSIONS = "all suspensions"
+ALIKE = " and "
+"""Joins the axles of a group whose suspensions change alike, by the same numbers."""
 ALL_RUNS = "all runs"
+
+
+def alike(vehicle: Vehicle, place: str) -> tuple[str, ...]:
+    """Return the axles of a group whose suspensions change alike; nothing at other places."""
+    if place == ALL_SUSPENSIONS:
+        return tuple(_suspended(vehicle))
+    return tuple(place.split(ALIKE)) if ALIKE in place else ()
+
+
+def overlap(one: str, other: str) -> bool:
+    """Return whether two places are the same, or one is a group that the other is of."""
+    if ALL_SUSPENSIONS in (one, other):
+        return True
+    return not set(one.split(ALIKE)).isdisjoint(other.split(ALIKE))
+
+
+def members(vehicle: Vehicle, place: str) -> tuple[str, ...]:
+    """Return the axles that a place is of, or the place itself: all of them, a group, or those joined by `+`."""
+    if place in EVERY_TYRE:
+        return tuple(vehicle.axles)
+    return alike(vehicle, place) or tuple(place.split("+"))
+
+
+def _suspended(vehicle: Vehicle) -> list[str]:
+    return [name for name, axle in vehicle.axles.items() if axle.suspension is not None]
+
+
+def _groups(vehicle: Vehicle, suspended: Sequence[str]) -> tuple[str, ...]:
+    """Return groups of axles: all of them, and neighbours of one body behind the first axle, where these are not all."""
+    if len(suspended) < 2:
+        return ()
+    bodies = dict.fromkeys(vehicle.axles[name].body for name in suspended)
+    rear = [[name for name in suspended[1:] if vehicle.axles[name].body == body] for body in bodies]
+    return (ALL_SUSPENSIONS, *(ALIKE.join(names) for names in rear if len(names) > 1))
 
 
 def nowhere(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
@@ -24,14 +61,16 @@ def nowhere(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
 
 
 def suspensions(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
-    """Return every axle with a suspension, then every link: both are a spring and damper with room for laws."""
-    return (*(name for name, axle in vehicle.axles.items() if axle.suspension is not None), *vehicle.links)
+    """Return every axle with a suspension, then every link, both a spring and damper with room for laws; then groups of axles."""
+    own = _suspended(vehicle)
+    return (*own, *vehicle.links, *_groups(vehicle, own))
 
 
 def dampers(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
-    """Return the suspensions and links that have a dashpot."""
+    """Return the suspensions and links that have a dashpot; then groups of axles, where all have one."""
     springs = {name: axle.suspension for name, axle in vehicle.axles.items() if axle.suspension is not None} | vehicle.links
-    return tuple(name for name in suspensions(vehicle, trials) if springs[name].c.names or springs[name].c.evaluate({}) > 0)
+    damped = {name for name, spring in springs.items() if spring.c.names or spring.c.evaluate({}) > 0}
+    return tuple(name for name in suspensions(vehicle, trials) if damped.issuperset(alike(vehicle, name) or (name,)))
 
 
 def axles(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.effects import Effect, EffectLocator
+from vehgen.effects.places import overlap
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.misfit import Noises
 from vehgen.fit.problem import Problem
@@ -43,7 +44,7 @@ class Candidate:
         """Return whether it, or something that searches or adjusts the same, is among others."""
         own = {(type(item), item.place) for item in self.shared}
         return any(
-            (item.effect.name, item.place) == (self.effect.name, self.place)
+            (item.effect.name == self.effect.name and overlap(item.place, self.place))
             or not set(self.parameters).isdisjoint(item.parameters)
             or not own.isdisjoint((type(other), other.place) for other in item.shared)
             for item in others

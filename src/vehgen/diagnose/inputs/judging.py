@@ -164,7 +164,9 @@ def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
     return find_mistakes(BaseRefits(detection), plain_only=True)
 
 
-def explain_gap(detection: Detection, leading: ModelFit | None = None, vehicle: bool = True) -> tuple[MeasurementFault, ...]:
+def explain_gap(
+    detection: Detection, leading: ModelFit | None = None, vehicle: bool = True, nearest: ModelFit | None = None
+) -> tuple[MeasurementFault, ...]:
     """Return the mistakes that explain what the base model misses, whatever they look like; nothing where none does, or nothing is missing.
 
     Parameters
@@ -172,10 +174,11 @@ def explain_gap(detection: Detection, leading: ModelFit | None = None, vehicle: 
     detection
         The base model's gap.
     leading
-        What effects explain best; mistakes must leave a clearly smaller excess (default: no effects were found). Recordings that it
-        explains are no stranger's.
+        What effects explain best; mistakes must leave a clearly smaller excess (default: no effects were found).
     vehicle
         Whether the vehicle may be another one altogether.
+    nearest
+        What comes nearest, though it may explain little: recordings much of which it explains are no stranger's (default: `leading`).
     """
     if detection.is_quiet:
         return supposed_mistakes(detection)
@@ -187,4 +190,5 @@ def explain_gap(detection: Detection, leading: ModelFit | None = None, vehicle: 
         return found
     if found or not vehicle:
         return ()
-    return other_vehicle(case) or unrelated_recording(case.base if leading is None else leading.least_squares)
+    nearest = nearest or leading
+    return other_vehicle(case) or unrelated_recording(case.base if nearest is None else nearest.least_squares)

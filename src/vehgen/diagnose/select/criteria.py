@@ -11,7 +11,7 @@ from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.estimates import p_value
 from vehgen.diagnose.select.search import SearchRound, own_numbers
-from vehgen.effects.places import EVERY_TYRE
+from vehgen.effects.places import ALIKE, ALL_SUSPENSIONS, EVERY_TYRE
 
 
 def excess(mean_square: float) -> float:
@@ -50,8 +50,9 @@ def does_as_well(mean_square: float, best: float, before: float) -> bool:
 
 
 def same(one: Candidate, other: Candidate) -> bool:
-    """Return whether two candidates are one effect of which the one holds for every tyre: it holds the axles that matter."""
-    return one.effect.name == other.effect.name and not {one.place, other.place}.isdisjoint(EVERY_TYRE)
+    """Return whether two candidates are one effect of which the one holds for every tyre or a group: it holds the axles that matter."""
+    grouped = any(place in EVERY_TYRE or place == ALL_SUSPENSIONS or ALIKE in place for place in (one.place, other.place))
+    return one.effect.name == other.effect.name and grouped
 
 
 def unfinished(fit: ModelFit, base: ModelFit) -> bool:

@@ -1,7 +1,8 @@
 """Whether an effect does more than the base parameters that its fit sets free.
 
 A candidate that searches a damping within the file's whole range fits well wherever that damping is merely far from the file's value. The
-base model with the same freedom, and without the effect, tells the two apart.
+base model with the same freedom, and without the effect, tells the two apart. So does one with the freedom of those parameters that its
+refit ends at the edge with: a stiffness that the file has wrong by a factor looks like an effect somewhere else.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ class FreedBase(Effect):
 FREED_BASE = FreedBase(name="freed_base", title="Base parameters beyond the file's", attaches="base", places=nowhere)
 
 
-def split_idle(fits: Sequence[ModelFit], fit_one: FitOne, count: int) -> tuple[list[ModelFit], list[ModelFit]]:
+def split_idle(fits: Sequence[ModelFit], fit_one: FitOne, count: int, edge: tuple[str, ...] = ()) -> tuple[list[ModelFit], list[ModelFit]]:
     """Return the fits whose effects do something, in their order, and those of freed base parameters alone that do as well, best first.
 
     Parameters
@@ -45,20 +46,23 @@ def split_idle(fits: Sequence[ModelFit], fit_one: FitOne, count: int) -> tuple[l
         Fits a candidate on top of the model that they were added to.
     count
         How many are needed.
+    edge
+        Base parameters that the current model has at the edge of its bounds.
     """
     alone: dict[tuple[str, ...], ModelFit | None] = {}
     kept: list[ModelFit] = []
     idle: dict[tuple[str, ...], ModelFit] = {}
     for fit in fits:
-        names = fit.last.freed
-        if len(kept) < count and names:
-            if names not in alone:
+        does_nothing = False
+        for names in dict.fromkeys((fit.last.freed, edge)) if len(kept) < count else ():
+            if names and names not in alone:
                 alone[names] = fit_one(Candidate(FREED_BASE, ", ".join(names), (), (), names))
-            freed = alone[names]
+            freed = alone.get(names)
             if freed is not None and _does_as_well(freed, fit):
                 idle[names] = freed
-                continue
-        kept.append(fit)
+                does_nothing = True
+        if not does_nothing:
+            kept.append(fit)
     return kept, sorted(idle.values(), key=_price)
 
 

@@ -77,12 +77,11 @@ def search_round(
     say("localise", 1, 1, passed[0].place.label if passed else "no single place")
     others = [item for item in candidates if not item.is_among(current.effects)]
     chosen = others if everything else shortlist(current, others, places, passed)
-    if current.effects and not passed and not everything:
-        chosen = [item for item in others if not item.effect.is_single_force]
     alike = {item.effect.name for item in chosen if item.effect.tie_advice}  # no run tells where: all places are fitted
     chosen = [item for item in others if item in chosen or item.effect.name in alike]
     found, stopped = fit_candidates(detection, current, passed, chosen, say, everything, workers)
-    fits, idle = (found, []) if stopped else split_idle(found, Fitter(detection, current, passed).fit_roughly, LEADING)
+    edge = () if current.effects else current.least_squares.on_bound
+    fits, idle = (found, []) if stopped else split_idle(found, Fitter(detection, current, passed).fit_roughly, LEADING, edge)
     return SearchRound(current, tuple(places), tuple(passed), tuple(fits), tuple(idle), stopped)
 
 

@@ -1,0 +1,98 @@
+"""Several effects at once: what a first one leaves is explained by a further one, by the second of a pair, or part by part."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from vehgen.diagnose import thresholds as limit
+from vehgen.diagnose.detect.detection import Detection
+from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit
+from vehgen.diagnose.localise.localisation import suffices
+from vehgen.diagnose.select.criteria import adds, excess, needs_both, p_value_of, passes, seeds, unfinished
+from vehgen.diagnose.select.estimates import gain_interval
+from vehgen.diagnose.select.search import SearchRound
+
+MOST_EFFECTS = 3
+"""So many effects are added at most, each of which is sure beside the others ..."""
+MOST_TOGETHER = 4
+"""... or of which only the whole set closes the gap."""
+
+
+@dataclass(frozen=True)
+class Combiner:
+    """Adds effects to effects of one base.
+
+    Attributes
+    ----------
+    detection, base
+        What was detected, and the base.
+    tried
+        How many candidates could have been tried.
+    search
+        Looks for an effect beside those of a fit.
+    looked
+        The looks made so far, none of which is made again.
+    """
+
+    detection: Detection
+    base: ModelFit
+    tried: int
+    search: Callable[[ModelFit], SearchRound]
+    looked: Sequence[SearchRound]
+
+    def further(self, chain: Sequence[ModelFit]) -> list[ModelFit]:
+        """Return a chain of fits with what is found in what the last one leaves, until nothing is left or nothing passes."""
+        found = list(chain)
+        while len(found) < MOST_EFFECTS and unfinished(found[-1], self.base):
+            look = self._look(found[-1])
+            if look.stopped or not look.fits or not adds(look, look.fits[0]) or not self._is_sure(look, look.fits[0]):
+                break
+            found.append(look.fits[0])
+        return found
+
+    def pair(self, first: SearchRound) -> list[ModelFit]:
+        """Return a pair of effects that passes, with what is found beside it; nothing where none does.
+
+        Where one force leaves noise, only a tyre and its suspension can be two.
+        """
+        tried = seeds(first)[:1] if suffices(first.passed, self.base) else seeds(first)
+        for seed in tried:
+            known = self._checked(seed)
+            look = self._look(known)
+            if look.stopped:
+                return []
+            if look.fits and self._both(first, look, look.fits[0]):
+                return self.further([known, look.fits[0]])
+        return []
+
+    def together(self, first: SearchRound) -> list[ModelFit]:
+        """Return effects that close the gap together, though each explains a part: the best one beside those before, and so on."""
+        chain = [self._checked(seed) for seed in seeds(first)[:1]]
+        while 0 < len(chain) < MOST_TOGETHER and unfinished(chain[-1], self.base):
+            look = self._look(chain[-1])
+            best = next(iter(look.fits), None)
+            part = best is not None and excess(best.training) <= limit.PARTLY * excess(chain[-1].training)
+            if look.stopped or best is None or not part or not self._is_sure(look, best):
+                break
+            chain.append(best)
+        return chain if len(chain) > 1 and passes(chain[-1], self.base) and self._holds(chain[-1]) else []
+
+    def _look(self, known: ModelFit) -> SearchRound:
+        """Return the look for an effect beside those of a fit."""
+        return next((item for item in self.looked if item.current.key == known.key), None) or self.search(known)
+
+    def _checked(self, seed: ModelFit) -> ModelFit:
+        return evaluate_fit(seed.effects, seed.least_squares, self.detection.validation_runs, self.detection.floor.noises)
+
+    def _is_sure(self, look: SearchRound, fit: ModelFit) -> bool:
+        return p_value_of(look, fit, self.tried) <= limit.SIGNIFICANT
+
+    def _holds(self, fit: ModelFit) -> bool:
+        """Return whether a fit closes some of the gap on validation runs for sure."""
+        interval = gain_interval(self.base, fit, [trial.name for trial in self.detection.validation_runs])
+        return interval is not None and interval[0] > 0
+
+    def _both(self, first: SearchRound, look: SearchRound, pair: ModelFit) -> bool:
+        enough = passes(pair, self.base) and adds(look, pair) and needs_both(pair, first.fits)
+        return enough and self._is_sure(look, pair) and self._holds(pair)
