@@ -190,7 +190,7 @@ def draw() -> None:
         else:
             numbers = np.array(combination[: len(candidate.shared)]) if candidate.shared else np.zeros(0)
             changed = misfit.respond(0, values[None], numbers, np.zeros(len(misfit.errors[0].items)))[0]
-        save_figure(_figure(effect, t, base, changed, list(trial.channels)), IMAGES / f"{effect.name}.svg")
+        save_figure(_figure(effect, trial.recording.time, base, changed, list(trial.channels)), IMAGES / f"{effect.name}.svg")
 
 
 def _figure(effect: Effect, t: np.ndarray, base: np.ndarray, changed: np.ndarray, channels: list[str]):  # type: ignore[no-untyped-def]
