@@ -73,6 +73,8 @@ def test_friction_of_a_driven_carriage_is_named_with_the_force_beside_the_record
     zero = next(item for item in found.models.chosen[-1].least_squares.conditions() if item.name == "force_offset")
     assert zero.value == pytest.approx(OFFSET, abs=0.6)
     assert any("constant force" in note for note in found.verdict.notes)
+    (note,) = [note for note in found.verdict.notes if note.startswith("asymmetric dry friction in the link rail")]
+    assert "would do as well" in note
 
 
 def test_a_carriage_without_friction_lacks_nothing(tmp_path):

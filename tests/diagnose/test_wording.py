@@ -5,6 +5,7 @@ import pytest
 from vehgen.diagnose import wording
 from vehgen.diagnose.verdict import NamedParameter
 from vehgen.effects import EFFECTS
+from vehgen.fit.nuisances import Condition
 
 
 def found(name, place, **values):
@@ -53,6 +54,15 @@ def test_several_effects_ties_and_doubts_are_told():
     )
     assert wording.ambiguous([friction, gain]).endswith("or sensor gain of about 1.2 at F_az: each explains the runs equally well")
     assert wording.named([friction], None).endswith("on the runs for fitting; the other runs show no gap")
+
+
+def test_a_more_general_law_is_told_with_the_force_that_it_supposes():
+    words = found("asymmetric_friction", "rear", force=19.0, ratio=1.38)
+    force = Condition("", "force_offset", "motor", 0.0771, "N", 1.0)
+    assert wording.more_general(words, [wording.constant_force_words(force)]) == (
+        "asymmetric dry friction in the rear suspension (force 19 N, ratio 1.38), with a constant force of 0.0771 N beside motor would do as "
+        "well; the one with fewer numbers is named"
+    )
 
 
 def test_what_is_in_no_library_is_told_by_where_it_is():
