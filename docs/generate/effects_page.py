@@ -112,7 +112,7 @@ hinge_damping = "my_package:HINGE_DAMPING"
 that take part in arithmetic: `{"c": site.spring.c + 2*symbols["c"]}`. A `RunEffect` names an `adjustment`, a class of
 [vehgen.fit.adjustments](../src/vehgen/fit/adjustments.py) or one of your own; a `LineEffect` says between which frequencies lines are
 `looked_for`; what is neither is a class of your own with the methods of [`Effect`](../src/vehgen/effects/base.py). Each may set
-`is_global`."""
+`is_global`, and name in `special_case` the effect that it is at some value of its parameters: where both do as well, that one is named."""
 SHOWN = {"hinge_friction": "L2_q", "hinge_stiffness": "L2_q", "walking_beam": "L2_az", "cargo_module": "L2_az", "sensor_delay": "L2_az"}
 """The channel that shows an effect best; L1_az otherwise."""
 FREED = {"k": "the stiffness", "c": "the damping", "kt": "the tyre's stiffness"}
