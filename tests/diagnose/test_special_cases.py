@@ -9,6 +9,7 @@ from benchmarks.hidden_effects.generator.effects import EffectKind, Value
 from benchmarks.hidden_effects.generator.effects.kind import suspensions
 
 from vehgen.diagnose.fits.candidate import Candidate
+from vehgen.diagnose.fits.screening import chosen_with_holders
 from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.select.criteria import same, tied
 from vehgen.diagnose.select.special_cases import holding, simplest_first
@@ -49,6 +50,11 @@ def test_what_holds_an_effect_is_not_looked_for_beside_it():
     assert general.is_among([plain])
     assert plain.is_among([general])
     assert not general.is_among([Candidate(EFFECTS["dry_friction"], "front", ("other",))])
+
+
+def test_what_holds_an_effect_is_fitted_where_that_one_is():
+    every = [Candidate(EFFECTS[name], place, ()) for place in ("front", "rear") for name in ("dry_friction", "asymmetric_friction")]
+    assert chosen_with_holders([*every, Candidate(EFFECTS["hysteresis"], "rear", ())], every[2:3]) == every[2:]
 
 
 def add(setup, place, p):

@@ -60,8 +60,8 @@ def test_a_more_general_law_is_told_with_the_force_that_it_supposes():
     words = found("asymmetric_friction", "rear", force=19.0, ratio=1.38)
     force = Condition("", "force_offset", "motor", 0.0771, "N", 1.0)
     assert wording.more_general(words, [wording.constant_force_words(force)]) == (
-        "asymmetric dry friction in the rear suspension (force 19 N, ratio 1.38), with a constant force of 0.0771 N beside motor would do as "
-        "well; the one with fewer numbers is named"
+        "asymmetric dry friction in the rear suspension (force 19 N, ratio 1.38), with a constant force of 0.0771 N beside motor would do "
+        "as well; the one with fewer numbers is named"
     )
 
 

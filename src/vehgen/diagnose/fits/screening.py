@@ -70,8 +70,12 @@ def screen(
                 best = max(best, _gain(projection, moved))
         gains.append((best, candidate))
     gains.sort(key=lambda item: -item[0])
-    chosen = [candidate for _, candidate in gains[:MAX_CANDIDATES]]
-    kept = {id(item) for item in (*always, *chosen)}
+    return chosen_with_holders(candidates, [*always, *(candidate for _, candidate in gains[:MAX_CANDIDATES])])
+
+
+def chosen_with_holders(candidates: Sequence[Candidate], chosen: Sequence[Candidate]) -> list[Candidate]:
+    """Return the candidates, in their order, that are chosen or hold a chosen one as a special case."""
+    kept = {id(item) for item in chosen}
     return [item for item in candidates if id(item) in kept or any(map(item.holds, chosen))]
 
 

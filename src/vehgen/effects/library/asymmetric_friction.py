@@ -10,9 +10,7 @@ ASYMMETRIC_FRICTION_EFFECT = suspension_law(
     law="asymmetric_friction",
     frees=("c",),
     special_case="dry_friction",
-    signature=(
-        "as dry friction, but the mean force leaves zero as soon as it slips; beside an unknown constant force it is dry friction"
-    ),
+    signature=("as dry friction, but the mean force leaves zero as soon as it slips; beside an unknown constant force it is dry friction"),
     parameters=(
         EffectParameter(
             "force",
