@@ -80,7 +80,7 @@ An entry is one of three kinds:
   its amplitude and phase, is solved for in every run. It has no parameters of its own.
 
 `low`, `high` and `starts` count in `unit`, or with `times` as multiples of a size of the place: an expression of its static `load`, its
-suspension's `k` and `c`, its tyre's `kt`, its body's `mass`, `inertia` and `length`, and a typical `travel` (of all tyres, or of a group of axles: their mean).
+suspension's `k` and `c`, its tyre's `kt`, its body's `mass`, `inertia` and `length`, and a typical `travel` (of groups: means).
 Runs and sensors have no sizes. `signature`, `source` and `global` may be left out. `global: true` says that no single place explains the
 effect: it is tried wherever a force at one place does not suffice. Units are checked when the file is read.
 `vehgen schema --effects` prints the JSON Schema.
@@ -112,7 +112,7 @@ hinge_damping = "my_package:HINGE_DAMPING"
 that take part in arithmetic: `{"c": site.spring.c + 2*symbols["c"]}`. A `RunEffect` names an `adjustment`, a class of
 [vehgen.fit.adjustments](../src/vehgen/fit/adjustments.py) or one of your own; a `LineEffect` says between which frequencies lines are
 `looked_for`; what is neither is a class of your own with the methods of [`Effect`](../src/vehgen/effects/base.py). Each may set
-`is_global`."""
+`is_global`, and name in `special_case` the effect that it is at some value of its parameters: where both do as well, that one is named."""
 SHOWN = {"hinge_friction": "L2_q", "hinge_stiffness": "L2_q", "walking_beam": "L2_az", "cargo_module": "L2_az", "sensor_delay": "L2_az"}
 """The channel that shows an effect best; L1_az otherwise."""
 FREED = {"k": "the stiffness", "c": "the damping", "kt": "the tyre's stiffness"}
@@ -191,7 +191,7 @@ def draw() -> None:
         else:
             numbers = np.array(combination[: len(candidate.shared)]) if candidate.shared else np.zeros(0)
             changed = misfit.respond(0, values[None], numbers, np.zeros(len(misfit.errors[0].items)))[0]
-        save_figure(_figure(effect, t, base, changed, list(trial.channels)), IMAGES / f"{effect.name}.svg")
+        save_figure(_figure(effect, trial.recording.time, base, changed, list(trial.channels)), IMAGES / f"{effect.name}.svg")
 
 
 def _figure(effect: Effect, t: np.ndarray, base: np.ndarray, changed: np.ndarray, channels: list[str]):  # type: ignore[no-untyped-def]

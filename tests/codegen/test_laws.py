@@ -64,6 +64,7 @@ CASES = {
         },
     ),
     "dry_friction": (lambda F: f"{{force: {F / 4} N}}", lambda F: {"friction": F / 4}),
+    "asymmetric_friction": (lambda F: f"{{force: {F / 4} N, ratio: 2}}", lambda F: {"friction": F / 4, "middle": F / 12}),
     "tyre_liftoff": (lambda F: "{}", None),
     "law": (
         lambda F: f"{{force: a*d*abs(d), parameters: {{a: {F / 0.02**2} N/m^2}}}}",

@@ -13,6 +13,7 @@ from vehgen.vehicle import load_vehicle
 OUTPUTS = (PointOutput("a", Place("L1", "body"), "acceleration"), PointOutput("z", Place("L1", "body"), "displacement"))
 STRENGTHS = {
     "dry_friction": 500,
+    "asymmetric_friction": 500,
     "elasto_plastic": 500,
     "cubic_stiffness": 2e8,
     "quadratic_stiffness": 2e5,

@@ -1,6 +1,7 @@
 """The carriage of docs/emps.md, where its recordings are at hand: friction named from the raw file, and as good on pulses never seen."""
 
 import importlib
+import json
 from pathlib import Path
 
 import pytest
@@ -30,6 +31,9 @@ def test_friction_of_a_real_carriage_is_named_from_its_raw_file(emps, tmp_path):
     runs = prepare.write_runs(path, tmp_path / "runs")
     out = tmp_path / "diagnosis"
     main(["diagnose", str(FOLDER / "emps.yaml"), *map(str, runs), "--out", str(out)])
+    verdict = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
+    assert verdict["verdict"] == "named"
+    assert any(note.startswith("asymmetric dry friction in the link rail") for note in verdict["notes"])
     vehicle = out / "emps_with_dry_friction.yaml"
     assert vehicle.is_file()
     share, constant = force_error.force_error(vehicle, path.with_name("DATA_EMPS_PULSES.mat"))

@@ -73,6 +73,8 @@ def test_friction_of_a_driven_carriage_is_named_with_the_force_beside_the_record
     zero = next(item for item in found.models.chosen[-1].least_squares.conditions() if item.name == "force_offset")
     assert zero.value == pytest.approx(OFFSET, abs=0.6)
     assert any("constant force" in note for note in found.verdict.notes)
+    (note,) = [note for note in found.verdict.notes if note.startswith("asymmetric dry friction in the link rail")]
+    assert "would do as well" in note
 
 
 def test_a_carriage_without_friction_lacks_nothing(tmp_path):
@@ -97,20 +99,36 @@ recording: {name}.csv
 """
 
 
-def test_friction_of_a_damper_is_named_from_its_load_cell(tmp_path):
-    (tmp_path / "dyno.yaml").write_text(DYNO, encoding="utf-8")
+def stroke(folder, compressed, extended, rest):
+    """Write three runs of a damper whose friction slips at these forces [N], each after a rest [s]; return the run files."""
+    (folder / "dyno.yaml").write_text(DYNO, encoding="utf-8")
     random, runs = np.random.default_rng(3), []
     for name, amplitude, f in (("slow", 10e-3, 1.0), ("long", 20e-3, 1.5), ("fast", 5e-3, 3.0)):
-        t = np.arange(0.0, 6.0, 1e-3)
-        x = amplitude * (np.sin(2 * np.pi * f * t) + 0.3 * np.sin(5.4 * np.pi * f * t + 1)) * (1 - np.exp(-3 * t))
+        t = np.arange(0.0, 6.0 + rest, 1e-3)
+        s = np.maximum(t - rest, 0.0)
+        x = amplitude * (np.sin(2 * np.pi * f * s) + 0.3 * np.sin(5.4 * np.pi * f * s + 1)) * (1 - np.exp(-3 * s))
         v = np.gradient(x, t)
-        force = -(2e3 * v + 80.0 * np.sign(v))  # the load cell is stiff: it reads what the damper passes on
-        np.savetxt(tmp_path / f"{name}_stroke.csv", np.column_stack([t, x]), delimiter=",", header="t,x", comments="")
+        slip = np.where(v > 0, compressed, np.where(v < 0, -extended, 0.0))
+        force = -(2e3 * v + slip)  # the load cell is stiff: it reads what the damper passes on
+        np.savetxt(folder / f"{name}_stroke.csv", np.column_stack([t, x]), delimiter=",", header="t,x", comments="")
         noisy = np.column_stack([t, force + 2.0 * random.standard_normal(len(t))])[::5]
-        np.savetxt(tmp_path / f"{name}.csv", noisy, delimiter=",", header="t,F", comments="")
-        (tmp_path / f"{name}.yaml").write_text(STROKE.format(name=name), encoding="utf-8")
-        runs.append(tmp_path / f"{name}.yaml")
-    verdict = diagnose(tmp_path / "dyno.yaml", runs).verdict
+        np.savetxt(folder / f"{name}.csv", noisy, delimiter=",", header="t,F", comments="")
+        (folder / f"{name}.yaml").write_text(STROKE.format(name=name), encoding="utf-8")
+        runs.append(folder / f"{name}.yaml")
+    return runs
+
+
+def test_friction_of_a_damper_is_named_from_its_load_cell(tmp_path):
+    verdict = diagnose(tmp_path / "dyno.yaml", stroke(tmp_path, 80.0, 80.0, 0.0)).verdict
     assert (verdict.verdict, [item.name for item in verdict.effects]) == ("named", ["dry_friction"])
     assert verdict.effects[0].parameters["force"].value == pytest.approx(80.0, rel=0.05)
+    assert 0.8 < verdict.gap.after < 1.3
+
+
+def test_friction_that_is_stronger_one_way_is_named_where_the_damper_begins_at_rest(tmp_path):
+    verdict = diagnose(tmp_path / "dyno.yaml", stroke(tmp_path, 80.0, 50.0, 1.5)).verdict
+    assert (verdict.verdict, [item.name for item in verdict.effects]) == ("named", ["asymmetric_friction"])
+    found = verdict.effects[0].parameters
+    assert found["force"].value == pytest.approx(65.0, rel=0.05)
+    assert found["ratio"].value == pytest.approx(1.6, rel=0.1)
     assert 0.8 < verdict.gap.after < 1.3

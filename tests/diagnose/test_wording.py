@@ -5,6 +5,7 @@ import pytest
 from vehgen.diagnose import wording
 from vehgen.diagnose.verdict import NamedParameter
 from vehgen.effects import EFFECTS
+from vehgen.fit.nuisances import Condition
 
 
 def found(name, place, **values):
@@ -60,6 +61,15 @@ def test_several_effects_ties_and_doubts_are_told():
     assert wording.named([friction], None).endswith("on the runs for fitting; the other runs show no gap")
 
 
+def test_a_more_general_law_is_told_with_the_force_that_it_supposes():
+    words = found("asymmetric_friction", "rear", force=19.0, ratio=1.38)
+    force = Condition("", "force_offset", "motor", 0.0771, "N", 1.0)
+    assert wording.more_general(words, [wording.constant_force_words(force)]) == (
+        "asymmetric dry friction in the rear suspension (force 19 N, ratio 1.38), with a constant force of 0.0771 N beside motor would do "
+        "as well; the one with fewer numbers is named"
+    )
+
+
 def test_what_is_in_no_library_is_told_by_where_it_is():
     causes = [wording.force_words("suspension", "rear"), wording.force_words("tyre", "rear"), wording.force_words("sensor", "F")]
     text = wording.not_in_library((12, "dry friction in the front suspension", 3.21), causes)
@@ -71,8 +81,9 @@ def test_what_is_in_no_library_is_told_by_where_it_is():
 def test_parts_of_a_gap_are_told_with_what_each_leaves():
     friction, gain = found("dry_friction", "rear", force=446.0), found("sensor_gain", "F_az", gain=1.2)
     assert wording.several_effects([friction, gain], [9.66, 3.0, 1.04], 0.99) == (
-        "Dry friction of about 446 N in the rear suspension (9.66 to 3) and sensor gain of about 1.2 at F_az (3 to 1.04), in brackets the "
-        "chi before and after each: together they explain 99 % of what the model missed on runs that they were not fitted to, none does alone"
+        "Dry friction of about 446 N in the rear suspension (9.66 to 3) and sensor gain of about 1.2 at F_az (3 to 1.04), in brackets "
+        "the chi before and after each: together they explain 99 % of what the model missed on runs that they were not fitted to, none "
+        "does alone"
     )
     assert wording.ranked([(friction, 0.62), (gain, -0.1)]) == (
         "by the share of the gap that each would close alone: Dry friction of about 446 N in the rear suspension 62 % and sensor gain of "

@@ -183,6 +183,7 @@ def test_tyres_leave_the_road_at_the_load_that_the_laws_leave_them():
     [
         ("{bump_stop: {k: 1 N/m, clearance: 1 m, from: nowhere}}", "`from` is static or unloaded, found nowhere"),
         ("{dry_friction: {force: 1 N, from: unloaded}}", "dry_friction has no force at rest"),
+        ("{asymmetric_friction: {force: 1 N, ratio: 2, from: unloaded}}", "asymmetric_friction has no force at rest"),
         ("{relaxation: {k: 1 N/m, time: 1 s, from: unloaded}}", "relaxation has no force at rest"),
         ("{quadratic_damping: {c2: 1 N s^2/m^2, from: unloaded}}", "quadratic_damping has no force at rest"),
         ("{bump_stop: {k: 1 N/m, clearance: 1 m, frm: static}}", "did you mean 'from'"),

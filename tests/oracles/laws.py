@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 @dataclass
 class Branch:
-    """One element with a law: its travel row, input row, force(d, v, s), rates of its states, bound of dry friction.
+    """One element with a law: its travel row, input row, force(d, v, s), rates of its states, bound of dry friction and what it is about.
 
     With `bound`, its one state is the force of an elasto-plastic element (see `integrate_plastic`).
     """
@@ -22,6 +22,7 @@ class Branch:
     rates: Callable = lambda d, v, s: np.zeros(0)
     n_states: int = 0
     friction: float = 0.0
+    middle: float = 0.0
     bound: float = 0.0
     mode: int = field(default=0)
 
@@ -48,10 +49,10 @@ def integrate(numeric, branches: list[Branch], road: Callable, times: np.ndarray
 
     def friction(force):
         """Sliding branches pull with their bound; sticking ones with what keeps them still."""
-        pull = np.array([branch.mode * branch.friction for branch in rough])
+        pull = np.array([branch.mode * branch.friction + branch.middle for branch in rough])
         still = [i for i, branch in enumerate(rough) if branch.mode == 0]
         if still:
-            S = J[still]
+            S, pull[still] = J[still], 0.0
             pull[still] = np.linalg.solve(S @ inverse @ S.T, S @ inverse @ (force - J.T @ pull))
         return pull
 
@@ -61,13 +62,17 @@ def integrate(numeric, branches: list[Branch], road: Callable, times: np.ndarray
             force = force - J.T @ friction(force)
         return np.concatenate([x[n : 2 * n], inverse @ force, rates])
 
+    def beyond(t, x, i):
+        """What keeps a sticking branch still, from the middle of its bounds."""
+        return friction(smooth(t, x)[0])[i] - rough[i].middle
+
     def events():
         found = []
         for i, branch in enumerate(rough):
             if branch.mode:
                 event = lambda t, x, i=i: J[i] @ x[n : 2 * n] * rough[i].mode + 1e-12  # noqa: E731
             else:
-                event = lambda t, x, i=i: rough[i].friction - abs(friction(smooth(t, x)[0])[i])  # noqa: E731
+                event = lambda t, x, i=i: rough[i].friction - abs(beyond(t, x, i))  # noqa: E731
             event.terminal, event.direction = True, -1
             found.append(event)
         return found
@@ -90,11 +95,10 @@ def integrate(numeric, branches: list[Branch], road: Callable, times: np.ndarray
             if rough[hit].mode:
                 rough[hit].mode = 0
                 x[n : 2 * n] -= inverse @ J[hit] * (J[hit] @ x[n : 2 * n]) / (J[hit] @ inverse @ J[hit])
-                pull = friction(smooth(t, x)[0])[hit]
-                if abs(pull) > rough[hit].friction:
-                    rough[hit].mode = int(np.sign(pull))
+                if abs(beyond(t, x, hit)) > rough[hit].friction:
+                    rough[hit].mode = int(np.sign(beyond(t, x, hit)))
             else:
-                rough[hit].mode = int(np.sign(friction(smooth(t, x)[0])[hit]))
+                rough[hit].mode = int(np.sign(beyond(t, x, hit)))
     return q_out, a_out
 
 

@@ -36,9 +36,11 @@ def read_motion(path: Path) -> tuple[Array, Array, Array]:
 def force_error(vehicle: Path, path: Path) -> tuple[float, float]:
     """Return what is left of the recorded force over its size, both without their means, and the constant force beside it [N]."""
     values = load_vehicle(vehicle).values()
-    friction = next((value for name, value in values.items() if name.startswith("dry_friction")), 0.0)
+    law = {name.rpartition("_")[2]: value for name, value in values.items() if name.startswith(("dry_friction", "asymmetric_friction"))}
+    friction, ratio = law.get("force", 0.0), law.get("ratio", 1.0)
     velocity, acceleration, force = read_motion(path)
-    left = force - values["M"] * acceleration - values["c"] * velocity - friction * np.sign(velocity)
+    slipping = np.sign(velocity) + (1 - ratio) / (1 + ratio) * np.abs(np.sign(velocity))  # the rail is compressed as the carriage falls
+    left = force - values["M"] * acceleration - values["c"] * velocity - friction * slipping
     return float(np.std(left) / np.std(force)), -float(np.mean(left))
 
 

@@ -1,6 +1,7 @@
 """Fit the Silverbox on its training part and simulate its test splits freely, as the benchmark asks.
 
-`python free_run.py SNLS80mV.csv` prints the root mean square errors of the linear vehicle, and of the one with a cubic spring.
+`python free_run.py SNLS80mV.csv` prints the root mean square errors of the linear vehicle, of the one with a cubic spring, and with a
+quadratic spring beside that.
 """
 
 from __future__ import annotations
@@ -35,6 +36,13 @@ WHOLE_BAND = (0.5, 300.0)
 def with_cubic_spring(vehicle: Vehicle) -> Vehicle:
     """Return the vehicle with the library's cubic spring beside its linear one."""
     return vehicle.with_changes(EFFECTS["cubic_stiffness"].change(EffectLocator(vehicle, vehicle.values()).site("spring")))
+
+
+def with_quadratic_spring(vehicle: Vehicle) -> Vehicle:
+    """Return the vehicle with a quadratic spring beside what it has, of either sign."""
+    k2 = {"value": "0 N/m^2", "range": ["-10 MN/m^2", "10 MN/m^2"]}
+    laws = [*vehicle.links["spring"].laws, {"quadratic_stiffness": {"k2": "k2"}}]
+    return vehicle.with_changes({"parameters": {"k2": k2}, "links": {"spring": {"laws": laws}}})
 
 
 def fit(vehicle: Vehicle, runs: list[Path]) -> dict[str, float]:
@@ -103,9 +111,11 @@ def main(path: Path) -> None:
     force, displacement = read_silverbox(path)
     fine = upsample(force)
     linear = load_vehicle(HERE / "silverbox.yaml")
+    cubic = with_cubic_spring(linear)
+    every = {"linear": linear, "with a cubic spring": cubic, "with a quadratic spring beside": with_quadratic_spring(cubic)}
     with tempfile.TemporaryDirectory() as folder:
         runs = write_runs(path, Path(folder), RUNS)
-        for title, vehicle in (("linear", linear), ("with a cubic spring", with_cubic_spring(linear))):
+        for title, vehicle in every.items():
             values = fit(vehicle, runs)
             print(title, ", ".join(f"{name} {value:.6g}" for name, value in values.items()))
             print("   RMSE [mV]:", ", ".join(f"{name} {value:.3f}" for name, value in errors(vehicle, values, fine, displacement).items()))

@@ -253,12 +253,14 @@ class Condensation:
         moving = self._times(joint.row, v)
         lost = program.multiply(program.multiply(program.number(0.5), program.add(self.inverse[i], slope)), moving)
         holding = program.subtract(stopping, lost)
-        return mean_friction(program, holding, lost, moving, self._bound(joint)), holding
+        bound, middle = self._bound(joint)
+        return program.add(middle, mean_friction(program, program.subtract(holding, middle), lost, moving, bound)), holding
 
-    def _bound(self, joint: NonlinearElement) -> Node:
-        """Return the bound of an element's friction."""
+    def _bound(self, joint: NonlinearElement) -> tuple[Node, Node]:
+        """Return the bound of an element's friction, and what it is within the bound of."""
         zero = self.program.number(0.0)
-        return self._read(joint, sp.Add(*(step.friction for step in joint.steps)), zero, zero, STEP_PHASE)
+        bound, middle = sp.Add(*(step.friction for step in joint.steps)), sp.Add(*(step.friction_middle for step in joint.steps))
+        return self._read(joint, bound, zero, zero, STEP_PHASE), self._read(joint, middle, zero, zero, STEP_PHASE)
 
     def _residual(self, before: list[Node], after: list[Node]) -> Node:
         worst = self.program.leaf("residual", STEP_PHASE)
@@ -281,7 +283,9 @@ class Condensation:
                 last, before = (program.leaf(f"{name}{joint.number}", SAMPLE_PHASE) for name in "gh")
                 half = program.multiply(program.number(0.5), program.subtract(last, before))
                 stopping = program.multiply(program.multiply(program.number(0.5), self.inverse[joint.number]), self._times(joint.row, v))
-                force = program.add(force, friction_now(program, program.add(last, half), stopping, self._bound(joint)))
+                bound, middle = self._bound(joint)
+                holding = program.subtract(program.add(last, half), middle)
+                force = program.total([force, middle, friction_now(program, holding, stopping, bound)])
             found.append(force)
         return found
 

@@ -3,7 +3,8 @@
 A step knows two forces: the one that would stop an element's slip by its end, and the one that would keep the slip as it is. A slip s lasts
 against its friction F sign(s) for the share (stopping - holding)/(F sign(s) - holding) of the step. What follows is the holding force
 clipped to +-F: within, the element sticks; beyond, it slips back. The mean over both parts is the force of the step, so that a slip that
-ends within a step costs no order of accuracy. Where the element sticks, that mean is the force that stops the slip (Moreau,
+ends within a step costs no order of accuracy. Friction of unequal bounds is clipped about their middle: there, holding - middle stands for
+the holding force. Where the element sticks, that mean is the force that stops the slip (Moreau,
 doi:10.1007/978-3-7091-2624-0_1).
 """
 

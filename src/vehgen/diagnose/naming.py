@@ -17,7 +17,9 @@ from vehgen.diagnose.select.alternatives import Alternative, alternatives_beside
 from vehgen.diagnose.select.criteria import excess, p_value_of, tied
 from vehgen.diagnose.select.estimates import estimate, gain_interval, unstable, validation_gain
 from vehgen.diagnose.select.search import DiagnosisProgress, SearchRound
+from vehgen.diagnose.select.special_cases import holding
 from vehgen.diagnose.verdict import Gap, NamedEffect, NamedParameter, Verdict
+from vehgen.fit.nuisances import Condition
 
 
 class Naming:
@@ -131,8 +133,22 @@ class Naming:
             told += [f"{candidate.label}: {text}" for text in unstable(fit, candidate)]
         if fit.least_squares.on_bound:
             told.append(f"on the bound of its range: {', '.join(fit.least_squares.on_bound)}")
-        told += [wording.constant_force(item) for item in fit.least_squares.conditions() if item.name == "force_offset"]
+        told += [wording.constant_force(item) for item in _constant_forces(fit)]
+        told += self._more_general(fit) if _constant_forces(fit) else []
         left = excess(fit.training)
         if left > limit.AGAIN**2 - 1:
             told.append(f"chi {np.sqrt(1 + left):.2f} is left unexplained")
         return tuple(told)
+
+    def _more_general(self, fit: ModelFit) -> list[str]:
+        """Return which effects do as well that hold the last one as a special case, with the constant forces that they suppose instead."""
+        step, told = self._round_of(fit), []
+        for item in holding(step.fits, fit, step.current):
+            words = self._words(item.last, estimate(item, item.last))
+            told.append(wording.more_general(words, [wording.constant_force_words(force) for force in _constant_forces(item)]))
+        return told
+
+
+def _constant_forces(fit: ModelFit) -> list[Condition]:
+    """Return the constant forces that a fit supposes beside measured ones."""
+    return [item for item in fit.least_squares.conditions() if item.name == "force_offset"]

@@ -220,7 +220,18 @@ def supposed(messages: Sequence[str]) -> str:
 
 def constant_force(found: Condition) -> str:
     """Return the note on what acts beside a measured force all along."""
-    return f"the fit supposes a constant force of {found.value:.3g} N beside {found.place}"
+    return f"the fit supposes {constant_force_words(found)}"
+
+
+def constant_force_words(found: Condition) -> str:
+    """Return a constant force and what it is beside."""
+    return f"a constant force of {found.value:.3g} N beside {found.place}"
+
+
+def more_general(effect: str, forces: Sequence[str]) -> str:
+    """Return the note that an effect, of :func:`effect_words`, does as well as the one named, its special case, with `forces` beside."""
+    beside = f", with {join_names(forces, 'and')}" if forces else ""
+    return f"{_inner(effect)}{beside} would do as well; the one with fewer numbers is named"
 
 
 def out_of_range(ratios: Mapping[str, float]) -> str:

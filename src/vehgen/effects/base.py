@@ -92,6 +92,9 @@ class Effect(ABC):
         search them within the file's whole range: with the law beside them, they may be far from the file's value.
     tie_advice
         What to do where only effects with this same advice explain the recordings equally well; empty where another run may decide.
+    special_case
+        The effect, by name, that it is at some value of a parameter: at the same place it is fitted where that one is worth fitting, and
+        that one is named where it does as well. Empty where there is none.
     """
 
     name: str
@@ -106,6 +109,7 @@ class Effect(ABC):
     is_global: bool = False
     frees: tuple[Size, ...] = ()
     tie_advice: str = ""
+    special_case: str = ""
 
     @property
     def shows_in_slow_motions(self) -> bool:

@@ -6,6 +6,7 @@ from importlib.metadata import entry_points
 
 from vehgen.effects.base import Effect
 from vehgen.effects.library.asymmetric_damping import ASYMMETRIC_DAMPING_EFFECT
+from vehgen.effects.library.asymmetric_friction import ASYMMETRIC_FRICTION_EFFECT
 from vehgen.effects.library.bump_stop import BUMP_STOP_EFFECT
 from vehgen.effects.library.cargo_module import CARGO_MODULE_EFFECT
 from vehgen.effects.library.cubic_stiffness import CUBIC_STIFFNESS_EFFECT
@@ -39,6 +40,7 @@ EFFECTS: dict[str, Effect] = {
     effect.name: effect
     for effect in (
         DRY_FRICTION_EFFECT,
+        ASYMMETRIC_FRICTION_EFFECT,
         CUBIC_STIFFNESS_EFFECT,
         PROGRESSIVE_STIFFNESS_EFFECT,
         BUMP_STOP_EFFECT,

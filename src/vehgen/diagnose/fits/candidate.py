@@ -40,11 +40,17 @@ class Candidate:
         """Its name in words."""
         return f"{self.effect.name} at {self.place}"
 
+    def holds(self, other: Candidate) -> bool:
+        """Return whether another candidate is a special case of it."""
+        return (self.effect.special_case, self.place) == (other.effect.name, other.place)
+
     def is_among(self, others: Iterable[Candidate]) -> bool:
-        """Return whether it, or something that searches or adjusts the same, is among others."""
+        """Return whether it, its special case, or something that searches or adjusts the same, is among others."""
         own = {(type(item), item.place) for item in self.shared}
         return any(
             (item.effect.name == self.effect.name and overlap(item.place, self.place))
+            or self.holds(item)
+            or item.holds(self)
             or not set(self.parameters).isdisjoint(item.parameters)
             or not own.isdisjoint((type(other), other.place) for other in item.shared)
             for item in others

@@ -35,6 +35,8 @@ def screen(
 ) -> list[Candidate]:
     """Return the candidates worth fitting: all that leave the vehicle alone, of the others the MOST with the largest first-order gain.
 
+    What holds another candidate as a special case is kept with it, and takes no place of its own.
+
     Parameters
     ----------
     candidates, base, current
@@ -43,7 +45,7 @@ def screen(
         As for :func:`vehgen.diagnose.fits.candidate.pose`.
     """
     always = [item for item in candidates if not item.effect.changes_vehicle]
-    forces = [item for item in candidates if item.effect.changes_vehicle]
+    forces = [item for item in candidates if item.effect.changes_vehicle and not any(map(item.holds, candidates))]
     if len(forces) <= MAX_CANDIDATES:
         return list(candidates)
     misfit, x = base.least_squares.misfit, base.least_squares.x
@@ -68,8 +70,13 @@ def screen(
                 best = max(best, _gain(projection, moved))
         gains.append((best, candidate))
     gains.sort(key=lambda item: -item[0])
-    kept = {id(candidate) for _, candidate in gains[:MAX_CANDIDATES]} | {id(item) for item in always}
-    return [item for item in candidates if id(item) in kept]
+    return chosen_with_holders(candidates, [*always, *(candidate for _, candidate in gains[:MAX_CANDIDATES])])
+
+
+def chosen_with_holders(candidates: Sequence[Candidate], chosen: Sequence[Candidate]) -> list[Candidate]:
+    """Return the candidates, in their order, that are chosen or hold a chosen one as a special case."""
+    kept = {id(item) for item in chosen}
+    return [item for item in candidates if id(item) in kept or any(map(item.holds, chosen))]
 
 
 def _gain(base: Projection, moved: Array) -> float:

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
-from vehgen.diagnose.select.criteria import does_as_well, excess, same
+from vehgen.diagnose.select.criteria import excess, same
 from vehgen.diagnose.select.estimates import fitted_numbers
 from vehgen.diagnose.select.search import Fitter, SearchRound
+from vehgen.diagnose.select.special_cases import does_as_well
 
 RIVALS = 4
 """So many rivals of an effect are tried beside the later ones."""

@@ -11,7 +11,8 @@ from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.estimates import p_value
 from vehgen.diagnose.select.search import SearchRound, own_numbers
-from vehgen.effects.places import ALIKE, ALL_SUSPENSIONS, EVERY_TYRE
+from vehgen.diagnose.select.special_cases import does_as_well
+from vehgen.effects.places import EVERY_TYRE, overlap
 
 
 def excess(mean_square: float) -> float:
@@ -42,17 +43,12 @@ def tied(found: SearchRound, best: ModelFit) -> list[ModelFit]:
     ]
 
 
-def does_as_well(mean_square: float, best: float, before: float) -> bool:
-    """Return whether a mean square is within the slack of TIE of the best one, where an excess of `before` was to be explained."""
-    floor = limit.NOISE_FLOOR**2 - 1
-    near = max(0.02 * before, 0.5 * floor)
-    return mean_square - best <= near and mean_square - 1 <= limit.TIE * max(best - 1, 0.25 * floor)
-
-
 def same(one: Candidate, other: Candidate) -> bool:
-    """Return whether two candidates are one effect of which the one holds for every tyre or a group: it holds the axles that matter."""
-    grouped = any(place in EVERY_TYRE or place == ALL_SUSPENSIONS or ALIKE in place for place in (one.place, other.place))
-    return one.effect.name == other.effect.name and grouped
+    """Return whether one candidate holds the other: as a special case, or as the same effect of every tyre or of a group of axles."""
+    if one.holds(other) or other.holds(one):
+        return True
+    everywhere = not {one.place, other.place}.isdisjoint(EVERY_TYRE)
+    return one.effect.name == other.effect.name and (everywhere or overlap(one.place, other.place))
 
 
 def unfinished(fit: ModelFit, base: ModelFit) -> bool:

@@ -21,6 +21,7 @@ from vehgen.diagnose.fits.screening import screen
 from vehgen.diagnose.localise.localisation import localise, one_force, shortlist
 from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.diagnose.select.freed_base import split_idle
+from vehgen.diagnose.select.special_cases import simplest_first
 from vehgen.effects import EffectLocator
 from vehgen.effects.evidence import Origins, Residual, StartingPoint
 from vehgen.fit.alignment import align
@@ -126,8 +127,8 @@ def fit_candidates(
             if np.isfinite(fit.validation):
                 fits[i] = restart(fit, detection.validation_runs, detection.floor.noises)
     except KeyboardInterrupt:
-        return sorted(fits, key=merit), True
-    return sorted(fits, key=merit), False
+        return simplest_first(sorted(fits, key=merit), base), True
+    return simplest_first(sorted(fits, key=merit), base), False
 
 
 def _best_of_each(fits: Sequence[ModelFit]) -> list[ModelFit]:
@@ -235,4 +236,4 @@ def fit_leading_again(fitter: Fitter, fits: Sequence[ModelFit], weigh: bool) -> 
         near = CONTENDER * min(fit.training for fit in found)
         found += [fitter.fit_again(fit) for fit in rest if fit.training <= near]
         rest = [fit for fit in rest if fit.training > near]
-    return (*sorted(found, key=merit), *(sorted(rest, key=merit) if weigh else rest))
+    return tuple(simplest_first([*sorted(found, key=merit), *(sorted(rest, key=merit) if weigh else rest)], fitter.detection.base))

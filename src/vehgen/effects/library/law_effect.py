@@ -42,7 +42,13 @@ def on_spring(site: EffectSite, change: Change) -> Change:
 
 
 def suspension_law(
-    *, name: str, law: str, signature: str, parameters: tuple[EffectParameter, ...], frees: tuple[Size, ...] = ()
+    *,
+    name: str,
+    law: str,
+    signature: str,
+    parameters: tuple[EffectParameter, ...],
+    frees: tuple[Size, ...] = (),
+    special_case: str = "",
 ) -> VehicleEffect:
     """Return the effect of a law of the library on a suspension or link."""
     known = LAWS[law]
@@ -57,6 +63,7 @@ def suspension_law(
         places=suspensions,
         parameters=parameters,
         frees=frees,
+        special_case=special_case,
         edit=law_edit("suspension", law),
     )
 

@@ -1,6 +1,7 @@
 """Which forces are not linear? The library of force laws, one file each, and laws that a file writes itself."""
 
 from vehgen.mechanics.laws.asymmetric_damping import ASYMMETRIC_DAMPING
+from vehgen.mechanics.laws.asymmetric_friction import ASYMMETRIC_FRICTION
 from vehgen.mechanics.laws.base import Kind, Law, LawParameter, LawState, LawStep
 from vehgen.mechanics.laws.bump_stop import BUMP_STOP
 from vehgen.mechanics.laws.cubic_stiffness import CUBIC_STIFFNESS
@@ -18,6 +19,7 @@ LAWS: dict[str, Law] = {
     law.name: law
     for law in (
         DRY_FRICTION,
+        ASYMMETRIC_FRICTION,
         ELASTO_PLASTIC,
         CUBIC_STIFFNESS,
         QUADRATIC_STIFFNESS,

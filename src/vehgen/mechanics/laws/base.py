@@ -66,6 +66,8 @@ class LawStep:
         Mean force over the step [N], an expression of d, v and the states at its start.
     friction
         Bound F of a set-valued Coulomb force: whatever stops the slip, within +-F [N].
+    friction_middle
+        What that force is within +-F of [N]; 0 where friction is alike both ways.
     states
         The states at the end of the step.
     now
@@ -76,6 +78,7 @@ class LawStep:
 
     force: sp.Expr = sp.S.Zero
     friction: sp.Expr = sp.S.Zero
+    friction_middle: sp.Expr = sp.S.Zero
     states: Mapping[str, sp.Expr] = field(default_factory=dict)
     now: sp.Expr = sp.S.Zero
     slope: sp.Expr | None = None

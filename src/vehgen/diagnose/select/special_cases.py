@@ -1,0 +1,40 @@
+"""Effects that hold another one as a special case: they do as well wherever that one does, so the one with fewer numbers goes first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from vehgen.diagnose import thresholds as limit
+from vehgen.diagnose.fits.model_fit import ModelFit
+
+
+def does_as_well(mean_square: float, best: float, before: float) -> bool:
+    """Return whether a mean square is within the slack of TIE of the best one, where an excess of `before` was to be explained."""
+    floor = limit.NOISE_FLOOR**2 - 1
+    near = max(0.02 * before, 0.5 * floor)
+    return mean_square - best <= near and mean_square - 1 <= limit.TIE * max(best - 1, 0.25 * floor)
+
+
+def simplest_first(fits: Sequence[ModelFit], base: ModelFit) -> list[ModelFit]:
+    """Return fits in their order, but a special case of the best one first where it does as well.
+
+    Parameters
+    ----------
+    fits
+        Best first, each of one more effect than `base`.
+    base
+        What they were added to.
+    """
+    before = max(base.training - 1, 0.0)
+    for fit in fits[1:]:
+        if fits[0].last.holds(fit.last) and np.isfinite(fit.validation) and does_as_well(fit.training, fits[0].training, before):
+            return [fit, *(item for item in fits if item is not fit)]
+    return list(fits)
+
+
+def holding(fits: Sequence[ModelFit], fit: ModelFit, base: ModelFit) -> list[ModelFit]:
+    """Return those of a round's fits that hold the last effect of `fit` as a special case and do as well; `base` is as above."""
+    before = max(base.training - 1, 0.0)
+    return [item for item in fits if item.last.holds(fit.last) and does_as_well(item.training, fit.training, before)]

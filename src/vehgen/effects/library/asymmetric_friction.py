@@ -1,0 +1,26 @@
+"""Dry friction in a suspension or link that is stronger one way than the other."""
+
+from __future__ import annotations
+
+from vehgen.effects.base import EffectParameter
+from vehgen.effects.library.law_effect import suspension_law
+
+ASYMMETRIC_FRICTION_EFFECT = suspension_law(
+    name="asymmetric_friction",
+    law="asymmetric_friction",
+    frees=("c",),
+    special_case="dry_friction",
+    signature=("as dry friction, but the mean force leaves zero as soon as it slips; beside an unknown constant force it is dry friction"),
+    parameters=(
+        EffectParameter(
+            "force",
+            "N",
+            "mean of the forces at which it slips either way",
+            low=0.002,
+            high=0.4,
+            starts=(0.03, 0.12),
+            scale=lambda site: site.load,
+        ),
+        EffectParameter("ratio", "", "force in compression over that in extension", low=0.1, high=10.0, starts=(0.6, 1.6)),
+    ),
+)

@@ -1,0 +1,81 @@
+"""Asymmetric friction holds dry friction as a special case: which of the two is named, and where both are fitted."""
+
+from types import SimpleNamespace
+
+import pytest
+from benchmarks.hidden_effects.generator import EFFECTS as HIDDEN
+from benchmarks.hidden_effects.generator import Effect, laws
+from benchmarks.hidden_effects.generator.effects import EffectKind, Value
+from benchmarks.hidden_effects.generator.effects.kind import suspensions
+
+from vehgen.diagnose.fits.candidate import Candidate
+from vehgen.diagnose.fits.screening import chosen_with_holders
+from vehgen.diagnose.pipeline import diagnose_trials
+from vehgen.diagnose.select.criteria import same, tied
+from vehgen.diagnose.select.special_cases import holding, simplest_first
+from vehgen.effects import EFFECTS
+
+BASE = SimpleNamespace(training=20.0)
+
+
+def fit(name, place, training):
+    candidate = Candidate(EFFECTS[name], place, ())
+    return SimpleNamespace(last=candidate, effects=(candidate,), key=((name, place),), training=training, validation=training)
+
+
+def test_a_special_case_that_does_as_well_goes_first_and_is_no_tie():
+    general, plain = fit("asymmetric_friction", "rear", 1.02), fit("dry_friction", "rear", 1.05)
+    other = fit("hysteresis", "rear", 5.0)
+    ranked = simplest_first([general, other, plain], BASE)
+    assert ranked == [plain, general, other]
+    assert same(plain.last, general.last)
+    assert tied(SimpleNamespace(current=BASE, fits=ranked), plain) == []
+    assert holding(ranked, plain, BASE) == [general]
+
+
+def test_a_special_case_that_leaves_more_stays_where_it_is():
+    fits = [fit("asymmetric_friction", "rear", 1.02), fit("dry_friction", "rear", 2.0)]
+    assert simplest_first(fits, BASE) == fits
+    assert holding([fits[1], fits[0]], fits[0], BASE) == []
+
+
+def test_friction_elsewhere_is_no_special_case():
+    fits = [fit("asymmetric_friction", "rear", 1.02), fit("dry_friction", "front", 1.02)]
+    assert simplest_first(fits, BASE) == fits
+    assert len(tied(SimpleNamespace(current=BASE, fits=fits), fits[0])) == 1
+
+
+def test_what_holds_an_effect_is_not_looked_for_beside_it():
+    plain, general = (Candidate(EFFECTS[name], "rear", (name,)) for name in ("dry_friction", "asymmetric_friction"))
+    assert general.is_among([plain])
+    assert plain.is_among([general])
+    assert not general.is_among([Candidate(EFFECTS["dry_friction"], "front", ("other",))])
+
+
+def test_what_holds_an_effect_is_fitted_where_that_one_is():
+    every = [Candidate(EFFECTS[name], place, ()) for place in ("front", "rear") for name in ("dry_friction", "asymmetric_friction")]
+    assert chosen_with_holders([*every, Candidate(EFFECTS["hysteresis"], "rear", ())], every[2:3]) == every[2:]
+
+
+def add(setup, place, p):
+    """Add dry friction and, once it slips, its other mean; a force that is constant is a spring whose end is a million metres away."""
+    setup.suspension(place).dry += p["force"]
+    setup.add_law(place, laws.PROGRESSIVE, 1e-6 * p["force"] * (p["ratio"] - 1) / (p["ratio"] + 1), -1e6)
+
+
+@pytest.fixture
+def lopsided(monkeypatch):
+    """Friction that is stronger one way, for the independent generator."""
+    values = Value("force", "N", "mean", (1, 2), (1, 2)), Value("ratio", "-", "ratio", (1, 2), (1, 2), neutral=1.0)
+    monkeypatch.setitem(HIDDEN, "lopsided", EffectKind("lopsided", "f", suspensions, values, add))
+    return lambda ratio: Effect("lopsided", "rear", {"force": 450.0, "ratio": ratio})
+
+
+@pytest.mark.parametrize(("ratio", "name"), [(2.0, "asymmetric_friction"), (1.0, "dry_friction")])
+def test_in_a_car_that_begins_at_rest_friction_is_named_as_it_is(trials_of, lopsided, ratio, name):
+    tried = [EFFECTS[item] for item in ("dry_friction", "asymmetric_friction", "asymmetric_damping", "hysteresis")]
+    verdict = diagnose_trials(trials_of(lopsided(ratio)), tried).verdict
+    assert (verdict.verdict, [(item.name, item.place) for item in verdict.effects]) == ("named", [(name, "rear")])
+    found = verdict.effects[0].parameters
+    assert found["force"].value == pytest.approx(450.0, rel=0.1)
+    assert "ratio" not in found or found["ratio"].value == pytest.approx(ratio, rel=0.1)
