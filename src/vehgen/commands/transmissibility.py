@@ -99,7 +99,7 @@ def _show(found: Transmissibility) -> None:
     say(f"{found.duration:.0f} s, worth {found.averages:.0f} averages of {found.segment:g} s" + _speeds(found))
     for peak in found.resonances:
         mode = f"; the model's nearest mode is {peak.mode} at {peak.mode_hz:.2f} Hz" if peak.mode is not None else ""
-        say(f"all sensors show a peak at {peak.frequency:.2f} Hz{mode}")
+        say(f"all channels show a peak at {peak.frequency:.2f} Hz, coherence there up to {peak.coherence:.2f}{mode}")
     for text in found.tells:
         say(f"this can tell {text}")
     for text in found.cannot_tell:

@@ -6,7 +6,7 @@ drive. See docs/transmissibility.md for what the ratio can tell and what it cann
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -17,7 +17,7 @@ from vehgen.files.result_fields import rounded
 from vehgen.fit.ratio_bands import compared_ratio, outside
 from vehgen.fit.rough_drives import Recordings, RoughDrive, as_exports, drive_of_phones, drive_of_run
 from vehgen.fit.transmissibility_result import ChannelRatio, Resonance, Transmissibility
-from vehgen.measure.shared_peaks import shared_peaks
+from vehgen.measure.shared_peaks import WIDTH_LINES, shared_peaks
 from vehgen.measure.transmissibility import (
     FEWEST_AVERAGES,
     NEIGHBOUR_INFLATION,
@@ -41,6 +41,10 @@ MIN_MOVING_SPEED_M_S = 1.0
 """Segments in which a vehicle is slower are left out: no road moves it."""
 MAX_MODEL_SPEEDS = 24
 """So many speeds stand for those of a drive."""
+MAX_PASSING_SHARE = 0.25
+"""Of a segment: the time from the first axle to the last, so that both see nearly the same road in it."""
+DELAY_STEP_CYCLES = 0.1
+"""Delays between clocks are tried so finely that the phase at the top of the band moves by so much."""
 TOLD_SPEED_SIGMA = 0.01
 """Standard deviation of a told speed, relative ..."""
 DRIVE_SPEED_SCALES = 1 + np.arange(-3, 3.01, 0.25) / 100
@@ -130,7 +134,7 @@ def _compared(
     if drive.model is not None:
         if speeds is None:
             raise ArgumentError("no GPS told how fast the drive was; a model needs `speed` in m/s, e.g. 15.0", "speed")
-        expected, scale = _expected(drive.model, drive.values, lines.frequency, speeds, segment, estimates)
+        expected, scale = _expected(drive, drive.model, lines.frequency, speeds, segment, estimates)
         modes = natural_modes(drive.model, drive.values)
     count = len(bands) * len(estimates)
     ratios: list[ChannelRatio] = []
@@ -145,7 +149,7 @@ def _compared(
         frequency=lines.frequency,
         densities=rounded(densities),
         ratios=tuple(ratios),
-        resonances=_resonances(drive, lines.frequency, densities, averages, modes),
+        resonances=_resonances(drive, lines.frequency, densities, averages, estimates, modes),
         averages=averages,
         segment=segment,
         duration=float(drive.time[-1] - drive.time[0]),
@@ -160,24 +164,46 @@ def _compared(
 
 
 def _expected(
-    model: EquationsOfMotion,
-    values: Mapping[str, float] | None,
-    frequency: Array,
-    speeds: Array,
-    segment: float,
-    estimates: Sequence[RatioEstimate],
+    drive: RoughDrive, model: EquationsOfMotion, lines: Array, speeds: Array, segment: float, estimates: Sequence[RatioEstimate]
 ) -> tuple[Complex, float]:
     """Return the model's spectra at the speeds of the drive times one factor, and that factor, the likeliest."""
     shares = np.quantile(speeds, (np.arange(MAX_MODEL_SPEEDS) + 0.5) / MAX_MODEL_SPEEDS) if np.ptp(speeds) else speeds[:1]
+    passing = float(model.wheel_offsets(drive.values).max(initial=0.0) / np.median(speeds))
+    if passing > MAX_PASSING_SHARE * segment:
+        raise ArgumentError(
+            f"the last axle meets the road {passing:.3g} s after the first; `segment` must be {1 / MAX_PASSING_SHARE:g} times as long at "
+            "least, or the drive faster",
+            "segment",
+        )
+    delays = _delays(drive, model, lines, shares, segment, estimates)
 
     def misfit(scale: float) -> tuple[float, Complex]:
-        expected = rough_road_spectra(model, frequency, segment=segment, speeds=scale * shares, values=values)
+        expected = rough_road_spectra(model, lines, speeds=scale * shares, segment=segment, values=drive.values, delays=delays)
         squares = [(outside(estimate, model_ratio(expected, 0, i)) ** 2).sum() for i, estimate in enumerate(estimates, start=1)]
         return float(np.sum(squares)) / NEIGHBOUR_INFLATION + ((scale - 1) / TOLD_SPEED_SIGMA) ** 2, expected
 
     found = {float(scale): misfit(float(scale)) for scale in DRIVE_SPEED_SCALES}
     best = min(found, key=lambda scale: found[scale][0])
     return found[best][1], best
+
+
+def _delays(
+    drive: RoughDrive, model: EquationsOfMotion, lines: Array, speeds: Array, segment: float, estimates: Sequence[RatioEstimate]
+) -> Array:
+    """Return how much later than the reference's each channel's clock is read `shape (n_channels,)` [s], by the model's phases.
+
+    Clocks that were put on one another by what the phones recorded are off by the way from axle to axle: in slow, long vehicles by a good
+    part of a segment.
+    """
+    spectra = rough_road_spectra(model, lines, speeds=speeds, values=drive.values)
+    tried = np.arange(-segment / 2, segment / 2, DELAY_STEP_CYCLES / lines[-1])
+    turns = np.exp(2j * np.pi * lines * tried[:, None])
+    delays = np.zeros(len(drive.names))
+    for sensor in set(drive.sensors) - {drive.sensors[0]}:
+        own = [i for i, name in enumerate(drive.sensors) if name == sensor]
+        phases = (np.exp(1j * (estimates[i - 1].phase - np.angle(spectra[:, 0, i]))) * estimates[i - 1].coherence for i in own)
+        delays[own] = tried[np.argmax((turns @ sum(phases)).real)]
+    return delays
 
 
 def _usable(drive: RoughDrive, segment: float, speed: float | None) -> tuple[SegmentTransforms, Array | None, list[str]]:
@@ -205,7 +231,9 @@ def _usable(drive: RoughDrive, segment: float, speed: float | None) -> tuple[Seg
     return transforms.kept(used), speeds, notes
 
 
-def _resonances(drive: RoughDrive, frequency: Array, densities: Array, averages: float, modes: Modes | None) -> tuple[Resonance, ...]:
+def _resonances(
+    drive: RoughDrive, frequency: Array, densities: Array, averages: float, estimates: Sequence[RatioEstimate], modes: Modes | None
+) -> tuple[Resonance, ...]:
     turning = np.array(["rate" in quantity for quantity in drive.quantities])
     accelerations = densities * np.where(turning, (2 * np.pi * frequency[:, None]) ** 2, 1.0)
     found = []
@@ -213,7 +241,10 @@ def _resonances(drive: RoughDrive, frequency: Array, densities: Array, averages:
         near = min(modes, key=lambda mode: abs(mode.damped_hz - peak.frequency)) if modes else None
         if near is not None and abs(near.damped_hz - peak.frequency) > NEAR_MODE_SHARE * peak.frequency:
             near = None
-        found.append(Resonance(peak.frequency, peak.prominence, near.name if near else None, near.damped_hz if near else None))
+        at = np.abs(frequency - peak.frequency) <= WIDTH_LINES * (frequency[1] - frequency[0])
+        coherence = min(float(estimate.coherence[at].max()) for estimate in estimates)
+        mode = (near.name, near.damped_hz) if near else (None, None)
+        found.append(Resonance(peak.frequency, peak.prominence, coherence, *mode))
     return tuple(found)
 
 

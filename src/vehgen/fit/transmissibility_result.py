@@ -82,10 +82,15 @@ class ChannelRatio:
 
 @dataclass(frozen=True)
 class Resonance:
-    """A peak that all channels show at `frequency` [Hz], how far it rises in each [dB], and the vehicle's mode nearest to it."""
+    """A peak that all channels show at `frequency` [Hz], how far it rises in each [dB], and the vehicle's mode nearest to it.
+
+    `coherence` is the best within the peak's width of the channel that shares least with the reference: where it is low, what shakes the
+    channels differs, such as the two wheel tracks.
+    """
 
     frequency: float
     prominence: tuple[float, ...]
+    coherence: float
     mode: str | None = None
     mode_hz: float | None = None
 

@@ -60,5 +60,5 @@ def shared_peaks(frequency: Array, densities: Array, averages: float) -> tuple[S
             at.append(float(places[best]))
             rises.append(float(prominences[best]))
         else:
-            shared.append(SharedPeak(float(np.mean(at)), tuple(10 / np.log(10) * item for item in rises)))
+            shared.append(SharedPeak(float(np.mean(at)), tuple(float(10 / np.log(10)) * item for item in rises)))
     return tuple(shared)

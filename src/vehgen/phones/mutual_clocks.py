@@ -28,6 +28,8 @@ LEAST_SIGNIFICANCE = 8.0
 """The best correlation must be so many times the usual one; of chance alone the best of 100 000 shifts is about 4.5 times."""
 MAX_DRIFT = 3e-4
 """Of two clocks: phones' oscillators are within some 50 millionths."""
+SHORTEST_FOR_DRIFT_S = 60.0
+"""In less time two clocks drift apart by some milliseconds, which is too little to be found and to matter."""
 DRIFT_STEP_CYCLES = 0.1
 """Drifts are tried so finely that the phase at the end of the drive and the top of the band moves by so much."""
 
@@ -100,7 +102,13 @@ def find_drift(time: Array, first: Array, other: Array, segment: float) -> float
         Accelerations at these times, the shift between the clocks taken away, `shape (n,)`.
     segment
         Length of the segments [s] that are held to be free of drift.
+
+    Returns
+    -------
+    The drift; 0 for less than SHORTEST_FOR_DRIFT_S.
     """
+    if time[-1] - time[0] < SHORTEST_FOR_DRIFT_S:
+        return 0.0
     step = float(time[1] - time[0])
     lines = segment_transforms(np.column_stack([first, other]), step, segment).between(*CORRELATED_BAND_HZ)
     middle = lines.middle - (time[-1] - time[0]) / 2

@@ -15,7 +15,6 @@ from vehgen.measure.transmissibility import FEWEST_AVERAGES
 from vehgen.phones.csv_table import ColumnMap
 from vehgen.phones.detect import read_export
 from vehgen.phones.importing import clipping_warnings
-from vehgen.phones.locating import CLOCK_DOUBT
 from vehgen.phones.mutual_clocks import ClockMap, check_epochs, epoch_shift, find_drift, find_shift
 from vehgen.phones.phone import Phone, make_phone, speed_stream
 from vehgen.phones.plan import PhoneSensor
@@ -25,6 +24,8 @@ GRID_RATE_HZ = 100.0
 """Rate of the channels [Hz]."""
 TOP_SHARE = 0.4
 """Share of the grid's rate up to which a band may reach: above, its low-pass begins."""
+WORLD_CLOCK_DOUBT_S = 5.0
+"""World clocks that differ by more from what the recordings say deserve a warning; a long vehicle's rear meets a road some seconds late."""
 EDGE_S = 0.05
 """Left out at either end of what the phones recorded together [s]."""
 
@@ -146,7 +147,7 @@ def _clocks(phones: Sequence[Phone], segment: float) -> tuple[list[ClockMap], li
             f"{other.name}: its clock is {shift:+.3f} s ahead of that of {first.name} and runs {1e6 * drift:+.0f} millionths faster"
         )
         told = epoch_shift(first.export, other.export, float(begin), float(begin + shift))
-        if told is not None and abs(told - shift) > CLOCK_DOUBT:
+        if told is not None and abs(told - shift) > WORLD_CLOCK_DOUBT_S:
             warnings.append(
                 f"{names}: the apps' world clocks are {told - shift:+.2f} s off the shift at which the recordings agree best, which was "
                 "taken: are both of one drive?"

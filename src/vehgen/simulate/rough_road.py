@@ -27,7 +27,13 @@ BLUR_LINES = 6
 
 
 def rough_road_spectra(
-    model: EquationsOfMotion, frequency: Array, *, segment: float, speeds: Array, values: Mapping[str, float] | None = None
+    model: EquationsOfMotion,
+    frequency: Array,
+    *,
+    speeds: Array,
+    segment: float | None = None,
+    values: Mapping[str, float] | None = None,
+    delays: Array | None = None,
 ) -> Complex:
     """Return the spectral matrix of a model's channels on a road of ISO 8608's shape, of arbitrary level.
 
@@ -36,13 +42,15 @@ def rough_road_spectra(
     model
         Equations of motion with their channels; force laws are not in it.
     frequency
-        Lines of the segments `shape (n,)` [Hz], neighbours of one another, above 0.
-    segment
-        Length of the segments [s].
+        `shape (n,)` [Hz], above 0; with `segment` neighbouring lines of its transform.
     speeds
         Of the vehicle in equal shares of the time `shape (k,)` [m/s].
+    segment
+        Length of the Hann segments [s] by which the lines are blurred (default: they are not).
     values
         Parameters [SI] by name (default: the file's).
+    delays
+        How much later each channel was recorded than it happened `shape (n_channels,)` [s] (default: not at all).
 
     Returns
     -------
@@ -53,25 +61,32 @@ def rough_road_spectra(
     InputError
         For a vehicle without axles.
     """
-    n_axles = len(model.vehicle.axles)
-    if not n_axles:
+    if not model.vehicle.axles:
         raise InputError(f"{model.vehicle.name} has no axles, so that no road moves it")
+    known = all_values(model, values)
+    late = np.zeros(len(model.channels)) if delays is None else delays
+    if segment is None:
+        return _spectra(model, known, frequency, speeds, late)
     step = 1 / (segment * LINES_BETWEEN)
     reach = BLUR_LINES * LINES_BETWEEN
     first, last = round(frequency[0] / step) - reach, round(frequency[-1] / step) + reach
     number = np.arange(first, last + 1)
-    fine = np.maximum(np.abs(number), 1) * step
-    known = all_values(model, values)
-    response = frequency_response(model, fine, values=known).values[:, :, :n_axles]
-    offsets = model.wheel_offsets(known)
-    total = np.zeros((len(fine), response.shape[1], response.shape[1]), dtype=np.complex128)
+    fine = _spectra(model, known, np.maximum(np.abs(number), 1) * step, speeds, late)
+    fine[number < 0] = fine[number < 0].conj()  # spectra of real signals at negative frequencies
+    blurred = scipy.signal.fftconvolve(fine, _blur(reach)[:, None, None], mode="valid", axes=0)
+    return np.asarray(blurred[np.round(frequency / step).astype(int) - reach - first])
+
+
+def _spectra(model: EquationsOfMotion, values: Mapping[str, float], frequency: Array, speeds: Array, delays: Array) -> Complex:
+    """Return the spectral matrix at frequencies above 0, unblurred."""
+    response = frequency_response(model, frequency, values=values).values[:, :, : len(model.vehicle.axles)]
+    response = response * np.exp(-2j * np.pi * frequency[:, None] * delays)[:, :, None]
+    offsets = model.wheel_offsets(values)
+    total = np.zeros((len(frequency), response.shape[1], response.shape[1]), dtype=np.complex128)
     for speed in speeds:
-        channels = (response @ np.exp(-2j * np.pi * fine[:, None] * offsets / speed)[:, :, None])[:, :, 0]
-        total += speed / fine[:, None, None] ** 2 * channels.conj()[:, :, None] * channels[:, None, :]
-    total[number < 0] = total[number < 0].conj()  # spectra of real signals at negative frequencies
-    blurred = scipy.signal.fftconvolve(total, _blur(reach)[:, None, None], mode="valid", axes=0)
-    at = np.round(frequency / step).astype(int) - reach - first
-    return np.asarray(blurred[at] / len(speeds))
+        channels = (response @ np.exp(-2j * np.pi * frequency[:, None] * offsets / speed)[:, :, None])[:, :, 0]
+        total += speed / frequency[:, None, None] ** 2 * channels.conj()[:, :, None] * channels[:, None, :]
+    return np.asarray(total / len(speeds))
 
 
 def _blur(reach: int) -> Array:

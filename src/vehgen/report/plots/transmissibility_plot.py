@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from vehgen.fit.transmissibility_result import ChannelRatio, Transmissibility
 from vehgen.report.drawing.canvas import INK
@@ -40,7 +41,8 @@ def plot_transmissibility(found: Transmissibility) -> Figure:
     for row, item in enumerate(shown, start=1):
         ratio = figure.add_subplot(grid[row, 0], sharex=spectra)
         _plot_ratio(ratio, found, item)
-        coherence = figure.add_subplot(grid[row, 1], sharex=spectra)
+        coherence = figure.add_subplot(grid[row, 1])
+        coherence.xaxis.set_major_locator(MaxNLocator(4))
         coherence.plot(found.frequency, item.coherence, color=INK, lw=1.0)
         coherence.set_ylim(0.0, 1.03)
         coherence.set_ylabel("coherence [-]", color=INK)
