@@ -253,7 +253,9 @@ def _reference(drive: RoughDrive, wanted: str | None) -> int:
         return 0 if wanted is None else drive.names.index(wanted)
     if wanted in drive.sensors:
         return drive.sensors.index(wanted)
-    raise ArgumentError(f"`reference`: no channel {shown(wanted)}; {did_you_mean(wanted, (*drive.names, *drive.sensors))}", "reference")
+    raise ArgumentError(
+        f"`reference`: no channel {shown(wanted)}; {did_you_mean(wanted, dict.fromkeys((*drive.names, *drive.sensors)))}", "reference"
+    )
 
 
 def _checked_bands(bands: Sequence[tuple[float, float]] | None, segment: float) -> tuple[tuple[float, float], ...]:

@@ -88,4 +88,5 @@ def _plot_ratio(axes: Axes, found: Transmissibility, item: ChannelRatio) -> None
         model = np.sqrt(item.model_h1 * item.model_h2)
         axes.semilogy(found.frequency, model, color=MODEL_COLOUR, lw=1.3, ls=(0, (5, 1.5)), label="model")
     axes.set_yscale("log")
+    axes.margins(y=0.2)
     axes.set_ylabel(f"{item.channel} / {found.reference}\n[{item.unit}]", color=INK, parse_math=False)
