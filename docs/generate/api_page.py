@@ -21,7 +21,8 @@ column, or the argument. Numbers are in SI units.
 
 Results are values: `to_dict()` gives plain data for JSON and `from_dict()` takes them back, `to_dataframe()` gives a table (with pandas),
 `plot()` a matplotlib figure, and a notebook shows the table. These are results: what `static_loads`, `natural_modes`, `state_space`,
-`frequency_response`, `simulate`, `import_phones`, `transmissibility`, `calibrate`, `validate`, `sensitivity`, `advise_sensors`, `diagnose` and `build` return.
+`frequency_response`, `simulate`, `import_phones`, `transmissibility`, `calibrate`, `validate`, `sensitivity`, `advise_sensors`, `diagnose`
+and `build` return.
 
 The snippets of this page run one after the other, in a folder with the files of [examples](examples), its folders `hidden`, `phones` and
 `cargo` among them. [tutorial.py](tutorial.py) is the [tutorial](tutorial.md) in Python.

@@ -60,7 +60,7 @@ CANNOT_TELL = (
     "the scale of masses, stiffnesses and dampers: all of them times one number leave every ratio as it is",
     "how rough the road is",
     "any parameter that moves all sensors alike",
-    "what roll and separate wheel tracks add: the sensors' coherence falls by it, and the model has none of it",
+    "roll, which no model has: felt by one sensor it widens the limits, felt by both it shifts the ratio; lay phones on the centre line",
     "differences below about 2 %: phones' gains differ by so much",
 )
 
