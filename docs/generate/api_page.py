@@ -21,7 +21,8 @@ column, or the argument. Numbers are in SI units.
 
 Results are values: `to_dict()` gives plain data for JSON and `from_dict()` takes them back, `to_dataframe()` gives a table (with pandas),
 `plot()` a matplotlib figure, and a notebook shows the table. These are results: what `static_loads`, `natural_modes`, `state_space`,
-`frequency_response`, `simulate`, `import_phones`, `calibrate`, `validate`, `sensitivity`, `advise_sensors`, `diagnose` and `build` return.
+`frequency_response`, `simulate`, `import_phones`, `transmissibility`, `calibrate`, `validate`, `sensitivity`, `advise_sensors`, `diagnose`
+and `build` return.
 
 The snippets of this page run one after the other, in a folder with the files of [examples](examples), its folders `hidden`, `phones` and
 `cargo` among them. [tutorial.py](tutorial.py) is the [tutorial](tutorial.md) in Python.
@@ -104,7 +105,7 @@ print(kernel.run(np.array([list(model.values().values())]), drive).responses.sha
     ),
     Section(
         "Recordings of phones",
-        ("import_phones", "PhoneSensor"),
+        ("import_phones", "PhoneSensor", "transmissibility"),
         """\
 found = vehgen.import_phones(
     ["phones/hump_2ms_phone1.zip", "phones/hump_2ms_phone2.zip"],
@@ -117,6 +118,11 @@ found = vehgen.import_phones(
     out="imported.yaml",
 )
 print(found.speed, found.to_dataframe())
+
+rough = vehgen.transmissibility(
+    ["phones/road_3ms_phone1.zip", "phones/road_3ms_phone2.zip"], forward="y", bands=[(2, 8), (8, 20)], segment=2.0
+)  # no road is told, nor a vehicle; a drive of some minutes allows longer segments
+print(rough.to_dataframe(), rough.cannot_tell)
 """,
     ),
     Section(

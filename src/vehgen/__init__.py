@@ -45,6 +45,7 @@ _HOMES = {
     "laden": "vehgen.cargo",
     "PhoneSensor": "vehgen.phones",
     "import_phones": "vehgen.phones",
+    "transmissibility": "vehgen.fit.transmissibility",
     "Effect": "vehgen.effects",
     "effects": "vehgen.effects",
     "advise_sensors": "vehgen.calibrate",
@@ -68,6 +69,7 @@ if TYPE_CHECKING:
     from vehgen.diagnose import diagnose
     from vehgen.effects import Effect, effects
     from vehgen.errors import InputError, ModelWarning
+    from vehgen.fit.transmissibility import transmissibility
     from vehgen.mechanics import ElementOutput, EquationsOfMotion, Place, PointOutput, derive, static_loads
     from vehgen.phones import PhoneSensor, import_phones
     from vehgen.report import build, draw_vehicle, read_result, report

@@ -30,6 +30,8 @@ QUICK = (
     "laden tractor5 pallets.yaml --set DHCM-1-2 --out laden.yaml",
     "module frame.yaml --mass total --out cargo.yaml --plot picture.svg",
     "effects --library effects.yaml",
+    "transmissibility phone.csv --columns time=t,acceleration=az,pitch_rate=q --vehicle car.yaml --set stiff --sensor S:body=body"
+    " --reference S --speed 5 --bands 4,15 --segment 0.6 --forward y --out rough",
     "models --json",
     "schema --run",
 )
@@ -58,6 +60,7 @@ def files() -> dict[str, bytes]:
         "run.yaml": RUN,
         "measured.yaml": RUN + b"recording: recording.csv\n",
         "recording.csv": table("t,A_az", 401, 0.01, 1),
+        "phone.csv": table("t,az,q", 401, 0.01, 2),
         "pallets.yaml": read("docs/examples/cargo/pallets.yaml"),
         "frame.yaml": healthy()["frame"][0].files["frame.yaml"],
         "effects.yaml": EFFECTS.encode(),

@@ -38,7 +38,7 @@ def phyphox(t, force, rotation, dialect="comma", start=1_700_000_000.0, speed=No
         files["meta/time.csv"] = "\n".join([head, *(separator.join(row).replace(".", point) for row in rows)]) + "\n"
     if speed is not None:
         moments = np.arange(0.5, t[-1], 1.0)
-        columns = [moments, *(np.full(len(moments), value) for value in (48.0, 11.0, 500.0, speed, 90.0))]
+        columns = [moments, *(np.broadcast_to(value, len(moments)) for value in (48.0, 11.0, 500.0, speed, 90.0))]
         header = ["Time (s)", "Latitude (°)", "Longitude (°)", "Height (m)", "Velocity (m/s)", "Direction (°)"]
         files["Location.csv"] = table(header, columns, dialect)
     return files

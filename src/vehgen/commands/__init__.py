@@ -28,6 +28,7 @@ from vehgen.commands import (
     sensors,
     simulate,
     static,
+    transmissibility,
     validate,
 )
 from vehgen.commands.faults import OneLineParser, end_of, show_warnings
@@ -40,6 +41,7 @@ COMMANDS = (
     static,
     simulate,
     import_,
+    transmissibility,
     calibrate,
     validate,
     sensitivity,

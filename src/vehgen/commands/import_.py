@@ -34,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME:body=B,behind=P,distance=D",
         help="where a phone lay, one for each export in order; also x=, forward=, up=, acceleration_sign=, from=, to= (its seconds)",
     )
-    road = parser.add_mutually_exclusive_group(required=True)
+    road = parser.add_mutually_exclusive_group()
     road.add_argument("--hump", metavar="SHAPE,length=L,height=H", help="the hump, as in a run file; metres")
     road.add_argument("--profile", metavar="CSV[,distance=C,height=C]", help="a measured road instead of a hump")
     parser.add_argument(

@@ -34,8 +34,10 @@ def split_pairs(text: str, option: str, known: tuple[str, ...]) -> dict[str, str
     return found
 
 
-def read_sensor(text: str) -> PhoneSensor:
+def read_sensor(text: str, *, needs_body: bool = True) -> PhoneSensor:
     """Read `NAME:body=...,behind=...,distance=...[,forward=y][,up=z][,acceleration_sign=-1][,from=SECONDS][,to=SECONDS]`.
+
+    Without `needs_body` the place may be left out, as where no vehicle is told; the body is then called "".
 
     Raises
     ------
@@ -51,7 +53,7 @@ def read_sensor(text: str) -> PhoneSensor:
     if not colon or not is_identifier(name):
         raise InputError(f"--sensor: expected NAME:body=BODY,behind=AXLE,distance=METRES, found {shown(text)}")
     found = split_pairs(rest, where, _SENSOR_KEYS)
-    if "body" not in found:
+    if needs_body and "body" not in found:
         raise InputError(f"{where} lacks body=, the body that the phone lay on")
     if "distance" in found and "behind" not in found:
         raise InputError(f"{where}: distance= needs behind=")
@@ -59,7 +61,7 @@ def read_sensor(text: str) -> PhoneSensor:
         raise InputError(f"{where}: acceleration_sign is 1 or -1, found {shown(found['acceleration_sign'])}")
     return PhoneSensor(
         name,
-        found["body"],
+        found.get("body", ""),
         found.get("x"),
         found.get("behind"),
         number_of(found.get("distance", "0"), LENGTH, f"{where} distance", "sensors"),

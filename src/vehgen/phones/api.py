@@ -104,8 +104,16 @@ def import_phones(
 
 
 def _road(hump: Mapping[str, Any] | None, profile: Mapping[str, str] | str | os.PathLike[str] | None) -> RoadOption:
-    if (hump is None) == (profile is None):
-        raise ArgumentError("either `hump` or `profile` was expected", "hump", "profile")
+    if hump is not None and profile is not None:
+        raise ArgumentError("either `hump` or `profile` was expected, found both", "hump", "profile")
+    if hump is None and profile is None:
+        raise ArgumentError(
+            "a run needs a road: `hump` or `profile` was expected, neither was found. A drive over a rough road that nobody measured is "
+            "for `vehgen transmissibility`, which compares two phones at two places with each other; to calibrate, record one pass over a "
+            "known hump",
+            "hump",
+            "profile",
+        )
     if hump is not None:
         return hump_road(hump)
     assert profile is not None

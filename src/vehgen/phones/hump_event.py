@@ -79,7 +79,10 @@ def find_hump(time: Array, upward: Array, crossing: float, name: str) -> HumpEve
 
 
 def _no_hump(name: str, moment: float, why: str) -> InputError:
-    return InputError(f"{name} shows no hump: its loudest moment, at {moment:.2f} s, is {why}")
+    return InputError(
+        f"{name} shows no hump: its loudest moment, at {moment:.2f} s, is {why}. Record one pass over a known hump; of a drive over a "
+        "rough road `vehgen transmissibility` compares two phones at two places"
+    )
 
 
 def expected_onset(upward: Array, step: float, contrast: float) -> float:

@@ -109,25 +109,29 @@ class Phone:
             )
         return 1.0
 
-    def sampled(self, streams: tuple[Stream | None, ...], grid: Array) -> Array:
+    def sampled(self, streams: tuple[Stream | None, ...], grid: Array, bridge: float = LONGEST_GAP) -> Array:
         """Return streams on an even grid `shape (n, n_streams)`, refusing holes.
 
         Raises
         ------
         InputError
-            For a hole longer than LONGEST_GAP, or a grid beyond the recording.
+            For a hole longer than `bridge` [s], or a grid beyond the recording.
         """
         columns = []
         for stream in streams:
             if stream is None:
                 continue
             for start, length in gaps(stream.time):
-                if start + length > grid[0] and start < grid[-1] and length > LONGEST_GAP:
+                if start + length > grid[0] and start < grid[-1] and length > bridge:
                     raise InputError(
                         f"{self.name}: no {stream.unit} samples for {length:.2f} s from {start:.2f} s, within the pass; record again"
                     )
             columns.append(resample(stream.time, stream.values, grid)[:, 0])
         return np.column_stack(columns)
+
+    def holes(self) -> list[tuple[float, float]]:
+        """Return begin and end of every hole longer than LONGEST_GAP [s]."""
+        return [(start, start + length) for stream in self._used() for start, length in gaps(stream.time) if length > LONGEST_GAP]
 
     def short_gaps(self, start: float, end: float) -> tuple[str, ...]:
         """Return what to say of holes from `start` to `end` [s] that were bridged."""

@@ -12,17 +12,19 @@ from vehgen.diagnose import Diagnosis
 from vehgen.diagnose.verdict import Verdict
 from vehgen.errors import ArgumentError, InputError
 from vehgen.files.results import Result, kind_of, read_json
+from vehgen.fit.transmissibility_result import Transmissibility
 from vehgen.mechanics import StaticLoads
 from vehgen.phones import PhoneImport
 from vehgen.report.pages.build_page import redraw_build
 from vehgen.report.pages.diagnosis_page import write_diagnosis_page
 from vehgen.report.plots.calibration_plots import save_calibration_figures
 from vehgen.report.plots.sensitivity_plots import save_sensitivity_figures
+from vehgen.report.plots.transmissibility_plot import save_transmissibility_figures
 from vehgen.report.plots.validation_plots import save_validation_figures
 from vehgen.simulate import FrequencyResponse, Modes, Response, StateSpace
 from vehgen.simulate.build import Build
 
-PAGES = (Diagnosis, CalibrationSummary, Validation, SensitivityIndices, Build)
+PAGES = (Diagnosis, CalibrationSummary, Validation, SensitivityIndices, Transmissibility, Build)
 """Results with a page or several figures."""
 SINGLE_FIGURES = (Modes, StaticLoads, Response, StateSpace, FrequencyResponse, SensorAdvice, PhoneImport, Verdict)
 """Results with one figure."""
@@ -48,7 +50,7 @@ def report(result: Result | str | os.PathLike[str], folder: str | os.PathLike[st
     Parameters
     ----------
     result
-        A diagnosis, calibration, validation, sensitivity or build, or its JSON file.
+        A diagnosis, calibration, validation, sensitivity, transmissibility or build, or its JSON file.
     folder
         Where they go.
 
@@ -85,5 +87,7 @@ def _draw(result: Result, folder: Path, source: str) -> list[Path]:
         return save_validation_figures(result, folder)
     if isinstance(result, SensitivityIndices):
         return save_sensitivity_figures(result, folder)
+    if isinstance(result, Transmissibility):
+        return save_transmissibility_figures(result, folder)
     assert isinstance(result, Build)
     return redraw_build(result, folder, source)
