@@ -1,6 +1,7 @@
 """Rigs' simulators against closed forms."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from benchmarks.measured_world.rigs import half_car, signals
 from benchmarks.measured_world.rigs.cases import Hidden, Quantity, Rig, Run
 from benchmarks.measured_world.rigs.mechanism import Joint, Mechanism
 from benchmarks.measured_world.rigs.recorder import draw_recorder
+from benchmarks.measured_world.rigs.sets import draw_rig
 from scipy.integrate import cumulative_simpson, cumulative_trapezoid
 
 
@@ -76,6 +78,15 @@ def test_two_frictions_stick_one_by_one():
     assert motion.q[1, later] == pytest.approx(2.0 * (motion.t[later] - slips) ** 3, abs=1e-7)
     assert np.all(motion.q[0] == 0.0)
     assert motion.force[0] == pytest.approx(np.minimum(12.0 * motion.t, 10.0), abs=1e-6)
+
+
+def test_a_reversal_within_a_step_is_not_taken_for_its_own_beginning():
+    """In this drop a friction begins to slip and turns within one step of the integration."""
+    rig = draw_rig(1, 7, 0)
+    run = replace(rig.runs[1], duration=1.0)
+    motion = half_car.respond(rig, run, {})[1]
+    assert motion.t[-1] == pytest.approx(1.0)
+    assert [hidden.law for hidden in rig.hidden] == ["dry_friction", "dry_friction"]
 
 
 def loop(kind, values, **more):

@@ -21,6 +21,9 @@ Push = Callable[[Any, Array, Array], Array]
 LONGEST_STEP = 4e-3
 """Of the integration [s]: short enough that no reversal is stepped over."""
 SLIPS_OR_STICKS = (0, 1, -1)
+MOST_SWITCHES = 50_000
+JUST_BEGUN = 1e-12
+"""By which a friction that has just begun to stick or slip is short of its end [m/s or N]."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +66,12 @@ class Motion:
     force: Array
 
 
+def marked(event: Any) -> Any:
+    """Return an event of solve_ivp that ends the integration where it rises through zero."""
+    event.terminal, event.direction = True, 1.0
+    return event
+
+
 class Mechanism:
     """Masses on joints, pushed by what depends on time, place and rate: `push(t, q, v)` `shape (n,)` or `(n, samples)` [N]."""
 
@@ -81,15 +90,18 @@ class Mechanism:
         state = np.concatenate([q, v, np.zeros(len(self.joints))])
         modes = self._settled(0.0, state, (), list(range(len(self.rubbing))))
         parts, start = [], 0.0
-        while True:
+        for _ in range(MOST_SWITCHES):
             end, state_end, cause, solution = self._until_event(start, state, modes, moments[-1])
             inside = moments[(moments >= start) & ((moments < end) if cause is not None else True)]
             if len(inside):
                 parts.append(self._sampled(inside, solution(inside), modes))
             if cause is None:
-                break
+                return self._joined(parts)
             modes, state = self._switched(end, state_end, modes, cause)
             start = end
+        raise RuntimeError(f"friction stuck and slipped {MOST_SWITCHES} times until {start:.6f} s")
+
+    def _joined(self, parts: Sequence[tuple[Array, ...]]) -> Motion:
         t, q_all, v_all, a, travel, force = (np.concatenate(items, axis=-1) for items in zip(*parts, strict=True))
         return Motion(t, q_all, v_all, a, travel, force)
 
@@ -151,7 +163,7 @@ class Mechanism:
         events, causes = [], []
         for which, mode in enumerate(modes):
             for sign in (1, -1) if mode == 0 else (mode,):
-                events.append(self._event(modes, which, sign))
+                events.append(self._event(modes, which, sign, start))
                 causes.append((which, sign))
         if start >= end:
             return end, state, None, lambda t: np.repeat(state[:, None], len(t), axis=1)
@@ -164,8 +176,8 @@ class Mechanism:
         cause = next((cause for cause, times in zip(causes, found.t_events or [], strict=False) if len(times)), None)
         return float(found.t[-1]), found.y[:, -1], cause, found.sol
 
-    def _event(self, modes: Sequence[int], which: int, sign: int) -> Any:
-        """Return the event at which friction stops to stick towards `sign`, or to slip in its direction `sign`."""
+    def _event(self, modes: Sequence[int], which: int, sign: int, start: float) -> Any:
+        """Return the event at which friction stops to stick towards `sign`, or to slip in its direction `sign`, later than `start` [s]."""
         forward, backward = self.limits[which]
         limit = forward if sign > 0 else backward
 
@@ -175,9 +187,12 @@ class Mechanism:
         def stops(t: float, y: Array) -> float:
             return -sign * self._sliding(t, y, which)
 
-        event: Any = breaks if modes[which] == 0 else stops
-        event.terminal, event.direction = True, 1.0
-        return event
+        crossed = breaks if modes[which] == 0 else stops
+
+        def event(t: float, y: Array) -> float:
+            return crossed(t, y) if t > start else min(crossed(t, y), -JUST_BEGUN)
+
+        return marked(event)
 
     def _switched(self, t: float, state: Array, modes: Sequence[int], cause: tuple[int, int]) -> tuple[tuple[int, ...], Array]:
         which, sign = cause
