@@ -17,11 +17,11 @@ MISSED = ("not_in_library", "too_weak", "no_missing_effect", "insufficient_data"
 
 def judged_rig(truth: Data, answer: Data) -> str:
     """Return how a diagnosis of a rig is to be counted."""
-    verdict, effects = answer["verdict"], answer.get("effects", [])
+    verdict, effects = str(answer["verdict"]), answer.get("effects", [])
     if verdict == "measurement_fault":
         return "false fault"
     if verdict not in ("named", "ambiguous", *MISSED):
-        return str(verdict)
+        return verdict
     if not truth["effects"]:
         return _on_healthy(verdict)
     hits = [any(_hit(hidden, effect) for effect in effects) for hidden in truth["effects"]]

@@ -61,8 +61,8 @@ def sampled(values: Array) -> Signal:
     knots = np.arange(len(values) - 1) / RATE
     derivatives = [spline(knots, order) / math.factorial(order) for order in range(6)]
     value = np.stack(derivatives[::-1], axis=1)
-    rate = value[:, :-1] * np.arange(5, 0, -1)
-    return Signal((value, rate, rate[:, :-1] * np.arange(4, 0, -1)))
+    rate = value[:, :-1] * np.arange(5.0, 0.0, -1.0)
+    return Signal((value, rate, rate[:, :-1] * np.arange(4.0, 0.0, -1.0)))
 
 
 def moments(duration: float) -> Array:
