@@ -8,6 +8,7 @@ from pathlib import Path
 
 from benchmarks.measured_world.make import make_set
 from benchmarks.measured_world.page import page, read
+from benchmarks.measured_world.rigs.sets import KIND as RIGS
 from benchmarks.measured_world.score import score_set
 from benchmarks.measured_world.sets import KINDS, SETS
 
@@ -18,9 +19,14 @@ def _parser() -> argparse.ArgumentParser:
     make = commands.add_parser("make", help="write cases and their truth")
     make.add_argument("--set", choices=tuple(SETS), default="trial")
     make.add_argument("--seed", type=int, required=True)
-    make.add_argument("--kind", choices=tuple(KINDS), required=True)
+    make.add_argument("--kind", choices=(*KINDS, RIGS), required=True)
     make.add_argument("--count", type=int, required=True)
-    make.add_argument("--recorder", choices=("mixed", "logger", "phones"), default="mixed", help="mixed: a third has phones")
+    make.add_argument(
+        "--recorder",
+        choices=("mixed", "logger", "phones"),
+        default="mixed",
+        help="mixed: a third has phones; rigs have recorders of their own",
+    )
     make.add_argument("--processes", type=int, default=1)
     make.add_argument("--out", type=Path, required=True)
     score = commands.add_parser("score", help="solve cases and compare with the truth; goes on where it stopped")

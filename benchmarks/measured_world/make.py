@@ -14,7 +14,10 @@ from benchmarks.measured_world.exports import write_exports
 from benchmarks.measured_world.faults import spoilt
 from benchmarks.measured_world.files import copy_vehicle, truth, write_json, write_recording
 from benchmarks.measured_world.modes import invariants, natural_modes
-from benchmarks.measured_world.sets import draw_case
+from benchmarks.measured_world.rigs import files as rig_files
+from benchmarks.measured_world.rigs.sets import KIND as RIGS
+from benchmarks.measured_world.rigs.sets import draw_rig
+from benchmarks.measured_world.sets import SETS, draw_case
 from benchmarks.measured_world.unseen import write_unseen
 from benchmarks.measured_world.world import record_run
 
@@ -41,6 +44,11 @@ def write_case(case: Case, out: Path) -> None:
 
 
 def _make(set_name: str, seed: int, kind: str, recorder: str, out: Path, number: int) -> str:
+    if kind == RIGS:
+        rig = draw_rig(SETS[set_name], seed, number)
+        if not (out / "truth" / rig.name / "truth.json").is_file():
+            rig_files.write_case(rig, out)
+        return rig.name
     case = draw_case(set_name, seed, kind, number, recorder)
     if not (out / "truth" / case.name / "truth.json").is_file():
         write_case(case, out)

@@ -17,7 +17,13 @@ from benchmarks.measured_world.solve import BANDS
 Data = dict[str, Any]
 LEVEL = 0.90
 """Of the intervals."""
-TITLES = {"healthy": "Nothing hidden", "effects": "One effect hidden", "faults": "A mistake of measuring", "coverage": "Calibrations"}
+TITLES = {
+    "healthy": "Nothing hidden",
+    "effects": "One effect hidden",
+    "faults": "A mistake of measuring",
+    "rigs": "Test rigs",
+    "coverage": "Calibrations",
+}
 
 
 def read(paths: Iterable[Path]) -> list[Data]:
@@ -33,6 +39,8 @@ def page(records: Sequence[Data]) -> str:
         if of_kind:
             parts.append(f"## {title}: {len(of_kind)} cases")
             parts += coverage_tables(of_kind) if kind == "coverage" else [verdict_table(of_kind), case_table(of_kind)]
+            told = [row for record in of_kind if kind == "rigs" for row in record["rows"]]
+            parts += [interval_table(told)] if told else []
             parts.append(seconds_table(of_kind))
     return "\n\n".join(parts) + "\n"
 

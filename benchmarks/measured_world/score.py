@@ -16,6 +16,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from benchmarks.measured_world.accepted import judged_effect, judged_fault
+from benchmarks.measured_world.rigs.judging import judged_rig, rig_rows
 
 ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
 Data = dict[str, Any]
@@ -48,6 +49,8 @@ def score_case(root: Path, name: str, timeout: float, settings: Mapping[str, Any
         return record | {"rows": rows(truth, answer) if answer.get("outcome") == "calibrated" else []}
     if truth["kind"] == "faults":
         return record | {"judged": judged_fault(truth["fault"], answer)}
+    if truth["kind"] == "rigs":
+        return record | {"judged": judged_rig(truth, answer), "rows": rig_rows(truth, answer)}
     return record | {"judged": judged_effect(truth["effects"], answer)}
 
 

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from scipy import signal
 
 Array = NDArray[np.float64]
-VEHICLES = ("sedan2.yaml", "tractor5.yaml")
+VEHICLES = ("sedan2.yaml", "tractor5.yaml", "rig.yaml")
 COMBINATIONS = {
     "sedan2": (),
     "tractor5": (*(f"{kind}{i}/(mT + mS)" for kind in ("m", "k", "c", "kt") for i in range(1, 6)), "b7/(mT + mS)", "b6*mS/(mT + mS)"),

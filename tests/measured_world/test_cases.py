@@ -43,7 +43,7 @@ def recordings(healthy):
 
 
 def test_only_the_solver_imports_vehgen():
-    for path in Path(measured_world.__file__).parent.glob("*.py"):
+    for path in Path(measured_world.__file__).parent.rglob("*.py"):
         nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
         names = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
         names |= {node.module or "" for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, ast.ImportFrom)}
