@@ -32,6 +32,7 @@ QUICK = (
     "effects --library effects.yaml",
     "models --json",
     "schema --run",
+    "export car.yaml --to json --set stiff --run run.yaml --step 0.001 --out car.json",
 )
 COMPILING = (
     "build car.yaml --set stiff --no-plots --out built",

@@ -139,15 +139,19 @@ def _named(model: EquationsOfMotion, A: Array, B: Array, C: Array, D: Array, col
 
 def linear_model(model: ModelLike, outputs: Iterable[Output], forces: Iterable[Place]) -> EquationsOfMotion:
     """Return equations of motion with channels; warn of force laws, which no linear result holds."""
-    outputs, forces = tuple(outputs), tuple(forces)
-    if isinstance(model, EquationsOfMotion) and model.channels and not outputs and not forces:
-        found = model
-    else:
-        vehicle = model.vehicle if isinstance(model, EquationsOfMotion) else as_vehicle(model)
-        found = derive(vehicle, outputs or body_channels(vehicle), forces)
+    found = model_with_channels(model, outputs, forces)
     if any(element.laws for element in found.elements):
         warnings.warn(ModelWarning(f"the force laws of {found.vehicle.name} are left out: these equations are linear"), stacklevel=3)
     return found
+
+
+def model_with_channels(model: ModelLike, outputs: Iterable[Output] = (), forces: Iterable[Place] = ()) -> EquationsOfMotion:
+    """Return equations of motion with channels: those asked for, else the model's own, else acceleration and pitch rate of every body."""
+    outputs, forces = tuple(outputs), tuple(forces)
+    if isinstance(model, EquationsOfMotion) and model.channels and not outputs and not forces:
+        return model
+    vehicle = model.vehicle if isinstance(model, EquationsOfMotion) else as_vehicle(model)
+    return derive(vehicle, outputs or body_channels(vehicle), forces)
 
 
 def _output_matrices(numeric: NumericModel, A: Array, B: Array) -> tuple[Array, Array, Array]:
