@@ -11,7 +11,6 @@ from vehgen.errors import ArgumentError, did_you_mean, shown
 from vehgen.export.formats import EXPORT_FORMATS, Format
 from vehgen.export.source import ExportSource
 from vehgen.files import check_results, write_bytes
-from vehgen.files.names import as_name
 from vehgen.mechanics import ModelLike, Output, Place
 from vehgen.simulate.state_space import model_with_channels
 
@@ -72,7 +71,7 @@ def export(
     chosen = EXPORT_FORMATS[to]
     place = export_place(found.vehicle.name, to, out)
     check_results([place if chosen.suffix else place / "any"])
-    stem = place.stem if chosen.suffix else as_name(found.vehicle.name)
+    stem = place.stem if chosen.suffix else chosen.stem(found.vehicle.name)
     source = ExportSource(found, found.values(parameter_set, values), linear, float(step), stem)
     return _write(chosen, source, place)
 
@@ -85,9 +84,10 @@ def export_place(vehicle_name: str, to: str, out: str | os.PathLike[str] | None)
     InputError
         For a file whose suffix is not that of the format.
     """
-    suffix = EXPORT_FORMATS[to].suffix
+    chosen = EXPORT_FORMATS[to]
+    suffix = chosen.suffix
     if out is None:
-        return Path(f"{as_name(vehicle_name)}{suffix or f'_{to}'}")
+        return Path(f"{chosen.stem(vehicle_name)}{suffix or f'_{to}'}")
     place = Path(out)
     if suffix and place.suffix.lower() != suffix:
         raise ArgumentError(f"`out`: the name of a file of the format {to} ends in {suffix}; found {shown(place.name)}", "out")

@@ -6,23 +6,29 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from vehgen.export.data_files import write_json, write_npz
+from vehgen.export.identifiers import identifier
+from vehgen.export.matlab import write_m, write_mat
 from vehgen.export.source import ExportSource
+from vehgen.files.names import as_name
 
 
 @dataclass(frozen=True)
 class Format:
     """A format: what it is for in a few words, the suffix of its file (none for a folder), and what writes it.
 
-    `write` returns the bytes of every file by its name; those of a folder stand in it.
+    `write` returns the bytes of every file by its name; those of a folder stand in it. `stem` names the file after a vehicle.
     """
 
     meaning: str
     suffix: str
     write: Callable[[ExportSource], dict[str, bytes]]
+    stem: Callable[[str], str] = as_name
 
 
 EXPORT_FORMATS: dict[str, Format] = {
     "json": Format("matrices, names, units, parameters, static loads and force laws, with a schema", ".json", write_json),
     "npz": Format("the same as NumPy arrays", ".npz", write_npz),
+    "mat": Format("the same as a MAT-file", ".mat", write_mat),
+    "m": Format("the same as a function file of MATLAB or GNU Octave, to be read", ".m", write_m, identifier),
 }
 """Every format by the name that it is asked for."""
