@@ -9,6 +9,7 @@ from vehgen.export.data_files import write_json, write_npz
 from vehgen.export.identifiers import identifier
 from vehgen.export.matlab import write_m, write_mat
 from vehgen.export.source import ExportSource
+from vehgen.export.state_space_file import write_state_space
 from vehgen.files.names import as_name
 
 
@@ -30,5 +31,6 @@ EXPORT_FORMATS: dict[str, Format] = {
     "npz": Format("the same as NumPy arrays", ".npz", write_npz),
     "mat": Format("the same as a MAT-file", ".mat", write_mat),
     "m": Format("the same as a function file of MATLAB or GNU Octave, to be read", ".m", write_m, identifier),
+    "state-space": Format("A, B, C, D with the names and units of states, inputs and outputs, as a MAT-file", ".mat", write_state_space),
 }
 """Every format by the name that it is asked for."""
