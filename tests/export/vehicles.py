@@ -33,7 +33,7 @@ LAWS = {
     "relaxation": ("suspension", "{k: 45 kN/m, time: 30 ms}"),
     "hysteresis": ("suspension", "{force: 900 N, travel: 3 mm, beta: 0.6}"),
     "tyre_liftoff": ("tyre", "{}"),
-    "law": ("suspension", "{force: a*d*abs(d) + b*v*sqrt(abs(v)), parameters: {a: 2.0e6 N/m^2, b: 100 kg/m^0.5/s^0.5}}"),
+    "law": ("suspension", "{force: a*d*abs(d) + b*v*sqrt(abs(v/(1 m/s))), parameters: {a: 2.0e6 N/m^2, b: 100 N s/m}}"),
 }
 """Every law of the library and an own one: where it sits on the sedan, and its parameters."""
 TEXT = "*/ int x; /* \"; system(\"touch PWNED\"); // \\ ??/\n%{\n'); system('touch PWNED'); ${HOME} </fmiModelDescription>\u2028"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from vehgen.export.c_files import write_c
 from vehgen.export.data_files import write_json, write_npz
 from vehgen.export.identifiers import identifier
 from vehgen.export.matlab import write_m, write_mat
@@ -31,6 +32,7 @@ EXPORT_FORMATS: dict[str, Format] = {
     "npz": Format("the same as NumPy arrays", ".npz", write_npz),
     "mat": Format("the same as a MAT-file", ".mat", write_mat),
     "m": Format("the same as a function file of MATLAB or GNU Octave, to be read", ".m", write_m, identifier),
+    "c": Format("the step that kernels run as C99: header, source, an example that drives over a hump", "", write_c),
     "state-space": Format("A, B, C, D with the names and units of states, inputs and outputs, as a MAT-file", ".mat", write_state_space),
 }
 """Every format by the name that it is asked for."""
