@@ -11,6 +11,7 @@ from vehgen.export.identifiers import identifier
 from vehgen.export.matlab import write_m, write_mat
 from vehgen.export.source import ExportSource
 from vehgen.export.state_space_file import write_state_space
+from vehgen.export.vbi2d import write_vbi2d
 from vehgen.files.names import as_name
 
 
@@ -34,5 +35,6 @@ EXPORT_FORMATS: dict[str, Format] = {
     "m": Format("the same as a function file of MATLAB or GNU Octave, to be read", ".m", write_m, identifier),
     "c": Format("the step that kernels run as C99: header, source, an example that drives over a hump", "", write_c),
     "state-space": Format("A, B, C, D with the names and units of states, inputs and outputs, as a MAT-file", ".mat", write_state_space),
+    "vbi2d": Format("the vehicle struct of VBI-2D and VEqMon2D", ".mat", write_vbi2d),
 }
 """Every format by the name that it is asked for."""
