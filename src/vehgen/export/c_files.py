@@ -22,13 +22,15 @@ OTHER_HEADERS = frozenset({"float", "limits", "math", "stdio", "stdlib", "string
 def write_c(source: ExportSource) -> dict[str, bytes]:
     """Return header, source and example, named after the vehicle."""
     prefix = identifier(f"v_{source.stem}" if source.stem in OTHER_HEADERS else source.stem, MAX_PREFIX)
-    texts = {**c_texts(source, prefix), f"{prefix}_main.c": from_template("example_main.c", prefix, DT=literal(source.step))}
+    texts = {
+        **c_texts(source, c_program(source), prefix),
+        f"{prefix}_main.c": from_template("example_main.c", prefix, DT=literal(source.step)),
+    }
     return {name: text.encode() for name, text in texts.items()}
 
 
-def c_texts(source: ExportSource, prefix: str) -> dict[str, str]:
+def c_texts(source: ExportSource, program: CProgram, prefix: str) -> dict[str, str]:
     """Return the header and the source whose names begin with a prefix."""
-    program = c_program(source)
     return {f"{prefix}.h": _header(source, program, prefix), f"{prefix}.c": _source(source, program, prefix)}
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from vehgen.export.c_files import write_c
 from vehgen.export.data_files import write_json, write_npz
+from vehgen.export.fmu import write_fmu2, write_fmu3
 from vehgen.export.identifiers import identifier
 from vehgen.export.matlab import write_m, write_mat
 from vehgen.export.source import ExportSource
@@ -36,5 +37,7 @@ EXPORT_FORMATS: dict[str, Format] = {
     "c": Format("the step that kernels run as C99: header, source, an example that drives over a hump", "", write_c),
     "state-space": Format("A, B, C, D with the names and units of states, inputs and outputs, as a MAT-file", ".mat", write_state_space),
     "vbi2d": Format("the vehicle struct of VBI-2D and VEqMon2D", ".mat", write_vbi2d),
+    "fmu": Format("a co-simulation unit of FMI 2.0 with sources and, where a C compiler is, a binary", ".fmu", write_fmu2),
+    "fmu3": Format("the same of FMI 3.0", ".fmu", write_fmu3),
 }
 """Every format by the name that it is asked for."""
