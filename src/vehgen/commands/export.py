@@ -13,7 +13,9 @@ EXAMPLE = "vehgen export tractor5.yaml --to json --out tractor5.json"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     add_vehicle(parser)
-    parser.add_argument("--to", metavar="FORMAT", required=True, help="json, npz, mat, m, c, state-space, vbi2d, fmu, fmu3")
+    parser.add_argument(
+        "--to", metavar="FORMAT", required=True, help="json, npz, mat, m, c, state-space, vbi2d, fmu, fmu3, latex, markdown"
+    )
     add_out(parser, "PATH", "the file, or the folder of a format of several files (default: NAME.FORMAT here)")
     parser.add_argument("--run", metavar="RUN", dest="run_file", help="a run file whose sensors, outputs and forces are exported")
     parser.add_argument("--linear", action="store_true", help="leave force laws out where the format cannot carry them")

@@ -10,6 +10,7 @@ from vehgen.export.data_files import write_json, write_npz
 from vehgen.export.fmu import write_fmu2, write_fmu3
 from vehgen.export.identifiers import identifier
 from vehgen.export.matlab import write_m, write_mat
+from vehgen.export.report_text import write_latex, write_markdown
 from vehgen.export.source import ExportSource
 from vehgen.export.state_space_file import write_state_space
 from vehgen.export.vbi2d import write_vbi2d
@@ -39,5 +40,7 @@ EXPORT_FORMATS: dict[str, Format] = {
     "vbi2d": Format("the vehicle struct of VBI-2D and VEqMon2D", ".mat", write_vbi2d),
     "fmu": Format("a co-simulation unit of FMI 2.0 with sources and, where a C compiler is, a binary", ".fmu", write_fmu2),
     "fmu3": Format("the same of FMI 3.0", ".fmu", write_fmu3),
+    "latex": Format("the equations in symbols, to be read", ".tex", write_latex),
+    "markdown": Format("tables of the matrices in numbers, to be read", ".md", write_markdown),
 }
 """Every format by the name that it is asked for."""

@@ -12,7 +12,6 @@ from vehgen.export.source import ExportSource
 from vehgen.files.provenance import versions
 from vehgen.files.result_fields import Array1D, Array2D
 from vehgen.mechanics import GRAVITY
-from vehgen.report.equations.writing import law_equation
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
@@ -190,6 +189,8 @@ def _parameters(source: ExportSource) -> tuple[ParameterValue, ...]:
 
 
 def _force_laws(source: ExportSource) -> tuple[ForceLaw, ...]:
+    from vehgen.report.equations.writing import law_equation  # with it come the libraries that draw
+
     model, found = source.model, []
     for element in model.elements:
         row, input_row = np.zeros(model.n_dof), np.zeros(len(model.inputs))
