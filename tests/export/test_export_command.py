@@ -57,6 +57,9 @@ def test_a_set_and_a_runs_sensors(work, capsys):
         (["--to", "json", "--step", "nan"], "error: --step: a time step is 1e-06 s to 0.1 s, found nan\n"),
         (["--to", "json", "--step", "quick"], "error: argument --step: invalid float value: 'quick'.*\n"),
         (["--to", "json", "--set", "x"], "error: .*no parameter set 'x'.*\n"),
+        (["--to", "c", "--out", "mine.json"], "error: cannot write mine.json/sedan2: mine.json is not a folder\n"),
+        (["--to", "fmu", "--out", "a.zip"], "error: --out: the name of a file of the format fmu ends in .fmu; found 'a.zip'\n"),
+        (["--to", "json", "--run", "none.yaml"], "error: .*none.yaml.*\n"),
         ([], "error: the following arguments are required: --to; .*\n"),
     ],
 )

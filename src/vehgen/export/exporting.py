@@ -70,8 +70,8 @@ def export(
     found = model_with_channels(model, outputs, forces)
     chosen = EXPORT_FORMATS[to]
     place = export_place(found.vehicle.name, to, out)
-    check_results([place if chosen.suffix else place / "any"])
     stem = place.stem if chosen.suffix else chosen.stem(found.vehicle.name)
+    check_results([place if chosen.suffix else place / stem])  # before the work; what is written is checked again
     source = ExportSource(found, found.values(parameter_set, values), linear, float(step), stem)
     return _write(chosen, source, place)
 

@@ -28,6 +28,11 @@ GLUE: dict[FmiVersion, tuple[str, ...]] = {2: ("fmi2.c",), 3: ("fmi3.c", "fmi3_r
 """Sources that a version of the standard asks for."""
 C_COMPILERS = ("gcc", "cc", "clang")
 BUILD_OPTIONS = ("-std=c99", "-O2", "-fPIC", "-shared", "-fvisibility=hidden")
+BINARY_FOLDERS: dict[FmiVersion, dict[str, str]] = {
+    2: {"x86_64 Linux": "linux64"},
+    3: {"x86_64 Linux": "x86_64-linux", "aarch64 Linux": "aarch64-linux"},
+}
+"""What the standard calls the binaries of a machine and its system."""
 BUILD_SECONDS = 300.0
 """A compiler that takes longer is stopped [s]."""
 PREFIX = "model"
@@ -61,9 +66,10 @@ def _unit(source: ExportSource, version: FmiVersion) -> dict[str, bytes]:
     files = {"modelDescription.xml": describe(token), **{f"sources/{file}": text.encode() for file, text in texts.items()}}
     if version == 3:
         files["sources/buildDescription.xml"] = describe_build(name, compiled)
-    folder = {2: {"x86_64": "linux64"}, 3: {"x86_64": "x86_64-linux", "aarch64": "aarch64-linux"}}[version].get(platform.machine())
-    binary = _binary(texts, compiled) if folder is not None and platform.system() == "Linux" else None
-    if binary is not None:
+    folder = BINARY_FOLDERS[version].get(f"{platform.machine()} {platform.system()}")
+    if folder is None:
+        _warn("binaries are built on Linux alone")
+    elif (binary := _binary(texts, compiled)) is not None:
         files[f"binaries/{folder}/{name}.so"] = binary
     return {f"{source.stem}.fmu": _archive(files)}
 
@@ -89,7 +95,7 @@ def _binary(texts: Mapping[str, str], compiled: list[str]) -> bytes | None:
     """Return the shared library of a unit; None, with a warning, where no compiler makes one."""
     compiler = next((path for name in C_COMPILERS if (path := shutil.which(name)) is not None), None)
     if compiler is None:
-        warnings.warn(ModelWarning("no C compiler is installed: the unit holds its sources, but no binary"), stacklevel=2)
+        _warn("no C compiler is installed")
         return None
     with tempfile.TemporaryDirectory(prefix="vehgen_fmu_") as place:
         folder = Path(place)
@@ -102,7 +108,10 @@ def _binary(texts: Mapping[str, str], compiled: list[str]) -> bytes | None:
         except (OSError, subprocess.TimeoutExpired) as error:
             said = str(error)
         if not (folder / "unit.so").is_file():
-            message = f"{compiler} could not build the unit, which holds its sources, but no binary: {shortened(said, 200)}"
-            warnings.warn(ModelWarning(message), stacklevel=2)
+            _warn(f"{compiler} could not build it ({shortened(said, 200)})")
             return None
         return (folder / "unit.so").read_bytes()
+
+
+def _warn(reason: str) -> None:
+    warnings.warn(ModelWarning(f"the unit holds its sources, but no binary: {reason}"), stacklevel=2)
