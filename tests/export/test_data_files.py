@@ -88,9 +88,11 @@ def test_hostile_names_stay_texts(tmp_path):
     [
         ({"to": "jsn"}, "`to`: unknown format 'jsn'; did you mean 'json'"),
         ({"to": 3}, "`to`: unknown format 3"),
+        ({"to": ["c"]}, "`to`: unknown format"),
         ({"to": "json", "out": "a.txt"}, r"`out`: the name of a file of the format json ends in .json; found 'a.txt'"),
         ({"to": "json", "step": 0.0}, "`step`: a time step is 1e-06 s to 0.1 s, found 0.0"),
         ({"to": "json", "values": {"kx": 1.0}}, "no parameter 'kx'"),
+        ({"to": "json", "values": {"kf": float("nan")}}, "`values`: kf must be a finite number, found nan"),
         ({"to": "json", "parameter_set": "x"}, "no parameter set 'x'"),
     ],
 )

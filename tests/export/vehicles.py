@@ -36,7 +36,7 @@ LAWS = {
     "law": ("suspension", "{force: a*d*abs(d) + b*v*sqrt(abs(v/(1 m/s))), parameters: {a: 2.0e6 N/m^2, b: 100 N s/m}}"),
 }
 """Every law of the library and an own one: where it sits on the sedan, and its parameters."""
-TEXT = "*/ int x; /* \"; system(\"touch PWNED\"); // \\ ??/\n%{\n'); system('touch PWNED'); ${HOME} </fmiModelDescription>\u2028"
+TEXT = "*/ int x; /* \"; system(\"touch PWNED\"); // \\ ??/\n%{\n'); system('touch PWNED'); ${HOME} </fmiModelDescription> @STEP@\u2028"
 """A text that would become code in a comment or a text of C, MATLAB or XML, were it not held back."""
 
 

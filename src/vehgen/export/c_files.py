@@ -36,10 +36,9 @@ def c_texts(source: ExportSource, program: CProgram, prefix: str) -> dict[str, s
 
 def from_template(name: str, prefix: str, **others: str) -> str:
     """Return a file of the folder of templates with the prefix, and other words, in the places of @prefix@, @PREFIX@, @WORD@."""
+    words = {"prefix": prefix, "PREFIX": prefix.upper(), **others}
     text = (TEMPLATES / name).read_text(encoding="utf-8")
-    for word, value in {"prefix": prefix, "PREFIX": prefix.upper(), **others}.items():
-        text = text.replace(f"@{word}@", value)
-    return text
+    return re.sub(r"@(\w+)@", lambda match: words[match[1]], text)  # once: what is put in may hold such a word of its own
 
 
 def _header(source: ExportSource, program: CProgram, prefix: str) -> str:

@@ -62,7 +62,7 @@ def export(
     InputError
         For an unknown format, a force law that the format cannot carry, values that no vehicle has, and files that cannot be written.
     """
-    if to not in EXPORT_FORMATS:
+    if not isinstance(to, str) or to not in EXPORT_FORMATS:
         raise ArgumentError(f"`to`: unknown format {shown(to)}; {did_you_mean(str(to), EXPORT_FORMATS)}", "to")
     if not (isinstance(step, int | float) and math.isfinite(step) and SHORTEST_EXPORT_STEP <= step <= LONGEST_EXPORT_STEP):
         bounds = f"{SHORTEST_EXPORT_STEP:g} s to {LONGEST_EXPORT_STEP:g} s"
@@ -72,8 +72,11 @@ def export(
     place = export_place(found.vehicle.name, to, out)
     stem = place.stem if chosen.suffix else chosen.stem(found.vehicle.name)
     check_results([place if chosen.suffix else place / stem])  # before the work; what is written is checked again
-    source = ExportSource(found, found.values(parameter_set, values), linear, float(step), stem)
-    return _write(chosen, source, place)
+    numbers = found.values(parameter_set, values)
+    for name, value in numbers.items():
+        if not math.isfinite(value):
+            raise ArgumentError(f"`values`: {name} must be a finite number, found {value}", "values")
+    return _write(chosen, ExportSource(found, numbers, linear, float(step), stem), place)
 
 
 def export_place(vehicle_name: str, to: str, out: str | os.PathLike[str] | None) -> Path:
