@@ -65,6 +65,7 @@ def test_values_and_sets_by_name():
     assert by_set != vehgen.static_loads(model)
 
 
+FRICTION = {"axles": {"front": {"suspension": {"laws": [{"dry_friction": {"force": "1 kN"}}]}}}}
 CALLS = {
     "vehicle": lambda hump: vehgen.derive(3),
     "run": lambda hump: vehgen.simulate(3),
@@ -87,6 +88,9 @@ CALLS = {
         [hump], vehicle="sedan2", sensors=[], hump={"shape": "half_sine", "length": 0.5, "height": 0.03}, out="x.txt"
     ),
     "speed": lambda hump: vehgen.import_phones([hump], vehicle="sedan2", sensors=[], hump={}, speed=-1.0),
+    "to": lambda hump: vehgen.export("sedan2", "jsn"),
+    "step": lambda hump: vehgen.export("sedan2", "c", step=0.0),
+    "linear": lambda hump: vehgen.export(vehgen.load_vehicle("sedan2").with_changes(FRICTION), "npz"),
     "result": lambda hump: vehgen.report(vehgen.natural_modes("sedan2"), "pages"),
 }
 

@@ -71,12 +71,13 @@ print(vehgen.natural_modes(truck, {"kf": 350e3}).to_dataframe())
     ),
     Section(
         "Linear systems",
-        ("state_space", "frequency_response"),
+        ("state_space", "frequency_response", "export"),
         """\
 system = vehgen.state_space(truck, outputs=outputs[:1])
 print(system.states, system.inputs, system.outputs, system.poles)
 response = vehgen.frequency_response(truck, [0.5, 1.5, 11.0], outputs=outputs[:1], speed=15.0)
 print(abs(response.values))
+print(vehgen.export(truck, "json", "my_truck.json", outputs=outputs[:1]))
 """,
     ),
     Section(

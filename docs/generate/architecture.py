@@ -30,6 +30,7 @@ ROOMS = [
     "calibrate",
     "diagnose",
     "report",
+    "export",
     "commands",
 ]
 """Ground floor first: a room imports only from itself and from rooms before it."""

@@ -57,6 +57,7 @@ _HOMES = {
     "draw_vehicle": "vehgen.report",
     "read_result": "vehgen.report",
     "report": "vehgen.report",
+    "export": "vehgen.export",
 }
 
 __all__ = [*_HOMES]
@@ -69,6 +70,7 @@ if TYPE_CHECKING:
     from vehgen.diagnose import diagnose
     from vehgen.effects import Effect, effects
     from vehgen.errors import InputError, ModelWarning
+    from vehgen.export import export
     from vehgen.fit.transmissibility import transmissibility
     from vehgen.mechanics import ElementOutput, EquationsOfMotion, Place, PointOutput, derive, static_loads
     from vehgen.phones import PhoneSensor, import_phones

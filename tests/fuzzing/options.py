@@ -34,6 +34,7 @@ QUICK = (
     " --reference S --speed 5 --bands 4,15 --segment 0.6 --forward y --out rough",
     "models --json",
     "schema --run",
+    "export car.yaml --to json --set stiff --run run.yaml --step 0.001 --out car.json",
 )
 COMPILING = (
     "build car.yaml --set stiff --no-plots --out built",

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
+from typing import ClassVar
 
 from vehgen.codegen.program import SAMPLE_PHASE, SETUP_PHASE, STEP_PHASE, Node, Program
 from vehgen.errors import InputError
 
-_BINARY = {"+": 1, "-": 1, "*": 2, "/": 2, "**": 3}
-_PRINTED_FUNCTIONS = {"min": "lower", "max": "upper"}
+_BINARY = {"+": 1, "-": 1, "*": 2, "/": 2}
+_POWER_STRENGTH = 3
 _MAX_INLINE = 90
 
 
 class PythonPrinter:
     """Prints what given results need of a program, phase by phase.
+
+    A language of the same operators can be printed by a subclass with other `functions` and another :meth:`power`.
 
     Parameters
     ----------
@@ -29,6 +32,9 @@ class PythonPrinter:
         Whether the loops' numbers are of single precision (a plain one would make its expression double); SETUP_PHASE stays double.
 
     """
+
+    functions: ClassVar[Mapping[str, str]] = {"min": "lower", "max": "upper", "sqrt": "math.sqrt"}
+    """What a program's functions are called, where not by their own names."""
 
     def __init__(self, program: Program, results: dict[int, list[Node]], scalar: Node, single: bool = False) -> None:
         self.scalar, self.single = scalar, single
@@ -146,6 +152,8 @@ class PythonPrinter:
 
     def _expression(self, node: Node, arguments: list[tuple[str, int]]) -> tuple[str, int]:
         operation = self.program.operations[node]
+        if operation == "**":
+            return self.power(*arguments)
         if operation in _BINARY:
             strength = _BINARY[operation]
             (left, left_strength), (right, right_strength) = arguments
@@ -157,9 +165,13 @@ class PythonPrinter:
         texts = [text for text, _ in arguments]
         if operation == "neg":
             return f"-{texts[0]}" if arguments[0][1] >= 2 else f"-({texts[0]})", 1
-        if operation == "sqrt":
-            return f"math.sqrt({texts[0]})", 9
-        return f"{_PRINTED_FUNCTIONS.get(operation, operation)}({', '.join(texts)})", 9
+        return f"{self.functions.get(operation, operation)}({', '.join(texts)})", 9
+
+    def power(self, base: tuple[str, int], exponent: tuple[str, int]) -> tuple[str, int]:
+        """Return a power and how strongly it binds, of a base and an exponent with theirs."""
+        left = f"({base[0]})" if base[1] <= _POWER_STRENGTH else base[0]  # a power of a power, too: ** binds to the right
+        right = f"({exponent[0]})" if exponent[1] < _POWER_STRENGTH else exponent[0]
+        return f"{left}**{right}", _POWER_STRENGTH
 
 
 def literal(value: float) -> str:

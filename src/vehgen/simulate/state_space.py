@@ -28,10 +28,11 @@ class StateSpace(Result):
     """A vehicle in state space: `A`, `B`, `C`, `D` in SI units, n states, m inputs, p outputs.
 
     `A shape (n, n)`, `B shape (n, m)`, `C shape (p, n)`, `D shape (p, m)`: scipy.signal.StateSpace(A, B, C, D) takes them as they are.
-    `states`, `inputs` and `outputs` name their rows and columns, `units` gives the outputs' units.
+    `states`, `inputs` and `outputs` name their rows and columns, `state_units`, `input_units` and `units` (of the outputs) are their units.
     """
 
     KIND: ClassVar[str] = "state space"
+    FORMAT_VERSION: ClassVar[int] = 2
     DRAWING: ClassVar[str] = "vehgen.report.plots.result_plots:plot_poles"
 
     A: Array2D
@@ -42,10 +43,14 @@ class StateSpace(Result):
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     units: tuple[str, ...]
+    state_units: tuple[str, ...]
+    input_units: tuple[str, ...]
 
     def __post_init__(self) -> None:
         n, m, p = len(self.states), len(self.inputs), len(self.outputs)
-        if [self.A.shape, self.B.shape, self.C.shape, self.D.shape, len(self.units)] != [(n, n), (n, m), (p, n), (p, m), p]:
+        shapes = [self.A.shape, self.B.shape, self.C.shape, self.D.shape]
+        counts = [len(self.state_units), len(self.input_units), len(self.units)]
+        if shapes != [(n, n), (n, m), (p, n), (p, m)] or counts != [n, m, p]:
             raise ValueError("matrices of as many rows and columns as states, inputs and outputs were expected")
 
     @property
@@ -124,6 +129,7 @@ def state_space(
 def _named(model: EquationsOfMotion, A: Array, B: Array, C: Array, D: Array, columns: list[int]) -> StateSpace:
     """Return matrices with the names of a model; `columns` of displacements, rates and forces are its inputs."""
     names = [*model.inputs, *(f"{name}.rate" for name in model.inputs), *(f"force.{name}" for name in model.forces)]
+    units = ["m"] * len(model.inputs) + ["m/s"] * len(model.inputs) + ["N"] * len(model.forces)
     coordinates = [item.name for item in model.coordinates]
     return StateSpace(
         A,
@@ -134,20 +140,26 @@ def _named(model: EquationsOfMotion, A: Array, B: Array, C: Array, D: Array, col
         inputs=tuple(names[i] for i in columns),
         outputs=tuple(channel.name for channel in model.channels),
         units=tuple(channel.unit for channel in model.channels),
+        state_units=(*(item.unit for item in model.coordinates), *(f"{item.unit}/s" for item in model.coordinates)),
+        input_units=tuple(units[i] for i in columns),
     )
 
 
 def linear_model(model: ModelLike, outputs: Iterable[Output], forces: Iterable[Place]) -> EquationsOfMotion:
     """Return equations of motion with channels; warn of force laws, which no linear result holds."""
-    outputs, forces = tuple(outputs), tuple(forces)
-    if isinstance(model, EquationsOfMotion) and model.channels and not outputs and not forces:
-        found = model
-    else:
-        vehicle = model.vehicle if isinstance(model, EquationsOfMotion) else as_vehicle(model)
-        found = derive(vehicle, outputs or body_channels(vehicle), forces)
+    found = model_with_channels(model, outputs, forces)
     if any(element.laws for element in found.elements):
         warnings.warn(ModelWarning(f"the force laws of {found.vehicle.name} are left out: these equations are linear"), stacklevel=3)
     return found
+
+
+def model_with_channels(model: ModelLike, outputs: Iterable[Output] = (), forces: Iterable[Place] = ()) -> EquationsOfMotion:
+    """Return equations of motion with channels: those asked for, else the model's own, else acceleration and pitch rate of every body."""
+    outputs, forces = tuple(outputs), tuple(forces)
+    if isinstance(model, EquationsOfMotion) and model.channels and not outputs and not forces:
+        return model
+    vehicle = model.vehicle if isinstance(model, EquationsOfMotion) else as_vehicle(model)
+    return derive(vehicle, outputs or body_channels(vehicle), forces)
 
 
 def _output_matrices(numeric: NumericModel, A: Array, B: Array) -> tuple[Array, Array, Array]:

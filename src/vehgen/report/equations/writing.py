@@ -101,12 +101,12 @@ def law_rows(model: EquationsOfMotion) -> list[tuple[str, sp.Expr, list[tuple[st
             assert element.kind != "bending"
             units = {parameter.name: str(parameter.dimension(element.kind)) for parameter in term.law.parameters}
             parameters = [(key, tidy(value), units[key]) for key, value in term.parameters.items()]
-            laws.append((term.law.title, _law_equation(element, term), parameters))
+            laws.append((term.law.title, law_equation(element, term), parameters))
         rows.append((where, travel, laws))
     return rows
 
 
-def _law_equation(element: Element, term: LawTerm) -> str:
+def law_equation(element: Element, term: LawTerm) -> str:
     """Return a law's equation; of an own law with its parameters put in."""
     counted = "" if term.origin == "static" else f"; {UNLOADED_NOTE}"
     if term.law.parameters:
