@@ -94,7 +94,7 @@ def decimate(fine: Array, filters: list[tuple[int, Array]], ratio: int, count: i
         weights[channel, phase, last - shift] = taps
     fine = np.ascontiguousarray(fine)
     found = np.empty((len(fine), count, len(filters)))
-    workers = min(threads or os.cpu_count() or 1, len(fine)) if fine.size > MANY_NUMBERS else 1
+    workers = min(threads or os.cpu_count() or 1, len(fine)) if fine.size > MANY_NUMBERS and len(fine) > 1 else 1
     bounds = np.linspace(0, len(fine), workers + 1).astype(int).tolist()
     run = _module().filter_phases
 

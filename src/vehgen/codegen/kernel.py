@@ -234,8 +234,9 @@ class Kernel:
                 residuals[first:last] = state[-lanes:][: last - first]
 
         starts = range(0, n_individuals, lanes)
-        workers = min(threads or os.cpu_count() or 1, len(starts))
-        if workers > 1 and len(starts) * excitation.n_steps * n_dof > WORTH_THREADS:
+        many = len(starts) > 1 and len(starts) * excitation.n_steps * n_dof > WORTH_THREADS
+        workers = min(threads or os.cpu_count() or 1, len(starts)) if many else 1
+        if workers > 1:
             with ThreadPoolExecutor(workers) as pool:
                 list(pool.map(block, starts))
         else:

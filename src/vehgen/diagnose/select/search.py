@@ -36,7 +36,9 @@ LOOKED_AT_AGAIN = 4
 CONTENDER = 1.5
 """Beside those a candidate is fitted again that leaves less than so many times the mean square of the best."""
 LEADING = 3
-"""So many of the best fits are settled, where their response jumps."""
+"""So many of the best fits are settled, where their response jumps ..."""
+MAY_STILL_WIN = 2.0
+"""... and which leave less than so many times the mean square of the best."""
 
 
 @dataclass(frozen=True)
@@ -121,10 +123,10 @@ def fit_candidates(
                 progress("name", done, len(candidates), f"{best.label}, chi {np.sqrt(best.training):.3f}")
             if any(np.isfinite(fit.validation) and fit.training < limit.NAMED_LEFT**2 for fit in fits):
                 break
-        fits = _best_of_each(fits)
-        fits.sort(key=merit)
+        fits = simplest_first(sorted(_best_of_each(fits), key=merit), base)
         for i, fit in enumerate(fits[:LEADING]):
-            if np.isfinite(fit.validation):
+            near = fit.training <= MAY_STILL_WIN * fits[0].training and not fit.last.holds(fits[0].last)
+            if np.isfinite(fit.validation) and near:
                 fits[i] = restart(fit, detection.validation_runs, detection.floor.noises)
     except KeyboardInterrupt:
         return simplest_first(sorted(fits, key=merit), base), True
