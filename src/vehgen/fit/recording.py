@@ -20,7 +20,7 @@ from vehgen.mechanics.outputs import Output
 from vehgen.simulate import Run
 from vehgen.simulate.run_file.acquisition import channel_chains, check_nyquist
 from vehgen.simulate.run_file.checks import TIME_COLUMN
-from vehgen.simulate.run_file.entries import ChannelEntry, SensorEntry
+from vehgen.simulate.run_file.sensors import ChannelEntry, SensorEntry
 
 Array = NDArray[np.float64]
 FEWEST_SAMPLES = 16

@@ -74,7 +74,7 @@ def acquire(kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Arra
 
 def _acquired(kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, threads: int | None) -> KernelResult:
     chains = [chain.filtering() for chain in assumed_chains(scenario, [channel.name for channel in kernel.model.channels])]
-    distinct, begin = set(chains), _initial(scenario, len(parameters))
+    distinct, begin = set(chains), initial_states(scenario, len(parameters))
     if all(chain.is_point_sample for chain in distinct):
         return kernel.run(parameters, scenario.excitation(offsets), scenario.decimation, begin, threads)
     if len(distinct) == 1 and not kernel.source.nonlinear and begin is None:
@@ -82,7 +82,7 @@ def _acquired(kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Ar
     return _filtered_output(kernel, parameters, scenario, offsets, chains, threads)
 
 
-def _initial(scenario: Scenario, count: int) -> Array | None:
+def initial_states(scenario: Scenario, count: int) -> Array | None:
     """Return the state in which every individual begins, `shape (count, 2 n_dof)`; None at rest."""
     return None if scenario.initial is None else np.repeat(scenario.initial[None], count, axis=0)
 
@@ -145,6 +145,8 @@ def _filtered_output(
     ratio = scenario.decimation // stride
     filters = {chain: chain.taps(scenario.dt * stride) for chain in dict.fromkeys(chains)}
     ahead = math.ceil(max(0, *(-first for first, _ in filters.values())) / ratio)
-    result = kernel.run(parameters, extended(scenario, ahead).excitation(offsets), stride, _initial(scenario, len(parameters)), threads)
+    result = kernel.run(
+        parameters, extended(scenario, ahead).excitation(offsets), stride, initial_states(scenario, len(parameters)), threads
+    )
     count = (len(scenario.time) - 1) // scenario.decimation + 1
     return replace(result, responses=decimate(result.responses, [filters[chain] for chain in chains], ratio, count, threads))

@@ -75,10 +75,10 @@ def _responses(base: ModelFit, place: PlaceResult) -> list[NDArray[np.complex128
     misfit = base.least_squares.misfit
     values = misfit.problem.space.values(misfit.split(place.x)[0])
     known = [misfit.problem.values_of(values, trial) for trial in misfit.problem.trials]
-    return [
-        force_response(trial.simulator.model, known[t], place.place.rows[:1], misfit.frequency(t))[:, :, 0]
-        for t, trial in enumerate(misfit.problem.trials)
-    ]
+    models = [trial.simulator.model for trial in misfit.problem.trials]
+    number = models[0].element_number(place.place.kind, place.place.name)
+    rows = place.place.rows[:1]
+    return [force_response(model, known[t], rows, misfit.frequency(t), number)[:, :, 0] for t, model in enumerate(models)]
 
 
 def compare_with_placebo_laws(found: SearchRound, fit: ModelFit, detection: Detection) -> tuple[float, float] | None:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.checks import check_dimension, check_known, plain_quantity, value_of
 from vehgen.files.limits import MOST_CHANNELS, VEHICLE_LENGTH
 from vehgen.files.units import LENGTH
-from vehgen.mechanics.outputs import AXLE_QUANTITIES, LINK_QUANTITIES
 from vehgen.simulate.run_file.acquisition import check_acquisition
-from vehgen.simulate.run_file.entries import OutputEntry, PlaceEntry
+from vehgen.simulate.run_file.sensors import OfElement, OutputEntry, PlaceEntry
 from vehgen.vehicle.checks import check_values
 from vehgen.vehicle.parts import GROUND
 
@@ -93,12 +93,9 @@ def _check_displacements(run: Run) -> None:
 
 def _check_sensors(run: Run) -> None:
     """Check that sensors sit on parts of the vehicle and record what there is to be recorded there."""
-    vehicle, document = run.vehicle, run.document
     for name, sensor in run.file.sensors.items():
-        if sensor.axle is not None:
-            check_known(sensor.axle, vehicle.axles, f"{vehicle.name} has no axle", document, "sensors", name, "axle")
-        elif sensor.link is not None:
-            check_known(sensor.link, vehicle.links, f"{vehicle.name} has no link", document, "sensors", name, "link")
+        if sensor.element is not None:
+            _check_element(run, sensor, "sensors", name)
         else:
             _check_place(run, sensor, "sensors", name)
         for quantity in sensor.channels:
@@ -109,18 +106,24 @@ def _check_sensors(run: Run) -> None:
                 )
 
 
+def _check_element(run: Run, entry: OfElement, *path: str) -> None:
+    """Check that the vehicle has the axle, link or hinge that a sensor or output belongs to."""
+    vehicle = run.vehicle
+    assert entry.element is not None
+    group, name = entry.element
+    parts: dict[str, Mapping[str, object]] = {"axles": vehicle.axles, "links": vehicle.links, "hinges": vehicle.hinges}
+    kind = group.removesuffix("s")
+    check_known(name, parts[group], f"{vehicle.name} has no {kind}", run.document, *path, kind)
+
+
 def _check_output(run: Run, name: str, output: OutputEntry) -> None:
-    """Check that an output is a quantity of an axle or link of the vehicle."""
-    vehicle, document = run.vehicle, run.document
-    if output.axle:
-        check_known(output.axle, vehicle.axles, f"{vehicle.name} has no axle", document, "outputs", name, "axle")
-    else:
-        check_known(output.link or "", vehicle.links, f"{vehicle.name} has no link", document, "outputs", name, "link")
-    owner, quantities = ("an axle", AXLE_QUANTITIES) if output.axle else ("a link", LINK_QUANTITIES)
-    if output.quantity not in quantities:
+    """Check that an output is a quantity of an axle, link or hinge of the vehicle."""
+    _check_element(run, output, "outputs", name)
+    if output.quantity not in output.quantities:
+        owner = {"axles": "an axle", "links": "a link", "hinges": "a hinge"}[output.element[0] if output.element else "axles"]
         raise InputError(
-            f"unknown quantity {shown(output.quantity)} of {owner}; {did_you_mean(output.quantity, quantities)}",
-            document.find(("outputs", name, "quantity")),
+            f"unknown quantity {shown(output.quantity)} of {owner}; {did_you_mean(output.quantity, output.quantities)}",
+            run.document.find(("outputs", name, "quantity")),
         )
 
 
