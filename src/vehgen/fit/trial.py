@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
 from vehgen.fit.recording import Recording, read_recording
+from vehgen.fit.run_checks import check_hump_reached, check_initial, check_inputs_last
 from vehgen.road import Hump
 from vehgen.simulate import Run, RunLike, Scenario, Simulator, SimulatorPool, as_run, make_scenario, natural_modes
 from vehgen.simulate.acquired import channel_factors
@@ -151,7 +152,9 @@ def make_trial(run: Run, name: str, simulators: SimulatorPool | None = None) -> 
         make_scenario(timed, simulator.model, values), duration=length, dt=step, decimation=decimation, start=float(measurement.time[0])
     )
     scenario = replace(scenario, chains=channel_chains(run, 1 / dt))
-    _check_length(run, scenario, simulator, values, name)
+    check_hump_reached(run, scenario, simulator.model.wheel_offsets(values), name)
+    check_inputs_last(run, scenario, measurement, simulator.model)
+    check_initial(run, measurement, simulator, scenario, values)
     return _from_known_road(Trial(name, run, measurement, simulator, scenario, values, tuple(run.file.parameters)))
 
 
@@ -191,16 +194,3 @@ def samples_kept(run: Run, dt: float) -> int:
 def _simulator(run: Run, measurement: Recording, simulators: SimulatorPool) -> Simulator:
     outputs = tuple(channel.output for channel in measurement.channels)
     return simulators.simulator(run.vehicle, outputs, run.forces())
-
-
-def _check_length(run: Run, scenario: Scenario, simulator: Simulator, values: dict[str, float], name: str) -> None:
-    """Refuse a recording that ends before the last axle has met the hump."""
-    humps = [entry.hump for entry in run.file.road if entry.hump is not None]
-    offsets = simulator.model.wheel_offsets(values)
-    travelled = float(scenario.speed.distance(np.array([scenario.start + scenario.duration]))[0])
-    if humps and travelled < max(hump.at for hump in humps) + float(offsets.max(initial=0.0)):
-        raise InputError(
-            f"{name}: the recording ends after {travelled:.1f} m, before the last axle ({offsets.max(initial=0.0):.1f} m behind the first) "
-            f"has met the hump at {max(hump.at for hump in humps):.1f} m: record until the vehicle has left it",
-            run.document.find(("recording",)),
-        )

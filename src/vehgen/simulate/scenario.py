@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from vehgen.codegen import Excitation
 from vehgen.errors import InputError
+from vehgen.files.checks import unit_factor
 from vehgen.files.limits import HUMP_HEIGHT, HUMP_LENGTH, SPEED_LIMIT
 from vehgen.files.tables import TableColumns, read_columns
 from vehgen.measure.acquisition import POINT_SAMPLES, AcquisitionChain
@@ -36,7 +37,7 @@ from vehgen.simulate.excitation_cache import ExcitationCache
 from vehgen.simulate.initial_state import initial_state
 from vehgen.simulate.run_file import Run
 from vehgen.simulate.run_file.acquisition import channel_chains
-from vehgen.simulate.run_file.entries import HumpEntry
+from vehgen.simulate.run_file.entries import DisplacementEntry, ForceEntry, HumpEntry
 from vehgen.simulate.signals import Signal
 
 Array = NDArray[np.float64]
@@ -120,23 +121,25 @@ class Scenario:
         wander: Wander | None = None,
         deformation: tuple[float, float, float, float] | None = None,
         forces: Sequence[tuple[float, float]] = (),
+        displacements: Sequence[float] = (),
     ) -> Scenario:
         """Return the same run, `delay` [s] later, at `speed` times the speed, on a road `height` times as high.
 
         Speed and `wander` are seen from where the vehicle is at the time `anchor` [s]; `deformation` is that of the humps
-        (length, form, skew, rounding; default: as it is). `forces` are gains and offsets [N] of the forces; on a rig without a road
-        forces and displacements, too, come `delay` later.
+        (length, form, skew, rounding; default: as it is). `forces` are gains and offsets [N] of the forces, `displacements` gains of
+        those of the ground; on a rig without a road both come `delay` later.
         """
         late = delay if not self.track.parts else 0.0
         same = (delay, speed, wander) == (0.0, 1.0, None)
         law = self.speed if same else AdjustedSpeed(self.speed, delay, speed, anchor, wander)
         track = replace(self.track, scale=self.track.scale * height, deformation=deformation or self.track.deformation)
         found = replace(self, speed=law, track=track)
-        if not (forces or late):
+        if not (forces or displacements or late):
             return found
         errors = forces or [(1.0, 0.0)] * len(self.forces)
         pushed = tuple(item.with_errors(gain, offset, late) for item, (gain, offset) in zip(self.forces, errors, strict=True))
-        moved = tuple(None if item is None else item.with_errors(late=late) for item in self.ground)
+        gains = displacements or [1.0] * len(self.ground)
+        moved = tuple(None if item is None else item.with_errors(gain, late=late) for item, gain in zip(self.ground, gains, strict=True))
         return replace(found, forces=pushed, ground=moved)
 
     def excitation(self, offsets: Array) -> Excitation:
@@ -192,14 +195,18 @@ def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) 
         _check_cost(run, duration, speed, model)
     else:
         raise InputError("a run without a hump needs `duration`, e.g. 10 s", run.document.position)
-    names = model.inputs[len(run.vehicle.axles) :]
-    ground = tuple(_ground(run, name.partition(".")[2]) for name in names)
+    ground = tuple(_ground(run, link) for link in ground_links(model))
     forces = tuple(
-        Signal(harmonic=entry.harmonic) if entry.harmonic else _measured(run, entry.file or "", entry.time, entry.force, ("forces", name))
+        Signal(harmonic=entry.harmonic) if entry.harmonic else _measured(run, entry, entry.force, "N", ("forces", name))
         for name, entry in file.forces.items()
     )
     chains = channel_chains(run, 1 / (file.step * run.decimation))
     return Scenario(track, speed, duration, file.step, run.decimation, ground, forces, chains=chains, initial=initial_state(run, model))
+
+
+def ground_links(model: EquationsOfMotion) -> tuple[str, ...]:
+    """Return the links to the ground, in the order of a model's inputs."""
+    return tuple(name.partition(".")[2] for name in model.inputs[len(model.vehicle.axles) :])
 
 
 def _check_cost(run: Run, duration: float, speed: SpeedLaw, model: EquationsOfMotion) -> None:
@@ -263,13 +270,13 @@ def _ground(run: Run, link: str) -> Signal | None:
         return None
     if entry.harmonic is not None:
         return Signal(harmonic=entry.harmonic)
-    return _measured(run, entry.file or "", entry.time, entry.displacement, ("displacements", link))
+    return _measured(run, entry, entry.displacement, "m", ("displacements", link))
 
 
-def _measured(run: Run, file: str, time: str, column: str, place: tuple[str, ...]) -> Signal:
-    found = _columns(run, file, (time, column), (*place, "file"))
+def _measured(run: Run, entry: ForceEntry | DisplacementEntry, column: str, usual: str, place: tuple[str, ...]) -> Signal:
+    found = _columns(run, entry.file or "", (entry.time, column), (*place, "file"))
     found.check_ascending(least=1)
-    return Signal(time=found.values[0], values=found.values[1])
+    return Signal(time=found.values[0], values=found.values[1] * unit_factor(entry.unit or usual, usual, place[0], None))
 
 
 def _columns(run: Run, file: str, names: tuple[str, str], place: tuple[str | int, ...]) -> TableColumns:

@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from vehgen.errors import InputError, did_you_mean, shown
-from vehgen.files.checks import check_dimension, check_known, plain_quantity, value_of
+from vehgen.files.checks import check_dimension, check_known, plain_quantity, unit_factor, value_of
 from vehgen.files.limits import MOST_CHANNELS, VEHICLE_LENGTH
 from vehgen.files.units import LENGTH
 from vehgen.simulate.run_file.acquisition import check_acquisition
+from vehgen.simulate.run_file.entries import DisplacementEntry, ForceEntry
 from vehgen.simulate.run_file.sensors import OfElement, OutputEntry, PlaceEntry
 from vehgen.vehicle.checks import check_values
 from vehgen.vehicle.parts import GROUND
@@ -29,6 +30,7 @@ def check_run(run: Run) -> None:
     _check_vehicle(run)
     for name, entry in run.file.forces.items():
         _check_place(run, entry, "forces", name)
+        _check_unit(run, entry, "force", "N", "forces", name)
     _check_displacements(run)
     _check_sensors(run)
     check_acquisition(run)
@@ -89,6 +91,22 @@ def _check_displacements(run: Run) -> None:
     grounded = [name for name, link in vehicle.links.items() if GROUND in link.points]
     for name in run.file.displacements:
         check_known(name, grounded, f"{vehicle.name} has no link to the ground", run.document, "displacements", name, key=True)
+        _check_unit(run, run.file.displacements[name], "displacement", "m", "displacements", name)
+
+
+def _check_unit(run: Run, entry: ForceEntry | DisplacementEntry, quantity: str, usual: str, *path: str) -> None:
+    """Check the unit of a measured column; beside a recording, where a wrong one would be fitted, it must be stated."""
+    document = run.document
+    if entry.unit is not None:
+        if entry.file is None:
+            raise InputError("a harmonic is written with its unit; `unit` belongs to a `file`", document.find((*path, "unit"), key=True))
+        unit_factor(entry.unit, usual, quantity, document.find((*path, "unit")))
+    elif entry.file is not None and run.file.recording is not None:
+        column = entry.force if isinstance(entry, ForceEntry) else entry.displacement
+        raise InputError(
+            f"the {quantity} in the column {shown(column)} has no unit; write the one it was recorded in, e.g. `unit: {usual}`",
+            document.find((*path, "file"), key=True),
+        )
 
 
 def _check_sensors(run: Run) -> None:

@@ -113,7 +113,7 @@ class DisplacementHarmonic(FileModel):
 
 
 class ForceEntry(PlaceEntry):
-    """A vertical force on a body, upwards positive: harmonic, or measured in a CSV file (columns in s and N).
+    """A vertical force on a body, upwards positive: harmonic, or measured in a CSV file, its columns in s and in `unit`.
 
     `noise` is the standard deviation of what acts besides, white at the recording's samples [N].
     """
@@ -122,6 +122,7 @@ class ForceEntry(PlaceEntry):
     file: FileName | None = None
     time: Column = "t"
     force: Column = "force"
+    unit: str | None = None
     noise: PositiveForce | None = None
 
     @model_validator(mode="after")
@@ -132,12 +133,13 @@ class ForceEntry(PlaceEntry):
 
 
 class DisplacementEntry(FileModel):
-    """How the ground end of a link moves: harmonic, or measured in a CSV file (columns in s and m)."""
+    """How the ground end of a link moves: harmonic, or measured in a CSV file, its columns in s and in `unit`."""
 
     harmonic: DisplacementHarmonic | None = None
     file: FileName | None = None
     time: Column = "t"
     displacement: Column = "displacement"
+    unit: str | None = None
 
     @model_validator(mode="after")
     def _one_source(self) -> DisplacementEntry:
