@@ -5,11 +5,14 @@ import pytest
 
 from vehgen.errors import InputError
 from vehgen.fit.least_squares import FitOptions, fit_least_squares
+from vehgen.fit.linearisation import linearise
+from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import EVEN, Noise
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.problem import Problem
 from vehgen.fit.space import SearchSpace
-from vehgen.fit.trial import load_trials
+from vehgen.fit.trial import Trial, load_trials
+from vehgen.fit.window import AFTER_RELEASE, RAMP, taper
 
 MASS, K, C = 20.0, 40e3, 80.0
 RIG = f"""name: rig
@@ -162,3 +165,41 @@ def test_a_measured_input_states_its_unit_beside_a_recording(tmp_path, unit, wor
     with pytest.raises(InputError, match=words) as caught:
         load_trials([write(tmp_path, text, ("t,y,v", t, np.sin(t), np.cos(t)))])
     assert caught.value.position.line == 5
+
+
+def test_a_run_whose_begin_is_stated_is_compared_from_there_on(tmp_path):
+    t = np.arange(0.0, 3.0, 0.01)
+    text = RELEASE.replace("BEGIN", "60 mm")
+    recording = "t,y", t, free(t, 0.06)
+    (stated,) = load_trials([write(tmp_path, text, recording)])
+    assert stated.fade_in == 0.0
+    (filtered,) = load_trials([write(tmp_path, text.replace("acquisition: none", "acquisition: unknown"), recording)])
+    assert filtered.fade_in == AFTER_RELEASE
+    (unstated,) = load_trials([write(tmp_path, text.replace("initial: {block: {displacement: 60 mm}}\n", ""), recording)])
+    assert unstated.fade_in == RAMP
+    whole = taper(len(t), 0.01, 0.0)
+    assert (whole[: len(t) // 2] == 1).all()
+    assert whole[len(t) // 2 :] == pytest.approx(taper(len(t), 0.01)[len(t) // 2 :])
+    assert taper(len(t), 0.01)[0] == 0.0
+
+
+def test_a_release_that_dies_at_once_tells_its_damping(tmp_path, monkeypatch):
+    t, sigma, c = np.arange(0.0, 3.0, 0.005), np.array([1e-5]), 700.0
+    decay = c / (2 * MASS)
+    omega = np.sqrt(K / MASS - decay**2)
+    recorded = 0.06 * np.exp(-decay * t) * (np.cos(omega * t) + decay / omega * np.sin(omega * t))
+    recorded += sigma * np.random.default_rng(4).standard_normal(len(t))
+    run = write(tmp_path, RELEASE.replace("BEGIN", "60 mm"), ("t,y", t, recorded))
+    searched = "parameters: {c: {value: 600 N s/m, range: [200 N s/m, 2 kN s/m]}}\n"
+    (tmp_path / "rig.yaml").write_text(RIG.replace(f"c: {C} N s/m", "c: c") + searched, encoding="utf-8")
+    (trial,) = load_trials([run])
+    space = SearchSpace(("c",), np.array([200.0]), np.array([2000.0]), np.array([600.0]))
+    options = FitOptions(Nuisances(gain=0, clock=0), (0.5, 40.0))
+    fit = fit_least_squares(Problem((trial,), space), space.unit(space.start), options, noises={trial.name: Noise(EVEN, sigma)})
+    (name,), (found,) = fit.misfit.problem.space.names, fit.values
+    assert (name, found) == ("c", pytest.approx(c, rel=1e-3))
+    assert fit.chi2 < 1.5
+    told = np.linalg.norm(linearise(fit.misfit, fit.x).jacobian[:, 0])
+    monkeypatch.setattr(Trial, "fade_in", RAMP)
+    faded = Misfit(fit.misfit.problem, fit.misfit.noises, space.start, options.nuisances, options.band)
+    assert told > 4 * np.linalg.norm(linearise(faded, fit.x).jacobian[:, 0])

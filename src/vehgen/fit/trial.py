@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
 from vehgen.fit.recording import Recording, read_recording
 from vehgen.fit.run_checks import check_hump_reached, check_initial, check_inputs_last
+from vehgen.fit.window import AFTER_RELEASE, RAMP
 from vehgen.road import Hump
 from vehgen.simulate import Run, RunLike, Scenario, Simulator, SimulatorPool, as_run, make_scenario, natural_modes
-from vehgen.simulate.acquired import channel_factors
+from vehgen.simulate.acquired import assumed_chains, channel_factors
 from vehgen.simulate.run_file.acquisition import channel_chains
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 
@@ -57,6 +58,15 @@ class Trial:
     def channels(self) -> tuple[str, ...]:
         """Names of the measured channels."""
         return tuple(channel.name for channel in self.recording.channels)
+
+    @property
+    def fade_in(self) -> float:
+        """How long the record fades in [s]: where the run file states how it begins, its first moments are known."""
+        scenario = self.scenario
+        if scenario.initial is None or scenario.skipped:
+            return RAMP
+        chains = assumed_chains(scenario, self.channels)
+        return 0.0 if all(chain.filtering().is_point_sample for chain in chains) else AFTER_RELEASE
 
     def channel_factors(self, frequency: Array) -> Complex:
         """Return what the recorders make of spectral lines of the channels: factors `shape (n, n_channels)` at frequencies [Hz]."""

@@ -18,7 +18,7 @@ from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.localise.unknown_force import Place, PlaceResult, posterior, score_locations
 from vehgen.fit.alignment import align
 from vehgen.fit.misfit import Misfit
-from vehgen.fit.noise import taper
+from vehgen.fit.window import taper
 from vehgen.mechanics.equations_of_motion import Channel, EquationsOfMotion
 from vehgen.simulate.acquired import initial_states
 from vehgen.simulate.frequency import force_response
@@ -173,7 +173,7 @@ def _recover(misfit: Misfit, result: PlaceResult, directions: Array, component: 
         clear = own.variance < np.median(own.variance) / DEAF
         lines = np.isin(np.fft.rfftfreq(n, dt), misfit.frequency(t))
         lines[lines] = clear
-        window = taper(n, dt)
+        window = taper(n, dt, trial.fade_in)
         histories = [_history(item[t], clear, lines, window, dt) for item in (raw, *moved)]
         model = trial.simulator.model
         central = RecoveredForce(
