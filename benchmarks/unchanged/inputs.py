@@ -24,7 +24,7 @@ BODIES = {
     "truck_walking_beam": ("truck", "beam"),
     "vbi2d_2A3": ("tractor", "semitrailer"),
 }
-"""The bodies of the bundled vehicles."""
+"""The bodies of the bundled vehicles; rigs came later and have runs of their own."""
 LINKS = {
     "road_train": ("cab_front", "cab_rear", "seat", "engine_front", "engine_rear"),
     "tractor5_cab": ("cab_front", "cab_rear", "seat"),
@@ -155,8 +155,8 @@ def write_runs(folder: Path, axles: dict[str, Sequence[str]]) -> list[Path]:
     files = {"combined.yaml": COMBINED, "bending.yaml": BENDING, "rig.yaml": RIG, "speed.csv": SPEED, "road.csv": PROFILE}
     files |= {"hump.csv": HUMP, "force.csv": FORCE}
     runs = {}
-    for model, names in axles.items():
-        asked = channels(model, BODIES[model], names, LINKS.get(model, ()))
+    for model, bodies in BODIES.items():
+        asked = channels(model, bodies, axles[model], LINKS.get(model, ()))
         runs[model] = f"vehicle: {model}\nspeed: 10 m/s\nduration: 8 s\n{ROAD}{asked}"
     truck = channels("tractor5", BODIES["tractor5"], axles["tractor5"], ())
     sedan = channels("sedan2", BODIES["sedan2"], axles["sedan2"], ())

@@ -15,9 +15,9 @@ HERE = Path(__file__).parents[1]
 def main() -> None:
     """Write the page."""
     lines = [
-        "# The bundled vehicles",
+        "# The bundled vehicles and rigs",
         "",
-        "Made by `python docs/generate/models_page.py`. `vehgen build NAME` shows one in full.",
+        "Made by `python docs/generate/models_page.py`. `vehgen build NAME` shows one in full; [rigs.md](rigs.md) has runs of the rigs.",
         "",
     ]
     for name, path in bundled_models().items():
@@ -36,7 +36,11 @@ def main() -> None:
             "",
         ]
         loads = static_loads(model)
-        lines += ["Static axle loads, kN: " + ", ".join(f"{axle} {force / 1e3:.1f}" for axle, force in loads.axles.items()) + ".", ""]
+        if loads.axles:
+            lines += ["Static axle loads, kN: " + ", ".join(f"{axle} {force / 1e3:.1f}" for axle, force in loads.axles.items()) + ".", ""]
+        elif vehicle.gravity:
+            links = ", ".join(f"{name} {force:.0f}" for (_, name), force in loads.elements.items())
+            lines += [f"Static forces in its links, N: {links}.", ""]
         if vehicle.sets:
             lines += ["Parameter sets: " + ", ".join(f"`{item}`" for item in vehicle.sets) + ".", ""]
     (HERE / "models.md").write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")

@@ -146,9 +146,12 @@ def test_compiled_code_is_found_again_by_another_process(tmp_path):
 
 BASELINE = {
     "b_double": 384,
+    "damper_dyno": 14,
+    "drop_test": 146,
     "quarter_car": 27,
     "road_train": 1180,
     "sedan2": 76,
+    "shaker": 32,
     "tractor5": 206,
     "tractor5_cab": 292,
     "tractor5_cargo": 206,

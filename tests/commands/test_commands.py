@@ -129,14 +129,17 @@ def test_static_loads_of_the_quarter_car_and_the_sedan(capsys: pytest.CaptureFix
 
 
 @pytest.mark.parametrize("name", sorted(bundled_models()))
-def test_axles_carry_the_whole_weight_of_every_bundled_model(name: str, capsys: pytest.CaptureFixture[str]):
+def test_axles_or_links_to_the_ground_carry_the_whole_weight_of_every_bundled_model(name: str, capsys: pytest.CaptureFixture[str]):
+    from vehgen.mechanics import static_loads
     from vehgen.vehicle import load_vehicle
 
     vehicle = load_vehicle(name)
     values = vehicle.all_values(vehicle.values())
     masses = [body.mass for body in vehicle.bodies.values()] + [axle.mass for axle in vehicle.axles.values() if axle.mass is not None]
-    weight = 9.81 * sum(mass.evaluate(values) for mass in masses)
-    assert sum(run_json(capsys, "static", name)["axles"].values()) == pytest.approx(weight, rel=1e-9)
+    weight = 9.81 * sum(mass.evaluate(values) for mass in masses) * vehicle.gravity
+    grounded = [("link", link) for link, item in vehicle.links.items() if "ground" in item.points]
+    held = sum(static_loads(vehicle).elements[key] for key in grounded)
+    assert sum(run_json(capsys, "static", name)["axles"].values()) + held == pytest.approx(weight, rel=1e-9)
 
 
 def test_a_set_changes_the_numbers(capsys: pytest.CaptureFixture[str]):

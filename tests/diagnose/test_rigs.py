@@ -17,7 +17,7 @@ RUN = """vehicle: carriage.yaml
 step: 1 ms
 sample: 10 ms
 acquisition: none
-forces: {{motor: {{body: carriage, file: {name}_force.csv, time: t, force: F}}}}
+forces: {{motor: {{body: carriage, file: {name}_force.csv, time: t, force: F, unit: N}}}}
 sensors: {{encoder: {{body: carriage, channels: {{displacement: q}}}}}}
 recording: {name}.csv
 """
@@ -93,7 +93,7 @@ STROKE = """vehicle: dyno.yaml
 step: 0.5 ms
 sample: 5 ms
 acquisition: none
-displacements: {{damper: {{file: {name}_stroke.csv, time: t, displacement: x}}}}
+displacements: {{damper: {{file: {name}_stroke.csv, time: t, displacement: x, unit: m}}}}
 sensors: {{cell: {{link: load_cell, channels: {{link_force: F}}}}}}
 recording: {name}.csv
 """

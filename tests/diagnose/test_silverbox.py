@@ -22,7 +22,7 @@ RUN = """vehicle: rig.yaml
 band: [2 Hz, 150 Hz]
 step: 0.25 ms
 forces:
-  push: {body: block, file: force.csv, time: t, force: F, noise: 0.1 N}
+  push: {body: block, file: force.csv, time: t, force: F, unit: N, noise: 0.1 N}
 sensors:
   gauge: {body: block, channels: {displacement: {column: y, unit: mm, noise: 0.002 mm}}}
 recording: recording.csv

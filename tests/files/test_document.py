@@ -37,7 +37,7 @@ def test_every_key_and_value_of_a_model_stands_where_it_is_said_to(name: str):
             opening = "{" if isinstance(node.value, dict) else "["
             assert rest.startswith((opening, *list(node.value)[:1]))
         elif not rest.startswith((">-", '"')):
-            assert rest.startswith(str(node.value))
+            assert rest.startswith(str(node.value).lower() if isinstance(node.value, bool) else str(node.value))
             assert document.find(where, offset=0) == position
         if where and isinstance(where[-1], str):
             key = document.find(where, key=True)

@@ -18,7 +18,7 @@ links: {{mount: {{ground: {{}}, block: {{}}, k: {k}, c: 80 N s/m}}}}
 RUN = """vehicle: rig.yaml
 band: [0.3 Hz, 40 Hz]
 acquisition: none
-forces: {shaker: {body: block, file: force.csv, time: t, force: F}}
+forces: {shaker: {body: block, file: force.csv, time: t, force: F, unit: N}}
 sensors: {gauge: {body: block, channels: {displacement: y, velocity: v}}}
 recording: recording.csv
 """

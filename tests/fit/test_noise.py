@@ -5,7 +5,8 @@ import pytest
 import scipy.optimize
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from vehgen.fit.noise import EVEN, KNOT_WAVENUMBERS, LOUDER_HZ, Noise, RoadAnswer, estimate_noise, taper, transform
+from vehgen.fit.noise import EVEN, KNOT_WAVENUMBERS, LOUDER_HZ, Noise, RoadAnswer, estimate_noise
+from vehgen.fit.window import taper, transform
 
 
 def make_answer(random, n=400, channels=4, axles=3):

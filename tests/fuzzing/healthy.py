@@ -55,7 +55,7 @@ road:
 footprint: 0.24 m
 forces:
   shaker: {body: body, x: 0.5 m, harmonic: {amplitude: 2 kN, frequency: 5 Hz, phase: 90 deg}}
-  ram: {body: body, behind: front, distance: 1 m, file: force.csv, time: t, force: F, noise: 5 N}
+  ram: {body: body, behind: front, distance: 1 m, file: force.csv, time: t, force: F, unit: N, noise: 5 N}
 sensors:
   L1:
     body: body

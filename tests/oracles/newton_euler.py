@@ -16,6 +16,21 @@ GRAVITY = 9.81
 
 
 @dataclass(frozen=True)
+class FreeBodies:
+    """Balances of all bodies, each with its own motions: diag(mass) a + C v + K u = P w + Q w' + gravity + G^T reactions, G a = 0."""
+
+    slots: dict[str, int]
+    inputs: list[str]
+    mass: Array
+    C: Array
+    K: Array
+    P: Array
+    Q: Array
+    gravity: Array
+    G: Array
+
+
+@dataclass(frozen=True)
 class Equations:
     coordinates: list[str]
     inputs: list[str]
@@ -25,10 +40,30 @@ class Equations:
     P: Array
     Q: Array
     weight: Array
+    follow: Array
+    """The motions of all bodies per unit of each coordinate."""
 
 
 def assemble(layout: dict) -> Equations:
     """Return the equations of a layout of plain numbers in SI units (see tests/oracles/layouts.py for its form)."""
+    return _eliminate(balance(layout), _independent(layout))
+
+
+def hinge_reactions(layout: dict, q: Array, v: Array, w: Array, dw: Array) -> dict[str, float]:
+    """Return what each hinge presses upwards on its second body [N], at coordinates, inputs and rates about static equilibrium."""
+    if not layout["hinges"]:
+        return {}
+    free, found = balance(layout), assemble(layout)
+    load = free.P @ w + free.Q @ dw - free.K @ (found.follow @ q) - free.C @ (found.follow @ v)
+    size, rows = len(free.mass), len(free.G)
+    system = np.block([[np.diag(free.mass), -free.G.T], [free.G, np.zeros((rows, rows))]])
+    reactions = np.linalg.lstsq(system, np.concatenate([load, np.zeros(rows)]), rcond=None)[0][size:]
+    # The first constraint of every hinge is rise(first) - rise(second) = 0: its reaction presses the first body up, the second down.
+    return {name: -float(reactions[2 * i]) for i, name in enumerate(layout["hinges"])}
+
+
+def balance(layout: dict) -> FreeBodies:
+    """Return the balances of the free bodies of a layout."""
     bodies, hinges, axles, links = (layout[key] for key in ("bodies", "hinges", "axles", "links"))
     slots: dict[str, int] = {}
     for name in bodies:
@@ -88,8 +123,7 @@ def assemble(layout: dict) -> Equations:
         one, two = hinge["points"]
         connect(e(f"pitch.{one}"), e(f"pitch.{two}"), hinge["k"], hinge["c"])
 
-    chosen = _independent(layout)
-    return _eliminate(mass, forces, pushes, gravity, constraints, [slots[name] for name in chosen], chosen, names)
+    return FreeBodies(slots, names, mass, forces["C"], forces["K"], pushes["K"], pushes["C"], gravity, constraints)
 
 
 def _constraints(layout: dict, e, rise, advance) -> Array:
@@ -133,14 +167,15 @@ def _independent(layout: dict) -> list[str]:
     return chosen + [f"hop.{name}" for name, axle in layout["axles"].items() if axle["mass"] is not None]
 
 
-def _eliminate(mass, forces, pushes, gravity, G, kept, chosen, names) -> Equations:
+def _eliminate(free_bodies: FreeBodies, chosen: list[str]) -> Equations:
     """Solve the constrained balances for unit accelerations of the kept coordinates and read off what forces they take.
 
     With reactions r: diag(mass) a = f + G^T r, G a = 0. All motions compatible with the constraints are the null space of G; fore-aft
     motion that no force drives follows from the balance itself, so the null space splits into the kept coordinates and free fore-aft
     translations.
     """
-    size = len(mass)
+    mass, G = free_bodies.mass, free_bodies.G
+    kept, size = [free_bodies.slots[name] for name in chosen], len(mass)
     if len(G):
         _, singular, vt = np.linalg.svd(G)
         null = vt[int((singular > 1e-9 * singular[0]).sum()) :].T
@@ -155,13 +190,5 @@ def _eliminate(mass, forces, pushes, gravity, G, kept, chosen, names) -> Equatio
     inertia = free.T @ (mass[:, None] * free)
     follow = particular - free @ np.linalg.solve(inertia, free.T @ (mass[:, None] * particular)) if free.shape[1] else particular
     M = follow.T @ (mass[:, None] * follow)
-    return Equations(
-        chosen,
-        names,
-        M,
-        follow.T @ forces["C"] @ follow,
-        follow.T @ forces["K"] @ follow,
-        follow.T @ pushes["K"],
-        follow.T @ pushes["C"],
-        follow.T @ gravity,
-    )
+    matrices = [follow.T @ matrix for matrix in (free_bodies.C @ follow, free_bodies.K @ follow, free_bodies.P, free_bodies.Q)]
+    return Equations(chosen, free_bodies.inputs, M, *matrices, follow.T @ free_bodies.gravity, follow)

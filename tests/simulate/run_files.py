@@ -25,7 +25,7 @@ road:
 footprint: 0.24 m
 forces:
   shaker: {body: frame, x: 0.5 m, harmonic: {amplitude: 2 kN, frequency: 5 Hz, phase: 90 deg}}
-  ram: {body: frame, behind: front, distance: 1 m, file: force.csv, time: t, force: F}
+  ram: {body: frame, behind: front, distance: 1 m, file: force.csv, time: t, force: F, unit: N}
 displacements:
   post: {harmonic: {amplitude: 5 mm, frequency: 3 Hz}}
 sensors:

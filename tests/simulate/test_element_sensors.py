@@ -85,7 +85,7 @@ def test_a_recorded_force_is_read_in_its_unit(dyno):
     [
         ("cell: {link: load_sell, channels: {link_force: F}}", "no link 'load_sell'", 8),
         ("cell: {link: load_cell, channels: {pitch_rate: F}}", "unknown quantity 'pitch_rate'", 8),
-        ("cell: {link: load_cell, body: head, channels: {link_force: F}}", "belongs to an `axle` or a `link`", 8),
+        ("cell: {link: load_cell, body: head, channels: {link_force: F}}", "belongs to an `axle`, a `link` or a `hinge`", 8),
         ("cell: {link: load_cell, x: 1 m, channels: {link_force: F}}", "no place along a body", 8),
         ("cell: {link: load_cell}", "has `channels`", 8),
     ],

@@ -7,6 +7,7 @@ import pytest
 
 from vehgen.commands import main
 from vehgen.simulate import load_run, simulate
+from vehgen.vehicle import bundled_models
 
 RIGS = Path(__file__).parents[2] / "docs" / "examples" / "rigs"
 
@@ -44,7 +45,7 @@ def test_a_shaken_machine_answers_as_its_frequency_response():
 
 
 def test_what_a_rig_has_not_is_left_out_of_tables_and_page(tmp_path, capsys):
-    vehicle = str(RIGS / "damper_dyno.yaml")
+    vehicle = "damper_dyno"
     main(["build", vehicle, "--out", str(tmp_path / "built"), "--no-plots"])
     printed = capsys.readouterr().out
     page = (tmp_path / "built" / "index.html").read_text(encoding="utf-8")
@@ -56,3 +57,21 @@ def test_what_a_rig_has_not_is_left_out_of_tables_and_page(tmp_path, capsys):
     words = " ".join(capsys.readouterr().out.split())
     assert "static forces in its links" in words
     assert "load_cell 0.0" in words
+
+
+def test_the_page_of_a_rig_with_weight_shows_what_its_links_carry_and_no_empty_table(tmp_path, capsys):
+    main(["build", "shaker", "--out", str(tmp_path / "built"), "--no-plots"])
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "link force, N" in printed
+    assert "front 589" in printed
+    page = (tmp_path / "built" / "index.html").read_text(encoding="utf-8")
+    assert "<th>axle</th>" not in page
+    assert "<th>link</th>" in page
+    assert page.count(f"{120 * 9.81 / 2:.0f}") >= 2
+    assert f"1\u202f{120 * 9.81 - 1000:.0f}" in page
+
+
+def test_every_rig_is_a_bundled_model_with_a_run():
+    runs = {load_run(path).vehicle.name: path for path in sorted(RIGS.glob("*_run.yaml"))}
+    assert sorted(runs) == ["damper_dyno", "drop_test", "shaker"]
+    assert all(name in bundled_models() for name in runs)

@@ -154,8 +154,13 @@ CASES = [
     ("sensor and output of one name", "travel1: {", "L1_az: {", None),
     ("output of no axle", "{axle: front, quantity", "{axle: @frnt, quantity", "rig has no axle 'frnt'; did you mean 'front'?"),
     ("output of no link", "{link: post, quantity", "{link: @pots, quantity", "rig has no link 'pots'; did you mean 'post'?"),
-    ("output of both", "travel1: {axle: front,", "travel1: @{axle: front, link: post,", "an output belongs to an `axle` or a `link`"),
-    ("output of neither", "travel1: {axle: front,", "travel1: @{", "an output belongs to an `axle` or a `link`"),
+    (
+        "output of both",
+        "travel1: {axle: front,",
+        "travel1: @{axle: front, link: post,",
+        "an output belongs to an `axle`, a `link` or a `hinge`",
+    ),
+    ("output of neither", "travel1: {axle: front,", "travel1: @{", "an output belongs to an `axle`, a `link` or a `hinge`"),
     (
         "output's quantity",
         "quantity: suspension_travel",

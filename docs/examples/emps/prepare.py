@@ -25,7 +25,7 @@ step: 1 ms
 sample: 10 ms
 acquisition: none
 forces:
-  motor: {{body: carriage, file: {name}_force.csv, time: t, force: F}}
+  motor: {{body: carriage, file: {name}_force.csv, time: t, force: F, unit: N}}
 sensors:
   encoder: {{body: carriage, channels: {{displacement: {{column: q}}}}}}
 recording: {name}.csv

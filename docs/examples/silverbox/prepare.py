@@ -48,7 +48,7 @@ band: [{low} Hz, {high} Hz]
 step: 0.2048 ms
 sample: 1.6384 ms
 forces:
-  V1: {{body: block, file: {name}_force.csv, time: t, force: F, noise: {acting:.3e} N}}
+  V1: {{body: block, file: {name}_force.csv, time: t, force: F, unit: N, noise: {acting:.3e} N}}
 sensors:
   V2: {{body: block, channels: {{displacement: {{column: y, noise: {sensed:.3e} m}}}}}}
 recording: {name}.csv

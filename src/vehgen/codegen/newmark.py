@@ -159,16 +159,13 @@ def _channels(
     def times(row: Row, vector: list[Node]) -> list[Node]:
         return [program.multiply(program.convert(value, symbols, memo), vector[j]) for j, value in sorted(row.items())]
 
+    carrying = {element: joint for joint, element in enumerate(i for i, item in enumerate(model.elements) if item.laws)}
     found = []
     for channel in model.channels:
         terms = times(channel.acceleration, acceleration) + times(channel.velocity, v) + times(channel.displacement, u)
         terms += times(channel.input, drives[:width]) + times(channel.input_rate, drives[width : 2 * width])
-        if laws and not channel.quantity.endswith("travel"):
-            kind = channel.quantity.rpartition("_")[0]
-            terms += [
-                force
-                for joint, force in zip(laws.joints, now, strict=True)
-                if (joint.element.kind, joint.element.name) == (kind, channel.owner)
-            ]
+        terms += times(channel.force, drives[2 * width :])
+        if channel.laws:
+            terms += times({joint: channel.laws[element] for element, joint in carrying.items() if element in channel.laws}, now)
         found.append(program.total(terms))
     return found

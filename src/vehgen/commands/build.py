@@ -81,10 +81,12 @@ def _show(model: EquationsOfMotion, values: dict[str, float], modes: Sequence[Mo
     print_table("Parameters", ("name", "value", "unit", "equals", "meaning"), parameter_rows, right=(1,))
     mode_rows = [(mode.name, f"{mode.undamped_hz:.3f}", f"{mode.damped_hz:.3f}", f"{mode.damping_ratio:.3f}") for mode in modes]
     print_table("Modes", ("mode", "undamped, Hz", "damped, Hz", "damping ratio"), mode_rows, right=(1, 2, 3))
-    load_rows = [*loads.axles.items(), *loads.hinges.items()]
+    load_rows, owners = [*loads.axles.items(), *loads.hinges.items()], "axle or hinge"
+    if not load_rows and vehicle.gravity:
+        load_rows, owners = [(name, force) for (_, name), force in loads.elements.items()], "link"
     if load_rows:
         rows_of_loads = [(name, f"{force:,.0f}") for name, force in load_rows]
-        print_table("Static loads", ("axle or hinge", "force, N"), rows_of_loads, right=(1,))
+        print_table("Static loads", (owners, "force, N"), rows_of_loads, right=(1,))
 
 
 def _summary(model: EquationsOfMotion, found: Build, counts: dict[str, int], folder: Path, written: list[Path]) -> dict[str, object]:

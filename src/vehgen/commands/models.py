@@ -27,7 +27,7 @@ def run(options: argparse.Namespace) -> None:
         print_json({"models": [dict(zip(keys, row, strict=True)) for row in rows]})
         return
     print_table(
-        "Bundled vehicles",
+        "Bundled vehicles and rigs",
         ("name", "title", "parameter sets"),
         [(name, title, ", ".join(sets)) for name, title, sets, _ in rows],
     )

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from vehgen.errors import InputError, did_you_mean, shortened, shown
+from vehgen.errors import InputError, Position, did_you_mean, shortened, shown
 from vehgen.files.document import Located
 from vehgen.files.expressions import Expression, ExpressionError
-from vehgen.files.units import NONE, Dimension
+from vehgen.files.units import NONE, UNITS, Dimension, read_unit
 
 
 def check_known(name: str, allowed: Iterable[str], lacking: str, document: Located, *path: str | int, key: bool = False) -> None:
@@ -90,3 +90,20 @@ def plain_quantity(expression: Expression, expected: Dimension, document: Locate
         raise InputError(message, document.find(path, offset=0))
     check_dimension(expression, expected, {}, document, *path, what=what)
     return value_of(expression, {}, document, *path)
+
+
+def unit_factor(unit: str, usual: str, quantity: str, place: Position | None) -> float:
+    """Return what a column's unit is worth in the `usual` SI unit of its quantity.
+
+    Raises
+    ------
+    InputError
+        At `place`, for a unit that there is not, and for one of another quantity.
+    """
+    expected, found = read_unit(usual), read_unit(unit)
+    if found is None or found[2] != len(unit):
+        raise InputError(f"{shown(unit)} is not a unit vehgen knows; {did_you_mean(unit, UNITS)}", place)
+    assert expected is not None
+    if found[1] != expected[1]:
+        raise InputError(f"{quantity} is measured in {usual}, found {shown(unit)}, a unit of {found[1]}", place)
+    return found[0]

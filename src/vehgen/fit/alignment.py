@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from vehgen.fit.bounded import LinearisedPoint, minimise
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit
-from vehgen.fit.noise import transform
+from vehgen.fit.window import transform
 
 Array = NDArray[np.float64]
 SPEED_SIGMAS = tuple(0.5 * i for i in range(-7, 8))

@@ -19,9 +19,10 @@ from vehgen.codegen.decimation import decimate
 from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
-from vehgen.fit.noise import Noise, road_answer, taper
+from vehgen.fit.noise import Noise, road_answer
 from vehgen.fit.nuisances import LOW_PASS
 from vehgen.fit.trial import Trial
+from vehgen.fit.window import taper
 from vehgen.measure.acquisition import POINT_SAMPLES, UNKNOWN, AcquisitionChain, FilterKind
 from vehgen.simulate.acquired import extended, kept_stride
 
@@ -170,7 +171,7 @@ def trusted_band(trial: Trial, fine: FineResponse, noise: Noise) -> float:
     dt, n = trial.recording.dt, fine.count
     fine_n = n * fine.ratio
     grid = np.arange(fine_n) / fine.ratio
-    window = np.interp(grid, np.arange(n), taper(n, dt))
+    window = np.interp(grid, np.arange(n), taper(n, dt, trial.fade_in))
     values = np.zeros((fine_n, fine.values.shape[1]))
     kept = fine.values[fine.skipped * fine.ratio :][:fine_n]
     values[: len(kept)] = kept

@@ -15,11 +15,12 @@ from numpy.typing import NDArray
 
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.band import CALIBRATION_BAND_HZ
-from vehgen.fit.noise import Noise, RoadAnswer, road_answer, transform
+from vehgen.fit.noise import Noise, RoadAnswer, road_answer
 from vehgen.fit.nuisances import Condition, Nuisances
 from vehgen.fit.problem import Problem
 from vehgen.fit.run_errors import RunErrors
 from vehgen.fit.trial import Trial
+from vehgen.fit.window import transform
 from vehgen.simulate import Scenario
 
 Array = NDArray[np.float64]
@@ -95,7 +96,8 @@ class Misfit:
         inside = (frequency >= self.band[0]) & (frequency <= self.band[1])
         own = {name: value for name, value in reference.items() if name not in trial.fixed}
         answer = road_answer(trial, frequency[inside], trial.values | own)
-        return _Weight(inside, transform(trial.recording.values, dt, inside), answer, self.noises[trial.name].whitener(answer))
+        measured = transform(trial.recording.values, dt, inside, fade_in=trial.fade_in)
+        return _Weight(inside, measured, answer, self.noises[trial.name].whitener(answer))
 
     @property
     def n_parameters(self) -> int:
@@ -210,8 +212,8 @@ class Misfit:
 
     def unread(self, number: int, response: Array, error: Array) -> Complex:
         """Return the spectral lines of motions under the windows of late clocks, which :meth:`read` then turns."""
-        dt = self.problem.trials[number].recording.dt
-        return transform(response, dt, self._weights[number].inside, self.errors[number].clocks(error))
+        trial = self.problem.trials[number]
+        return transform(response, trial.recording.dt, self._weights[number].inside, self.errors[number].clocks(error), trial.fade_in)
 
     def read(self, number: int, lines: Complex, error: Array) -> Complex:
         """Return what trial `number`'s sensors make of spectral lines of motions `shape (..., n_lines, n_channels)`."""
@@ -258,7 +260,8 @@ class Misfit:
 
     def whitened_signal(self, number: int, signal: Array) -> Complex:
         """Return the whitened lines of a signal `shape (n_samples, n_channels)` in trial `number`."""
-        return self.whiten(number, transform(signal, self.problem.trials[number].recording.dt, self._weights[number].inside))
+        trial = self.problem.trials[number]
+        return self.whiten(number, transform(signal, trial.recording.dt, self._weights[number].inside, fade_in=trial.fade_in))
 
     def measured(self, number: int) -> Complex:
         """Return the spectral lines that trial `number` recorded, `shape (n_lines, n_channels)`."""

@@ -16,15 +16,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.optimize
-import scipy.signal
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from vehgen.fit.window import taper
 from vehgen.road.iso8608 import REFERENCE_CYCLES_PER_M
 from vehgen.simulate.frequency import transfer_functions
 
@@ -35,8 +34,6 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 KNOT_WAVENUMBERS = 0.1 * 2.0 ** np.arange(9)
 """Wavenumbers between which the road's level is interpolated [cycles/m]."""
-RAMP = 0.75
-"""Length of the taper's ramps [s]."""
 SMALLEST_LEVEL, LARGEST_LEVEL = 1e-10, 1e-2
 """A road smoother than this Gd(n0) [m^3] counts as even (class A begins at 16e-6); none is rougher."""
 ROUGHEST_LEVEL = 3.0
@@ -198,33 +195,6 @@ def _adjoint(matrices: Complex) -> Complex:
     return np.asarray(matrices.conj().transpose(0, 2, 1))
 
 
-@lru_cache(maxsize=64)
-def taper(n_samples: int, dt: float) -> Array:
-    """Return the window under which records are compared: cosine ramps of RAMP [s], or an eighth of a short record, at both ends.
-
-    What the vehicle did before the record began is unknown, and so are its first and last moments. Not to be written to.
-    """
-    share = min(2 * RAMP / (n_samples * dt), 0.25)
-    window = np.asarray(scipy.signal.windows.tukey(n_samples, share))
-    window.setflags(write=False)
-    return window
-
-
-def transform(values: Array, dt: float, inside: NDArray[np.bool_], late: Array | None = None) -> Complex:
-    """Return spectral lines of tapered histories `shape (..., n_samples, n_channels)`, scaled so that |line|^2 is a one-sided PSD.
-
-    `late shape (n_channels,)` [s] moves each channel's window so much earlier: lines turned by that delay are then those of the delayed
-    channel under the window as it is.
-    """
-    window = taper(values.shape[-2], dt)
-    scale = np.sqrt(2 * dt / (window**2).sum())
-    windows = window[:, None]
-    if late is not None and late.any():
-        time = np.arange(len(window)) * dt
-        windows = np.column_stack([np.interp(time + item, time, window, left=0.0, right=0.0) for item in late])
-    return np.asarray(np.fft.rfft(values * windows, axis=-2)[..., inside, :] * scale)
-
-
 def road_answer(trial: Trial, frequency: Array, values: dict[str, float]) -> RoadAnswer:
     """Return the channels' answer to a road of level 1 that all axles follow, at frequencies `shape (n,)` [Hz]."""
     model = trial.simulator.model
@@ -232,7 +202,7 @@ def road_answer(trial: Trial, frequency: Array, values: dict[str, float]) -> Roa
     displaced, pushed = (item * acquired for item in transfer_functions(model.numeric(values), frequency))
     speed, dt = trial.scenario.top_speed, trial.recording.dt
     late = model.wheel_offsets(values) / speed
-    window = taper(len(trial.recording.time), dt)
+    window = taper(len(trial.recording.time), dt, trial.fade_in)
     correlation = np.correlate(window, window, "full")[len(window) - 1 :] / (window**2).sum()
     shared = np.interp(np.abs(late[:, None] - late[None, :]), np.arange(len(window)) * dt, correlation)
     root = np.linalg.cholesky(shared + 1e-9 * np.eye(len(late)))

@@ -1,8 +1,9 @@
 """What runs and recorders do not know of themselves exactly: small errors with priors, fitted along with the parameters.
 
-Of a run: when its recording began, its speed and how the driver strayed about it, height and form of its hump. Of the sensors: each one's
-clock in each run, and, the same in all runs, gains, tilts, places, how late a gyroscope is behind the accelerometer beside it, and what
-an unknown low-pass takes off. Every error counts in units of its standard deviation: the run file's (`uncertainty`), or the default.
+Of a run: when its recording began, its speed and how the driver strayed about it, height and form of its hump, and how it was released
+where the file gives that a tolerance. Of the sensors: each one's clock in each run, and, the same in all runs, gains, tilts, places, how
+late a gyroscope is behind the accelerometer beside it, and what an unknown low-pass takes off. Of what drives a rig: gains and offsets.
+Every error counts in units of its standard deviation: the run file's (`uncertainty`, `tolerance`), or the default.
 """
 
 from __future__ import annotations
@@ -17,7 +18,9 @@ from numpy.typing import NDArray
 from vehgen.files.quantities import Spread
 from vehgen.fit.trial import Trial
 from vehgen.mechanics import is_held
+from vehgen.simulate.initial_state import initial_values
 from vehgen.simulate.run_file.acquisition import channel_chains
+from vehgen.simulate.run_scenario import ground_links
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -32,11 +35,12 @@ ON_ROAD_MARGIN_S = 0.3
 OF_TIME = ("clock", "lag")
 READING = (*OF_TIME, "gain", "tilt", "position", "roll_off", "dispersion")
 """Errors that change what a sensor reads, not what the vehicle does; the first two say how late a channel is."""
-OF_FORCES = ("force_gain", "force_offset")
-"""Errors of measured forces."""
+OF_INPUTS = ("force_gain", "force_offset", "displacement_gain")
+"""Errors of measured forces and displacements that drive a run."""
 LOW_PASS = ("roll_off", "dispersion")
 """Errors of what stands for an unknown recorder's low-pass."""
 ERROR_UNITS = {"delay": "s", "wear": "mm^2", "clock": "s", "lag": "s", "tilt": "rad", "position": "m", "force_offset": "N"}
+ERROR_UNITS |= {"initial_displacement": "m", "initial_velocity": "m/s", "initial_pitch": "rad", "initial_pitch_rate": "rad/s"}
 """Units of the errors; all others are relative."""
 
 
@@ -66,6 +70,9 @@ class Nuisances:
     force_gain, force_offset
         Of each measured force's gain, relative, and of a constant force beside it, relative to its root mean square. What a spring holds
         has no offset: it would have settled.
+    displacement_gain
+        Of each measured displacement's gain, relative. It has no offset: a damper feels none, and what it would shift of a spring's force
+        has settled.
     asked
         Names of those that hold whatever run files state of theirs.
     """
@@ -87,6 +94,7 @@ class Nuisances:
     dispersion: float = 1.5
     force_gain: float = 0.01
     force_offset: float = 0.1
+    displacement_gain: float = 0.01
     asked: tuple[str, ...] = ()
 
     def of_run(self, trial: Trial) -> tuple[Nuisance, ...]:
@@ -103,6 +111,8 @@ class Nuisances:
             names += [Nuisance("wander", f"{knot:.3g} s", spread["wander"], knot) for knot in wander_knots(trial)]
         sensors = list(dict.fromkeys(channel.sensor for channel in trial.recording.channels))
         names += [Nuisance("clock", sensor, spread["clock"]) for sensor in sensors[1:]]
+        stated = initial_values(trial.run, trial.simulator.model)
+        names += [Nuisance(f"initial_{item.key}", item.owner, item.tolerance) for item in stated]
         return tuple(item for item in names if item.sigma > 0)
 
     def of_sensors(self, trials: Sequence[Trial]) -> tuple[Nuisance, ...]:
@@ -127,6 +137,8 @@ class Nuisances:
                 names.setdefault(("force_gain", force), Nuisance("force_gain", force, spread["force_gain"]))
                 if not is_held(trial.simulator.model, trial.values):
                     names.setdefault(("force_offset", force), Nuisance("force_offset", force, rms * spread["force_offset"]))
+            for link in measured_displacements(trial):
+                names.setdefault(("displacement_gain", link), Nuisance("displacement_gain", link, self._stated(trial)["displacement_gain"]))
         return tuple(item for item in names.values() if item.sigma > 0)
 
     def _stated(self, trial: Trial) -> dict[str, float]:
@@ -196,6 +208,12 @@ def measured_forces(trial: Trial) -> dict[str, float]:
     """Return the root mean square [N] of a run's measured forces, by name."""
     named = zip(trial.simulator.model.forces, trial.scenario.forces, strict=True)
     return {name: float(np.sqrt(np.mean(item.values**2))) for name, item in named if item.values is not None}
+
+
+def measured_displacements(trial: Trial) -> tuple[str, ...]:
+    """Return the links to the ground whose ground ends move as was measured in a run."""
+    named = zip(ground_links(trial.simulator.model), trial.scenario.ground, strict=True)
+    return tuple(name for name, item in named if item is not None and item.values is not None)
 
 
 def _size(trial: Trial, name: str) -> float:

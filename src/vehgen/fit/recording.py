@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from vehgen.errors import InputError, did_you_mean, shown
+from vehgen.errors import InputError, shown
+from vehgen.files.checks import unit_factor
 from vehgen.files.quantities import read_quantity
 from vehgen.files.tables import TableColumns, read_columns
-from vehgen.files.units import UNITS, read_unit
+from vehgen.files.units import read_unit
 from vehgen.measure.acquisition import AcquisitionChain
 from vehgen.measure.quality import find_clipping
 from vehgen.mechanics import GRAVITY
@@ -20,7 +21,7 @@ from vehgen.mechanics.outputs import Output
 from vehgen.simulate import Run
 from vehgen.simulate.run_file.acquisition import channel_chains, check_nyquist
 from vehgen.simulate.run_file.checks import TIME_COLUMN
-from vehgen.simulate.run_file.entries import ChannelEntry, SensorEntry
+from vehgen.simulate.run_file.sensors import ChannelEntry, SensorEntry
 
 Array = NDArray[np.float64]
 FEWEST_SAMPLES = 16
@@ -130,14 +131,7 @@ def _factor(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> 
     factor = float(entry.sign)
     if entry.unit is not None:
         place = run.document.find(("sensors", sensor, "channels", quantity, "unit"))
-        usual = run.file.sensors[sensor].quantities[quantity]
-        expected, unit = read_unit(usual), read_unit(entry.unit)
-        if unit is None or unit[2] != len(entry.unit):
-            raise InputError(f"{shown(entry.unit)} is not a unit vehgen knows; {did_you_mean(entry.unit, UNITS)}", place)
-        assert expected is not None
-        if unit[1] != expected[1]:
-            raise InputError(f"{quantity} is measured in {usual}, found {shown(entry.unit)}, a unit of {unit[1]}", place)
-        factor *= unit[0]
+        factor *= unit_factor(entry.unit, run.file.sensors[sensor].quantities[quantity], quantity, place)
     return factor
 
 

@@ -46,7 +46,7 @@ def _jumps(trial: Trial) -> bool:
     """Return whether a trial's channels jump: accelerations and forces of a vehicle with dry friction."""
     model = trial.simulator.model
     rough = any(term.step().friction != 0 for element in model.elements for term in element.laws)
-    return rough and any(channel.quantity.endswith(("acceleration", "force", "load")) for channel in model.channels)
+    return rough and any(channel.quantity.endswith(("acceleration", "force", "load", "moment")) for channel in model.channels)
 
 
 def halved(trial: Trial) -> Trial:

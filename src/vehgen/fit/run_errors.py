@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.fit.nuisances import OF_FORCES, READING, Nuisance
+from vehgen.fit.nuisances import OF_INPUTS, READING, Nuisance
 from vehgen.fit.reading import Reading
 from vehgen.fit.trial import Trial
 from vehgen.road import Wander
 from vehgen.simulate import Scenario
+from vehgen.simulate.initial_state import initial_values
+from vehgen.simulate.run_scenario import ground_links
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -25,7 +27,8 @@ class RunErrors:
 
     Numbers of errors `shape (size,)` count in standard deviations, the sensors' first. `channels` holds name, sensor and quantity of every
     channel; `known` errors of sensors [units], by name and place, that stand; `rate` is the recording's [Hz]; `forces` names the forces
-    that act, in the model's order.
+    that act, and `ground` the links whose ground ends move, in the model's order; `begin` tells
+    the place of an initial displacement or velocity in the state, by its error's name and place.
     """
 
     sensors: tuple[Nuisance, ...]
@@ -34,6 +37,8 @@ class RunErrors:
     known: Mapping[tuple[str, str], float] = field(default_factory=dict)
     rate: float = 100.0
     forces: tuple[str, ...] = ()
+    ground: tuple[str, ...] = ()
+    begin: Mapping[tuple[str, str], int] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -41,7 +46,9 @@ class RunErrors:
     ) -> RunErrors:
         """Return the errors of a trial."""
         channels = tuple((item.name, item.sensor, item.quantity) for item in trial.recording.channels)
-        return cls(sensors, own, channels, known, 1 / trial.recording.dt, trial.simulator.model.forces)
+        model = trial.simulator.model
+        begin = {(f"initial_{item.key}", item.owner): item.place for item in initial_values(trial.run, model)}
+        return cls(sensors, own, channels, known, 1 / trial.recording.dt, model.forces, ground_links(model), begin)
 
     @property
     def items(self) -> tuple[Nuisance, ...]:
@@ -61,7 +68,7 @@ class RunErrors:
                 found[item.name] = value
         mean = sum(strayed) / max(len(strayed), 1)
         form = 1 + found["length"], math.exp(found["form"]), found["skew"], 1e-6 * found["wear"]
-        return scenario.adjusted(
+        return self._begun(scenario, numbers).adjusted(
             found["delay"],
             1 + found["speed"],
             1 + found["height"],
@@ -69,14 +76,31 @@ class RunErrors:
             wander=Wander(tuple(knots), tuple(value - mean for value in strayed)) if any(strayed) else None,
             deformation=form if scenario.humps else None,
             forces=self._forces(numbers),
+            displacements=self._displacements(numbers),
         )
 
+    def _begun(self, scenario: Scenario, numbers: Array) -> Scenario:
+        """Return the scenario released with the errors of its initial state."""
+        if scenario.initial is None:
+            return scenario
+        state = scenario.initial.copy()
+        for item, number in zip(self.items, numbers, strict=True):
+            if (item.name, item.place) in self.begin:
+                state[self.begin[item.name, item.place]] += float(number) * item.sigma
+        return replace(scenario, initial=state)
+
     def _forces(self, numbers: Array) -> list[tuple[float, float]]:
-        """Return gain and offset [N] of every force; nothing where none has errors."""
-        if not any(name in OF_FORCES for name, _ in (*self.known, *((item.name, item.place) for item in self.items))):
-            return []
-        values = self._values(numbers)
-        return [(1 + values.get(("force_gain", name), 0.0), values.get(("force_offset", name), 0.0)) for name in self.forces]
+        """Return gain and offset [N] of every force; nothing where no input has errors."""
+        values = self._of_inputs(numbers)
+        return [(1 + values.get(("force_gain", name), 0.0), values.get(("force_offset", name), 0.0)) for name in self.forces if values]
+
+    def _displacements(self, numbers: Array) -> list[float]:
+        """Return the gain of every displacement of the ground; nothing where no input has errors."""
+        values = self._of_inputs(numbers)
+        return [1 + values.get(("displacement_gain", name), 0.0) for name in self.ground if values]
+
+    def _of_inputs(self, numbers: Array) -> dict[tuple[str, str], float]:
+        return {key: value for key, value in self._values(numbers).items() if key[0] in OF_INPUTS}
 
     def _values(self, numbers: Array) -> dict[tuple[str, str], float]:
         own = {(item.name, item.place): float(number) * item.sigma for item, number in zip(self.items, numbers, strict=True)}

@@ -14,9 +14,12 @@ from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
 from vehgen.fit.recording import Recording, read_recording
+from vehgen.fit.run_checks import check_hump_reached, check_initial, check_inputs_last
+from vehgen.fit.window import AFTER_RELEASE, RAMP
 from vehgen.road import Hump
 from vehgen.simulate import Run, RunLike, Scenario, Simulator, SimulatorPool, as_run, make_scenario, natural_modes
-from vehgen.simulate.acquired import channel_factors
+from vehgen.simulate.acquired import assumed_chains, channel_factors
+from vehgen.simulate.initial_state import initial_state
 from vehgen.simulate.run_file.acquisition import channel_chains
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 
@@ -57,6 +60,15 @@ class Trial:
         """Names of the measured channels."""
         return tuple(channel.name for channel in self.recording.channels)
 
+    @property
+    def fade_in(self) -> float:
+        """How long the record fades in [s]: where the run file states how it begins, its first moments are known."""
+        scenario = self.scenario
+        if scenario.initial is None or scenario.skipped:
+            return RAMP
+        chains = assumed_chains(scenario, self.channels)
+        return 0.0 if all(chain.filtering().is_point_sample for chain in chains) else AFTER_RELEASE
+
     def channel_factors(self, frequency: Array) -> Complex:
         """Return what the recorders make of spectral lines of the channels: factors `shape (n, n_channels)` at frequencies [Hz]."""
         return channel_factors(self.scenario, self.channels, frequency)
@@ -80,7 +92,10 @@ class Trial:
         run = replace(self.run, vehicle=vehicle)
         simulator = _simulator(run, self.recording, simulators)
         values = simulator.model.values(overrides=run.values())
-        return replace(self, run=run, simulator=simulator, values=values)
+        scenario = self.scenario
+        if scenario.initial is not None:  # another vehicle may have other coordinates
+            scenario = replace(scenario, initial=initial_state(run, simulator.model))
+        return replace(self, run=run, simulator=simulator, values=values, scenario=scenario)
 
 
 TrialLike = Trial | RunLike
@@ -151,7 +166,9 @@ def make_trial(run: Run, name: str, simulators: SimulatorPool | None = None) -> 
         make_scenario(timed, simulator.model, values), duration=length, dt=step, decimation=decimation, start=float(measurement.time[0])
     )
     scenario = replace(scenario, chains=channel_chains(run, 1 / dt))
-    _check_length(run, scenario, simulator, values, name)
+    check_hump_reached(run, scenario, simulator.model.wheel_offsets(values), name)
+    check_inputs_last(run, scenario, measurement, simulator.model)
+    check_initial(run, measurement, simulator, scenario, values)
     return _from_known_road(Trial(name, run, measurement, simulator, scenario, values, tuple(run.file.parameters)))
 
 
@@ -191,16 +208,3 @@ def samples_kept(run: Run, dt: float) -> int:
 def _simulator(run: Run, measurement: Recording, simulators: SimulatorPool) -> Simulator:
     outputs = tuple(channel.output for channel in measurement.channels)
     return simulators.simulator(run.vehicle, outputs, run.forces())
-
-
-def _check_length(run: Run, scenario: Scenario, simulator: Simulator, values: dict[str, float], name: str) -> None:
-    """Refuse a recording that ends before the last axle has met the hump."""
-    humps = [entry.hump for entry in run.file.road if entry.hump is not None]
-    offsets = simulator.model.wheel_offsets(values)
-    travelled = float(scenario.speed.distance(np.array([scenario.start + scenario.duration]))[0])
-    if humps and travelled < max(hump.at for hump in humps) + float(offsets.max(initial=0.0)):
-        raise InputError(
-            f"{name}: the recording ends after {travelled:.1f} m, before the last axle ({offsets.max(initial=0.0):.1f} m behind the first) "
-            f"has met the hump at {max(hump.at for hump in humps):.1f} m: record until the vehicle has left it",
-            run.document.find(("recording",)),
-        )

@@ -23,7 +23,10 @@ GRAVITY = 9.81
 
 @dataclass(frozen=True)
 class Channel:
-    """One output: coefficients of q'', q', q, of the displacement inputs w and of their rates w'."""
+    """One output: coefficients of q'', q', q, of the displacement inputs w, of their rates w' and of the applied forces f.
+
+    `laws` are those of the force laws' forces, by the number of the element that carries them.
+    """
 
     name: str
     quantity: str
@@ -34,6 +37,8 @@ class Channel:
     displacement: Row = field(default_factory=dict)
     input: Row = field(default_factory=dict)
     input_rate: Row = field(default_factory=dict)
+    force: Row = field(default_factory=dict)
+    laws: Row = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -42,7 +47,7 @@ class NumericModel:
 
     M, C, K `shape (n_dof, n_dof)`; P, Q `shape (n_dof, n_inputs)`; F `shape (n_dof, n_forces)`; `weight shape (n_dof,)` the generalised
     gravity force [N, N m]; `outputs` the channels' coefficients of acceleration, velocity, displacement `shape (n_channels, n_dof)`,
-    input and input_rate `shape (n_channels, n_inputs)`.
+    input and input_rate `shape (n_channels, n_inputs)`, force `shape (n_channels, n_forces)`.
     """
 
     M: NDArray[np.float64]
@@ -98,6 +103,10 @@ class EquationsOfMotion:
     def elements(self) -> tuple[Element, ...]:
         """The springs and dampers: suspensions, tyres, links, hinges."""
         return self.energies.elements
+
+    def element_number(self, kind: str, name: str) -> int | None:
+        """Return the number of the element of a kind and name; None where there is none."""
+        return next((i for i, item in enumerate(self.elements) if (item.kind, item.name) == (kind, name)), None)
 
     @property
     def is_preloaded(self) -> bool:
@@ -162,7 +171,7 @@ class EquationsOfMotion:
     def output_entries(self) -> dict[str, tuple[SparseMatrix, tuple[int, int]]]:
         """Return the entries and the shape of the channels' coefficients, one row per channel."""
         n, width = self.n_dof, len(self.inputs)
-        columns = {"acceleration": n, "velocity": n, "displacement": n, "input": width, "input_rate": width}
+        columns = {"acceleration": n, "velocity": n, "displacement": n, "input": width, "input_rate": width, "force": len(self.forces)}
         return {
             key: (
                 {(i, j): value for i, channel in enumerate(self.channels) for j, value in getattr(channel, key).items()},

@@ -8,29 +8,15 @@ import sympy as sp
 
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.expressions import Expression
-from vehgen.mechanics.energies import Element, Energies
+from vehgen.mechanics.energies import Energies
 from vehgen.mechanics.equations_of_motion import Channel
+from vehgen.mechanics.hinge_forces import hinge_force_channel
 from vehgen.mechanics.kinematics import Kinematics
 from vehgen.mechanics.layout import Layout
+from vehgen.mechanics.quantities import AXLE_MOTIONS, ELEMENT_QUANTITIES, POINT_QUANTITIES
 from vehgen.mechanics.rows import Row, combine
 from vehgen.mechanics.symbols import number, parameter, to_sympy
 from vehgen.vehicle.model import Vehicle
-
-POINT_QUANTITIES = {
-    "acceleration": "m/s^2",
-    "velocity": "m/s",
-    "displacement": "m",
-    "pitch": "rad",
-    "pitch_rate": "rad/s",
-    "pitch_acceleration": "rad/s^2",
-    "fore_aft_acceleration": "m/s^2",
-}
-AXLE_QUANTITIES = {"suspension_travel": "m", "suspension_force": "N", "tyre_force": "N", "tyre_load": "N"}
-AXLE_MOTIONS = {name: POINT_QUANTITIES[name] for name in ("acceleration", "velocity", "displacement")}
-"""Vertical motions of an axle of its own mass."""
-LINK_QUANTITIES = {"link_travel": "m", "link_force": "N"}
-QUANTITIES = {**POINT_QUANTITIES, **AXLE_QUANTITIES, **LINK_QUANTITIES}
-"""All that can be recorded, with SI units."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +62,7 @@ class PointOutput:
 
 @dataclass(frozen=True)
 class ElementOutput:
-    """A quantity of AXLE_QUANTITIES, AXLE_MOTIONS or LINK_QUANTITIES of an axle or link, written to the channel `name`."""
+    """A quantity of ELEMENT_QUANTITIES or AXLE_MOTIONS of an axle, link or hinge, written to the channel `name`."""
 
     name: str
     owner: str
@@ -106,30 +92,41 @@ def fore_aft_row(place: Place, x: sp.Expr, motion: Kinematics, energies: Energie
     return combine((sp.S.One, energies.eliminated(motion.groups[place.body])), (sp.S.One, own))
 
 
-def element_channel(output: ElementOutput, elements: tuple[Element, ...], motion: Kinematics) -> Channel:
-    """Return the row of a travel or force of a suspension, tyre or link (compression positive), or of an axle's motion."""
+def element_channel(output: ElementOutput, vehicle: Vehicle, motion: Kinematics, energies: Energies, forces: tuple[Place, ...]) -> Channel:
+    """Return the row of a travel or force of a suspension, tyre, link or hinge (compression positive), or of an axle's motion."""
     quantity = output.quantity
     if quantity in AXLE_MOTIONS:
-        names = [item.owner for item in motion.coordinates if item.motion == "hop"]
-        if output.owner not in names:
-            hint = did_you_mean(output.owner, names) if names else "none of the vehicle's axles has"
-            raise InputError(f"{output.name}: {shown(output.owner)} is no axle with a mass of its own; {hint}")
-        row: Row = {motion.index(f"hop.{output.owner}"): sp.S.One}
-        return Channel(output.name, quantity, AXLE_MOTIONS[quantity], output.owner, **{quantity: row})
-    known = {**AXLE_QUANTITIES, **LINK_QUANTITIES}
-    if quantity not in known:
-        raise InputError(f"{output.name}: unknown quantity {shown(quantity)} of an axle or link; {did_you_mean(quantity, known)}")
-    kind = quantity.rpartition("_")[0]
-    owners = {element.name: element for element in elements if element.kind == kind}
+        return _axle_motion(output, motion)
+    if quantity not in ELEMENT_QUANTITIES:
+        known = did_you_mean(quantity, ELEMENT_QUANTITIES)
+        raise InputError(f"{output.name}: unknown quantity {shown(quantity)} of an axle, link or hinge; {known}")
+    if quantity in ("hinge_force", "hinge_load"):
+        pushed = [place.body for place in forces]
+        return hinge_force_channel(output.name, quantity, output.owner, vehicle, motion, energies.elements, pushed)
+    kind, _, part = quantity.rpartition("_")
+    owners = {element.name: number for number, element in enumerate(energies.elements) if element.kind == kind}
     if output.owner not in owners:
         raise InputError(f"{output.name}: {shown(output.owner)} has no {kind}; {did_you_mean(output.owner, owners)}")
-    element = owners[output.owner]
-    if quantity.endswith("travel"):
-        return Channel(output.name, quantity, known[quantity], output.owner, displacement=element.row, input=element.input_row)
+    number = owners[output.owner]
+    element = energies.elements[number]
+    unit = ELEMENT_QUANTITIES[quantity]
+    if part in ("travel", "angle"):
+        return Channel(output.name, quantity, unit, output.owner, displacement=element.row, input=element.input_row)
     scaled: dict[str, Row] = {
         "displacement": combine((element.k, element.row)),
         "input": combine((element.k, element.input_row)),
         "velocity": combine((element.c, element.row)),
         "input_rate": combine((element.c, element.input_row)),
+        "laws": {number: sp.S.One},
     }
-    return Channel(output.name, quantity, known[quantity], output.owner, **scaled)
+    return Channel(output.name, quantity, unit, output.owner, **scaled)
+
+
+def _axle_motion(output: ElementOutput, motion: Kinematics) -> Channel:
+    """Return the row of an axle's own motion."""
+    names = [item.owner for item in motion.coordinates if item.motion == "hop"]
+    if output.owner not in names:
+        hint = did_you_mean(output.owner, names) if names else "none of the vehicle's axles has"
+        raise InputError(f"{output.name}: {shown(output.owner)} is no axle with a mass of its own; {hint}")
+    row: Row = {motion.index(f"hop.{output.owner}"): sp.S.One}
+    return Channel(output.name, output.quantity, AXLE_MOTIONS[output.quantity], output.owner, **{output.quantity: row})

@@ -15,8 +15,8 @@ from vehgen.files.result_fields import Array1D, PairKeys
 from vehgen.files.results import Result, Table
 from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
+from vehgen.mechanics.hinge_forces import far_side, lifted_travel
 from vehgen.mechanics.model_like import ModelLike, all_values, as_model
-from vehgen.vehicle.parts import GROUND
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,20 +114,8 @@ def _solve(model: EquationsOfMotion, K: NDArray[np.float64], weight: NDArray[np.
 def _hinge_force(model: EquationsOfMotion, name: str, elements: Mapping[tuple[str, str], float], values: Mapping[str, float]) -> float:
     """Balance the bodies on the far side of a hinge: weight = suspensions, tyres and links on them + hinge force."""
     vehicle = model.vehicle
-    _first, second = vehicle.hinges[name].points
-    side = {second}
-    grown = True
-    while grown:
-        joined = [set(hinge.points) for other, hinge in vehicle.hinges.items() if other != name]
-        joined += [{body, item.carried_by.body} for body, item in vehicle.bodies.items() if item.carried_by and "heave" not in item.motions]
-        wider = side.union(*(pair for pair in joined if pair & side))
-        grown, side = wider != side, wider
+    side = far_side(vehicle, name)
     parameters = vehicle.all_values({key: values[key] for key in vehicle.free_parameters})
     load = sum(vehicle.bodies[body].mass.evaluate(parameters) for body in side) * GRAVITY * vehicle.gravity
-    for axle_name, axle in vehicle.axles.items():
-        if axle.body in side:
-            load -= elements["suspension" if axle.suspension is not None else "tyre", axle_name]
-    for link_name, link in vehicle.links.items():
-        (low, _), (high, _) = link.ends if link.ends[1][0] != GROUND else link.ends[::-1]
-        load -= elements["link", link_name] * ((high in side) - (low in side))
+    load += sum(elements[item.kind, item.name] * lifted_travel(vehicle, item, side) for item in model.elements)
     return float(load)

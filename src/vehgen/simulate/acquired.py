@@ -88,7 +88,7 @@ def _acquired(
     kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, threads: int | None, nearby: Sequence[Scenario]
 ) -> KernelResult:
     chains = [chain.filtering() for chain in assumed_chains(scenario, [channel.name for channel in kernel.model.channels])]
-    distinct, begin = set(chains), _initial(scenario, len(parameters))
+    distinct, begin = set(chains), initial_states(scenario, len(parameters), nearby)
 
     def excitation(ahead: int) -> Excitation:
         """Return what drives the individuals, so many samples longer than the scenario."""
@@ -99,12 +99,16 @@ def _acquired(
         return kernel.run(parameters, excitation(0), scenario.decimation, begin, threads)
     if len(distinct) == 1 and not kernel.source.nonlinear and begin is None and not nearby:
         return _filtered_input(kernel, parameters, scenario, excitation, chains[0], threads)
-    return _filtered_output(kernel, parameters, scenario, excitation, chains, threads)
+    return _filtered_output(kernel, parameters, scenario, excitation, chains, begin, threads)
 
 
-def _initial(scenario: Scenario, count: int) -> Array | None:
-    """Return the state in which every individual begins, `shape (count, 2 n_dof)`; None at rest."""
-    return None if scenario.initial is None else np.repeat(scenario.initial[None], count, axis=0)
+def initial_states(scenario: Scenario, count: int, nearby: Sequence[Scenario] = ()) -> Array | None:
+    """Return the state in which every individual begins, `shape (count, 2 n_dof)`, or each of those nearby; None at rest."""
+    if scenario.initial is None:
+        return None
+    if not nearby:
+        return np.repeat(scenario.initial[None], count, axis=0)
+    return np.array([scenario.initial if item.initial is None else item.initial for item in (scenario, *nearby)])
 
 
 def extended(scenario: Scenario, samples: int) -> Scenario:
@@ -158,13 +162,19 @@ def kept_stride(scenario: Scenario) -> int:
 
 
 def _filtered_output(
-    kernel: Kernel, parameters: Array, scenario: Scenario, excitation: Driven, chains: Sequence[AcquisitionChain], threads: int | None
+    kernel: Kernel,
+    parameters: Array,
+    scenario: Scenario,
+    excitation: Driven,
+    chains: Sequence[AcquisitionChain],
+    begin: Array | None,
+    threads: int | None,
 ) -> KernelResult:
     """Run with kept steps between the samples and decimate every channel by its own chain."""
     stride = kept_stride(scenario)
     ratio = scenario.decimation // stride
     filters = {chain: chain.taps(scenario.dt * stride) for chain in dict.fromkeys(chains)}
     ahead = math.ceil(max(0, *(-first for first, _ in filters.values())) / ratio)
-    result = kernel.run(parameters, excitation(ahead), stride, _initial(scenario, len(parameters)), threads)
+    result = kernel.run(parameters, excitation(ahead), stride, begin, threads)
     count = (len(scenario.time) - 1) // scenario.decimation + 1
     return replace(result, responses=decimate(result.responses, [filters[chain] for chain in chains], ratio, count, threads))

@@ -54,7 +54,7 @@ def exact_response(
     q, v = x[:, :n], x[:, n:]
     forces = excitation.inputs @ numeric.P.T + rates @ numeric.Q.T + excitation.forces @ numeric.F.T
     a = (forces - v @ numeric.C.T - q @ numeric.K.T) @ inverse.T
-    return channel_values(numeric, a, v, q, excitation.inputs, rates)[::decimation]
+    return channel_values(numeric, a, v, q, excitation, rates)[::decimation]
 
 
 def newmark_response(
@@ -68,7 +68,7 @@ def newmark_response(
     numeric = model.numeric(values)
     forces = excitation.inputs @ numeric.P.T + excitation.rates @ numeric.Q.T + excitation.forces @ numeric.F.T
     q, v, a = newmark_states(numeric, forces, excitation.dt, initial)
-    return channel_values(numeric, a, v, q, excitation.inputs, excitation.rates)[::decimation]
+    return channel_values(numeric, a, v, q, excitation, excitation.rates)[::decimation]
 
 
 def newmark_states(numeric: NumericModel, forces: Array, dt: float, initial: Array | None = None) -> tuple[Array, Array, Array]:
@@ -88,13 +88,14 @@ def newmark_states(numeric: NumericModel, forces: Array, dt: float, initial: Arr
     return q, v, a
 
 
-def channel_values(numeric: NumericModel, a: Array, v: Array, q: Array, inputs: Array, rates: Array) -> Array:
-    """Return the channels' values over time, `shape (n_steps + 1, n_channels)`."""
+def channel_values(numeric: NumericModel, a: Array, v: Array, q: Array, excitation: Excitation, rates: Array) -> Array:
+    """Return the channels' values over time, `shape (n_steps + 1, n_channels)`; `rates` are those of the displacement inputs."""
     rows = numeric.outputs
     return np.asarray(
         a @ rows["acceleration"].T
         + v @ rows["velocity"].T
         + q @ rows["displacement"].T
-        + inputs @ rows["input"].T
+        + excitation.inputs @ rows["input"].T
         + rates @ rows["input_rate"].T
+        + excitation.forces @ rows["force"].T
     )

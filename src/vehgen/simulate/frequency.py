@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+import sympy as sp
 from numpy.typing import NDArray
 
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion, NumericModel
@@ -36,17 +37,24 @@ def transfer_functions(numeric: NumericModel, frequency: Array) -> tuple[Complex
     rows, direct = output_rows(numeric.outputs, omega)
     found = rows @ states
     width = direct.shape[2]
-    return found[:, :, :width] + direct, found[:, :, width:]
+    return found[:, :, :width] + direct, np.asarray(found[:, :, width:] + numeric.outputs["force"], dtype=np.complex128)
 
 
-def force_response(model: EquationsOfMotion, values: Mapping[str, float], rows: Sequence[Row], frequency: Array) -> Complex:
-    """Return the channels per unit of generalised forces along rows of the coordinates, `shape (n, n_channels, len(rows))`."""
+def force_response(
+    model: EquationsOfMotion, values: Mapping[str, float], rows: Sequence[Row], frequency: Array, element: int | None = None
+) -> Complex:
+    """Return the channels per unit of generalised forces along rows of the coordinates, `shape (n, n_channels, len(rows))`.
+
+    Where the forces are those of an element, by its number, against its travel, channels that read what it transmits feel them directly.
+    """
     omega = 2 * np.pi * frequency
     numeric = model.numeric(values)
     entries = {(i, j): value for j, row in enumerate(rows) for i, value in row.items()}
     loads = model.evaluate_matrix(entries, (model.n_dof, len(rows)), values)
     states = np.linalg.solve(dynamic_stiffness(numeric, omega), np.repeat(loads[None].astype(np.complex128), len(omega), axis=0))
-    return np.asarray(output_rows(numeric.outputs, omega)[0] @ states)
+    read = [sp.S.Zero if element is None else channel.laws.get(element, sp.S.Zero) for channel in model.channels]
+    direct = np.array(model.evaluate_list(read, values))
+    return np.asarray(output_rows(numeric.outputs, omega)[0] @ states - direct[:, None])
 
 
 def dynamic_stiffness(numeric: NumericModel, omega: Array) -> Complex:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
+from vehgen.files.checks import unit_factor
 from vehgen.files.limits import HUMP_HEIGHT, HUMP_LENGTH, SPEED_LIMIT
 from vehgen.files.tables import TableColumns, read_columns
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
@@ -27,7 +28,7 @@ from vehgen.simulate.budgets import check_run, placed
 from vehgen.simulate.initial_state import initial_state
 from vehgen.simulate.run_file import Run
 from vehgen.simulate.run_file.acquisition import channel_chains
-from vehgen.simulate.run_file.entries import HumpEntry
+from vehgen.simulate.run_file.entries import DisplacementEntry, ForceEntry, HumpEntry
 from vehgen.simulate.scenario import Scenario
 from vehgen.simulate.signals import Signal
 
@@ -59,14 +60,18 @@ def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) 
         _check_cost(run, duration, speed, model)
     else:
         raise InputError("a run without a hump needs `duration`, e.g. 10 s", run.document.position)
-    names = model.inputs[len(run.vehicle.axles) :]
-    ground = tuple(_ground(run, name.partition(".")[2]) for name in names)
+    ground = tuple(_ground(run, link) for link in ground_links(model))
     forces = tuple(
-        Signal(harmonic=entry.harmonic) if entry.harmonic else _measured(run, entry.file or "", entry.time, entry.force, ("forces", name))
+        Signal(harmonic=entry.harmonic) if entry.harmonic else _measured(run, entry, entry.force, "N", ("forces", name))
         for name, entry in file.forces.items()
     )
     chains = channel_chains(run, 1 / (file.step * run.decimation))
     return Scenario(track, speed, duration, file.step, run.decimation, ground, forces, chains=chains, initial=initial_state(run, model))
+
+
+def ground_links(model: EquationsOfMotion) -> tuple[str, ...]:
+    """Return the links to the ground, in the order of a model's inputs."""
+    return tuple(name.partition(".")[2] for name in model.inputs[len(model.vehicle.axles) :])
 
 
 def _check_cost(run: Run, duration: float, speed: SpeedLaw, model: EquationsOfMotion) -> None:
@@ -130,13 +135,13 @@ def _ground(run: Run, link: str) -> Signal | None:
         return None
     if entry.harmonic is not None:
         return Signal(harmonic=entry.harmonic)
-    return _measured(run, entry.file or "", entry.time, entry.displacement, ("displacements", link))
+    return _measured(run, entry, entry.displacement, "m", ("displacements", link))
 
 
-def _measured(run: Run, file: str, time: str, column: str, place: tuple[str, ...]) -> Signal:
-    found = _columns(run, file, (time, column), (*place, "file"))
+def _measured(run: Run, entry: ForceEntry | DisplacementEntry, column: str, usual: str, place: tuple[str, ...]) -> Signal:
+    found = _columns(run, entry.file or "", (entry.time, column), (*place, "file"))
     found.check_ascending(least=1)
-    return Signal(time=found.values[0], values=found.values[1])
+    return Signal(time=found.values[0], values=found.values[1] * unit_factor(entry.unit or usual, usual, place[0], None))
 
 
 def _columns(run: Run, file: str, names: tuple[str, str], place: tuple[str | int, ...]) -> TableColumns:

@@ -102,23 +102,25 @@ class Scenario:
         wander: Wander | None = None,
         deformation: tuple[float, float, float, float] | None = None,
         forces: Sequence[tuple[float, float]] = (),
+        displacements: Sequence[float] = (),
     ) -> Scenario:
         """Return the same run, `delay` [s] later, at `speed` times the speed, on a road `height` times as high.
 
         Speed and `wander` are seen from where the vehicle is at the time `anchor` [s]; `deformation` is that of the humps
-        (length, form, skew, rounding; default: as it is). `forces` are gains and offsets [N] of the forces; on a rig without a road
-        forces and displacements, too, come `delay` later.
+        (length, form, skew, rounding; default: as it is). `forces` are gains and offsets [N] of the forces, `displacements` gains of
+        those of the ground; on a rig without a road both come `delay` later.
         """
         late = delay if not self.track.parts else 0.0
         same = (delay, speed, wander) == (0.0, 1.0, None)
         law = self.speed if same else AdjustedSpeed(self.speed, delay, speed, anchor, wander)
         track = replace(self.track, scale=self.track.scale * height, deformation=deformation or self.track.deformation)
         found = replace(self, speed=law, track=track)
-        if not (forces or late):
+        if not (forces or displacements or late):
             return found
         errors = forces or [(1.0, 0.0)] * len(self.forces)
         pushed = tuple(item.with_errors(gain, offset, late) for item, (gain, offset) in zip(self.forces, errors, strict=True))
-        moved = tuple(None if item is None else item.with_errors(late=late) for item in self.ground)
+        gains = displacements or [1.0] * len(self.ground)
+        moved = tuple(None if item is None else item.with_errors(gain, late=late) for item, gain in zip(self.ground, gains, strict=True))
         return replace(found, forces=pushed, ground=moved)
 
     def excitation(self, offsets: Array) -> Excitation:

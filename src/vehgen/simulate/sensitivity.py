@@ -52,7 +52,7 @@ def direct_sensitivities(
     numeric = model.numeric(values)
     forces = excitation.inputs @ numeric.P.T + excitation.rates @ numeric.Q.T + excitation.forces @ numeric.F.T
     q, v, a = newmark_states(numeric, forces, excitation.dt)
-    response = channel_values(numeric, a, v, q, excitation.inputs, excitation.rates)[::decimation]
+    response = channel_values(numeric, a, v, q, excitation, excitation.rates)[::decimation]
     loads = np.zeros((*q.shape, len(names)))
     derived = [matrix_derivatives(model, name, values) for name in names]
     for i, d in enumerate(derived):
@@ -64,7 +64,7 @@ def direct_sensitivities(
     for i, d in enumerate(derived):
         own = sa[:, :, i] @ rows["acceleration"].T + sv[:, :, i] @ rows["velocity"].T + sq[:, :, i] @ rows["displacement"].T
         moved = a @ d["acceleration"].T + v @ d["velocity"].T + q @ d["displacement"].T
-        moved += excitation.inputs @ d["input"].T + excitation.rates @ d["input_rate"].T
+        moved += excitation.inputs @ d["input"].T + excitation.rates @ d["input_rate"].T + excitation.forces @ d["force"].T
         sensitivities[i] = (own + moved)[::decimation]
     return response, sensitivities
 

@@ -36,6 +36,10 @@ class Signal:
         assert self.values is not None
         return np.asarray(self.gain * np.interp(own, self.time, self.values) + self.offset)
 
+    def scaled(self, factor: float) -> Signal:
+        """Return it as measured in another unit, so many times as large; a harmonic stays as it is."""
+        return self if self.values is None else replace(self, values=self.values * factor)
+
     def with_errors(self, gain: float = 1.0, offset: float = 0.0, late: float = 0.0) -> Signal:
         """Return it with further errors."""
         return replace(self, gain=self.gain * gain, offset=self.offset + offset, late=self.late + late)

@@ -21,6 +21,7 @@ from vehgen.files import write_text
 from vehgen.files.result_fields import Array1D, Array3D
 from vehgen.files.results import Cell, Result, Table
 from vehgen.mechanics import ElementOutput, EquationsOfMotion, Output, Place, derive, static_loads
+from vehgen.mechanics.quantities import WITH_STATIC
 from vehgen.simulate.acquired import acquire, kept_samples
 from vehgen.simulate.budgets import check_population
 from vehgen.simulate.run_like import RunLike, as_run
@@ -143,9 +144,7 @@ class Simulator:
         return KernelResult(self._add_static(parameters, responses, failures), failures, residuals)
 
     def run_nearby(self, individual: Array, scenario: Scenario, others: Sequence[Scenario]) -> Array:
-        """Simulate one individual over a scenario and others that hardly differ from it, all at once.
-
-        What differs is right to the first order: for derivatives by differences.
+        """Simulate one individual over a scenario and others that hardly differ from it: right to the first order, for derivatives.
 
         Parameters
         ----------
@@ -227,14 +226,14 @@ class Simulator:
         return [i for i, name in enumerate(self.model.parameters) if name in names]
 
     def _add_static(self, parameters: Array, responses: Array, failures: Mapping[int, str]) -> Array:
-        """Add the static load to channels that ask for the whole tyre load, except where an individual failed."""
+        """Add the static load to channels that ask for the whole load of a tyre or hinge, except where an individual failed."""
         for column, channel in enumerate(self.model.channels):
-            if channel.quantity == "tyre_load":
+            if channel.quantity in WITH_STATIC:
                 for row, individual in enumerate(parameters):
                     if row in failures or not np.isfinite(individual).all():
                         continue
                     loads = static_loads(self.model, dict(zip(self.model.parameters, individual, strict=True)))
-                    responses[row, :, column] += loads.axles[channel.owner]
+                    responses[row, :, column] += (loads.axles if channel.quantity == "tyre_load" else loads.hinges)[channel.owner]
         return responses
 
 

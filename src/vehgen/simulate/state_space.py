@@ -167,7 +167,7 @@ def _output_matrices(numeric: NumericModel, A: Array, B: Array) -> tuple[Array, 
     n, width = len(numeric.M), numeric.P.shape[1]
     rows = numeric.outputs
     C = rows["acceleration"] @ A[n:] + np.hstack([rows["displacement"], rows["velocity"]])
-    direct = np.hstack([rows["input"], rows["input_rate"], np.zeros((len(C), numeric.F.shape[1]))])
+    direct = np.hstack([rows["input"], rows["input_rate"], rows["force"]])
     D = rows["acceleration"] @ B[n:] + direct
     D[np.abs(D) <= ROUNDING * (np.abs(rows["acceleration"]) @ np.abs(B[n:]) + np.abs(direct))] = 0.0
     return C, D, D[:, width : 2 * width]

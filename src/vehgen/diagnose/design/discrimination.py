@@ -23,11 +23,12 @@ from vehgen.diagnose.fits.model_fit import ModelFit, base_priors
 from vehgen.fit.alignment import MOST_SIGMAS, best_delay
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
-from vehgen.fit.noise import Noise, transform
+from vehgen.fit.noise import Noise
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.problem import Problem
 from vehgen.fit.recording import RecordedChannel
 from vehgen.fit.trial import Trial
+from vehgen.fit.window import transform
 from vehgen.measure.acquisition import POINT_SAMPLES
 from vehgen.mechanics import Output
 from vehgen.mechanics.outputs import ElementOutput, PointOutput

@@ -27,9 +27,9 @@ from vehgen.fit.noise import (
     RoadAnswer,
     estimate_noise,
     road_answer,
-    transform,
 )
 from vehgen.fit.trial import Trial
+from vehgen.fit.window import transform
 from vehgen.measure import record_psd
 
 Array = NDArray[np.float64]

@@ -15,13 +15,14 @@ from numpy.typing import NDArray
 
 from vehgen.codegen import Kernel
 from vehgen.fit.misfit import Misfit, flatten
-from vehgen.fit.noise import transform
 from vehgen.fit.problem import Problem
+from vehgen.fit.window import transform
 from vehgen.mechanics import EquationsOfMotion, static_loads
 from vehgen.mechanics.energies import Element
 from vehgen.mechanics.equations_of_motion import Channel
 from vehgen.mechanics.evaluation import evaluate_array
 from vehgen.mechanics.law_terms import RATE, REST, STATIC, TRAVEL
+from vehgen.simulate.acquired import initial_states
 from vehgen.simulate.frequency import force_response
 
 Array = NDArray[np.float64]
@@ -52,7 +53,7 @@ class ProbeMotion:
             probe, kernel = kernels[id(model)]
             scenario = misfit.scenario(x, t)
             population = np.array([[known[name] for name in probe.parameters]])
-            run = kernel.run(population, scenario.excitation(probe.wheel_offsets(known)), scenario.decimation)
+            run = kernel.run(population, scenario.excitation(probe.wheel_offsets(known)), scenario.decimation, initial_states(scenario, 1))
             self.motions.append(np.asarray(run.responses[0, scenario.skipped :].T.reshape(len(model.elements), 2, -1)))
 
     def moved(self, problem: Problem, values: Array) -> Array | None:
@@ -78,7 +79,7 @@ class ProbeMotion:
             lines: Complex = np.zeros((len(self.misfit.frequency(t)), len(trial.channels)), dtype=np.complex128)
             inside = np.isin(np.fft.rfftfreq(len(trial.recording.time), trial.recording.dt), self.misfit.frequency(t))
             for number, force in forces.items():
-                lines += transform(force[:, None], trial.recording.dt, inside) * self._response(t, number)
+                lines += transform(force[:, None], trial.recording.dt, inside, fade_in=trial.fade_in) * self._response(t, number)
             parts.append(flatten(self.misfit.whiten(t, self.misfit.read_at(t, lines, self.x))))
         return np.concatenate(parts)
 
@@ -111,7 +112,7 @@ class ProbeMotion:
         if (t, number) not in self._responses:
             trial, frequency = self.misfit.problem.trials[t], self.misfit.frequency(t)
             model = trial.simulator.model
-            answer = force_response(model, self.values[t], (model.elements[number].row,), frequency)[:, :, 0]
+            answer = force_response(model, self.values[t], (model.elements[number].row,), frequency, number)[:, :, 0]
             self._responses[t, number] = answer * trial.channel_factors(frequency)
         return self._responses[t, number]
 

@@ -35,6 +35,11 @@ _FAULT_OF = {
     "tilt": ("tilt", "{place} sits tilted by {amount} {where}"),
     "position": ("position", "{place} sits {amount} off {where}"),
     "force_gain": ("gain", "the force {place} is {amount} {more} {where} than recorded"),
+    "displacement_gain": ("gain", "the displacement {place} is {amount} {more} {where} than recorded"),
+    "initial_displacement": ("initial", "{place} begins {amount} {higher} {where} than stated"),
+    "initial_velocity": ("initial", "{place} begins {amount} {more} upwards {where} than stated"),
+    "initial_pitch": ("initial", "{place} begins {amount} {more} nose-down {where} than stated"),
+    "initial_pitch_rate": ("initial", "{place} begins to turn {amount} {more} nose-down {where} than stated"),
     "force_offset": ("force_offset", "a constant force of {amount} acts beside {place} {where}"),
 }
 """The kind of fault, and what is wrong, by the condition's name."""
@@ -53,8 +58,12 @@ _CURES = {
     "tilt": "mount the sensor level, or import the recording so that its axes are turned upright",
     "position": "measure where the sensor sits and put the run file right",
     "force_gain": "check the force sensor's calibration and the column's unit",
+    "displacement_gain": "check the displacement sensor's calibration and the column's unit",
     "force_offset": "take the force sensor's zero while nothing pushes, or state how well it is known (`uncertainty: {force_offset: 5 N}`)",
 }
+_CURES |= dict.fromkeys(
+    (name for name, (kind, _) in _FAULT_OF.items() if kind == "initial"), "measure how the rig is released, and put `initial` right"
+)
 
 
 def findings_of_conditions(
@@ -141,6 +150,7 @@ def _fault(alike: Sequence[Condition], runs: tuple[str, ...]) -> MeasurementFaul
         "late": "later" if up else "earlier",
         "early": "earlier" if up else "later",
         "more": "more" if up else "less",
+        "higher": "higher" if up else "lower",
         "longer": "longer" if up else "shorter",
     }
     words |= {"fast": "too fast" if up else "too slow", "place": item.place or "the recorder"}

@@ -13,6 +13,7 @@ from vehgen.diagnose.inputs.checks import check_inputs
 from vehgen.diagnose.inputs.clocks import clock_hypotheses
 from vehgen.diagnose.inputs.conditions import BEYOND, findings_of_conditions, moved_roads
 from vehgen.diagnose.inputs.copies import find_copies
+from vehgen.diagnose.inputs.driving import input_hypotheses
 from vehgen.diagnose.inputs.exchanges import exchange_hypotheses, speed_hypotheses, speed_unit_hypotheses
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault
 from vehgen.diagnose.inputs.humps import hump_hypotheses, road_heights
@@ -40,6 +41,7 @@ FLOOR = NOISE_FLOOR**2 - 1
 """Excess at which nothing is left."""
 Generator = Callable[[BaseRefits], Iterator[Hypothesis]]
 PLAIN: tuple[Generator, ...] = (
+    input_hypotheses,
     label_hypotheses,
     unit_hypotheses,
     dead_hypotheses,

@@ -18,6 +18,7 @@ from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.least_squares import COARSE_TOLERANCE, WEAK_PRIOR_SIGMA, FitOptions, LeastSquaresFit, fit_least_squares
 from vehgen.fit.misfit import Noises
+from vehgen.fit.noise import Noise
 from vehgen.fit.problem import Problem
 from vehgen.fit.recorders import FoundRecorder
 from vehgen.fit.trial import Trial
@@ -152,9 +153,12 @@ class BaseRefits:
 
     def _noises(self, trials: Sequence[Trial], blind: frozenset[tuple[str, str]]) -> Noises:
         known = {id(trial.recording): self.base.misfit.noises[trial.name] for trial in self.detected}  # noise goes with the recording
-        if all(id(trial.recording) in known for trial in trials):
-            found = {trial.name: known[id(trial.recording)] for trial in trials}
-        else:
+        of_rigs = {trial.name: trial for trial in self.detected if not trial.scenario.track.parts}
+        found = {trial.name: known[id(trial.recording)] for trial in trials if id(trial.recording) in known}
+        for trial in trials:
+            if trial.name not in found and trial.name in of_rigs:  # no lead-in tells it anew
+                found[trial.name] = _as_loud(self.base.misfit.noises[trial.name], of_rigs[trial.name], trial)
+        if len(found) < len(trials):
             found = find_noise_floor(trials, self.band).noises
         blinded: Noises = {}
         for trial in trials:
@@ -162,3 +166,9 @@ class BaseRefits:
             factors = np.array([BLINDING if (trial.name, channel) in blind else 1.0 for channel in trial.channels])
             blinded[trial.name] = replace(own, sigma=own.sigma * factors)
         return blinded
+
+
+def _as_loud(noise: Noise, trial: Trial, changed: Trial) -> Noise:
+    """Return a trial's noise where a mistake of its recording is undone: louder as its channels move more from sample to sample."""
+    before, after = (np.diff(item.recording.values, axis=0).std(axis=0) for item in (trial, changed))
+    return replace(noise, sigma=noise.sigma * after / np.maximum(before, 1e-300))

@@ -18,9 +18,9 @@ from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.fit.adjustments import SpeedScale
 from vehgen.fit.least_squares import LeastSquaresFit
-from vehgen.fit.noise import transform
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import Trial
+from vehgen.fit.window import transform
 
 Array = NDArray[np.float64]
 MOVED = 0.25
@@ -163,7 +163,7 @@ def unrelated_recording(fit: LeastSquaresFit) -> tuple[MeasurementFault, ...]:
     misfit, shares = fit.misfit, []
     for t, (trial, (lines, _)) in enumerate(zip(misfit.problem.trials, misfit.residual_spectrum(fit.x), strict=True)):
         inside = np.isin(np.fft.rfftfreq(len(trial.recording.time), trial.recording.dt), misfit.frequency(t))
-        recorded = transform(trial.recording.values, trial.recording.dt, inside)
+        recorded = transform(trial.recording.values, trial.recording.dt, inside, fade_in=trial.fade_in)
         each = (np.abs(lines) ** 2).sum(axis=0) / (np.abs(recorded) ** 2).sum(axis=0)
         shares.append(float(np.median(each)))  # one channel alone that is wrong makes no stranger
     if min(shares) < UNRELATED_SHARE:

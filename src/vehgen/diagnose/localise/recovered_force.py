@@ -18,8 +18,9 @@ from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.localise.unknown_force import Place, PlaceResult, posterior, score_locations
 from vehgen.fit.alignment import align
 from vehgen.fit.misfit import Misfit
-from vehgen.fit.noise import taper
+from vehgen.fit.window import taper
 from vehgen.mechanics.equations_of_motion import Channel, EquationsOfMotion
+from vehgen.simulate.acquired import initial_states
 from vehgen.simulate.frequency import force_response
 
 Array = NDArray[np.float64]
@@ -172,7 +173,7 @@ def _recover(misfit: Misfit, result: PlaceResult, directions: Array, component: 
         clear = own.variance < np.median(own.variance) / DEAF
         lines = np.isin(np.fft.rfftfreq(n, dt), misfit.frequency(t))
         lines[lines] = clear
-        window = taper(n, dt)
+        window = taper(n, dt, trial.fade_in)
         histories = [_history(item[t], clear, lines, window, dt) for item in (raw, *moved)]
         model = trial.simulator.model
         central = RecoveredForce(
@@ -203,7 +204,8 @@ def _raw(misfit: Misfit, place: Place, component: int, x: Array, kernels: dict[i
         model = trial.simulator.model
         values = trial.values | {name: value for name, value in known.items() if name not in trial.fixed}
         lined = misfit.frequency(t)
-        response = force_response(model, values, place.rows, lined) * trial.channel_factors(lined)[:, :, None]
+        number = model.element_number(place.kind, place.name)
+        response = force_response(model, values, place.rows, lined, number) * trial.channel_factors(lined)[:, :, None]
         white = np.stack([misfit.whiten(t, misfit.read_at(t, response[:, :, j], x)) for j in range(len(place.rows))], axis=2)
         adjoint = white.conj().transpose(0, 2, 1)
         inverse = np.linalg.pinv(adjoint @ white, hermitian=True)
@@ -213,7 +215,7 @@ def _raw(misfit: Misfit, place: Place, component: int, x: Array, kernels: dict[i
         probe, kernel = kernels[id(model)]
         scenario = misfit.scenario(x, t)
         population = np.array([[values[name] for name in probe.parameters]])
-        run = kernel.run(population, scenario.excitation(probe.wheel_offsets(values)), scenario.decimation)
+        run = kernel.run(population, scenario.excitation(probe.wheel_offsets(values)), scenario.decimation, initial_states(scenario, 1))
         motion = run.responses[0, scenario.skipped :]
         frequency = np.asarray(np.fft.rfftfreq(len(motion), trial.recording.dt), dtype=np.float64)
         found.append(

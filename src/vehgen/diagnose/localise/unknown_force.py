@@ -187,7 +187,8 @@ def _basis(misfit: Misfit, x: Array, place: Place, t: int) -> Complex | None:
             raw[:, column, j] = 1.0
     elif place.rows:
         known = misfit.problem.values_of(misfit.problem.space.values(misfit.split(x)[0]), trial)
-        raw = force_response(trial.simulator.model, known, place.rows, frequency) * trial.channel_factors(frequency)[:, :, None]
+        number = trial.simulator.model.element_number(place.kind, place.name)
+        raw = force_response(trial.simulator.model, known, place.rows, frequency, number) * trial.channel_factors(frequency)[:, :, None]
     else:
         return None
     white = np.stack(

@@ -17,7 +17,7 @@ from vehgen.effects import EffectParameter
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
-from vehgen.fit.noise import taper
+from vehgen.fit.window import taper
 
 Array = NDArray[np.float64]
 NINETY = 1.645
@@ -129,7 +129,8 @@ def _moved(jacobians: Iterable[Array], n_unknowns: int) -> Array:
 
 def _seen(misfit: Misfit) -> float:
     """Return the share of the records that their tapers let through: neighbouring lines of tapered records are not independent."""
-    return float(np.mean([np.mean(taper(len(trial.recording.time), trial.recording.dt) ** 2) for trial in misfit.problem.trials]))
+    trials = misfit.problem.trials
+    return float(np.mean([np.mean(taper(len(item.recording.time), item.recording.dt, item.fade_in) ** 2) for item in trials]))
 
 
 def _columns(fit: ModelFit, candidate: Candidate) -> list[tuple[EffectParameter, int, float, float]]:

@@ -19,7 +19,7 @@ from vehgen.diagnose.localise.recovered_force import recover
 from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.diagnose.select.search import SearchRound
 from vehgen.fit.misfit import flatten
-from vehgen.fit.noise import transform
+from vehgen.fit.window import transform
 from vehgen.simulate.frequency import force_response
 
 Array = NDArray[np.float64]
@@ -62,7 +62,7 @@ def decoy_shares(
                 force = np.sin(slope * d / scales[0] + rate * v / scales[1] + phase) - np.sin(phase)
                 frequency = np.fft.rfftfreq(len(d), trial.recording.dt)
                 inside = (frequency >= misfit.band[0]) & (frequency <= misfit.band[1])
-                lines = transform(force[:, None], trial.recording.dt, inside) * responses[t]
+                lines = transform(force[:, None], trial.recording.dt, inside, fade_in=trial.fade_in) * responses[t]
                 parts.append(flatten(misfit.whiten(t, misfit.read_at(t, lines, place.x))))
             columns.append(np.concatenate(parts))
         own = projection.remainder(np.array(columns).T)
@@ -75,10 +75,10 @@ def _responses(base: ModelFit, place: PlaceResult) -> list[NDArray[np.complex128
     misfit = base.least_squares.misfit
     values = misfit.problem.space.values(misfit.split(place.x)[0])
     known = [misfit.problem.values_of(values, trial) for trial in misfit.problem.trials]
-    return [
-        force_response(trial.simulator.model, known[t], place.place.rows[:1], misfit.frequency(t))[:, :, 0]
-        for t, trial in enumerate(misfit.problem.trials)
-    ]
+    models = [trial.simulator.model for trial in misfit.problem.trials]
+    number = models[0].element_number(place.place.kind, place.place.name)
+    rows = place.place.rows[:1]
+    return [force_response(model, known[t], rows, misfit.frequency(t), number)[:, :, 0] for t, model in enumerate(models)]
 
 
 def compare_with_placebo_laws(found: SearchRound, fit: ModelFit, detection: Detection) -> tuple[float, float] | None:

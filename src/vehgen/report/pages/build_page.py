@@ -101,6 +101,7 @@ def _page(build: Build, model: EquationsOfMotion, texts: Mapping[str, str]) -> s
         modes=build.modes,
         axles=_axles(model, build.loads),
         hinges=build.loads.hinges,
+        links=[(name, force) for (kind, name), force in build.loads.elements.items() if kind == "link"],
         total=sum(build.loads.axles.values()),
         weight=build.weight,
         mass=model.total_mass(build.values),

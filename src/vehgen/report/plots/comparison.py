@@ -9,20 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vehgen.measure.curves import ChannelCurves
+from vehgen.mechanics.quantities import QUANTITIES
 from vehgen.report.drawing.canvas import INK
 
 MEASURED = "#9aa7b1"
 SIMULATED = "#0b5fa5"
 REFERENCE_COLOUR = "#d55e00"
-QUANTITY_UNITS = {
-    "acceleration": "m/s²",
-    "pitch_rate": "rad/s",
-    "velocity": "m/s",
-    "displacement": "m",
-    "pitch": "rad",
-    "pitch_acceleration": "rad/s²",
-    "fore_aft_acceleration": "m/s²",
-}
+QUANTITY_UNITS = {name: unit.replace("^2", "²") for name, unit in QUANTITIES.items()}
 HIGHEST_SHOWN_HZ = 25.0
 """Frequencies shown [Hz]."""
 LABELS = ("measured", "simulated")

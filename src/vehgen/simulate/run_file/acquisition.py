@@ -15,7 +15,7 @@ from vehgen.files.quantities import Frequency, RecorderDelay
 from vehgen.files.units import Dimension, read_unit
 from vehgen.measure.acquisition import FILTER_KINDS, MAX_ORDER, POINT_SAMPLES, UNKNOWN, AcquisitionChain, FilterKind
 from vehgen.measure.recorders import RECORDERS
-from vehgen.mechanics.outputs import QUANTITIES
+from vehgen.mechanics.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from vehgen.simulate.run_file.loading import Run

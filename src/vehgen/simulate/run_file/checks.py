@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from vehgen.errors import InputError, did_you_mean, shown
-from vehgen.files.checks import check_dimension, check_known, plain_quantity, value_of
+from vehgen.files.checks import check_dimension, check_known, plain_quantity, unit_factor, value_of
 from vehgen.files.limits import MOST_CHANNELS, VEHICLE_LENGTH
 from vehgen.files.units import LENGTH
-from vehgen.mechanics.outputs import AXLE_QUANTITIES, LINK_QUANTITIES
 from vehgen.simulate.run_file.acquisition import check_acquisition
-from vehgen.simulate.run_file.entries import OutputEntry, PlaceEntry
+from vehgen.simulate.run_file.entries import DisplacementEntry, ForceEntry
+from vehgen.simulate.run_file.sensors import OfElement, OutputEntry, PlaceEntry
 from vehgen.vehicle.checks import check_values
 from vehgen.vehicle.parts import GROUND
 
@@ -29,6 +30,7 @@ def check_run(run: Run) -> None:
     _check_vehicle(run)
     for name, entry in run.file.forces.items():
         _check_place(run, entry, "forces", name)
+        _check_unit(run, entry, "force", "N", "forces", name)
     _check_displacements(run)
     _check_sensors(run)
     check_acquisition(run)
@@ -89,16 +91,29 @@ def _check_displacements(run: Run) -> None:
     grounded = [name for name, link in vehicle.links.items() if GROUND in link.points]
     for name in run.file.displacements:
         check_known(name, grounded, f"{vehicle.name} has no link to the ground", run.document, "displacements", name, key=True)
+        _check_unit(run, run.file.displacements[name], "displacement", "m", "displacements", name)
+
+
+def _check_unit(run: Run, entry: ForceEntry | DisplacementEntry, quantity: str, usual: str, *path: str) -> None:
+    """Check the unit of a measured column; beside a recording, where a wrong one would be fitted, it must be stated."""
+    document = run.document
+    if entry.unit is not None:
+        if entry.file is None:
+            raise InputError("a harmonic is written with its unit; `unit` belongs to a `file`", document.find((*path, "unit"), key=True))
+        unit_factor(entry.unit, usual, quantity, document.find((*path, "unit")))
+    elif entry.file is not None and run.file.recording is not None:
+        column = entry.force if isinstance(entry, ForceEntry) else entry.displacement
+        raise InputError(
+            f"the {quantity} in the column {shown(column)} has no unit; write the one it was recorded in, e.g. `unit: {usual}`",
+            document.find((*path, "file"), key=True),
+        )
 
 
 def _check_sensors(run: Run) -> None:
     """Check that sensors sit on parts of the vehicle and record what there is to be recorded there."""
-    vehicle, document = run.vehicle, run.document
     for name, sensor in run.file.sensors.items():
-        if sensor.axle is not None:
-            check_known(sensor.axle, vehicle.axles, f"{vehicle.name} has no axle", document, "sensors", name, "axle")
-        elif sensor.link is not None:
-            check_known(sensor.link, vehicle.links, f"{vehicle.name} has no link", document, "sensors", name, "link")
+        if sensor.element is not None:
+            _check_element(run, sensor, "sensors", name)
         else:
             _check_place(run, sensor, "sensors", name)
         for quantity in sensor.channels:
@@ -109,18 +124,24 @@ def _check_sensors(run: Run) -> None:
                 )
 
 
+def _check_element(run: Run, entry: OfElement, *path: str) -> None:
+    """Check that the vehicle has the axle, link or hinge that a sensor or output belongs to."""
+    vehicle = run.vehicle
+    assert entry.element is not None
+    group, name = entry.element
+    parts: dict[str, Mapping[str, object]] = {"axles": vehicle.axles, "links": vehicle.links, "hinges": vehicle.hinges}
+    kind = group.removesuffix("s")
+    check_known(name, parts[group], f"{vehicle.name} has no {kind}", run.document, *path, kind)
+
+
 def _check_output(run: Run, name: str, output: OutputEntry) -> None:
-    """Check that an output is a quantity of an axle or link of the vehicle."""
-    vehicle, document = run.vehicle, run.document
-    if output.axle:
-        check_known(output.axle, vehicle.axles, f"{vehicle.name} has no axle", document, "outputs", name, "axle")
-    else:
-        check_known(output.link or "", vehicle.links, f"{vehicle.name} has no link", document, "outputs", name, "link")
-    owner, quantities = ("an axle", AXLE_QUANTITIES) if output.axle else ("a link", LINK_QUANTITIES)
-    if output.quantity not in quantities:
+    """Check that an output is a quantity of an axle, link or hinge of the vehicle."""
+    _check_element(run, output, "outputs", name)
+    if output.quantity not in output.quantities:
+        owner = {"axles": "an axle", "links": "a link", "hinges": "a hinge"}[output.element[0] if output.element else "axles"]
         raise InputError(
-            f"unknown quantity {shown(output.quantity)} of {owner}; {did_you_mean(output.quantity, quantities)}",
-            document.find(("outputs", name, "quantity")),
+            f"unknown quantity {shown(output.quantity)} of {owner}; {did_you_mean(output.quantity, output.quantities)}",
+            run.document.find(("outputs", name, "quantity")),
         )
 
 

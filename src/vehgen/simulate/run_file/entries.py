@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Literal
 
 from pydantic import Field, model_validator
@@ -11,7 +10,7 @@ from pydantic_core import PydanticCustomError
 from vehgen.files.entry import FileModel
 from vehgen.files.expressions import Expression
 from vehgen.files.limits import LARGEST_SEED, MOST_ROADS
-from vehgen.files.names import Column, FreeText, Name, is_name
+from vehgen.files.names import Column, FreeText, Name
 from vehgen.files.quantities import (
     Angle,
     Displacement,
@@ -23,25 +22,15 @@ from vehgen.files.quantities import (
     Frequency,
     HumpHeight,
     HumpLength,
-    PlaceLength,
     PositiveForce,
     RoadPosition,
     Sample,
     Speed,
     Step,
 )
-from vehgen.mechanics.outputs import (
-    AXLE_MOTIONS,
-    AXLE_QUANTITIES,
-    LINK_QUANTITIES,
-    POINT_QUANTITIES,
-    ElementOutput,
-    Output,
-    Place,
-    PointOutput,
-)
 from vehgen.simulate.run_file.acquisition import AcquisitionEntry
 from vehgen.simulate.run_file.knowledge import InitialEntry, UncertaintyEntry
+from vehgen.simulate.run_file.sensors import OutputEntry, PlaceEntry, SensorEntry
 
 DEFAULT_STEP = 1e-3
 DEFAULT_SPEED = 1.0
@@ -123,27 +112,8 @@ class DisplacementHarmonic(FileModel):
     phase: Angle = 0.0
 
 
-class PlaceEntry(FileModel):
-    """A place on a body: `x` from its COG, or `distance` behind an axle, hinge or body."""
-
-    body: str
-    x: Expression | None = None
-    behind: str | None = None
-    distance: PlaceLength = 0.0
-
-    @model_validator(mode="after")
-    def _one_way(self) -> PlaceEntry:
-        if self.x is not None and self.behind is not None:
-            raise PydanticCustomError("joint", "a place has `x`, or `behind` with `distance`, not both")
-        return self
-
-    def place(self, name: str) -> Place:
-        """Return the place under its name."""
-        return Place(name, self.body, self.x, self.behind, self.distance)
-
-
 class ForceEntry(PlaceEntry):
-    """A vertical force on a body, upwards positive: harmonic, or measured in a CSV file (columns in s and N).
+    """A vertical force on a body, upwards positive: harmonic, or measured in a CSV file, its columns in s and in `unit`.
 
     `noise` is the standard deviation of what acts besides, white at the recording's samples [N].
     """
@@ -152,6 +122,7 @@ class ForceEntry(PlaceEntry):
     file: FileName | None = None
     time: Column = "t"
     force: Column = "force"
+    unit: str | None = None
     noise: PositiveForce | None = None
 
     @model_validator(mode="after")
@@ -162,95 +133,18 @@ class ForceEntry(PlaceEntry):
 
 
 class DisplacementEntry(FileModel):
-    """How the ground end of a link moves: harmonic, or measured in a CSV file (columns in s and m)."""
+    """How the ground end of a link moves: harmonic, or measured in a CSV file, its columns in s and in `unit`."""
 
     harmonic: DisplacementHarmonic | None = None
     file: FileName | None = None
     time: Column = "t"
     displacement: Column = "displacement"
+    unit: str | None = None
 
     @model_validator(mode="after")
     def _one_source(self) -> DisplacementEntry:
         if (self.harmonic is None) == (self.file is None):
             raise PydanticCustomError("joint", "either `harmonic` or `file` was expected")
-        return self
-
-
-class ChannelEntry(FileModel):
-    """A recorded column: its unit where it is not SI, its sign where its axis is reversed, the deviation of its noise, its recorder."""
-
-    column: Column
-    unit: str | None = None
-    sign: Literal[1, -1] = 1
-    noise: str | float | None = None
-    acquisition: str | AcquisitionEntry | None = None
-
-
-def _default_channels() -> dict[str, Column | ChannelEntry]:
-    return {"acceleration": "", "pitch_rate": ""}
-
-
-class SensorEntry(PlaceEntry):
-    """A sensor: a place, its height above the body's COG, the column of each quantity it records, and what acquires them.
-
-    In place of a body an axle or a link, whose forces, travels and motions it records.
-    """
-
-    body: str = ""
-    axle: str | None = None
-    link: str | None = None
-    height: PlaceLength = 0.0
-    channels: dict[Name, Column | ChannelEntry] = Field(default_factory=_default_channels)
-    acquisition: str | AcquisitionEntry | None = None
-
-    @model_validator(mode="after")
-    def _one_place(self) -> SensorEntry:
-        if bool(self.body) + (self.axle is not None) + (self.link is not None) != 1:
-            raise PydanticCustomError("joint", "a sensor sits on a `body`, or belongs to an `axle` or a `link`")
-        if not self.body and (self.x is not None or self.behind is not None or "channels" not in self.model_fields_set):
-            raise PydanticCustomError("joint", "a sensor of an axle or link has `channels`, and no place along a body")
-        return self
-
-    @property
-    def quantities(self) -> dict[str, str]:
-        """What it may record, with SI units."""
-        if self.body:
-            return POINT_QUANTITIES
-        return {**AXLE_QUANTITIES, **AXLE_MOTIONS} if self.axle is not None else LINK_QUANTITIES
-
-    def place(self, name: str) -> Place:
-        """Return the place under its name."""
-        return replace(super().place(name), height=self.height)
-
-    def output(self, name: str, quantity: str) -> Output:
-        """Return what stands for a quantity in a simulation; `name` is the sensor's."""
-        channel = self.channel(name, quantity)
-        if self.body:
-            return PointOutput(channel, self.place(name), quantity)
-        return ElementOutput(channel, self.axle or self.link or "", quantity)
-
-    def column(self, name: str, quantity: str) -> str:
-        """Return the column that holds a quantity; `name` is the sensor's."""
-        entry = self.channels[quantity]
-        return (entry if isinstance(entry, str) else entry.column) or f"{name}_{quantity}"
-
-    def channel(self, name: str, quantity: str) -> str:
-        """Return what the channel of a quantity is called: as its column where that is a name, else SENSOR_QUANTITY."""
-        column = self.column(name, quantity)
-        return column if is_name(column) else f"{name}_{quantity}"
-
-
-class OutputEntry(FileModel):
-    """A travel or force of an axle's suspension or tyre, or of a link."""
-
-    quantity: str
-    axle: str | None = None
-    link: str | None = None
-
-    @model_validator(mode="after")
-    def _one_owner(self) -> OutputEntry:
-        if (self.axle is None) == (self.link is None):
-            raise PydanticCustomError("joint", "an output belongs to an `axle` or a `link`")
         return self
 
 

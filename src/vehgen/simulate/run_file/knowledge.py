@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pydantic import Field
+
 from vehgen.files.entry import FileModel
 from vehgen.files.quantities import (
     Angle,
@@ -11,6 +13,10 @@ from vehgen.files.quantities import (
     LengthDeviation,
     LengthSpread,
     PitchRate,
+    PositiveAngle,
+    PositiveDisplacement,
+    PositivePitchRate,
+    PositiveVelocity,
     ShareSpread,
     SpeedSpread,
     TimeDeviation,
@@ -23,7 +29,7 @@ class UncertaintyEntry(FileModel):
 
     Of the recording's begin (`delay`), the speed and how it changes along the run, the height of the road, the form of the hump and
     the wear of its edges, the sensors' clocks against the first one's, their gyroscopes' lags, gains, tilts and places, gain and offset of
-    measured forces.
+    measured forces, gain of measured displacements.
     """
 
     delay: TimeDeviation | None = None
@@ -41,12 +47,57 @@ class UncertaintyEntry(FileModel):
     position: LengthDeviation | None = None
     force_gain: ShareSpread | None = None
     force_offset: ForceSpread | None = None
+    displacement_gain: ShareSpread | None = None
+
+
+class Uncertain(FileModel):
+    """A value with its standard deviation."""
+
+    value: float
+    tolerance: float
+
+
+class UncertainDisplacement(Uncertain):
+    """A displacement with its standard deviation."""
+
+    value: Displacement
+    tolerance: PositiveDisplacement
+
+
+class UncertainVelocity(Uncertain):
+    """A velocity with its standard deviation."""
+
+    value: Velocity
+    tolerance: PositiveVelocity
+
+
+class UncertainAngle(Uncertain):
+    """An angle with its standard deviation."""
+
+    value: Angle
+    tolerance: PositiveAngle
+
+
+class UncertainPitchRate(Uncertain):
+    """A pitch rate with its standard deviation."""
+
+    value: PitchRate
+    tolerance: PositivePitchRate
 
 
 class InitialEntry(FileModel):
-    """How a body's centre of gravity, or an axle, is displaced and moves as the run begins, from static equilibrium; upwards, nose down."""
+    """How a body's centre of gravity, or an axle, is displaced and moves as the run begins, from static equilibrium; upwards, nose down.
 
-    displacement: Displacement | None = None
-    velocity: Velocity | None = None
-    pitch: Angle | None = None
-    pitch_rate: PitchRate | None = None
+    Each is a quantity, or one with its standard deviation, {value, tolerance}: a fit then finds it, held by that.
+    """
+
+    displacement: Displacement | UncertainDisplacement | None = Field(None, union_mode="left_to_right")
+    velocity: Velocity | UncertainVelocity | None = Field(None, union_mode="left_to_right")
+    pitch: Angle | UncertainAngle | None = Field(None, union_mode="left_to_right")
+    pitch_rate: PitchRate | UncertainPitchRate | None = Field(None, union_mode="left_to_right")
+
+    def stated(self) -> dict[str, tuple[float, float]]:
+        """Return what is stated: value and standard deviation [SI] by key; an exact value deviates by 0."""
+        entries = {key: getattr(self, key) for key in type(self).model_fields}
+        exact = {key: (item, 0.0) for key, item in entries.items() if isinstance(item, float)}
+        return exact | {key: (item.value, item.tolerance) for key, item in entries.items() if isinstance(item, Uncertain)}

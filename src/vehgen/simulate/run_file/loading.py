@@ -9,7 +9,7 @@ from vehgen.errors import InputError
 from vehgen.files import note_read
 from vehgen.files.document import Located
 from vehgen.files.entry import read_entries
-from vehgen.mechanics.outputs import ElementOutput, Output, Place, PointOutput
+from vehgen.mechanics.outputs import Output, Place, PointOutput
 from vehgen.simulate.run_file.checks import check_run
 from vehgen.simulate.run_file.entries import RunFile
 from vehgen.vehicle.loading import load_vehicle
@@ -42,8 +42,7 @@ class Run:
         found: list[Output] = []
         for name, sensor in self.file.sensors.items():
             found += [sensor.output(name, quantity) for quantity in sensor.channels]
-        for name, output in self.file.outputs.items():
-            found.append(ElementOutput(name, output.axle or output.link or "", output.quantity))
+        found += [output.output(name) for name, output in self.file.outputs.items()]
         if not found:
             found = [PointOutput(f"{name}_acceleration", Place(name, name), "acceleration") for name in self.vehicle.bodies]
         return tuple(found)

@@ -1,0 +1,44 @@
+"""The window under which records are compared, and the spectral lines of what is seen through it."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+import scipy.signal
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+RAMP = 0.75
+"""Length of the window's ramps [s]."""
+AFTER_RELEASE = 0.1
+"""The same at the start of a run whose initial state is stated [s], through a recorder: its low-pass has forgotten the rest before then."""
+
+
+@lru_cache(maxsize=64)
+def taper(n_samples: int, dt: float, fade_in: float = RAMP) -> Array:
+    """Return the window under which records are compared: cosine ramps of RAMP [s], or an eighth of a short record, at both ends.
+
+    What the vehicle did before the record began is unknown, and so are its first and last moments; where they are stated, the record
+    fades in within `fade_in` [s], or begins at full weight. Not to be written to.
+    """
+    begin, end = (scipy.signal.windows.tukey(n_samples, min(2 * ramp / (n_samples * dt), 0.25)) for ramp in (fade_in, RAMP))
+    window = np.asarray(np.where(np.arange(n_samples) < n_samples // 2, begin, end), dtype=np.float64)
+    window.setflags(write=False)
+    return window
+
+
+def transform(values: Array, dt: float, inside: NDArray[np.bool_], late: Array | None = None, fade_in: float = RAMP) -> Complex:
+    """Return spectral lines of tapered histories `shape (..., n_samples, n_channels)`, scaled so that |line|^2 is a one-sided PSD.
+
+    `late shape (n_channels,)` [s] moves each channel's window so much earlier: lines turned by that delay are then those of the delayed
+    channel under the window as it is. `fade_in` as in :func:`taper`.
+    """
+    window = taper(values.shape[-2], dt, fade_in)
+    scale = np.sqrt(2 * dt / (window**2).sum())
+    windows = window[:, None]
+    if late is not None and late.any():
+        time = np.arange(len(window)) * dt
+        windows = np.column_stack([np.interp(time + item, time, window, left=window[0], right=0.0) for item in late])
+    return np.asarray(np.fft.rfft(values * windows, axis=-2)[..., inside, :] * scale)
