@@ -18,6 +18,8 @@ from benchmarks.measured_world.rigs.sets import FAMILIES, KIND
 from benchmarks.measured_world.rigs.strength import strength
 
 VEHICLE = "rig.yaml"
+RULER_MM, INCLINOMETER_DEG = 0.5, 0.03
+"""Standard deviations that an engineer states of what is read off before a release."""
 TITLES = {
     "half_car": "Half a car, dropped and released",
     "dyno": "A damper between an actuator and a load cell",
@@ -69,9 +71,9 @@ def run_text(rig: Rig, run: Run) -> str:
     if rig.family == "half_car":
         lines += ["speed: 1 m/s", *_release(rig, run)]
     elif rig.family == "dyno":
-        lines += ["displacements:", f"  damper: {{file: {run.name}_input.csv, time: t, displacement: x}}"]
+        lines += ["displacements:", f"  damper: {{file: {run.name}_input.csv, time: t, displacement: x, unit: m}}"]
     else:
-        lines += ["forces:", f"  motor: {{body: carriage, file: {run.name}_input.csv, time: t, force: F}}"]
+        lines += ["forces:", f"  motor: {{body: carriage, file: {run.name}_input.csv, time: t, force: F, unit: N}}"]
     if recorder.declared:
         lines.append(f"acquisition: {{filter: {recorder.kind}, order: {recorder.order}, cut_off: {recorder.cutoff:.4g} Hz}}")
     elif recorder.kind == "none":
@@ -87,8 +89,14 @@ def _release(rig: Rig, run: Run) -> list[str]:
     degrees = round(math.degrees(pitch) + run.errors["pitch"], 2)
     if run.kind == "drop":
         axles = [height - rig.numbers[end] * math.radians(degrees) for end in ENDS]
-    lines = ["initial:", f"  car: {{displacement: {1e3 * height:g} mm, pitch: {degrees:g} deg}}"]
-    return lines + [f"  {end}: {{displacement: {1e3 * value:.2f} mm}}" for end, value in zip(ENDS, axles, strict=True)]
+    pitched = _read(degrees, "deg", INCLINOMETER_DEG)
+    lines = ["initial:", f"  car: {{displacement: {_read(1e3 * height, 'mm', RULER_MM)}, pitch: {pitched}}}"]
+    return lines + [f"  {end}: {{displacement: {_read(1e3 * value, 'mm', RULER_MM)}}}" for end, value in zip(ENDS, axles, strict=True)]
+
+
+def _read(value: float, unit: str, spread: float) -> str:
+    """Return what an instrument of such a standard deviation reads, as a run file says it."""
+    return f"{{value: {value:.4g} {unit}, tolerance: {spread:g} {unit}}}"
 
 
 def _sensor(channel: Channel) -> str:

@@ -22,8 +22,8 @@ from vehgen.fit.misfit import Misfit, flatten
 from vehgen.simulate import SimulatorPool
 
 Array = NDArray[np.float64]
-MAX_CANDIDATES = 14
-"""So many candidates that are forces are kept."""
+MAX_CANDIDATES, MAX_BESIDE = 14, 8
+"""So many candidates that are forces are kept; so many beside effects that were found before."""
 
 
 def screen(
@@ -33,7 +33,7 @@ def screen(
     locator: EffectLocator,
     simulators: SimulatorPool,
 ) -> list[Candidate]:
-    """Return the candidates worth fitting: all that leave the vehicle alone, of the others the MOST with the largest first-order gain.
+    """Return the candidates worth fitting: all that leave the vehicle alone, of the others those with the largest first-order gain.
 
     What holds another candidate as a special case is kept with it, and takes no place of its own.
 
@@ -46,7 +46,8 @@ def screen(
     """
     always = [item for item in candidates if not item.effect.changes_vehicle]
     forces = [item for item in candidates if item.effect.changes_vehicle and not any(map(item.holds, candidates))]
-    if len(forces) <= MAX_CANDIDATES:
+    most = MAX_BESIDE if base.effects else MAX_CANDIDATES
+    if len(forces) <= most:
         return list(candidates)
     misfit, x = base.least_squares.misfit, base.least_squares.x
     projection, motion = Projection.of(misfit, x, base.effects), ProbeMotion(misfit, x)
@@ -70,7 +71,7 @@ def screen(
                 best = max(best, _gain(projection, moved))
         gains.append((best, candidate))
     gains.sort(key=lambda item: -item[0])
-    return chosen_with_holders(candidates, [*always, *(candidate for _, candidate in gains[:MAX_CANDIDATES])])
+    return chosen_with_holders(candidates, [*always, *(candidate for _, candidate in gains[:most])])
 
 
 def chosen_with_holders(candidates: Sequence[Candidate], chosen: Sequence[Candidate]) -> list[Candidate]:
