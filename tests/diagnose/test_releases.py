@@ -22,7 +22,7 @@ initial: {{block: {{displacement: {{value: {stated} m, tolerance: 2 mm}}}}}}
 sensors: {{gauge: {{body: block, channels: {{displacement: y, velocity: v}}}}}}
 recording: {name}.csv
 """
-MASS, K, C, FRICTION = 20.0, 40e3, 200.0, 40.0
+MASS, K, C, FRICTION = 20.0, 40e3, 200.0, 120.0
 STATED = 1.03
 """Heights stand in the files so many times as large as they were."""
 

@@ -1,4 +1,4 @@
-"""Which forces and travels occur at the springs of a rig that no weight loads: they set the scale of what may be missing there."""
+"""Which forces and travels occur at the springs of a rig: they set the scale of what may be missing where no axle carries weight."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from vehgen.simulate import Simulator
 
 
 def occurring(fit: ModelFit) -> dict[str, Occurring]:
-    """Return the largest force and travel of every suspension and link in a fit's runs, by name; nothing where weight loads them.
+    """Return the largest force and travel of every suspension and link in a fit's runs, by name; nothing of vehicles with weight on axles.
 
     A force that is measured beside them counts, too: what passes through a link that only damps is known by what pushes.
     """
     misfit, x = fit.least_squares.misfit, fit.least_squares.x
     vehicle = misfit.problem.trials[0].run.vehicle
-    if vehicle.gravity:
+    if vehicle.gravity and vehicle.axles:
         return {}
     outputs = [ElementOutput(f"{name} force", name, "link_force") for name in vehicle.links]
     outputs += [ElementOutput(f"{name} travel", name, "link_travel") for name in vehicle.links]
