@@ -73,7 +73,8 @@ def hump(model, duration=1.5, height=0.03, dt=1e-3, speed=3.0):
     width = s.shape[1]
     inputs[:, :width] = np.where(inside, height * np.sin(np.pi * s / 0.5), 0.0)
     rates[:, :width] = np.where(inside, speed * height * np.pi / 0.5 * np.cos(np.pi * s / 0.5), 0.0)
-    inputs[:, width:], rates[:, width:] = 0.01 * np.sin(9 * time)[:, None], 0.09 * np.cos(9 * time)[:, None]
+    each = 0.01 * np.arange(1, len(model.inputs) - width + 1)
+    inputs[:, width:], rates[:, width:] = each * np.sin(9 * time)[:, None], 9 * each * np.cos(9 * time)[:, None]
     return Excitation(dt, inputs, rates, np.repeat(300 * np.sin(7 * time)[:, None], len(model.forces), axis=1))
 
 

@@ -23,6 +23,7 @@ sets:
 FRICTION = "{dry_friction: {force: 800 N}}"
 LAWS = {
     "dry_friction": ("suspension", "{force: 800 N}"),
+    "asymmetric_friction": ("suspension", "{force: 800 N, ratio: 1.6}"),
     "elasto_plastic": ("suspension", "{force: 300 N, k: 180 kN/m}"),
     "cubic_stiffness": ("suspension", "{k3: 1.0e8 N/m^3}"),
     "quadratic_stiffness": ("suspension", "{k2: 4.0e5 N/m^2}"),

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pydantic import TypeAdapter
 
 EQUATION = "M q'' + C q' + K q = P w + Q w' + F f"
-OUTPUT_EQUATION = "y = acceleration q'' + velocity q' + displacement q + input w + input_rate w'"
+OUTPUT_EQUATION = "y = acceleration q'' + velocity q' + displacement q + input w + input_rate w' + force f"
 
 
 @dataclass(frozen=True)
@@ -42,13 +42,14 @@ class ParameterValue:
 
 @dataclass(frozen=True)
 class OutputMatrices:
-    """Coefficients of the outputs, a row each: of q'', q', q `shape (p, n)`, of w and w' `shape (p, m)`."""
+    """Coefficients of the outputs, a row each: of q'', q', q `shape (p, n)`, of w and w' `shape (p, m)`, of f `shape (p, n_forces)`."""
 
     acceleration: Array2D
     velocity: Array2D
     displacement: Array2D
     input: Array2D
     input_rate: Array2D
+    force: Array2D
 
 
 @dataclass(frozen=True)
