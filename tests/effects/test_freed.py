@@ -4,6 +4,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from vehgen.codegen import Excitation, Kernel
+from vehgen.diagnose.fits.candidate import has_room, list_candidates
 from vehgen.effects import EFFECTS, EffectLocator
 from vehgen.effects.locator import base_parameters
 from vehgen.effects.places import dampers
@@ -78,3 +79,12 @@ def test_what_is_freed_are_the_parameters_that_the_file_names_there():
     assert base_parameters(vehicle, "all tyres", ("kt",)) == ("ktf", "ktr")
     assert base_parameters(vehicle, "body", ("k", "c", "kt")) == ()
     assert MOUNT.freed("front", vehicle) == ("cf",)
+
+
+def test_nothing_is_searched_where_a_mount_has_taken_the_dashpot_away():
+    vehicle = load_vehicle("sedan2")
+    plain = EffectLocator(vehicle, vehicle.values())
+    mounted = vehicle.with_changes(MOUNT.change(plain.site("rear")))
+    for place, rooms in (("rear", [True, False]), ("front", [True, True])):
+        (candidate,) = [item for item in list_candidates(vehicle, (), [EFFECTS["quadratic_damping"]]) if item.place == place]
+        assert [has_room(candidate, locator) for locator in (plain, EffectLocator(mounted, mounted.values()))] == rooms

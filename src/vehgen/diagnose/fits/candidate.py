@@ -68,6 +68,11 @@ def list_candidates(vehicle: Vehicle, trials: Sequence[Trial], effects: Sequence
     return found
 
 
+def has_room(candidate: Candidate, locator: EffectLocator) -> bool:
+    """Return whether there is something to search: not where a range is a multiple of a damping that another effect has taken away."""
+    return all(item.low < item.high for item in candidate.effect.search_dimensions(candidate.place, locator))
+
+
 def build_problem(candidate: Candidate, base: Problem, locator: EffectLocator, simulators: SimulatorPool) -> Problem:
     """Return the base problem with the candidate's effect added to its trials and its parameters to the search.
 

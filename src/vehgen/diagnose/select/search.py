@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from vehgen.codegen import compile_all
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.detect.detection import Detection
-from vehgen.diagnose.fits.candidate import Candidate, build_problem
+from vehgen.diagnose.fits.candidate import Candidate, build_problem, has_room
 from vehgen.diagnose.fits.model_fit import CurrentModel, ModelFit, as_fine, evaluate_fit, refine
 from vehgen.diagnose.fits.multi_start import fit_candidate
 from vehgen.diagnose.fits.occurring import occurring
@@ -104,6 +104,7 @@ def fit_candidates(
     fitter = Fitter(detection, base, passed)
     current, locator, simulators = fitter.current, fitter.locator, fitter.simulators
     fits: list[ModelFit] = []
+    candidates = [item for item in candidates if has_room(item, locator)]
     try:
         if not everything:
             progress("screen", 0, 1, "")
