@@ -40,6 +40,7 @@ _HOMES = {
     "load_run": "vehgen.simulate",
     "make_scenario": "vehgen.simulate",
     "natural_modes": "vehgen.simulate",
+    "road_response": "vehgen.simulate",
     "simulate": "vehgen.simulate",
     "state_space": "vehgen.simulate",
     "laden": "vehgen.cargo",
@@ -77,6 +78,7 @@ if TYPE_CHECKING:
     from vehgen.report import build, draw_vehicle, read_result, report
     from vehgen.simulate import Response, Run, Simulator, load_run, make_scenario, natural_modes, simulate
     from vehgen.simulate.frequency_response import frequency_response
+    from vehgen.simulate.road_response import road_response
     from vehgen.simulate.state_space import state_space
     from vehgen.vehicle import Axle, Body, Hinge, Link, Parameter, Spring, Vehicle, bundled_models, load_vehicle, parse_vehicle
 

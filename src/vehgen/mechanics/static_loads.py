@@ -16,6 +16,7 @@ from vehgen.files.results import Result, Table
 from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
 from vehgen.mechanics.model_like import ModelLike, all_values, as_model
+from vehgen.vehicle import Vehicle
 from vehgen.vehicle.parts import GROUND
 
 
@@ -111,17 +112,23 @@ def _solve(model: EquationsOfMotion, K: NDArray[np.float64], weight: NDArray[np.
     return np.asarray(scipy.linalg.solve(K / np.outer(scale, scale), weight / scale, assume_a="pos") / scale, dtype=np.float64)
 
 
-def _hinge_force(model: EquationsOfMotion, name: str, elements: Mapping[tuple[str, str], float], values: Mapping[str, float]) -> float:
-    """Balance the bodies on the far side of a hinge: weight = suspensions, tyres and links on them + hinge force."""
-    vehicle = model.vehicle
-    _first, second = vehicle.hinges[name].points
+def bodies_beyond(vehicle: Vehicle, hinge: str) -> set[str]:
+    """Return the second-named body of a hinge and all that other hinges and rigid carriers join to it."""
+    _first, second = vehicle.hinges[hinge].points
     side = {second}
     grown = True
     while grown:
-        joined = [set(hinge.points) for other, hinge in vehicle.hinges.items() if other != name]
+        joined = [set(item.points) for other, item in vehicle.hinges.items() if other != hinge]
         joined += [{body, item.carried_by.body} for body, item in vehicle.bodies.items() if item.carried_by and "heave" not in item.motions]
         wider = side.union(*(pair for pair in joined if pair & side))
         grown, side = wider != side, wider
+    return side
+
+
+def _hinge_force(model: EquationsOfMotion, name: str, elements: Mapping[tuple[str, str], float], values: Mapping[str, float]) -> float:
+    """Balance the bodies on the far side of a hinge: weight = suspensions, tyres and links on them + hinge force."""
+    vehicle = model.vehicle
+    side = bodies_beyond(vehicle, name)
     parameters = vehicle.all_values({key: values[key] for key in vehicle.free_parameters})
     load = sum(vehicle.bodies[body].mass.evaluate(parameters) for body in side) * GRAVITY * vehicle.gravity
     for axle_name, axle in vehicle.axles.items():
