@@ -47,6 +47,7 @@ _HOMES = {
     "PhoneSensor": "vehgen.phones",
     "import_phones": "vehgen.phones",
     "transmissibility": "vehgen.fit.transmissibility",
+    "assess": "vehgen.assess",
     "Effect": "vehgen.effects",
     "effects": "vehgen.effects",
     "advise_sensors": "vehgen.calibrate",
@@ -64,6 +65,7 @@ _HOMES = {
 __all__ = [*_HOMES]
 
 if TYPE_CHECKING:
+    from vehgen.assess import assess
     from vehgen.calibrate import advise_sensors, calibrate, validate
     from vehgen.calibrate.sensitivity import sensitivity
     from vehgen.cargo.laden import laden

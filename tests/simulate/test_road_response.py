@@ -49,13 +49,13 @@ def test_a_quarter_car_has_the_closed_form():
     expected = s**2 * body_over_axle * axle_over_road
     names = [item.name for item in found.outputs]
     row = names.index(next(iter(vehicle.bodies)))
-    np.testing.assert_allclose(found.amplitude[row], abs(expected), rtol=1e-5)
+    np.testing.assert_allclose(found.amplitude[row], abs(expected), rtol=1e-4)
     turned = np.exp(1j * np.radians(found.phase[row])) * expected.conj()
     np.testing.assert_allclose(np.angle(turned), 0.0, atol=1e-4)
     road = 16e-6 * (found.frequency / 10.0 / 0.1) ** -2 / 10.0
-    np.testing.assert_allclose(found.psd[row], abs(expected) ** 2 * road, rtol=1e-5)
+    np.testing.assert_allclose(found.psd[row], abs(expected) ** 2 * road, rtol=1e-4)
     tyre = names.index(f"{axle_name} tyre")
-    np.testing.assert_allclose(found.amplitude[tyre], abs(wheel * (1 - axle_over_road)), rtol=1e-5)
+    np.testing.assert_allclose(found.amplitude[tyre], abs(wheel * (1 - axle_over_road)), rtol=1e-4)
 
 
 def test_a_long_simulation_has_the_same_rms(tmp_path):

@@ -12,6 +12,7 @@ from contextlib import suppress
 from types import ModuleType
 
 from vehgen.commands import (
+    assess,
     bench,
     build,
     calibrate,
@@ -42,6 +43,7 @@ COMMANDS = (
     modes,
     static,
     simulate,
+    assess,
     response,
     import_,
     transmissibility,

@@ -19,6 +19,17 @@ RUNNING_TIME = 1.0
 """Integration time of the running RMS [s] (ISO 2631-1, 6.3.1)."""
 SETTLING = 10.0
 """In so many seconds the slowest pole, 0.4 Hz of the band limit, falls to 2e-8: so long a record is followed by zeros."""
+MOST_CREST, MOST_MTVV, MOST_VDV = 9.0, 1.5, 1.75
+"""Crest factor, MTVV over RMS and VDV over RMS T^(1/4) above which ISO 2631-1 (6.2.1, 6.3.3) holds the RMS for too little."""
+REACTIONS = (
+    (0.0, 0.315, "not uncomfortable"),
+    (0.315, 0.63, "a little uncomfortable"),
+    (0.5, 1.0, "fairly uncomfortable"),
+    (0.8, 1.6, "uncomfortable"),
+    (1.25, 2.5, "very uncomfortable"),
+    (2.0, float("inf"), "extremely uncomfortable"),
+)
+"""From and to which weighted RMS [m/s^2] people react how (ISO 2631-1, C.2.3)."""
 
 
 @dataclass(frozen=True)
@@ -112,3 +123,21 @@ def running_rms(values: Array, dt: float, time: float = RUNNING_TIME) -> Array:
     count = max(1, round(time / dt))
     total = np.concatenate([np.zeros(count), np.cumsum(values**2)])
     return np.asarray(np.sqrt(np.maximum(total[count:] - total[:-count], 0.0) / count))
+
+
+def likely_reaction(rms: float) -> str:
+    """Return how ISO 2631-1, C.2.3, says that people in public transport call a weighted RMS [m/s^2]; its ranges overlap."""
+    return " or ".join(words for low, high, words in REACTIONS if low <= rms < high)
+
+
+def doubts(found: WeightedVibration, duration: float) -> list[str]:
+    """Return why the RMS alone may underestimate a vibration that lasted `duration` [s] (ISO 2631-1, 6.2.1 and 6.3.3)."""
+    if not found.rms:
+        return []
+    measures = (
+        ("weighted crest factor", found.crest, MOST_CREST),
+        ("MTVV over RMS", found.mtvv / found.rms, MOST_MTVV),
+        ("VDV over RMS T^(1/4)", found.vdv / (found.rms * duration**0.25), MOST_VDV),
+    )
+    over = [f"{name} {value:.3g} (above {most:g})" for name, value, most in measures if value > most]
+    return [f"{', '.join(over)}: its RMS alone says too little, ISO 2631-1 wants MTVV or VDV beside it"] if over else []
