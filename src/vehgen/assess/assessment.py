@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from vehgen.assess.motion import Array, AssessedChannel, Motion, files_of, recorded_motion, simulated_motion
+from vehgen.assess.motion import Array, AssessedChannel, AssessedMotion, files_of, recorded_motion, simulated_motion
 from vehgen.assess.result import (
     Assessment,
     ChannelStatistics,
@@ -23,7 +23,7 @@ from vehgen.files.result_fields import rounded
 from vehgen.files.units import STANDARD_GRAVITY
 from vehgen.measure import SPECTRA, band_rms, welch_psd
 from vehgen.measure.rainflow import equivalent_range, exceedances, rainflow_cycles
-from vehgen.measure.ride_comfort import WEIGHTINGS, WeightedVibration, doubts, evaluate_vibration, likely_reaction
+from vehgen.measure.ride_comfort import WEIGHTINGS, WeightedVibration, evaluate_vibration, likely_reaction, reasons_to_doubt_rms
 from vehgen.measure.shock_response import USUAL_QUALITY, shock_response, spectrum_frequencies
 from vehgen.measure.tyre_loads import load_statistics
 from vehgen.simulate import RunLike, as_run
@@ -36,6 +36,8 @@ CYCLED = ("suspension_travel", "link_travel", "suspension_force", "link_force", 
 TRANSPORT_BAND_HZ = (1.0, 200.0)
 """Where the truck levels of ASTM D4169 are defined."""
 EXCEEDANCE_LEVELS = 40
+LEAST_COUNTED = 0.01
+"""Cycles below this share of the largest range are not counted; the equivalent range has them all."""
 HIGHEST_WEIGHTED_HZ = 80.0
 """ISO 2631-1 weighs vibration up to here."""
 
@@ -112,7 +114,7 @@ def _ride(item: AssessedChannel, dt: float, vertical: str) -> RideComfort:
     return RideComfort(item.name, name, found.rms, found.mtvv, found.vdv, found.crest, likely_reaction(found.rms))
 
 
-def _tyres(motion: Motion) -> Iterator[TyreLoad]:
+def _tyres(motion: AssessedMotion) -> Iterator[TyreLoad]:
     """Yield the tyres whose forces are known, each once, where the vehicle rests on them."""
     known: set[str] = set()
     for item in motion.channels:
@@ -145,7 +147,7 @@ def _shock(item: AssessedChannel, dt: float) -> ShockSpectrum:
     return ShockSpectrum(item.name, USUAL_QUALITY, float(found[worst]), float(frequency[worst]), rounded(frequency), rounded(found))
 
 
-def _cycled(motion: Motion) -> Iterator[AssessedChannel]:
+def _cycled(motion: AssessedMotion) -> Iterator[AssessedChannel]:
     """Yield the channels whose cycles are counted; a tyre's force and load are one and the same."""
     known: set[tuple[str, str]] = set()
     for item in motion.channels:
@@ -161,13 +163,14 @@ def _cycles(item: AssessedChannel, duration: float, slope: float) -> LoadCycles:
     levels: Array = largest * np.arange(1, EXCEEDANCE_LEVELS + 1) / EXCEEDANCE_LEVELS
     equivalent = equivalent_range(ranges, counts, duration, slope)
     cumulative = exceedances(ranges, counts, levels)
-    return LoadCycles(item.name, item.quantity, item.unit, float(counts.sum()), largest, slope, equivalent, rounded(levels), cumulative)
+    counted = float(exceedances(ranges, counts, np.array([LEAST_COUNTED * largest]))[0])
+    return LoadCycles(item.name, item.quantity, item.unit, counted, largest, slope, equivalent, rounded(levels), cumulative)
 
 
-def _notes(motion: Motion, ride: tuple[RideComfort, ...]) -> Iterator[str]:
+def _notes(motion: AssessedMotion, ride: tuple[RideComfort, ...]) -> Iterator[str]:
     top = 0.5 / motion.dt
     if ride and top < HIGHEST_WEIGHTED_HZ:
         yield f"sampled at {2 * top:.4g} Hz: nothing above {top:.4g} Hz counts; ISO 2631-1 goes up to 80 Hz, ASTM D4169 up to 200 Hz"
     for item in ride:
         found = WeightedVibration(item.rms, item.mtvv, item.vdv, item.crest)
-        yield from (f"{item.name}: {text}" for text in doubts(found, motion.duration))
+        yield from (f"{item.name}: {text}" for text in reasons_to_doubt_rms(found, motion.duration))

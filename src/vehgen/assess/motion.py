@@ -18,7 +18,7 @@ from vehgen.simulate.warnings import lift_off, step_too_coarse
 Array = NDArray[np.float64]
 FINEST_RATE = 1000.0
 """A simulation is sampled at its steps, but not more often than so [Hz]: 200 Hz and shocks at 100 Hz want no more."""
-FEWEST_SAMPLES = 16
+FEWEST_ASSESSED = 16
 """Fewer samples are not assessed."""
 
 
@@ -36,7 +36,7 @@ class AssessedChannel:
 
 
 @dataclass(frozen=True)
-class Motion:
+class AssessedMotion:
     """Channels whose samples are `dt` [s] apart; `loads` are the axles' static loads [N], `warnings` what makes the motion doubtful."""
 
     dt: float
@@ -49,7 +49,7 @@ class Motion:
         """How long it is [s]."""
         return self.dt * len(self.channels[0].values)
 
-    def after(self, start: float) -> Motion:
+    def after(self, start: float) -> AssessedMotion:
         """Return the motion without its first `start` seconds.
 
         Raises
@@ -59,12 +59,12 @@ class Motion:
         """
         first = round(start / self.dt) if 0 <= start < np.inf else -1
         left = len(self.channels[0].values) - first
-        if first < 0 or left < FEWEST_SAMPLES:
+        if first < 0 or left < FEWEST_ASSESSED:
             raise ArgumentError(f"`start`: from 0 to less than the {self.duration:.4g} s of the run, found {start:g}", "start")
         return replace(self, channels=tuple(replace(item, values=item.values[first:]) for item in self.channels))
 
 
-def simulated_motion(run: Run) -> Motion:
+def simulated_motion(run: Run) -> AssessedMotion:
     """Simulate a run: its channels as the vehicle moves, whatever recorders would make of them.
 
     Beside the channels that the run asks for there are the acceleration at every sensor on a body (without one, of every body's COG), the
@@ -92,10 +92,10 @@ def simulated_motion(run: Run) -> Motion:
         AssessedChannel(item.name, item.quantity, item.unit, item.owner, isinstance(output, PointOutput), i < len(asked), response[:, i])
         for i, (item, output) in enumerate(zip(simulator.model.channels, outputs, strict=True))
     )
-    return Motion(scenario.dt * scenario.decimation, channels, static_loads(simulator.model, values).axles, warnings)
+    return AssessedMotion(scenario.dt * scenario.decimation, channels, static_loads(simulator.model, values).axles, warnings)
 
 
-def recorded_motion(run: Run) -> Motion:
+def recorded_motion(run: Run) -> AssessedMotion:
     """Read a run's recording; the axles' static loads are the vehicle's.
 
     Raises
@@ -112,7 +112,7 @@ def recorded_motion(run: Run) -> Motion:
         unit = run.file.sensors[item.sensor].quantities[item.quantity]
         channels.append(AssessedChannel(item.name, item.quantity, unit, owner, on_body, True, found.values[:, i]))
     loads = static_loads(run.vehicle, run.values()).axles if run.vehicle.axles else {}
-    return Motion(found.dt, tuple(channels), loads)
+    return AssessedMotion(found.dt, tuple(channels), loads)
 
 
 def _added(run: Run, asked: tuple[Output, ...]) -> list[Output]:
@@ -143,6 +143,7 @@ def files_of(run: Run, recorded: bool) -> list[Path]:
     if not recorded:
         named += [getattr(item.hump or item.profile, "file", None) for item in file.road]
         named += [getattr(file.speed, "file", None)]
-        named += [item.file for item in (*file.forces.values(), *file.displacements.values())]
+        named += [force.file for force in file.forces.values()]
+        named += [ground.file for ground in file.displacements.values()]
     own = [Path(position.file)] if position is not None else []
     return [*own, *run.vehicle.files, *(run.folder / name for name in named if name is not None)]

@@ -9,7 +9,8 @@ from vehgen.files.result_fields import Array1D
 from vehgen.files.results import Cell, Result, Table
 
 ISO_2631, E1049 = "ISO 2631-1:1997", "ASTM E1049-85"
-ROAD_DAMAGE, D4169, SHOCK = "Eisenmann 1975, fourth power", "ASTM D4169", "ISO 18431-4:2007"
+ROAD_STRESS, FOURTH_POWER = "Eisenmann 1975: 1 + 6 s^2 + 3 s^4", "fourth-power law of the AASHO Road Test, mean of (P/P0)^4"
+D4169, SHOCK = "ASTM D4169", "ISO 18431-4:2007"
 
 
 @dataclass(frozen=True)
@@ -88,6 +89,8 @@ class ShockSpectrum:
 class LoadCycles:
     """Rainflow cycles of a travel or force: how many, the largest range, and the range that does the same damage once a second.
 
+    `cycles` are those of at least a hundredth of the largest range: E1049 lets small ones be discarded, and rounding makes some.
+
     `cumulative shape (n,)` counts the cycles of at least the ranges `levels shape (n,)`.
     """
 
@@ -154,18 +157,18 @@ class Assessment(Result):
             rows += [(tyre.axle, "static load", tyre.static, "N", "equilibrium")]
             rows += [(tyre.axle, "dynamic load coefficient", tyre.coefficient, "-", "standard deviation over static load")]
             rows += [
-                (tyre.axle, "load, 95th percentile", tyre.high, "of static", ""),
-                (tyre.axle, "least load", tyre.least, "of static", ""),
+                (tyre.axle, "load, 95th percentile", tyre.high, "of static", "quantile over time"),
+                (tyre.axle, "least load", tyre.least, "of static", "minimum over time"),
             ]
-            rows += [(tyre.axle, "road stress factor", tyre.road_stress, "-", ROAD_DAMAGE)]
-            rows += [(tyre.axle, "mean fourth power of load", tyre.fourth_power, "of static", ROAD_DAMAGE)]
+            rows += [(tyre.axle, "road stress factor", tyre.road_stress, "-", ROAD_STRESS)]
+            rows += [(tyre.axle, "mean fourth power of load", tyre.fourth_power, "of static", FOURTH_POWER)]
         for cargo in self.transport:
             rows += [(cargo.name, f"RMS {cargo.band[0]:g}-{cargo.band[1]:g} Hz", cargo.rms, "g", D4169)]
             rows += [(cargo.name, f"RMS over {level.name}", cargo.rms / level.rms, "-", D4169) for level in cargo.levels]
         for shock in self.shock:
             rows += [(shock.name, "largest shock response", shock.largest, "m/s^2", f"{SHOCK}, Q = {shock.quality:g}")]
             rows += [(shock.name, "largest shock response at", shock.largest_hz, "Hz", f"{SHOCK}, Q = {shock.quality:g}")]
-        for item in self.cycles:
-            rows += [(item.name, "rainflow cycles", item.cycles, "-", E1049), (item.name, "largest range", item.largest, item.unit, E1049)]
-            rows += [(item.name, f"equivalent range at 1 Hz, m = {item.slope:g}", item.equivalent, item.unit, f"{E1049}, Miner")]
+        for load in self.cycles:
+            rows += [(load.name, "rainflow cycles", load.cycles, "-", E1049), (load.name, "largest range", load.largest, load.unit, E1049)]
+            rows += [(load.name, f"equivalent range at 1 Hz, m = {load.slope:g}", load.equivalent, load.unit, f"{E1049}, Miner")]
         return ("of", "number", "value", "unit", "defined by"), rows

@@ -65,7 +65,7 @@ def _transport(found: Assessment) -> NumberTable:
         "Transport vibration",
         columns,
         rows,
-        f"overall RMS, over that of ASTM D4169 trucks (I to III, 2016 medium to high) in the same band ({NOTE}); Welch's PSD",
+        f"overall RMS, over that of ASTM D4169 trucks (I to III; 2016: medium, low, high) in the same band ({NOTE}); Welch's PSD",
     )
 
 
@@ -94,7 +94,7 @@ def _cycles(found: Assessment) -> NumberTable:
         "Cycles",
         ("of", "unit", "cycles", "largest range", f"equivalent range at 1 Hz, m = {slope}"),
         rows,
-        f"rainflow count of ASTM E1049-85; the range that once a second does the same damage by Miner's rule, S-N slope {slope}",
+        f"rainflow count of ASTM E1049-85 from 1 % of the largest range on; the range that once a second does the same damage by Miner's rule, S-N slope {slope}",
     )
 
 

@@ -130,7 +130,7 @@ def likely_reaction(rms: float) -> str:
     return " or ".join(words for low, high, words in REACTIONS if low <= rms < high)
 
 
-def doubts(found: WeightedVibration, duration: float) -> list[str]:
+def reasons_to_doubt_rms(found: WeightedVibration, duration: float) -> list[str]:
     """Return why the RMS alone may underestimate a vibration that lasted `duration` [s] (ISO 2631-1, 6.2.1 and 6.3.3)."""
     if not found.rms:
         return []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,7 +16,7 @@ from vehgen.measure import SPECTRA
 from vehgen.report.drawing.canvas import INK
 from vehgen.report.plots.response_plot import COLOURS, STYLES
 
-MAX_CURVES = 12
+MOST_CURVES_DRAWN = 12
 """More curves make no panel that one reads; the others stand in the JSON file."""
 LEVELS_DRAWN = ("level I", "level II", "level III")
 DECADES_DRAWN = 6
@@ -45,9 +45,9 @@ def plot_assessment(found: Assessment) -> Figure:
 
 
 def _plot_transport(axes: Axes, found: Assessment) -> None:
-    for style, name in zip(((0, (1, 1)), (0, (4, 2)), "-"), LEVELS_DRAWN, strict=True):
+    for dashes, name in zip(((0, (1, 1)), (0, (4, 2)), "-"), LEVELS_DRAWN, strict=True):
         spectrum = SPECTRA[name]
-        axes.loglog(spectrum.frequency, spectrum.density, color="#9aa5af", lw=1.0, linestyle=style, label=f"ASTM D4169 truck {name}")
+        axes.loglog(spectrum.frequency, spectrum.density, color="#9aa5af", lw=1.0, linestyle=dashes, label=f"ASTM D4169 truck {name}")
     for style, item in _styled(found.transport):
         axes.loglog(item.frequency, np.where(item.density > 0, item.density, np.nan), label=f" {item.name}: {item.rms:.3g} g rms", **style)
     top = max(float(item.density.max()) for item in found.transport)
@@ -67,7 +67,7 @@ def _plot_shock(axes: Axes, found: Assessment) -> None:
 
 
 def _plot_tyres(axes: Axes, found: Assessment) -> None:
-    shown = found.tyres[: 3 * MAX_CURVES]
+    shown = found.tyres[: 3 * MOST_CURVES_DRAWN]
     place = np.arange(len(shown))
     series = (
         ("95th percentile of load / static", [item.high for item in shown]),
@@ -78,8 +78,8 @@ def _plot_tyres(axes: Axes, found: Assessment) -> None:
         axes.bar(place + 0.26 * (i - 1), values, 0.24, color=fill, edgecolor=INK, lw=0.7, label=label)
     axes.axhline(1.0, color=INK, lw=0.8, ls=(0, (4, 2)))
     axes.axhline(0.0, color=INK, lw=0.8)
-    names = [f"{item.axle}\ndamage {item.fourth_power:.2f}" if len(shown) <= MAX_CURVES else item.axle for item in shown]
-    axes.set_xticks(place, names, fontsize=8.5, parse_math=False, rotation=0 if len(shown) <= MAX_CURVES else 90)
+    names = [f"{item.axle}\ndamage {item.fourth_power:.2f}" if len(shown) <= MOST_CURVES_DRAWN else item.axle for item in shown]
+    axes.set_xticks(place, names, fontsize=8.5, parse_math=False, rotation=0 if len(shown) <= MOST_CURVES_DRAWN else 90)
     axes.margins(y=0.25)
     _label(axes, "axle; mean fourth power of load / static", "over static load [-]", place="upper right")
 
@@ -101,11 +101,11 @@ def _styled(items: Sequence[Any]) -> list[tuple[dict[str, Any], Any]]:
     """Return curves with the styles by which they differ, in colour and in grey."""
     return [
         ({"color": COLOURS[i % len(COLOURS)], "linestyle": STYLES[(i + i // len(COLOURS)) % len(STYLES)], "lw": 1.2}, item)
-        for i, item in enumerate(items[:MAX_CURVES])
+        for i, item in enumerate(items[:MOST_CURVES_DRAWN])
     ]
 
 
-def _label(axes: Axes, across: str, up: str, place: str = "best") -> None:
+def _label(axes: Axes, across: str, up: str, place: Literal["best", "lower left", "upper right"] = "best") -> None:
     axes.set_xlabel(across, color=INK)
     axes.set_ylabel(up, color=INK, parse_math=False)
     for text in axes.legend(loc=place, fontsize=7.5, framealpha=0.85, edgecolor="none").get_texts():
