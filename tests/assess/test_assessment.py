@@ -2,6 +2,7 @@
 
 import json
 import re
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -171,6 +172,12 @@ def test_a_vehicle_at_rest_has_zeros(tmp_path):
     assert found.tyres[0].fourth_power == pytest.approx(1.0)
     assert found.cycles[0].largest == 0.0
     assert isinstance(found.plot(), Figure)
+
+
+def test_a_run_that_would_fill_the_memory_is_refused_at_its_duration(rough, monkeypatch):
+    monkeypatch.setattr(import_module("vehgen.assess.motion"), "MAX_RESPONSE_NUMBERS", 100_000)
+    with pytest.raises(InputError, match=r"rough.yaml:4:11: 120001 samples of 8 channels are 9.6e\+05 numbers"):
+        assess(rough)
 
 
 @pytest.mark.parametrize(

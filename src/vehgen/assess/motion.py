@@ -12,6 +12,7 @@ from vehgen.errors import ArgumentError, InputError
 from vehgen.fit.recording import read_recording
 from vehgen.mechanics import ElementOutput, Output, PointOutput, static_loads
 from vehgen.simulate import Run, Simulator, make_scenario
+from vehgen.simulate.budgets import MAX_RESPONSE_NUMBERS
 from vehgen.simulate.build import body_channels
 from vehgen.simulate.warnings import lift_off, step_too_coarse
 
@@ -82,6 +83,7 @@ def simulated_motion(run: Run) -> AssessedMotion:
     simulator = Simulator(run.vehicle, outputs, run.forces())
     values = simulator.model.values(overrides=run.values())
     scenario = replace(make_scenario(fine, simulator.model, values), chains={})
+    _check_size(run, len(scenario.time) // scenario.decimation, len(outputs))
     result = simulator.run(simulator.parameters(values), scenario)
     if result.failures:
         raise InputError(f"the vehicle has no finite response: {result.failures[0]}", run.document.find(("vehicle",)))
@@ -93,6 +95,17 @@ def simulated_motion(run: Run) -> AssessedMotion:
         for i, (item, output) in enumerate(zip(simulator.model.channels, outputs, strict=True))
     )
     return AssessedMotion(scenario.dt * scenario.decimation, channels, static_loads(simulator.model, values).axles, warnings)
+
+
+def _check_size(run: Run, n_samples: int, n_channels: int) -> None:
+    """Refuse a run whose channels, finely sampled, would fill the memory; raises InputError."""
+    if (numbers := n_samples * n_channels) > MAX_RESPONSE_NUMBERS:
+        said = ("duration",) if run.file.duration is not None else ("speed",)
+        raise InputError(
+            f"{n_samples} samples of {n_channels} channels are {numbers:.3g} numbers in memory; at most {MAX_RESPONSE_NUMBERS:.3g} "
+            "were expected: a shorter run",
+            run.document.find(said),
+        )
 
 
 def recorded_motion(run: Run) -> AssessedMotion:

@@ -94,7 +94,7 @@ def _cycles(found: Assessment) -> NumberTable:
         "Cycles",
         ("of", "unit", "cycles", "largest range", f"equivalent range at 1 Hz, m = {slope}"),
         rows,
-        f"rainflow count of ASTM E1049-85 from 1 % of the largest range on; the range that once a second does the same damage by Miner's rule, S-N slope {slope}",
+        f"rainflow count of ASTM E1049-85, from 1 % of the largest range on; range of the same damage by Miner's rule, S-N slope {slope}",
     )
 
 

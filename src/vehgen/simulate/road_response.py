@@ -15,6 +15,7 @@ import scipy.integrate
 from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError, did_you_mean
+from vehgen.files.limits import SPEED_LIMIT
 from vehgen.files.provenance import file_hashes, versions
 from vehgen.files.result_fields import Array1D, Array2D, Number, rounded
 from vehgen.files.results import Cell, Result, Table
@@ -180,7 +181,7 @@ def _wanted(
 def _lines(speed: float) -> Array:
     """Return the frequencies [Hz] that the standard's roads have at a speed; one line where the speed is none, which others refuse."""
     low, high = (n * max(speed, 0.0) for n in SPATIAL_BAND_CYCLES_PER_M)
-    if not 0 < high < np.inf:
+    if not 0 < speed <= SPEED_LIMIT.high:
         return np.ones(1)
     return np.linspace(low, high, max(LEAST_LINES, int(min((high - low) / WIDEST_STEP_HZ, 1e5))) + 1)
 
