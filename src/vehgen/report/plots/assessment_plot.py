@@ -14,7 +14,7 @@ from vehgen.assess import Assessment
 from vehgen.files.units import STANDARD_GRAVITY
 from vehgen.measure import SPECTRA
 from vehgen.report.drawing.canvas import INK
-from vehgen.report.plots.response_plot import COLOURS, STYLES
+from vehgen.report.plots.response_plot import curve_style
 
 MOST_CURVES_DRAWN = 12
 """More curves make no panel that one reads; the others stand in the JSON file."""
@@ -99,10 +99,7 @@ def _plot_cycles(axes: Axes, found: Assessment) -> None:
 
 def _styled(items: Sequence[Any]) -> list[tuple[dict[str, Any], Any]]:
     """Return curves with the styles by which they differ, in colour and in grey."""
-    return [
-        ({"color": COLOURS[i % len(COLOURS)], "linestyle": STYLES[(i + i // len(COLOURS)) % len(STYLES)], "lw": 1.2}, item)
-        for i, item in enumerate(items[:MOST_CURVES_DRAWN])
-    ]
+    return [(curve_style(i), item) for i, item in enumerate(items[:MOST_CURVES_DRAWN])]
 
 
 def _label(axes: Axes, across: str, up: str, place: Literal["best", "lower left", "upper right"] = "best") -> None:

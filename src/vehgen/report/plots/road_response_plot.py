@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,7 +10,7 @@ from matplotlib.figure import Figure
 
 from vehgen.report.drawing.canvas import INK
 from vehgen.report.figure_files import save_figure
-from vehgen.report.plots.response_plot import COLOURS, STYLES
+from vehgen.report.plots.response_plot import curve_style
 from vehgen.simulate.road_response import RoadResponse
 
 DECADES_SHOWN = 5
@@ -59,8 +58,7 @@ def _plot_group(row: list[Axes], found: RoadResponse, group: str) -> None:
     unit = found.outputs[members[0]].unit
     for count, i in enumerate(members):
         item = found.outputs[i]
-        style: dict[str, Any] = {"color": COLOURS[count % len(COLOURS)], "lw": 1.1}
-        style["linestyle"] = STYLES[(count + count // len(COLOURS)) % len(STYLES)]
+        style = curve_style(count)
         amplitude.semilogy(found.frequency, found.amplitude[i], **style)
         phase.plot(found.frequency, np.degrees(np.unwrap(np.radians(found.phase[i]))), **style)
         psd.semilogy(found.frequency, found.psd[i], label=f" {item.name}: {item.rms:.3g} {unit} rms", **style)
