@@ -21,7 +21,7 @@ def curve_style(number: int) -> dict[str, Any]:
     return {
         "color": COLOURS[number % len(COLOURS)],
         "linestyle": STYLES[number % len(STYLES)],
-        "lw": 1.1 + 0.9 * (number // len(STYLES)),
+        "lw": 1.1 + 0.9 * (number // len(STYLES) % 3),
     }
 
 
