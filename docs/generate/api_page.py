@@ -21,8 +21,8 @@ column, or the argument. Numbers are in SI units.
 
 Results are values: `to_dict()` gives plain data for JSON and `from_dict()` takes them back, `to_dataframe()` gives a table (with pandas),
 `plot()` a matplotlib figure, and a notebook shows the table. These are results: what `static_loads`, `natural_modes`, `state_space`,
-`frequency_response`, `simulate`, `import_phones`, `transmissibility`, `calibrate`, `validate`, `sensitivity`, `advise_sensors`, `diagnose`
-and `build` return.
+`frequency_response`, `road_response`, `simulate`, `assess`, `import_phones`, `transmissibility`, `calibrate`, `validate`, `sensitivity`,
+`advise_sensors`, `diagnose` and `build` return.
 
 The snippets of this page run one after the other, in a folder with the files of [examples](examples), its folders `hidden`, `phones` and
 `cargo` among them. [tutorial.py](tutorial.py) is the [tutorial](tutorial.md) in Python.
@@ -71,18 +71,19 @@ print(vehgen.natural_modes(truck, {"kf": 350e3}).to_dataframe())
     ),
     Section(
         "Linear systems",
-        ("state_space", "frequency_response", "export"),
+        ("state_space", "frequency_response", "road_response", "export"),
         """\
 system = vehgen.state_space(truck, outputs=outputs[:1])
 print(system.states, system.inputs, system.outputs, system.poles)
 response = vehgen.frequency_response(truck, [0.5, 1.5, 11.0], outputs=outputs[:1], speed=15.0)
 print(abs(response.values))
+print(vehgen.road_response(truck, speed=20.0, roughness="C").to_dataframe())
 print(vehgen.export(truck, "json", "my_truck.json", outputs=outputs[:1]))
 """,
     ),
     Section(
         "Simulations",
-        ("load_run", "Run", "simulate", "Response", "Simulator", "make_scenario", "Kernel", "Excitation"),
+        ("load_run", "Run", "simulate", "assess", "Response", "Simulator", "make_scenario", "Kernel", "Excitation"),
         """\
 import numpy as np
 
@@ -91,6 +92,8 @@ assert isinstance(run, vehgen.Run)
 driven = vehgen.simulate(run)
 assert isinstance(driven, vehgen.Response)
 print(driven.channel("cab_az").shape, driven.warnings)
+assessed = vehgen.assess(run)
+print(assessed.ride[0].rms, assessed.tyres[0].fourth_power, assessed.to_dataframe())
 
 simulator = vehgen.Simulator(run.vehicle, run.outputs())
 scenario = vehgen.make_scenario(run, simulator.model, simulator.model.values())

@@ -26,6 +26,7 @@ ROOMS = [
     "cargo",
     "phones",
     "fit",
+    "assess",
     "effects",
     "calibrate",
     "diagnose",

@@ -40,12 +40,14 @@ _HOMES = {
     "load_run": "vehgen.simulate",
     "make_scenario": "vehgen.simulate",
     "natural_modes": "vehgen.simulate",
+    "road_response": "vehgen.simulate",
     "simulate": "vehgen.simulate",
     "state_space": "vehgen.simulate",
     "laden": "vehgen.cargo",
     "PhoneSensor": "vehgen.phones",
     "import_phones": "vehgen.phones",
     "transmissibility": "vehgen.fit.transmissibility",
+    "assess": "vehgen.assess",
     "Effect": "vehgen.effects",
     "effects": "vehgen.effects",
     "advise_sensors": "vehgen.calibrate",
@@ -63,6 +65,7 @@ _HOMES = {
 __all__ = [*_HOMES]
 
 if TYPE_CHECKING:
+    from vehgen.assess import assess
     from vehgen.calibrate import advise_sensors, calibrate, validate
     from vehgen.calibrate.sensitivity import sensitivity
     from vehgen.cargo.laden import laden
@@ -77,6 +80,7 @@ if TYPE_CHECKING:
     from vehgen.report import build, draw_vehicle, read_result, report
     from vehgen.simulate import Response, Run, Simulator, load_run, make_scenario, natural_modes, simulate
     from vehgen.simulate.frequency_response import frequency_response
+    from vehgen.simulate.road_response import road_response
     from vehgen.simulate.state_space import state_space
     from vehgen.vehicle import Axle, Body, Hinge, Link, Parameter, Spring, Vehicle, bundled_models, load_vehicle, parse_vehicle
 

@@ -17,7 +17,7 @@ from tests.fuzzing.cases import Case
 from tests.fuzzing.healthy import ROOT
 from tests.fuzzing.judge import FAULT, Answer, Limits, Verdict, judge
 
-COMPILING = {"simulate", "build", "import", "calibrate", "diagnose", "validate", "sensors", "sensitivity", "bench"}
+COMPILING = {"simulate", "assess", "build", "import", "calibrate", "diagnose", "validate", "sensors", "sensitivity", "bench"}
 """Commands that compile kernels."""
 
 KERNEL_LIMITS = Limits(60.0, 3000.0)

@@ -34,11 +34,14 @@ QUICK = (
     " --reference S --speed 5 --bands 4,15 --segment 0.6 --forward y --out rough",
     "models --json",
     "schema --run",
+    "response car.yaml --set stiff --speed 5 --road B --at S:body=body,behind=axle1,distance=0.1 --out roads",
     "export car.yaml --to json --set stiff --run run.yaml --step 0.001 --out car.json",
 )
 COMPILING = (
     "build car.yaml --set stiff --no-plots --out built",
     "simulate run.yaml --out response.csv",
+    "assess run.yaml --weighting Wb --slope 3 --from 1 --out assessed",
+    "assess measured.yaml --recorded --out assessed",
     "validate car.yaml measured.yaml --bands 2,5,8 --astm II --out validated",
     "calibrate car.yaml measured.yaml --method joint --sensors A --freeze kS --search ga --size 4 --generations 1 --seed 1 --starts 1"
     " --no-polish --band 0.5,30 --height-error 0.02 --speed-error 0.01 --combination kS/mG --bootstrap 0 --facts facts.yaml"
@@ -49,7 +52,9 @@ COMPILING = (
 )
 REFUSED = "diagnose car.yaml run.yaml --effects dry_friction --library effects.yaml --everywhere --out diagnosed"
 """A diagnosis of a run without recording: a whole one takes minutes and processes of its own."""
-FLAGS = frozenset({"--json", "--plot", "--force", "--run", "--everywhere", "--no-plots", "--no-polish", "--resume", "--convergence"})
+FLAGS = frozenset(
+    {"--json", "--plot", "--force", "--recorded", "--run", "--everywhere", "--no-plots", "--no-polish", "--resume", "--convergence"}
+)
 WRITTEN = frozenset({"--out", "--plot"})
 
 

@@ -12,6 +12,7 @@ from contextlib import suppress
 from types import ModuleType
 
 from vehgen.commands import (
+    assess,
     bench,
     build,
     calibrate,
@@ -24,6 +25,7 @@ from vehgen.commands import (
     modes,
     module,
     report,
+    response,
     schema,
     sensitivity,
     sensors,
@@ -41,6 +43,8 @@ COMMANDS = (
     modes,
     static,
     simulate,
+    assess,
+    response,
     import_,
     transmissibility,
     calibrate,

@@ -11,7 +11,8 @@ from vehgen.errors import InputError, did_you_mean, shortened, shown
 if TYPE_CHECKING:
     from vehgen.phones import ColumnMap, PhoneSensor
 
-_SENSOR_KEYS = ("body", "x", "behind", "distance", "forward", "up", "acceleration_sign", "from", "to")
+PLACE_KEYS = ("body", "x", "behind", "distance")
+_SENSOR_KEYS = (*PLACE_KEYS, "forward", "up", "acceleration_sign", "from", "to")
 
 
 def split_list(text: str | None) -> tuple[str, ...]:
@@ -34,10 +35,11 @@ def split_pairs(text: str, option: str, known: tuple[str, ...]) -> dict[str, str
     return found
 
 
-def read_sensor(text: str, *, needs_body: bool = True) -> PhoneSensor:
+def read_sensor(text: str, *, needs_body: bool = True, option: str = "--sensor", keys: tuple[str, ...] = _SENSOR_KEYS) -> PhoneSensor:
     """Read `NAME:body=...,behind=...,distance=...[,forward=y][,up=z][,acceleration_sign=-1][,from=SECONDS][,to=SECONDS]`.
 
-    Without `needs_body` the place may be left out, as where no vehicle is told; the body is then called "".
+    Without `needs_body` the place may be left out, as where no vehicle is told; the body is then called "". Errors name `option`; it
+    knows `keys`.
 
     Raises
     ------
@@ -49,12 +51,12 @@ def read_sensor(text: str, *, needs_body: bool = True) -> PhoneSensor:
     from vehgen.phones.plan import PhoneSensor, number_of
 
     name, colon, rest = text.partition(":")
-    name, where = name.strip(), f"--sensor {shortened(name.strip())}"
+    name, where = name.strip(), f"{option} {shortened(name.strip())}"
     if not colon or not is_identifier(name):
-        raise InputError(f"--sensor: expected NAME:body=BODY,behind=AXLE,distance=METRES, found {shown(text)}")
-    found = split_pairs(rest, where, _SENSOR_KEYS)
+        raise InputError(f"{option}: expected NAME:body=BODY,behind=AXLE,distance=METRES, found {shown(text)}")
+    found = split_pairs(rest, where, keys)
     if needs_body and "body" not in found:
-        raise InputError(f"{where} lacks body=, the body that the phone lay on")
+        raise InputError(f"{where} lacks body=, the body that it is on")
     if "distance" in found and "behind" not in found:
         raise InputError(f"{where}: distance= needs behind=")
     if "acceleration_sign" in found and found["acceleration_sign"] not in ("1", "+1", "-1"):

@@ -13,9 +13,8 @@ EXAMPLE = "vehgen report diagnosis/diagnosis.json --out again"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
-    parser.add_argument(
-        "file", metavar="FILE", type=Path, help="a JSON file of diagnose, calibrate, validate, sensitivity, transmissibility or build"
-    )
+    kinds = "diagnose, calibrate, validate, sensitivity, transmissibility, assess, response or build"
+    parser.add_argument("file", metavar="FILE", type=Path, help=f"a JSON file of {kinds}")
     add_out(parser, "DIR", "folder for the page or figures (default: beside the file)")
     add_json(parser)
 

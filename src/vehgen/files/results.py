@@ -7,7 +7,9 @@ is ever run.
 
 from __future__ import annotations
 
+import csv
 import html
+import io
 import json
 from collections.abc import Sequence
 from importlib import import_module
@@ -170,6 +172,16 @@ def read_json(path: Path) -> Any:
 def json_text(result: Result) -> str:
     """Return a result as a JSON file holds it: a number a line would make long files longer, so lists of numbers stand on one line."""
     return _pretty(result.to_dict(), "")
+
+
+def csv_text(table: Table) -> str:
+    """Return a table as the text of a CSV file, numbers with nine digits."""
+    columns, rows = table
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows([f"{cell:.9g}" if isinstance(cell, float) else cell for cell in row] for row in rows)
+    return text.getvalue()
 
 
 def _pretty(data: Any, indent: str) -> str:

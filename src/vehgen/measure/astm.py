@@ -34,8 +34,16 @@ class Spectrum:
 
     @property
     def rms(self) -> float:
-        """Overall RMS [g]; each line of slope m on log-log paper integrates in closed form."""
-        f, d = self.frequency, self.density
+        """Overall RMS [g]."""
+        return self.rms_within(float(self.frequency[0]), float(self.frequency[-1]))
+
+    def rms_within(self, low: float, high: float) -> float:
+        """Return the RMS [g] between two frequencies [Hz]; each line of slope m on log-log paper integrates in closed form."""
+        inside = self.frequency[(self.frequency > low) & (self.frequency < high)]
+        f = np.unique(np.clip(np.concatenate([[low], inside, [high]]), self.frequency[0], self.frequency[-1]))
+        if len(f) < 2:
+            return 0.0
+        d = self.at(f) / STANDARD_GRAVITY**2
         slope = np.diff(np.log(d)) / np.diff(np.log(f))
         flat = np.abs(slope + 1) < 1e-9
         safe = np.where(flat, 0.0, slope)

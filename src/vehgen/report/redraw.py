@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from vehgen.assess import Assessment
 from vehgen.calibrate import CalibrationSummary, SensitivityIndices, SensorAdvice, Validation
 from vehgen.diagnose import Diagnosis
 from vehgen.diagnose.verdict import Verdict
@@ -15,16 +16,18 @@ from vehgen.files.results import Result, kind_of, read_json
 from vehgen.fit.transmissibility_result import Transmissibility
 from vehgen.mechanics import StaticLoads
 from vehgen.phones import PhoneImport
+from vehgen.report.pages.assessment_page import write_assessment
 from vehgen.report.pages.build_page import redraw_build
 from vehgen.report.pages.diagnosis_page import write_diagnosis_page
 from vehgen.report.plots.calibration_plots import save_calibration_figures
+from vehgen.report.plots.road_response_plot import save_road_response_figures
 from vehgen.report.plots.sensitivity_plots import save_sensitivity_figures
 from vehgen.report.plots.transmissibility_plot import save_transmissibility_figures
 from vehgen.report.plots.validation_plots import save_validation_figures
-from vehgen.simulate import FrequencyResponse, Modes, Response, StateSpace
+from vehgen.simulate import FrequencyResponse, Modes, Response, RoadResponse, StateSpace
 from vehgen.simulate.build import Build
 
-PAGES = (Diagnosis, CalibrationSummary, Validation, SensitivityIndices, Transmissibility, Build)
+PAGES = (Diagnosis, CalibrationSummary, Validation, SensitivityIndices, Transmissibility, RoadResponse, Assessment, Build)
 """Results with a page or several figures."""
 SINGLE_FIGURES = (Modes, StaticLoads, Response, StateSpace, FrequencyResponse, SensorAdvice, PhoneImport, Verdict)
 """Results with one figure."""
@@ -50,7 +53,7 @@ def report(result: Result | str | os.PathLike[str], folder: str | os.PathLike[st
     Parameters
     ----------
     result
-        A diagnosis, calibration, validation, sensitivity, transmissibility or build, or its JSON file.
+        A diagnosis, calibration, validation, sensitivity, transmissibility, road response, assessment or build, or its JSON file.
     folder
         Where they go.
 
@@ -89,5 +92,9 @@ def _draw(result: Result, folder: Path, source: str) -> list[Path]:
         return save_sensitivity_figures(result, folder)
     if isinstance(result, Transmissibility):
         return save_transmissibility_figures(result, folder)
+    if isinstance(result, RoadResponse):
+        return save_road_response_figures(result, folder)
+    if isinstance(result, Assessment):
+        return write_assessment(result, folder)
     assert isinstance(result, Build)
     return redraw_build(result, folder, source)

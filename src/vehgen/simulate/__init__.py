@@ -8,6 +8,7 @@ from vehgen.simulate.frequency_response import FrequencyResponse, frequency_resp
 from vehgen.simulate.lint import lint
 from vehgen.simulate.modes import Mode, Modes, natural_modes
 from vehgen.simulate.pool import SimulatorPool
+from vehgen.simulate.road_response import RoadResponse, road_response
 from vehgen.simulate.run_file import Run, load_run
 from vehgen.simulate.run_like import RunLike, as_run
 from vehgen.simulate.run_scenario import make_scenario
@@ -21,6 +22,7 @@ __all__ = [
     "Mode",
     "Modes",
     "Response",
+    "RoadResponse",
     "Run",
     "RunLike",
     "Scenario",
@@ -36,6 +38,7 @@ __all__ = [
     "make_scenario",
     "natural_modes",
     "newmark_response",
+    "road_response",
     "simulate",
     "state_space",
     "write_csv",

@@ -14,6 +14,8 @@ from vehgen.simulate.sensitivity import matrix_derivatives
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+MATRIX_NUMBERS = 2_000_000
+"""So many numbers may the dynamic stiffnesses hold that are solved at once: 32 MB."""
 
 
 def transfer_functions(numeric: NumericModel, frequency: Array) -> tuple[Complex, Complex]:
@@ -32,7 +34,13 @@ def transfer_functions(numeric: NumericModel, frequency: Array) -> tuple[Complex
     -------
     `shape (n, n_channels, n_inputs)` and `shape (n, n_channels, n_forces)`, complex: amplitude and phase of a channel over the input's.
     """
-    omega = 2 * np.pi * frequency
+    count = max(1, MATRIX_NUMBERS // len(numeric.M) ** 2)
+    parts = [_transfer(numeric, 2 * np.pi * frequency[i : i + count]) for i in range(0, max(len(frequency), 1), count)]
+    displaced, pushed = zip(*parts, strict=True)
+    return np.concatenate(displaced), np.concatenate(pushed)
+
+
+def _transfer(numeric: NumericModel, omega: Array) -> tuple[Complex, Complex]:
     states = np.linalg.solve(dynamic_stiffness(numeric, omega), np.concatenate(_loads(numeric, omega), axis=2))
     rows, direct = output_rows(numeric.outputs, omega)
     found = rows @ states

@@ -1,1 +1,1 @@
-"""Which page tells of it? HTML pages: of a built vehicle and of a diagnosis."""
+"""Which page tells of it? HTML pages: of a built vehicle, of an assessed run and of a diagnosis."""

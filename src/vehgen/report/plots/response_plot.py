@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -13,6 +14,15 @@ from vehgen.report.drawing.canvas import INK
 COLOURS = ("#0b5fa5", "#d55e00", "#1b9e77", "#7b3294", "#555555", "#b8860b")
 STYLES = ("-", (0, (5, 1.5)), (0, (6, 1.5, 1, 1.5)), (0, (1.5, 1)))
 """Colours differ in lightness too; the line style differs as well, for those who print in grey."""
+
+
+def curve_style(number: int) -> dict[str, Any]:
+    """Return colour, line style and width of one of many curves: after all line styles they come again, thicker, so that grey tells all."""
+    return {
+        "color": COLOURS[number % len(COLOURS)],
+        "linestyle": STYLES[number % len(STYLES)],
+        "lw": 1.1 + 0.9 * (number // len(STYLES) % 3),
+    }
 
 
 def plot_response(
