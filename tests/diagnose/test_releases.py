@@ -25,6 +25,8 @@ recording: {name}.csv
 MASS, K, C, FRICTION = 20.0, 40e3, 200.0, 120.0
 STATED = 1.03
 """Heights stand in the files so many times as large as they were."""
+LATE, ZERO = 0.004, 5e-4
+"""The recordings begin so long after the releases [s], and the gauge reads so much of nothing [m]."""
 
 
 def released(begin, times):
@@ -57,7 +59,8 @@ def runs(tmp_path_factory):
     (folder / "rig.yaml").write_text(VEHICLE, encoding="utf-8")
     times = np.arange(0.0, 3.0, 0.005)
     for name, height in (("low", 0.03), ("mid", 0.045), ("high", 0.06)):
-        noisy = released(height, times) + np.array([2e-5, 1e-3]) * random.standard_normal((len(times), 2))
+        moved = released(height, times + LATE) + np.array([ZERO, 0.0])
+        noisy = moved + np.array([2e-5, 1e-3]) * random.standard_normal((len(times), 2))
         table = np.column_stack([times, noisy])
         np.savetxt(folder / f"{name}.csv", table, delimiter=",", header="t,y,v", comments="", fmt="%.9g")
         (folder / f"{name}.yaml").write_text(RUN.format(name=name, stated=STATED * height), encoding="utf-8")

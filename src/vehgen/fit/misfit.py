@@ -7,6 +7,7 @@ themselves exactly is fitted along with the parameters (see :mod:`vehgen.fit.nui
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -290,5 +291,5 @@ def _apply(whitener: Complex, lines: Complex) -> Complex:
 
 def flatten(white: Complex, first: int = 0) -> Array:
     """Return real and imaginary parts as residuals of unit variance; the axes before `first` are kept."""
-    flat = white.reshape(*white.shape[:first], -1) * np.sqrt(2)
+    flat = white.reshape(*white.shape[:first], math.prod(white.shape[first:])) * np.sqrt(2)
     return np.concatenate([flat.real, flat.imag], axis=-1)

@@ -101,7 +101,8 @@ class Nuisances:
         """Return the errors of one run: its own, then its sensors' clocks."""
         spread = self._stated(trial)
         has_road, has_humps = bool(trial.scenario.track.parts), bool(trial.scenario.humps)
-        names = [Nuisance("delay", "", spread["delay"])]
+        driven = has_road or bool(trial.scenario.forces) or any(item is not None for item in trial.scenario.ground)
+        names = [Nuisance("delay", "", spread["delay"])] if driven else []
         if has_road:
             names += [Nuisance("speed", "", spread["speed"]), Nuisance("height", "", spread["height"])]
         if has_humps:
@@ -110,7 +111,8 @@ class Nuisances:
         if has_road:
             names += [Nuisance("wander", f"{knot:.3g} s", spread["wander"], knot) for knot in wander_knots(trial)]
         sensors = list(dict.fromkeys(channel.sensor for channel in trial.recording.channels))
-        names += [Nuisance("clock", sensor, spread["clock"]) for sensor in sensors[1:]]
+        late = sensors[1:] if driven else sensors  # a release starts no clock
+        names += [Nuisance("clock", sensor, spread["clock"]) for sensor in late]
         stated = initial_values(trial.run, trial.simulator.model)
         names += [Nuisance(f"initial_{item.key}", item.owner, item.tolerance) for item in stated]
         return tuple(item for item in names if item.sigma > 0)

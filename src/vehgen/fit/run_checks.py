@@ -23,6 +23,8 @@ MOTIONS_OFF, FORCES_OFF = 0.5, 0.8
 """A motion, or a force, whose begin differs from the stated one by this share of the larger of both contradicts it: springs may be off."""
 SHARE_OF_PEAK = 0.3
 """A difference below this share of a channel's peak is none."""
+MAY_BE_LATE_S = 0.01
+"""A recording may begin so long after the release [s]."""
 SIGMAS = 4.0
 """An initial state with a tolerance may be off by so many standard deviations."""
 OF_MOTION = ("displacement", "velocity", "pitch", "pitch_rate", "suspension_travel", "link_travel", "hinge_angle")
@@ -63,22 +65,23 @@ def check_initial(run: Run, recording: Recording, simulator: Simulator, scenario
     """Refuse a run whose stated begin its recording clearly contradicts: its first displacements, velocities, travels and forces."""
     if not run.file.initial or scenario.initial is None:
         return
-    short = replace(scenario, duration=recording.dt, chains={}, skipped=0)
+    short = replace(scenario, duration=max(MAY_BE_LATE_S, recording.dt), chains={}, skipped=0)
     stated = initial_values(run, simulator.model)
     states = [scenario.initial]
     for item in stated:
         states.append(scenario.initial + np.eye(len(scenario.initial))[item.place] * item.tolerance)
     begins = np.array([_first(simulator, short, state, values) for state in states])
-    slack = SIGMAS * np.abs(begins[1:] - begins[0]).sum(axis=0)
+    slack = SIGMAS * np.abs(begins[1:, 0] - begins[0, 0]).sum(axis=0)
+    low, high = begins[0].min(axis=0), begins[0].max(axis=0)
     found = recording.values[:FIRST_SAMPLES].mean(axis=0)
     peak = np.abs(recording.values).max(axis=0)
     for i, channel in enumerate(recording.channels):
         if channel.quantity not in OF_MOTION and channel.quantity not in ELEMENT_QUANTITIES:
             continue
         share = MOTIONS_OFF if channel.quantity in OF_MOTION else FORCES_OFF
-        off = abs(found[i] - begins[0, i]) - slack[i]
-        if off > max(share * max(abs(found[i]), abs(begins[0, i])), SHARE_OF_PEAK * peak[i]):
-            said, read = (f"{number:.3g} {simulator.model.channels[i].unit}" for number in (begins[0, i], found[i]))
+        off = abs(found[i] - np.clip(found[i], low[i], high[i])) - slack[i]
+        if off > max(share * max(abs(found[i]), abs(begins[0, 0, i])), SHARE_OF_PEAK * peak[i]):
+            said, read = (f"{number:.3g} {simulator.model.channels[i].unit}" for number in (begins[0, 0, i], found[i]))
             raise InputError(
                 f"the run is said to begin with {channel.name} at {said}, but its recording begins at {read}: put `initial` right (it "
                 "counts from static equilibrium), zero the channel there, or cut the recording to begin at the release",
@@ -87,5 +90,5 @@ def check_initial(run: Run, recording: Recording, simulator: Simulator, scenario
 
 
 def _first(simulator: Simulator, scenario: Scenario, state: Array, values: Mapping[str, float]) -> Array:
-    """Return what the channels are as a run begins in a state, `shape (n_channels,)`."""
-    return np.asarray(simulator.run(simulator.parameters(values), replace(scenario, initial=state)).responses[0, 0])
+    """Return what the channels are as a run begins in a state, and shortly after, `shape (n_samples, n_channels)`."""
+    return np.asarray(simulator.run(simulator.parameters(values), replace(scenario, initial=state)).responses[0])

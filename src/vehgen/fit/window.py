@@ -33,12 +33,15 @@ def transform(values: Array, dt: float, inside: NDArray[np.bool_], late: Array |
     """Return spectral lines of tapered histories `shape (..., n_samples, n_channels)`, scaled so that |line|^2 is a one-sided PSD.
 
     `late shape (n_channels,)` [s] moves each channel's window so much earlier: lines turned by that delay are then those of the delayed
-    channel under the window as it is. `fade_in` as in :func:`taper`.
+    channel under the window as it is. `fade_in` as in :func:`taper`; where it is shorter than RAMP, constants leave no lines: a window that
+    begins at full weight would spread the false zero of a sensor over all of them.
     """
     window = taper(values.shape[-2], dt, fade_in)
     scale = np.sqrt(2 * dt / (window**2).sum())
     windows = window[:, None]
     if late is not None and late.any():
-        time = np.arange(len(window)) * dt
-        windows = np.column_stack([np.interp(time + item, time, window, left=window[0], right=0.0) for item in late])
+        time = np.arange(-1, len(window)) * dt  # what came before the record counts nothing
+        windows = np.column_stack([np.interp(time[1:] + item, time, [0.0, *window], left=0.0, right=0.0) for item in late])
+    if fade_in < RAMP:
+        values = values - (values * windows).sum(axis=-2, keepdims=True) / windows.sum(axis=0)
     return np.asarray(np.fft.rfft(values * windows, axis=-2)[..., inside, :] * scale)

@@ -96,7 +96,7 @@ def _drifting(trial: Trial) -> Iterator[MeasurementFault]:
 
 def variety_notes(trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return what runs of one amplitude or one speed cannot tell, in sentences."""
-    if not trials[0].run.vehicle.axles:
+    if not all(trial.scenario.track.parts for trial in trials):
         return ()
     heights = []
     for trial in trials:
