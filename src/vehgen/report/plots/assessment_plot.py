@@ -52,9 +52,9 @@ def _plot_transport(axes: Axes, found: Assessment) -> None:
         axes.loglog(item.frequency, np.where(item.density > 0, item.density, np.nan), label=f" {item.name}: {item.rms:.3g} g rms", **style)
     top = max(float(item.density.max()) for item in found.transport)
     top = max(top, max(float(SPECTRA[name].density.max()) for name in LEVELS_DRAWN))
-    axes.set_ylim(top * 10.0**-DECADES_DRAWN, 3 * top)
+    axes.set_ylim(top * 10.0**-DECADES_DRAWN, 100 * top)  # with room for the legend
     axes.set_xlim(found.transport[0].band)
-    _label(axes, "frequency [Hz]", "PSD of acceleration [g^2/Hz]", place="lower left")
+    _label(axes, "frequency [Hz]", "PSD of acceleration [g^2/Hz]", place="upper right")
 
 
 def _plot_shock(axes: Axes, found: Assessment) -> None:
@@ -102,7 +102,7 @@ def _styled(items: Sequence[Any]) -> list[tuple[dict[str, Any], Any]]:
     return [(curve_style(i), item) for i, item in enumerate(items[:MOST_CURVES_DRAWN])]
 
 
-def _label(axes: Axes, across: str, up: str, place: Literal["best", "lower left", "upper right"] = "best") -> None:
+def _label(axes: Axes, across: str, up: str, place: Literal["best", "upper right"] = "best") -> None:
     axes.set_xlabel(across, color=INK)
     axes.set_ylabel(up, color=INK, parse_math=False)
     for text in axes.legend(loc=place, fontsize=7.5, framealpha=0.85, edgecolor="none").get_texts():
