@@ -145,18 +145,18 @@ def test_compiled_code_is_found_again_by_another_process(tmp_path):
 
 
 BASELINE = {
-    "b_double": 384,
-    "quarter_car": 27,
-    "road_train": 1180,
-    "sedan2": 76,
-    "tractor5": 206,
-    "tractor5_cab": 292,
-    "tractor5_cargo": 206,
-    "tractor5_module": 237,
-    "tractor5_module_paper": 237,
-    "truck_dolly_trailer": 354,
-    "truck_walking_beam": 98,
-    "vbi2d_2A3": 216,
+    "b_double": 261,
+    "quarter_car": 19,
+    "road_train": 729,
+    "sedan2": 46,
+    "tractor5": 129,
+    "tractor5_cab": 207,
+    "tractor5_cargo": 129,
+    "tractor5_module": 147,
+    "tractor5_module_paper": 147,
+    "truck_dolly_trailer": 232,
+    "truck_walking_beam": 86,
+    "vbi2d_2A3": 151,
 }
 
 

@@ -7,7 +7,8 @@ wanted at kept samples only. Nothing is computed for a phase that does not need 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 import sympy as sp
@@ -126,6 +127,27 @@ class Program:
         for term in ordered:
             result = self.add(result, term)
         return result
+
+    def reach(self, results: Iterable[Node]) -> list[Node]:
+        """Return what a loop computes or reads for its results, ascending: all that they need and SETUP does not know."""
+        found: set[Node] = set()
+        stack = list(results)
+        while stack:
+            node = stack.pop()
+            if node not in found and self.phases[node] != SETUP_PHASE:
+                found.add(node)
+                stack.extend(self.arguments[node])
+        return sorted(found)
+
+    def cost(self, results: Iterable[Node]) -> tuple[int, int]:
+        """Return how many operations the results need in a loop, and how many instructions where products are fused with sums."""
+        nodes = [node for node in self.reach(results) if self.operations[node] != "leaf"]
+        uses = Counter(argument for node in nodes for argument in self.arguments[node])
+        fused = sum(
+            self.operations[node] in "+-" and any(self.operations[item] == "*" and uses[item] == 1 for item in self.arguments[node])
+            for node in nodes
+        )
+        return len(nodes), len(nodes) - fused
 
     def dot(self, pairs: list[tuple[Node, Node]]) -> Node:
         """Return the sum of products."""
