@@ -145,18 +145,18 @@ def test_compiled_code_is_found_again_by_another_process(tmp_path):
 
 
 BASELINE = {
-    "b_double": 261,
-    "quarter_car": 19,
-    "road_train": 729,
-    "sedan2": 46,
-    "tractor5": 129,
-    "tractor5_cab": 207,
-    "tractor5_cargo": 129,
-    "tractor5_module": 147,
-    "tractor5_module_paper": 147,
-    "truck_dolly_trailer": 232,
-    "truck_walking_beam": 86,
-    "vbi2d_2A3": 151,
+    "b_double": 243,
+    "quarter_car": 18,
+    "road_train": 709,
+    "sedan2": 42,
+    "tractor5": 119,
+    "tractor5_cab": 195,
+    "tractor5_cargo": 119,
+    "tractor5_module": 135,
+    "tractor5_module_paper": 135,
+    "truck_dolly_trailer": 216,
+    "truck_walking_beam": 84,
+    "vbi2d_2A3": 141,
 }
 
 

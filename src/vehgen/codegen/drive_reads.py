@@ -6,18 +6,18 @@ VALUES = "{array}[{k}, n, {i}]"
 MEANS = "{half}*({array}[{k}, n, {i}] + {array}[{k}, n + 1, {i}])"
 LATER_MEANS = "{half}*({array}[{k}, n, {i}] + {array}[{k}, after, {i}])"
 """Means over the step that begins, also at the very end, where the drives stay as they are."""
-SUMS = "share*({array}[{k}, before, {i}] + {array}[{k}, n, {i}]) + {half}*({array}[{k}, n, {i}] + {array}[{k}, after, {i}])"
+SUMS = "{half}*({array}[{k}, before, {i}] + {array}[{k}, after, {i}]) + share*{array}[{k}, n, {i}]"
 """Sums of the means over the step that ends and the one that begins; of the latter alone before the first step."""
 
 
-def neighbours(zero: str, half: str) -> list[str]:
+def neighbours(zero: str, one: str) -> list[str]:
     """Return the lines that set what LATER_MEANS and SUMS read beside the drives."""
     return [
         "before = n - min(n, 1)",
         "after = min(n + 1, n_steps)",
         f"share = {zero}",
         "if 0 < n:",
-        f"    share = {half}",
+        f"    share = {one}",
     ]
 
 

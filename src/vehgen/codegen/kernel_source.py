@@ -220,7 +220,7 @@ def _code(model: EquationsOfMotion, step: StepProgram, printer: PythonPrinter, l
         *advance_functions,
         *_signature(len(step.channels), lanes, printer.single),
         *setup_calls,
-        *_loop(step_lines, sample_lines, neighbours(*work.numbers) if residual else []),
+        *_loop(step_lines, sample_lines, neighbours(printer.number(0.0), printer.number(1.0)) if residual else []),
     ]
 
 

@@ -9,7 +9,8 @@ A leaf is an unknown that hangs on the others by one spring only: an axle, a sea
 where G is their motion where it hangs, s = c + h/2 k that of its spring and A its own entry of S. The others keep the residual that is left
 when the leaf is eliminated, R = r_body + g l r_leaf with l = s/A and g the row of G, which obeys
     R' = R + g (1 - l) (q_s + l/(1 - l) t),   t = (loads of the leaf) - q of its other springs.
-No division is by a stiffness or a damping, so that each may be zero: A (1 - l) holds the leaf's mass.
+The states of a leaf are scaled by 1 - l, which saves that product. No division is by a stiffness or a damping, so that each may be zero:
+A (1 - l) holds the leaf's mass.
 """
 
 from __future__ import annotations
@@ -36,7 +37,10 @@ def write_residual_step(model: EquationsOfMotion) -> StepProgram:
 
 @dataclass(frozen=True)
 class _Motion:
-    """Velocities in the middle of a step: of unknowns that are no leaves, of each leaf A z and A (z - G), of the free springs' travels."""
+    """Velocities in the middle of a step: of unknowns that are no leaves, of the leaves, and of the free springs' travels.
+
+    Those of a leaf are A z and A (z - G), scaled as its states are.
+    """
 
     rest: dict[int, Node]
     leaves: list[tuple[Node, Node]]
@@ -77,24 +81,32 @@ class _ResidualStep:
             if i in place and j in place
         }
         for leaf in self.leaves:
-            _add_outer(program, matrix, program.multiply(leaf.spring.middle, leaf.rest_share), leaf.spring.on(place))
+            _add_outer(program, matrix, program.multiply(leaf.spring.middle, leaf.scale), leaf.spring.on(place))
         for spring in self.free:
             _add_outer(program, matrix, spring.middle, spring.on(place))
         factor = factorise(program, size, matrix, "A")
-        right = [self.r[i] for i in self.rest]
-        solution = _solve(program, factor, right)
+        solution = _solve(program, factor, [self.r[i] for i in self.rest])
         rest = {unknown: program.label(solution[i], f"vm{unknown}") for i, unknown in enumerate(self.rest)}
         rows = [spring.on(place) for spring in (*(leaf.spring for leaf in self.leaves), *self.free)]
-        if len(rows) * size <= _solving_cost(factor) + sum(map(len, rows)):
-            rates = [program.dot(list(zip(_column(program, factor, row), right, strict=True))) for row in rows]
-        else:
-            rates = [program.dot([(a, solution[j]) for j, a in row.items()]) for row in rows]
+        direct = len(rows) * size <= _solving_cost(factor) + sum(map(len, rows))
         leaves = []
-        for leaf, hung in zip(self.leaves, rates, strict=False):
-            r = self.r[leaf.unknown]
-            moved = program.add(r, program.multiply(leaf.spring.middle, hung))
-            leaves.append((moved, program.subtract(r, program.multiply(leaf.remainder, hung))))
-        return _Motion(rest, leaves, rates[len(leaves) :])
+        for leaf, row in zip(self.leaves, rows, strict=False):
+            r, one = self.r[leaf.unknown], program.number(1.0)
+            scale = program.multiply(leaf.scale, leaf.remainder)
+            hung = self._rate(factor, solution, row, scale if direct else None)
+            pulled = program.multiply(one if direct else scale, hung)
+            moved = program.multiply(leaf.passing if direct else program.multiply(leaf.scale, leaf.spring.middle), hung)
+            leaves.append((program.add(r, moved), program.subtract(r, pulled)))
+        free = [self._rate(factor, solution, row, program.number(1.0) if direct else None) for row in rows[len(leaves) :]]
+        return _Motion(rest, leaves, free)
+
+    def _rate(self, factor: Factor, solution: list[Node], row: dict[int, Node], scale: Node | None) -> Node:
+        """Return a row times the velocities: `scale` times that, straight from the residual, where it is given."""
+        program = self.program
+        if scale is None:
+            return program.dot([(a, solution[j]) for j, a in row.items()])
+        column = _column(program, factor, row)
+        return program.dot([(program.multiply(node, scale), self.r[i]) for node, i in zip(column, self.rest, strict=True)])
 
     def _advance(self, motion: _Motion) -> list[tuple[Node, Node]]:
         """Return r and e with their values after the step."""
@@ -105,11 +117,12 @@ class _ResidualStep:
             i = leaf.unknown
             push, stretched = leaf.spring.advance(program, travelled, leaf.inverse)
             own, pressed = leaf.own.advance(program, moved, leaf.inverse)
-            other = program.total([*self._load(i, self.drives), program.negate(own)])
+            loads = [program.multiply(node, self.drives[j]) for node, j in self._scaled_load(leaf)]
+            other = program.total([*loads, program.negate(own)])
             states += [*stretched, *pressed, (self.r[i], program.subtract(program.add(self.r[i], other), push))]
             passed = program.add(push, program.multiply(leaf.passing, other))
             for j, a in leaf.spring.row.items():
-                gathered[j].append(program.multiply(program.multiply(a, leaf.rest_share), passed))
+                gathered[j].append(program.multiply(a, passed))
         for spring, rate in zip(self.free, motion.free, strict=True):
             push, stretched = spring.advance(program, rate, program.number(1.0))
             states += stretched
@@ -120,15 +133,22 @@ class _ResidualStep:
     def _displacements(self, motion: _Motion) -> list[tuple[Node, Node]]:
         """Return the displacements that a channel reads, with their values after the step."""
         program, found = self.program, []
-        leaves = {leaf.unknown: (leaf.inverse, moved) for leaf, (moved, _) in zip(self.leaves, motion.leaves, strict=True)}
+        one = program.number(1.0)
+        leaves = {
+            leaf.unknown: (program.divide(one, leaf.remainder), pair[0]) for leaf, pair in zip(self.leaves, motion.leaves, strict=True)
+        }
         for i in sorted({i for channel in self.model.channels for i in channel.displacement}):
-            scale, velocity = leaves[i] if i in leaves else (program.number(1.0), motion.rest[i])
+            scale, velocity = leaves[i] if i in leaves else (one, motion.rest[i])
             found.append((self.u[i], program.add(self.u[i], program.multiply(program.multiply(self.terms.h, scale), velocity))))
         return found
 
     def _load(self, unknown: int, drives: list[Node]) -> list[Node]:
         """Return the terms of the load on an unknown."""
         return [self.program.multiply(node, drives[j]) for (i, j), node in sorted(self.loads.items()) if i == unknown]
+
+    def _scaled_load(self, leaf: Leaf) -> list[tuple[Node, int]]:
+        """Return the factors of the load on a leaf, scaled as its states are, with the numbers of their drives."""
+        return [(self.program.multiply(node, leaf.scale), j) for (i, j), node in sorted(self.loads.items()) if i == leaf.unknown]
 
     def _channels(self) -> list[Node]:
         """Write each channel: velocities follow from the residual, accelerations from equilibrium."""
@@ -159,8 +179,9 @@ class _ResidualStep:
         program = self.program
         parts = {i: [self.r[i]] for i in range(self.model.n_dof)}
         for leaf in self.leaves:
+            parts[leaf.unknown] = [program.multiply(leaf.unscale, self.r[leaf.unknown])]
             for j, a in leaf.spring.row.items():
-                parts[j].append(program.negate(program.multiply(program.multiply(a, leaf.share), self.r[leaf.unknown])))
+                parts[j].append(program.negate(program.multiply(program.multiply(a, leaf.passing), self.r[leaf.unknown])))
         return [program.total(parts[i]) for i in range(self.model.n_dof)]
 
     def _resting_forces(self) -> list[Node]:
@@ -169,8 +190,9 @@ class _ResidualStep:
         half = program.number(0.5)
         parts: dict[int, list[Node]] = {i: [] for i in range(self.model.n_dof)}
         for leaf in self.leaves:
-            force = program.multiply(half, leaf.spring.state)
-            parts[leaf.unknown] += [force, program.multiply(half, leaf.own.state)]
+            share = program.multiply(half, leaf.unscale)
+            force = program.multiply(share, leaf.spring.state)
+            parts[leaf.unknown] += [force, program.multiply(share, leaf.own.state)]
             for j, a in leaf.spring.row.items():
                 parts[j].append(program.negate(program.multiply(a, force)))
         for spring in self.free:

@@ -41,8 +41,8 @@ class Spring:
 class Leaf:
     """An unknown that hangs by `spring` on the motion `spring.row`; `own` are its other springs together.
 
-    With A the leaf's entry of the matrix S of a step, s = `spring.middle` and l = s/A: `inverse` is 1/A, `remainder` A - s, `share` l,
-    `rest_share` 1 - l, `passing` l/(1 - l).
+    With A the leaf's entry of the matrix S of a step, s = `spring.middle` and l = s/A: `inverse` is 1/A, `scale` 1 - l, by which the leaf's
+    states are scaled, `unscale` its reciprocal, `remainder` A - s and `passing` l/(1 - l).
     """
 
     unknown: int
@@ -50,8 +50,8 @@ class Leaf:
     own: Spring
     inverse: Node
     remainder: Node
-    share: Node
-    rest_share: Node
+    scale: Node
+    unscale: Node
     passing: Node
 
 
@@ -109,8 +109,8 @@ def _leaf(terms: EquationTerms, unknown: int, mass: Node, number: int, own: list
         own=other,
         inverse=inverse,
         remainder=remainder,
-        share=program.multiply(spring.middle, inverse),
-        rest_share=program.multiply(remainder, inverse),
+        scale=program.multiply(remainder, inverse),
+        unscale=program.divide(whole, remainder),
         passing=program.divide(spring.middle, remainder),
     )
 
