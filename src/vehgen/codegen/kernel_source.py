@@ -98,8 +98,9 @@ def write_kernel(
 def _cheapest_step(model: EquationsOfMotion) -> StepProgram:
     """Return the form of a step that takes fewer instructions; none has more operations than one in displacements and velocities."""
     plain, residual = write_step(model), write_residual_step(model)
-    costs = [form.step_cost()[1] + form.sample_cost()[1] / STEPS_PER_SAMPLE for form in (plain, residual)]
-    return residual if costs[1] < costs[0] and residual.step_cost()[0] <= plain.step_cost()[0] else plain
+    (operations, instructions), (most, usual) = residual.step_cost(), plain.step_cost()
+    saved = usual - instructions + (plain.sample_cost()[1] - residual.sample_cost()[1]) / STEPS_PER_SAMPLE
+    return residual if saved > 0 and operations <= most else plain
 
 
 def _header(model: EquationsOfMotion, printer: PythonPrinter, residual: bool) -> str:

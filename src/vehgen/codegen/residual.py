@@ -24,6 +24,9 @@ from vehgen.codegen.spring_terms import Leaf, Spring, find_leaves, free_springs
 from vehgen.codegen.step_program import EquationTerms, StepProgram
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 
+MOST_FOR_ROWS = 400
+"""Operations of a sample beyond which rows of coefficients, which must be compiled, are not worth what they save."""
+
 
 def write_residual_step(model: EquationsOfMotion) -> StepProgram:
     """Write one step of a model without force laws, from rest, in residual form.
@@ -171,8 +174,11 @@ class _ResidualStep:
             acceleration = [program.label(node, f"a{i}") for i, node in enumerate(factor.solve(program, forces))]
         motion = acceleration, velocity, self.u
         written = [program.total(self.terms.channel_terms(k, motion, self.drives)) for k in range(len(model.channels))]
+        operations, instructions = program.cost(written)
+        if operations > MOST_FOR_ROWS:
+            return written
         rows = as_rows(program, written)
-        return rows if program.cost(rows)[1] < program.cost(written)[1] else written
+        return rows if program.cost(rows)[1] < instructions else written
 
     def _whole_residual(self) -> list[Node]:
         """Return r of every unknown, where the state holds what is left of it without the leaves."""
