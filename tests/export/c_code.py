@@ -81,7 +81,7 @@ def hump(model, duration=1.5, height=0.03, dt=1e-3, speed=3.0):
 def kernel_run(model, excitation, values=None):
     """Return what the kernel computes, at every step."""
     parameters = np.array([list((values or model.values()).values())])
-    result = Kernel(model).run(parameters, excitation, 1)
+    result = Kernel(model).run(parameters, excitation, 1, np.zeros((1, 2 * model.n_dof)))  # from a state: the form that C has, too
     assert not result.failures
     return result.responses[0]
 

@@ -108,6 +108,7 @@ class Kernel:
             raise InputError(f"unknown precision {shown(precision)}; {did_you_mean(precision, get_args(Precision))}")
         self.model = model
         self.source: KernelSource = write_kernel(model, sweeps=sweeps, precision=precision)
+        self._options: tuple[int | None, Precision] = sweeps, precision
         self._number = np.float32 if precision == "single" else np.float64
         self._folder = folder
 
@@ -118,7 +119,7 @@ class Kernel:
 
     def __getstate__(self) -> dict[str, object]:
         """Leave the compiled code behind: who receives a kernel imports it again from the cache, or compiles it."""
-        return {key: value for key, value in vars(self).items() if key != "_module"}
+        return {key: value for key, value in vars(self).items() if key not in ("_module", "_moving")}
 
     @property
     def folder(self) -> Path:
@@ -133,6 +134,15 @@ class Kernel:
     @cached_property
     def _module(self) -> ModuleType:
         return import_kernel(self.source.text, self._folder)
+
+    @cached_property
+    def _moving(self) -> tuple[KernelSource, ModuleType]:
+        """The kernel of runs that do not start from rest: the same one, unless its states are no displacements and velocities."""
+        if not self.source.from_rest:
+            return self.source, self._module
+        sweeps, precision = self._options
+        source = write_kernel(self.model, sweeps=sweeps, precision=precision, from_rest=False)
+        return source, import_kernel(source.text, self._folder)
 
     def compile(self) -> None:
         """Compile now, or load what an earlier process compiled."""
@@ -208,11 +218,11 @@ class Kernel:
         self, columns: Array, excitation: Excitation, decimation: int, initial: Array | None, threads: int | None
     ) -> tuple[Array, Array]:
         """Return the responses and residuals of individuals with these columns, blocks of lanes shared among threads."""
-        n_individuals, lanes, n_dof, number = len(columns), self.source.lanes, self.model.n_dof, self._number
+        source, module = (self.source, self._module) if initial is None else self._moving
+        n_individuals, lanes, n_dof, number = len(columns), source.lanes, self.model.n_dof, self._number
         n_samples, n_channels = excitation.n_steps // decimation + 1, len(self.model.channels)
         responses = np.empty((n_individuals, n_samples, n_channels))
         residuals = np.zeros(n_individuals)
-        module = self._module
         arrays = [np.ascontiguousarray(item, dtype=number) for item in (excitation.inputs, excitation.rates, excitation.forces)]
         own = excitation.inputs.ndim == 3
 
@@ -230,7 +240,7 @@ class Kernel:
             module.advance(work, *drives, excitation.dt, decimation, target)
             if not direct:
                 responses[first:last] = target[: last - first]
-            if self.source.nonlinear:
+            if source.nonlinear:
                 residuals[first:last] = state[-lanes:][: last - first]
 
         starts = range(0, n_individuals, lanes)

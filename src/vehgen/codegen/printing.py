@@ -40,7 +40,7 @@ class PythonPrinter:
         self.scalar, self.single = scalar, single
         self.program = program
         self.results = results
-        self.needed = {phase: self._reach(phase) for phase in (STEP_PHASE, SAMPLE_PHASE)}
+        self.needed = {phase: program.reach(results.get(phase, ())) for phase in (STEP_PHASE, SAMPLE_PHASE)}
         self.constants = self._constants()
         self.setup = self._reach_setup()
         self.operation_counts = {
@@ -48,18 +48,6 @@ class PythonPrinter:
             "step": self._count(self.needed[STEP_PHASE]),
             "sample": self._count(self.needed[SAMPLE_PHASE]),
         }
-
-    def _reach(self, phase: int) -> list[Node]:
-        """Nodes computed in the loop of a phase: all that its results need and SETUP does not know."""
-        found: set[Node] = set()
-        stack = list(self.results.get(phase, ()))
-        while stack:
-            node = stack.pop()
-            if node in found or self.program.phases[node] == SETUP_PHASE:
-                continue
-            found.add(node)
-            stack.extend(self.program.arguments[node])
-        return sorted(found)
 
     def _constants(self) -> dict[Node, int]:
         """SETUP nodes that the loops use, with their place in the array of constants."""

@@ -7,7 +7,8 @@ wanted at kept samples only. Nothing is computed for a phase that does not need 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 import sympy as sp
@@ -62,10 +63,19 @@ class Program:
 
     def apply(self, operation: str, *arguments: Node) -> Node:
         """Return a function of nodes: min, max, abs, sqrt, sign, step."""
-        return self._node(operation, arguments, max(self.phases[item] for item in arguments))
+        return self._node(operation, arguments, max([self.phases[item] for item in arguments]))
+
+    def _is_plain(self, node: Node) -> bool:
+        """Whether no rule of arithmetic is for this node: it is no number and has no sign."""
+        return node not in self._values and self.operations[node] != "neg"
+
+    def _commuted(self, operation: str, left: Node, right: Node) -> Node:
+        return self.apply(operation, left, right) if left <= right else self.apply(operation, right, left)
 
     def add(self, left: Node, right: Node) -> Node:
         """Return left + right."""
+        if self._is_plain(left) and self._is_plain(right):
+            return self._commuted("+", left, right)
         if self.value(left) == 0.0:
             return right
         if self.value(right) == 0.0:
@@ -76,7 +86,7 @@ class Program:
             return self.subtract(right, self.arguments[left][0])
         if (a := self.value(left)) is not None and (b := self.value(right)) is not None:
             return self.number(a + b)
-        return self.apply("+", *sorted((left, right)))
+        return self._commuted("+", left, right)
 
     def subtract(self, left: Node, right: Node) -> Node:
         """Return left - right."""
@@ -100,6 +110,8 @@ class Program:
 
     def multiply(self, left: Node, right: Node) -> Node:
         """Return left * right; signs move outwards, so that sums can take them."""
+        if self._is_plain(left) and self._is_plain(right):
+            return self._commuted("*", left, right)
         for one, other in ((left, right), (right, left)):
             if (value := self.value(one)) in (0.0, 1.0, -1.0):
                 return self.number(0.0) if value == 0.0 else other if value == 1.0 else self.negate(other)
@@ -109,7 +121,7 @@ class Program:
                 return self.negate(self.multiply(self.number(-value), other))
         if (a := self.value(left)) is not None and (b := self.value(right)) is not None:
             return self.number(a * b)
-        return self.apply("*", *sorted((left, right)))
+        return self._commuted("*", left, right)
 
     def divide(self, left: Node, right: Node) -> Node:
         """Return left / right."""
@@ -126,6 +138,27 @@ class Program:
         for term in ordered:
             result = self.add(result, term)
         return result
+
+    def reach(self, results: Iterable[Node]) -> list[Node]:
+        """Return what a loop computes or reads for its results, ascending: all that they need and SETUP does not know."""
+        found: set[Node] = set()
+        stack = list(results)
+        while stack:
+            node = stack.pop()
+            if node not in found and self.phases[node] != SETUP_PHASE:
+                found.add(node)
+                stack.extend(self.arguments[node])
+        return sorted(found)
+
+    def cost(self, results: Iterable[Node]) -> tuple[int, int]:
+        """Return how many operations the results need in a loop, and how many instructions where products are fused with sums."""
+        nodes = [node for node in self.reach(results) if self.operations[node] != "leaf"]
+        uses = Counter(argument for node in nodes for argument in self.arguments[node])
+        fused = sum(
+            self.operations[node] in "+-" and any(self.operations[item] == "*" and uses[item] == 1 for item in self.arguments[node])
+            for node in nodes
+        )
+        return len(nodes), len(nodes) - fused
 
     def dot(self, pairs: list[tuple[Node, Node]]) -> Node:
         """Return the sum of products."""

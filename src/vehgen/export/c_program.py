@@ -12,8 +12,9 @@ import numpy as np
 
 from vehgen.codegen.c_printing import C_HELPERS, CPrinter
 from vehgen.codegen.kernel import UNCONVERGED
-from vehgen.codegen.newmark import StepProgram, write_step
+from vehgen.codegen.newmark import write_step
 from vehgen.codegen.program import SAMPLE_PHASE, STEP_PHASE, Node
+from vehgen.codegen.step_program import StepProgram
 from vehgen.errors import InputError
 from vehgen.export.source import ExportSource
 from vehgen.mechanics import GRAVITY
