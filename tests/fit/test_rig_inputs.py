@@ -127,6 +127,15 @@ def test_a_release_that_its_recording_contradicts_is_refused_where_it_is_stated(
     assert "\n" not in str(caught.value)
 
 
+def test_a_false_zero_of_a_motion_contradicts_no_release(tmp_path):
+    t = np.arange(0.0, 3.0, 0.01)
+    rate = np.gradient(free(t, 0.001), t)
+    rate[0] = 0.0
+    text = RELEASE.replace("BEGIN", "1 mm").replace("{displacement: y}", "{velocity: y}")
+    biased = rate + 2 * np.abs(rate).max()
+    assert load_trials([write(tmp_path, text, ("t,y", t, biased))])
+
+
 def test_a_load_cell_that_says_otherwise_contradicts_a_release_too(tmp_path):
     t = np.arange(0.0, 3.0, 0.01)
     text = RELEASE.replace("BEGIN", "60 mm").replace(

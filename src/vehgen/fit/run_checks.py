@@ -19,6 +19,8 @@ from vehgen.simulate.run_scenario import ground_links
 Array = NDArray[np.float64]
 FIRST_SAMPLES = 3
 """So many samples, on average, are what a recording begins with."""
+ENDS_WITH = 10
+"""What a motion reads on average in the last of so many parts of a recording counts as its sensor's zero."""
 MOTIONS_OFF, FORCES_OFF = 0.5, 0.8
 """A motion, or a force, whose begin differs from the stated one by this share of the larger of both contradicts it: springs may be off."""
 SHARE_OF_PEAK = 0.3
@@ -73,8 +75,10 @@ def check_initial(run: Run, recording: Recording, simulator: Simulator, scenario
     begins = np.array([_first(simulator, short, state, values) for state in states])
     slack = SIGMAS * np.abs(begins[1:, 0] - begins[0, 0]).sum(axis=0)
     low, high = begins[0].min(axis=0), begins[0].max(axis=0)
-    found = recording.values[:FIRST_SAMPLES].mean(axis=0)
-    peak = np.abs(recording.values).max(axis=0)
+    of_motion = np.array([channel.quantity in OF_MOTION for channel in recording.channels])
+    zero = recording.values[-max(len(recording.values) // ENDS_WITH, 1) :].mean(axis=0) * of_motion
+    found = recording.values[:FIRST_SAMPLES].mean(axis=0) - zero
+    peak = np.abs(recording.values - zero).max(axis=0)
     for i, channel in enumerate(recording.channels):
         if channel.quantity not in OF_MOTION and channel.quantity not in ELEMENT_QUANTITIES:
             continue
