@@ -27,6 +27,8 @@ LANES = 16
 """Individuals that advance side by side in the innermost loop."""
 NONLINEAR_LANES = 16
 """The same with force laws, whose many constants would not stay in the first cache otherwise."""
+MOST_REWRITTEN = 2500
+"""A step of more operations is not tried in residual form: long chains of hinges couple all with all, and take seconds to write."""
 STEPS_PER_SAMPLE = 10
 """Steps between kept samples that the choice of a step's form counts with."""
 
@@ -97,7 +99,10 @@ def write_kernel(
 
 def _cheapest_step(model: EquationsOfMotion) -> StepProgram:
     """Return the form of a step that takes fewer instructions; none has more operations than one in displacements and velocities."""
-    plain, residual = write_step(model), write_residual_step(model)
+    plain = write_step(model)
+    if plain.step_cost()[0] > MOST_REWRITTEN:
+        return plain
+    residual = write_residual_step(model)
     (operations, instructions), (most, usual) = residual.step_cost(), plain.step_cost()
     saved = usual - instructions + (plain.sample_cost()[1] - residual.sample_cost()[1]) / STEPS_PER_SAMPLE
     return residual if saved > 0 and operations <= most else plain
