@@ -47,8 +47,7 @@ def wheel_inputs(track: Track, speed: SpeedLaw, offsets: Array, time: Array) -> 
     -------
     Heights at these times, and central differences over half a step to both sides (second order).
     """
-    way = speed.distance(_moments(time))
-    return _inputs(track.height(_under(way, offsets)), _step(time))
+    return _inputs(track.height(_under(speed.distance(_moments(time)), offsets)), _step(time))
 
 
 def nearby_inputs(track: Track, speed: SpeedLaw, others: Sequence[SpeedLaw], offsets: Array, time: Array) -> WheelInputs:
