@@ -1,10 +1,11 @@
 import numpy as np
 import pytest
+import sympy as sp
 
 from vehgen.mechanics import Place, derive
 from vehgen.mechanics.outputs import PointOutput
-from vehgen.simulate.frequency import response_derivatives, transfer_functions
-from vehgen.vehicle import load_vehicle
+from vehgen.simulate.frequency import force_response, response_derivatives, transfer_functions
+from vehgen.vehicle import load_vehicle, parse_vehicle
 
 
 def test_a_quarter_cars_response_is_the_textbooks():
@@ -32,3 +33,10 @@ def test_derivatives_agree_with_differences():
         sides = [transfer_functions(model.numeric({**values, name: values[name] + s}), frequency)[0] for s in (step, -step)]
         difference = (sides[0] - sides[1]) / (2 * step)
         assert np.abs(exact[i] - difference).max() < 1e-6 * np.abs(difference).max()
+
+
+def test_a_constant_force_on_a_free_mass_has_no_answer():
+    vehicle = parse_vehicle("name: sled\ngravity: false\nbodies: {sled: {mass: 20 kg, motions: [heave]}}\n")
+    model = derive(vehicle, [PointOutput("z", Place("z", "sled"), "displacement")])
+    found = force_response(model, model.values(), [{0: sp.Integer(1)}], np.array([0.0, 1.0]))
+    assert found[:, 0, 0] == pytest.approx([0.0, -1 / (20 * (2 * np.pi) ** 2)])

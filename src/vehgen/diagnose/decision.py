@@ -241,7 +241,7 @@ class Decision:
         ratios = dict(zip(space.names, (freed.least_squares.values / space.start).tolist(), strict=True))
         return self._end(
             "insufficient_data",
-            wording.out_of_range({name: ratios[name] for name in freed.last.freed}),
+            wording.out_of_range({name: ratios[name] for name in freed.last.freed if name in ratios}),
             "check the file, or calibrate first",
         )
 

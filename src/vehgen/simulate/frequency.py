@@ -54,12 +54,15 @@ def force_response(
     """Return the channels per unit of generalised forces along rows of the coordinates, `shape (n, n_channels, len(rows))`.
 
     Where the forces are those of an element, by its number, against its travel, channels that read what it transmits feel them directly.
+    A constant force on what nothing holds has no answer: there the lines of frequency 0 are those of motionless coordinates.
     """
     omega = 2 * np.pi * frequency
     numeric = model.numeric(values)
     entries = {(i, j): value for j, row in enumerate(rows) for i, value in row.items()}
     loads = model.evaluate_matrix(entries, (model.n_dof, len(rows)), values)
-    states = np.linalg.solve(dynamic_stiffness(numeric, omega), np.repeat(loads[None].astype(np.complex128), len(omega), axis=0))
+    moving = (omega != 0) | (np.linalg.matrix_rank(numeric.K) == model.n_dof)
+    states = np.zeros((len(omega), *loads.shape), dtype=np.complex128)
+    states[moving] = np.linalg.solve(dynamic_stiffness(numeric, omega[moving]), loads.astype(np.complex128)[None])
     read = [sp.S.Zero if element is None else channel.laws.get(element, sp.S.Zero) for channel in model.channels]
     direct = np.array(model.evaluate_list(read, values))
     return np.asarray(output_rows(numeric.outputs, omega)[0] @ states - direct[:, None])
