@@ -84,4 +84,4 @@ def _library(module: str, title: str) -> Any:
     try:
         return import_module(module)
     except ModuleNotFoundError as error:
-        raise InputError(f"{title} is not installed") from error
+        raise InputError(f"{title} is not installed: pip install 'vehgen[export]'") from error
