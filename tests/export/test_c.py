@@ -96,6 +96,16 @@ def test_friction_sticks_stops_are_met_and_wheels_lift(tmp_path):
     assert library.setup(changed, 1e-3) == 3  # static equilibrium belongs to the exported parameters
 
 
+def test_the_whole_load_of_a_hinge_has_its_static_part(tmp_path):
+    model = derive("tractor5", [ElementOutput("load", "fifth_wheel", "hinge_load"), ElementOutput("force", "fifth_wheel", "hinge_force")])
+    drive = hump(model, duration=1.0)
+    found, expected = exported(model, tmp_path).run(drive), kernel_run(model, drive)
+    static = static_loads(model).hinges["fifth_wheel"]
+    assert static > 1e4
+    assert found[:, 1] == pytest.approx(expected[:, 1], rel=1e-12, abs=1e-12 * static)
+    assert found[:, 0] == pytest.approx(found[:, 1] + static, rel=1e-12)
+
+
 def test_parameters_and_step_are_those_asked_for(tmp_path):
     model = derive(truck(), [PointOutput("az", Place("driver", "body"), "acceleration")], [Place("engine", "body")])
     library = exported(model, tmp_path, parameter_set="heavy")

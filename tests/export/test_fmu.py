@@ -66,8 +66,6 @@ def parse_laws(laws):
 
 @pytest.mark.parametrize("vehicle", [name for name in bundled_models() if load_vehicle(name).axles])
 def test_every_bundled_vehicle(name, vehicle, tmp_path):
-    if name == "fmu3" and vehicle not in ("vbi2d_2A3", "b_double"):
-        pytest.skip("two are enough of what both versions share")
     model = model_with_channels(vehicle)
     drive = with_slopes(hump(model, duration=1.0))
     found = unit(model, name, tmp_path)

@@ -36,7 +36,7 @@ class CProgram:
     static_travels
         Travels from the unloaded position to equilibrium, which follow the parameters in their array [m].
     offsets
-        What is added to each output: the static load of a tyre whose whole load is asked for.
+        What is added to each output: the static load of a tyre or hinge whose whole load is asked for.
     residual
         The state that holds the worst residual of the force laws [N], None without laws.
     residual_limit
@@ -86,7 +86,7 @@ def c_program(source: ExportSource) -> CProgram:
         n_constants=len(constants),
         n_states=len(states),
         static_travels=_static_travels(source, written),
-        offsets=[source.loads.axles[item.owner] if item.quantity == "tyre_load" else 0.0 for item in model.channels],
+        offsets=[source.loads.within(item.quantity, item.owner) for item in model.channels],
         residual=len(states) - 1 if nonlinear else None,
         residual_limit=UNCONVERGED * GRAVITY * model.total_mass(source.values),
     )

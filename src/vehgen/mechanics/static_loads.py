@@ -17,6 +17,7 @@ from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
 from vehgen.mechanics.hinge_forces import far_side, lifted_travel
 from vehgen.mechanics.model_like import ModelLike, all_values, as_model
+from vehgen.mechanics.quantities import WITH_STATIC
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +35,12 @@ class StaticLoads(Result):
     hinges: dict[str, float]
     elements: PairKeys
     displacement: Array1D
+
+    def within(self, quantity: str, owner: str) -> float:
+        """Return what an output of a tyre's or hinge's whole load counts of the static one [N]; 0 for every other quantity."""
+        if quantity not in WITH_STATIC:
+            return 0.0
+        return self.axles[owner] if quantity == "tyre_load" else self.hinges[owner]
 
     def table(self) -> Table:
         """Return all forces, a row each: of axles, hinges, then of springs and links."""

@@ -233,7 +233,7 @@ class Simulator:
                     if row in failures or not np.isfinite(individual).all():
                         continue
                     loads = static_loads(self.model, dict(zip(self.model.parameters, individual, strict=True)))
-                    responses[row, :, column] += (loads.axles if channel.quantity == "tyre_load" else loads.hinges)[channel.owner]
+                    responses[row, :, column] += loads.within(channel.quantity, channel.owner)
         return responses
 
 
