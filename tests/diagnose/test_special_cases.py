@@ -79,3 +79,17 @@ def test_in_a_car_that_begins_at_rest_friction_is_named_as_it_is(trials_of, lops
     found = verdict.effects[0].parameters
     assert found["force"].value == pytest.approx(450.0, rel=0.1)
     assert "ratio" not in found or found["ratio"].value == pytest.approx(ratio, rel=0.1)
+
+
+def test_an_effect_of_a_group_is_the_same_at_an_axle_of_it_and_another_at_a_link_or_a_pair_that_shares_one():
+    def at(place, *axles):
+        return Candidate(EFFECTS["dry_friction"], place, (place,), members=axles)
+
+    every, rear, front, link = at("all suspensions", "front", "mid", "rear"), at("rear", "rear"), at("front", "front"), at("mount", "mount")
+    assert same(every, rear)
+    assert same(rear, every)
+    assert rear.is_among([every])
+    assert not same(front, rear)
+    assert not same(every, link)
+    assert not link.is_among([every])
+    assert not same(at("front and mid", "front", "mid"), at("mid and rear", "mid", "rear"))

@@ -32,8 +32,8 @@ class EffectSite:
 
     `load` [N] is the static load of the axle (of the hinge, the link, the body's weight); `k` [N/m], `c` [N s/m] its suspension's
     or link's; `kt` [N/m] its tyre's; `mass` [kg] and `inertia` [kg m^2] its body's; `length` [m] the distance between the body's
-    outermost supports. On a rig without weight on axles `load` counts the largest force
-    that occurs, too, and `stroke` is the largest travel [m].
+    outermost supports. On a rig without weight on axles `load` counts the largest force that occurs, too, and `stroke` is the largest
+    travel [m].
     """
 
     vehicle: Vehicle

@@ -28,13 +28,6 @@ def alike(vehicle: Vehicle, place: str) -> tuple[str, ...]:
     return tuple(place.split(ALIKE)) if ALIKE in place else ()
 
 
-def overlap(one: str, other: str) -> bool:
-    """Return whether two places are the same, or one is a group that the other is of."""
-    if ALL_SUSPENSIONS in (one, other):
-        return True
-    return not set(one.split(ALIKE)).isdisjoint(other.split(ALIKE))
-
-
 def members(vehicle: Vehicle, place: str) -> tuple[str, ...]:
     """Return the axles that a place is of, or the place itself: all of them, a group, or those joined by `+`."""
     if place in EVERY_TYRE:

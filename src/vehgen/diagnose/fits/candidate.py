@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.effects import Effect, EffectLocator
-from vehgen.effects.places import overlap
+from vehgen.effects.places import members
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.misfit import Noises
 from vehgen.fit.problem import Problem
@@ -26,7 +26,7 @@ class Candidate:
     """An effect at a place.
 
     `parameters` are the names its parameters take in the search space; `shared` its adjustments of runs or sensors; `freed` the base
-    parameters that it searches within the file's whole range.
+    parameters that it searches within the file's whole range; `members` the axles that its place is of, where it is of several.
     """
 
     effect: Effect
@@ -34,6 +34,7 @@ class Candidate:
     parameters: tuple[str, ...]
     shared: tuple[Adjustment, ...] = ()
     freed: tuple[str, ...] = ()
+    members: tuple[str, ...] = ()
 
     @property
     def label(self) -> str:
@@ -44,11 +45,16 @@ class Candidate:
         """Return whether another candidate is a special case of it."""
         return (self.effect.special_case, self.place) == (other.effect.name, other.place)
 
+    def is_alike(self, other: Candidate) -> bool:
+        """Return whether another candidate is the same effect, at a place that holds this one's or lies in it."""
+        own, others = (set(item.members or (item.place,)) for item in (self, other))
+        return self.effect.name == other.effect.name and (own <= others or others <= own)
+
     def is_among(self, others: Iterable[Candidate]) -> bool:
         """Return whether it, its special case, or something that searches or adjusts the same, is among others."""
         own = {(type(item), item.place) for item in self.shared}
         return any(
-            (item.effect.name == self.effect.name and overlap(item.place, self.place))
+            self.is_alike(item)
             or self.holds(item)
             or item.holds(self)
             or not set(self.parameters).isdisjoint(item.parameters)
@@ -64,7 +70,8 @@ def list_candidates(vehicle: Vehicle, trials: Sequence[Trial], effects: Sequence
     for effect in effects:
         for place in effect.places(vehicle, trials):
             own = effect.at(place, vehicle)
-            found.append(Candidate(own, place, own.search_names(place), own.adjustments(place, sigma), own.freed(place, vehicle)))
+            names, shared, freed = own.search_names(place), own.adjustments(place, sigma), own.freed(place, vehicle)
+            found.append(Candidate(own, place, names, shared, freed, members(vehicle, place)))
     return found
 
 

@@ -12,7 +12,6 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.estimates import p_value
 from vehgen.diagnose.select.search import SearchRound, own_numbers
 from vehgen.diagnose.select.special_cases import does_as_well
-from vehgen.effects.places import EVERY_TYRE, overlap
 
 
 def excess(mean_square: float) -> float:
@@ -45,10 +44,7 @@ def tied(found: SearchRound, best: ModelFit) -> list[ModelFit]:
 
 def same(one: Candidate, other: Candidate) -> bool:
     """Return whether one candidate holds the other: as a special case, or as the same effect of every tyre or of a group of axles."""
-    if one.holds(other) or other.holds(one):
-        return True
-    everywhere = not {one.place, other.place}.isdisjoint(EVERY_TYRE)
-    return one.effect.name == other.effect.name and (everywhere or overlap(one.place, other.place))
+    return one.holds(other) or other.holds(one) or one.is_alike(other)
 
 
 def unfinished(fit: ModelFit, base: ModelFit) -> bool:
