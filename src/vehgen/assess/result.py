@@ -89,9 +89,8 @@ class ShockSpectrum:
 class LoadCycles:
     """Rainflow cycles of a travel or force: how many, the largest range, and the range that does the same damage once a second.
 
-    `cycles` are those of at least a hundredth of the largest range: E1049 lets small ones be discarded, and rounding makes some.
-
-    `cumulative shape (n,)` counts the cycles of at least the ranges `levels shape (n,)`.
+    `cycles` counts those of at least a hundredth of the largest range: E1049 lets smaller ones be left out, and rounding makes some of
+    them. `cumulative shape (n,)` counts the cycles of at least the ranges `levels shape (n,)`.
     """
 
     name: str

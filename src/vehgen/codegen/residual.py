@@ -1,4 +1,4 @@
-"""One time step of the same Newmark method in residual form, which needs about half the operations where no force law acts.
+"""One time step of the same Newmark method in residual form, which needs half to nine tenths of the operations where no force law acts.
 
 With S = 2/h M + C + h/2 K the state is what is left to be balanced, r = 2/h M v - K u + F_mid, and of each spring e = 2 k J u, where J is
 the row of its travel and F_mid the mean load over the step that begins. A step is

@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from vehgen.files.result_fields import rounded
+from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.transmissibility_result import ChannelRatio, RatioBand
 from vehgen.measure.transmissibility import NEIGHBOUR_INFLATION, RatioEstimate, model_ratio
 
 Array = NDArray[np.float64]
-GAIN_RATIO_SIGMA = 0.01 * 2**0.5
-"""Standard error of a ratio by the sensors' gains, each known to 1 % (see `Uncertainties` in nuisances.py)."""
+GAIN_RATIO_SIGMA = Nuisances().gain * 2**0.5
+"""Standard error of a ratio by the gains of both sensors."""
 FALSE_ALARMS = 0.01
 """Of all comparisons of a right model."""
 

@@ -27,8 +27,8 @@ class RunErrors:
 
     Numbers of errors `shape (size,)` count in standard deviations, the sensors' first. `channels` holds name, sensor and quantity of every
     channel; `known` errors of sensors [units], by name and place, that stand; `rate` is the recording's [Hz]; `forces` names the forces
-    that act, and `ground` the links whose ground ends move, in the model's order; `begin` tells
-    the place of an initial displacement or velocity in the state, by its error's name and place.
+    that act, and `ground` the links whose ground ends move, in the model's order; `begin` tells the place
+    of an initial displacement or velocity in the state, by its error's name and place.
     """
 
     sensors: tuple[Nuisance, ...]
