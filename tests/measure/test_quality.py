@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vehgen.measure.quality import Clipping, find_clipping, noise_floor
+from vehgen.measure.quality import Clipping, find_clipping, has_cut, noise_floor
 
 
 def test_noise_floor_of_white_noise_and_of_an_engine():
@@ -46,3 +46,26 @@ def test_what_rules_out_a_coarse_and_a_quantised_channel():
     coarse = np.round(ringing() / 0.25) * 0.25
     assert find_clipping(coarse, 2)
     assert find_clipping(coarse, 2, min_pile_up=4) == ()
+
+
+def swept(seed, noise, step):
+    """A slow sweep whose peaks are about equally high, with noise, rounded to a resolution."""
+    t = np.arange(2000) * 0.004
+    values = np.sin(2 * np.pi * (1 + 0.3 * t) * t) * (1 + 0.02 * t) + np.random.default_rng(seed).normal(0, noise, len(t))
+    return np.round(values / step) * step
+
+
+@pytest.mark.parametrize(("noise", "step"), [(0.015, 0.003), (0.003, 0.003), (0.001, 0.01), (0.0, 0.01)])
+def test_equal_samples_on_a_round_top_have_cut_nothing(noise, step):
+    every = [values for seed in range(100) for values in [swept(seed, noise, step)]]
+    tops = [(values, item) for values in every for item in find_clipping(values, 2)]
+    assert len(tops) >= 4
+    assert not any(has_cut(*item) for item in tops)
+
+
+@pytest.mark.parametrize("depth", [0.1, 0.3])
+def test_what_was_cut_off_is_seen_through_noise(depth):
+    for seed in range(20):
+        values = swept(seed, 0.005, 1e-6)
+        (top,) = find_clipping(np.minimum(values, values.max() - depth), 2)
+        assert has_cut(np.minimum(values, values.max() - depth), top)

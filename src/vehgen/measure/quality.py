@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.signal
+import scipy.special
 from numpy.typing import NDArray
 
 from vehgen.measure.spectra import welch_psd
@@ -15,6 +16,10 @@ NOISE_BAND_WIDTH_HZ = 3.0
 """Width of the band at the top of the spectrum, where a vehicle does nothing [Hz]."""
 NOISE_BAND_TOP_HZ = 50.0
 """Top of that band [Hz], where the sensor is fast enough."""
+CUT_NOISES = 8.0
+"""A flat top has cut something off where its flanks lead higher by so many times the noise, or resolution, of the channel ..."""
+BY_CHANCE = 1e-6
+"""... or where a round top would hold so many of its samples with this probability."""
 
 
 @dataclass(frozen=True)
@@ -91,3 +96,33 @@ def find_clipping(
         if rows.size and extreme != rest and far and at.sum() >= min_pile_up * at_next:
             found.append(Clipping(extreme, int(at.sum()), int(rows[0])))
     return tuple(found)
+
+
+def has_cut(values: Array, top: Clipping) -> bool:
+    """Return whether a flat top has cut a channel off, where equal samples are no chance of a round, noisy or coarse peak.
+
+    Two signs: parabolas through its flanks lead well above it, or it holds so many samples that a round top would not. Of the samples
+    within five steps of a channel's resolution below a round top 45 % lie in the first step, as the root of the depth grows.
+    """
+    signed = values if top.level > float(np.median(values)) else -values
+    level, distinct = float(signed.max()), np.unique(values)
+    step = float(np.diff(distinct).min())
+    # the third difference of white noise has 20 times its variance; the median forgives peaks
+    noise = float(np.median(np.abs(np.diff(values, 3)))) / 0.6745 / np.sqrt(20)
+    at = signed == level
+    below = int(((signed < level) & (signed >= level - 4.5 * step)).sum())
+    count = int(at.sum())
+    if scipy.special.bdtrc(count - 1, count + below, 5**-0.5) < BY_CHANCE:
+        return True
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], at, [0]])))
+    rises = [_rise(signed, int(first), int(end)) - level for first, end in zip(edges[::2], edges[1::2], strict=True) if end - first > 1]
+    return bool(max(rises, default=0.0) > CUT_NOISES * max(noise, step))
+
+
+def _rise(values: Array, first: int, end: int) -> float:
+    """Return how high a parabola through two samples on either side of values[first:end] leads; their level where it has no top."""
+    if first < 2 or end > len(values) - 2:
+        return float(values[first])
+    place = np.array([first - 2, first - 1, end, end + 1]) - (first + end - 1) / 2
+    a, b, c = np.polyfit(place, values[[first - 2, first - 1, end, end + 1]], 2)
+    return float(c - b**2 / (4 * a)) if a < 0 else float(values[first])

@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.fit.trial import Trial
-from vehgen.measure.quality import find_clipping
+from vehgen.measure.quality import find_clipping, has_cut
 
 Array = NDArray[np.float64]
 CLIPPED_PILE_UP = 4
 """So many times as many samples at an extreme as at the next value, two of them in a row, count as clipping: recordings come filtered and
-resampled here, and a clipped one that a file of other origin holds may keep few samples in a row."""
+resampled here, and a clipped one that a file of other origin holds may keep few samples in a row. It must have cut something off."""
 STUCK = 0.3
 """A channel that does not change for this long [s] while the others move is stuck."""
 MOVING_SHARE = 0.5
@@ -40,7 +40,7 @@ def check_inputs(trials: Sequence[Trial]) -> tuple[MeasurementFault, ...]:
 
 def _clipped(trial: Trial) -> Iterator[MeasurementFault]:
     for name, values in zip(trial.channels, trial.recording.values.T, strict=True):
-        found = find_clipping(values, 2, min_pile_up=CLIPPED_PILE_UP)
+        found = [item for item in find_clipping(values, 2, min_pile_up=CLIPPED_PILE_UP) if has_cut(values, item)]
         if found:
             levels, count = [f"{item.level:.4g}" for item in found], sum(item.n_samples for item in found)
             yield MeasurementFault(
