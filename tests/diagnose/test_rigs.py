@@ -49,13 +49,14 @@ def drive(friction, amplitude, seed, seconds=6.0, dt=1e-3):
     return t, force, place
 
 
-def write(folder, friction):
+def write(folder, friction, amplitudes=(0.15, 0.25, 0.2), cell=0.0):
+    """Write runs of the carriage; `cell` is the noise of what measures its force [N]."""
     (folder / "carriage.yaml").write_text(VEHICLE, encoding="utf-8")
     runs = []
-    for number, amplitude in enumerate((0.15, 0.25, 0.2)):
+    for number, amplitude in enumerate(amplitudes):
         name = f"run{number}"
         t, force, place = drive(friction, amplitude, number)
-        held = np.column_stack([t, force])
+        held = np.column_stack([t, force + cell * np.random.default_rng(number + 90).standard_normal(len(t))])
         np.savetxt(folder / f"{name}_force.csv", held, delimiter=",", header="t,F", comments="", fmt="%.9g")
         recorded = place + 1e-6 * np.random.default_rng(number + 50).standard_normal(len(t))
         np.savetxt(folder / f"{name}.csv", np.column_stack([t, recorded])[::10], delimiter=",", header="t,q", comments="", fmt="%.9g")
@@ -81,6 +82,12 @@ def test_a_carriage_without_friction_lacks_nothing(tmp_path):
     assert diagnose(tmp_path / "carriage.yaml", write(tmp_path, 0.0)).verdict.verdict == "no_missing_effect"
 
 
+def test_a_load_cells_noise_is_as_loud_in_gentle_runs(tmp_path):
+    found = diagnose(tmp_path / "carriage.yaml", write(tmp_path, 0.0, (0.07, 0.25, 0.12, 0.18), cell=2.0))
+    assert found.verdict.verdict == "no_missing_effect"
+    assert max(item.after for item in found.verdict.gap.runs) < 1.15
+
+
 DYNO = """name: dyno
 gravity: false
 parameters: {c: {value: 2.6 kN s/m, range: [0.3 kN s/m, 8 kN s/m]}}
@@ -99,8 +106,11 @@ recording: {name}.csv
 """
 
 
-def stroke(folder, compressed, extended, rest):
-    """Write three runs of a damper whose friction slips at these forces [N], each after a rest [s]; return the run files."""
+def stroke(folder, compressed, extended, rest, zero=0.0):
+    """Write three runs of a damper whose friction slips at these forces [N], each after a rest [s]; return the run files.
+
+    `zero` is what the load cell reads without a force [N].
+    """
     (folder / "dyno.yaml").write_text(DYNO, encoding="utf-8")
     random, runs = np.random.default_rng(3), []
     for name, amplitude, f in (("slow", 10e-3, 1.0), ("long", 20e-3, 1.5), ("fast", 5e-3, 3.0)):
@@ -111,7 +121,7 @@ def stroke(folder, compressed, extended, rest):
         slip = np.where(v > 0, compressed, np.where(v < 0, -extended, 0.0))
         force = -(2e3 * v + slip)  # the load cell is stiff: it reads what the damper passes on
         np.savetxt(folder / f"{name}_stroke.csv", np.column_stack([t, x]), delimiter=",", header="t,x", comments="")
-        noisy = np.column_stack([t, force + 2.0 * random.standard_normal(len(t))])[::5]
+        noisy = np.column_stack([t, force + zero + 2.0 * random.standard_normal(len(t))])[::5]
         np.savetxt(folder / f"{name}.csv", noisy, delimiter=",", header="t,F", comments="")
         (folder / f"{name}.yaml").write_text(STROKE.format(name=name), encoding="utf-8")
         runs.append(folder / f"{name}.yaml")
@@ -123,6 +133,13 @@ def test_friction_of_a_damper_is_named_from_its_load_cell(tmp_path):
     assert (verdict.verdict, [item.name for item in verdict.effects]) == ("named", ["dry_friction"])
     assert verdict.effects[0].parameters["force"].value == pytest.approx(80.0, rel=0.05)
     assert 0.8 < verdict.gap.after < 1.3
+
+
+@pytest.mark.parametrize(("friction", "expected"), [(0.0, []), (80.0, ["dry_friction"])])
+def test_a_false_zero_of_the_load_cell_says_nothing_of_the_damper(tmp_path, friction, expected):
+    verdict = diagnose(tmp_path / "dyno.yaml", stroke(tmp_path, friction, friction, 0.0, zero=12.0)).verdict
+    assert (verdict.verdict, [item.name for item in verdict.effects]) == ("named" if expected else "no_missing_effect", expected)
+    assert verdict.gap.after < 1.3
 
 
 def test_friction_that_is_stronger_one_way_is_named_where_the_damper_begins_at_rest(tmp_path):

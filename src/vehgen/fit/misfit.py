@@ -97,7 +97,7 @@ class Misfit:
         inside = (frequency >= self.band[0]) & (frequency <= self.band[1])
         own = {name: value for name, value in reference.items() if name not in trial.fixed}
         answer = road_answer(trial, frequency[inside], trial.values | own)
-        measured = transform(trial.recording.values, dt, inside, fade_in=trial.fade_in)
+        measured = transform(trial.recording.values, dt, inside, seen=trial.window)
         return _Weight(inside, measured, answer, self.noises[trial.name].whitener(answer))
 
     @property
@@ -214,7 +214,7 @@ class Misfit:
     def unread(self, number: int, response: Array, error: Array) -> Complex:
         """Return the spectral lines of motions under the windows of late clocks, which :meth:`read` then turns."""
         trial = self.problem.trials[number]
-        return transform(response, trial.recording.dt, self._weights[number].inside, self.errors[number].clocks(error), trial.fade_in)
+        return transform(response, trial.recording.dt, self._weights[number].inside, self.errors[number].clocks(error), trial.window)
 
     def read(self, number: int, lines: Complex, error: Array) -> Complex:
         """Return what trial `number`'s sensors make of spectral lines of motions `shape (..., n_lines, n_channels)`."""
@@ -262,7 +262,7 @@ class Misfit:
     def whitened_signal(self, number: int, signal: Array) -> Complex:
         """Return the whitened lines of a signal `shape (n_samples, n_channels)` in trial `number`."""
         trial = self.problem.trials[number]
-        return self.whiten(number, transform(signal, trial.recording.dt, self._weights[number].inside, fade_in=trial.fade_in))
+        return self.whiten(number, transform(signal, trial.recording.dt, self._weights[number].inside, seen=trial.window))
 
     def measured(self, number: int) -> Complex:
         """Return the spectral lines that trial `number` recorded, `shape (n_lines, n_channels)`."""

@@ -56,7 +56,7 @@ class RoadAnswer:
 
     `frequency shape (n,)` [Hz]; `wavenumber shape (n,)` [cycles/m]; `gain shape (n, n_channels, n_axles)` with gain gain* = G H R H*; `dt`
     the samples' spacing [s]; `forced shape (n, n_channels, n_forces)` likewise for stated errors of applied forces, levels apart, and
-    `unstated` for errors as large as the measured forces that state none.
+    `unstated shape (n, n_channels, n_unstated)` for errors of 1 N of the measured forces that state none.
     """
 
     frequency: Array
@@ -86,8 +86,8 @@ class Noise:
 
     The noise's density falls as f^-slope; 0 is white. `louder shape (len(LOUDER_HZ), n_channels)` are factors of each
     channel's density from these frequencies on, by what no other channel shares: laws make harmonics where H has none.
-    `drawn` stands in for L G H R H*, and for `louder`, where H does not say what roughness makes of a vehicle with laws. `acting` is
-    the unstated error of measured forces, white, as a share of them.
+    `drawn` stands in for L G H R H*, and for `louder`, where H does not say what roughness makes of a vehicle with laws. `acting
+    shape (n_unstated,)` are the unstated errors of measured forces, white [N]; None without.
     """
 
     levels: Array
@@ -95,7 +95,7 @@ class Noise:
     slope: float = 0.0
     louder: Array | None = None
     drawn: DrawnDensity | None = None
-    acting: float = 0.0
+    acting: Array | None = None
 
     def level(self, wavenumber: Array) -> Array:
         """Return L at wavenumbers [cycles/m]."""
@@ -173,7 +173,8 @@ class Noise:
         return np.concatenate([road, *self._forced(answer)], axis=2)
 
     def _forced(self, answer: RoadAnswer) -> list[Complex]:
-        return [scale * part for scale, part in ((1.0, answer.forced), (self.acting, answer.unstated)) if part is not None and scale]
+        stated = [] if answer.forced is None else [answer.forced]
+        return stated if self.acting is None or answer.unstated is None else [*stated, self.acting * answer.unstated]
 
     def draw(self, answer: RoadAnswer, n_samples: int, lines: NDArray[np.intp], random: np.random.Generator) -> Array:
         """Return noise within the band of `lines` (numbers of the FFT's lines) as time histories `shape (n_samples, n_channels)`."""
@@ -210,9 +211,16 @@ def road_answer(trial: Trial, frequency: Array, values: dict[str, float]) -> Roa
     gain = (displaced[..., : len(late)] * delayed[:, None] * (REFERENCE_CYCLES_PER_M * np.sqrt(speed) / frequency)[:, None, None]) @ root
     errors = np.array([entry.noise or 0.0 for entry in trial.run.file.forces.values()])
     forced = np.asarray(pushed * errors * np.sqrt(2 * dt)) if errors.any() else None
-    sizes = np.array([0.0 if item.values is None else np.std(item.values) for item in trial.scenario.forces]) * (errors == 0)
-    unstated = np.asarray(pushed * sizes * np.sqrt(2 * dt)) if sizes.any() else None
+    open_ones = unstated_forces(trial) > 0
+    unstated = np.asarray(pushed[..., open_ones] * np.sqrt(2 * dt)) if open_ones.any() else None
     return RoadAnswer(frequency, frequency / speed, np.asarray(gain), dt, forced, unstated)
+
+
+def unstated_forces(trial: Trial) -> Array:
+    """Return the standard deviation of each measured force whose error the run file does not state [N]; 0 of the others."""
+    errors = np.array([entry.noise or 0.0 for entry in trial.run.file.forces.values()])
+    sizes = np.array([0.0 if item.values is None else np.std(item.values) for item in trial.scenario.forces])
+    return np.asarray(sizes * (errors == 0))
 
 
 def estimate_noise(residuals: Sequence[tuple[Complex, RoadAnswer]], start: Noise, *, same_road: bool = False) -> tuple[Noise, ...]:

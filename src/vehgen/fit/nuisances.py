@@ -68,8 +68,8 @@ class Nuisances:
     gain, tilt, position
         Of each channel's gain (relative), of each sensor's nose-down tilt [rad] and place along its body [m].
     force_gain, force_offset
-        Of each measured force's gain, relative, and of a constant force beside it, relative to its root mean square. What a spring holds
-        has no offset: it would have settled.
+        Of each measured force's gain, relative, and of a constant force beside it, relative to its root mean square in the
+        loudest run. What a spring holds has no offset: it would have settled.
     displacement_gain
         Of each measured displacement's gain, relative. It has no offset: a damper feels none, and what it would shift of a spring's force
         has settled.
@@ -138,7 +138,9 @@ class Nuisances:
                 spread = self._stated(trial)
                 names.setdefault(("force_gain", force), Nuisance("force_gain", force, spread["force_gain"]))
                 if not is_held(trial.simulator.model, trial.values):
-                    names.setdefault(("force_offset", force), Nuisance("force_offset", force, rms * spread["force_offset"]))
+                    known = names.get(("force_offset", force))
+                    sigma = max(rms * spread["force_offset"], 0.0 if known is None else known.sigma)  # of the loudest run
+                    names["force_offset", force] = Nuisance("force_offset", force, sigma)
             for link in measured_displacements(trial):
                 names.setdefault(("displacement_gain", link), Nuisance("displacement_gain", link, self._stated(trial)["displacement_gain"]))
         return tuple(item for item in names.values() if item.sigma > 0)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
 from vehgen.fit.recording import Recording, read_recording
 from vehgen.fit.run_checks import check_hump_reached, check_initial, check_inputs_last
-from vehgen.fit.window import AFTER_RELEASE, RAMP
+from vehgen.fit.window import AFTER_RELEASE, RAMP, Window
 from vehgen.road import Hump
 from vehgen.simulate import Run, RunLike, Scenario, Simulator, SimulatorPool, as_run, make_scenario, natural_modes
 from vehgen.simulate.acquired import assumed_chains, channel_factors
@@ -68,6 +68,11 @@ class Trial:
             return RAMP
         chains = assumed_chains(scenario, self.channels)
         return 0.0 if all(chain.filtering().is_point_sample for chain in chains) else AFTER_RELEASE
+
+    @property
+    def window(self) -> Window:
+        """How the record is seen: of what drives no road the sensors' zeros count for nothing."""
+        return Window(self.fade_in, not self.scenario.track.parts or self.fade_in < RAMP)
 
     def channel_factors(self, frequency: Array) -> Complex:
         """Return what the recorders make of spectral lines of the channels: factors `shape (n, n_channels)` at frequencies [Hz]."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -14,6 +15,18 @@ RAMP = 0.75
 """Length of the window's ramps [s]."""
 AFTER_RELEASE = 0.1
 """The same at the start of a run whose initial state is stated [s], through a recorder: its low-pass has forgotten the rest before then."""
+
+
+@dataclass(frozen=True)
+class Window:
+    """How a record is seen: it fades in within `fade_in` [s]; where it is `zeroed`, constants leave no lines.
+
+    A sensor's zero is unknown. A rig has motions so slow that it would count among them, and a window that begins at full weight spreads
+    it over all lines.
+    """
+
+    fade_in: float = RAMP
+    zeroed: bool = False
 
 
 @lru_cache(maxsize=64)
@@ -29,19 +42,18 @@ def taper(n_samples: int, dt: float, fade_in: float = RAMP) -> Array:
     return window
 
 
-def transform(values: Array, dt: float, inside: NDArray[np.bool_], late: Array | None = None, fade_in: float = RAMP) -> Complex:
+def transform(values: Array, dt: float, inside: NDArray[np.bool_], late: Array | None = None, seen: Window = Window()) -> Complex:
     """Return spectral lines of tapered histories `shape (..., n_samples, n_channels)`, scaled so that |line|^2 is a one-sided PSD.
 
     `late shape (n_channels,)` [s] moves each channel's window so much earlier: lines turned by that delay are then those of the delayed
-    channel under the window as it is. `fade_in` as in :func:`taper`; where it is shorter than RAMP, constants leave no lines: a window that
-    begins at full weight would spread the false zero of a sensor over all of them.
+    channel under the window as it is.
     """
-    window = taper(values.shape[-2], dt, fade_in)
+    window = taper(values.shape[-2], dt, seen.fade_in)
     scale = np.sqrt(2 * dt / (window**2).sum())
     windows = window[:, None]
     if late is not None and late.any():
         time = np.arange(-1, len(window)) * dt  # what came before the record counts nothing
         windows = np.column_stack([np.interp(time[1:] + item, time, [0.0, *window], left=0.0, right=0.0) for item in late])
-    if fade_in < RAMP:
+    if seen.zeroed:
         values = values - (values * windows).sum(axis=-2, keepdims=True) / windows.sum(axis=0)
     return np.asarray(np.fft.rfft(values * windows, axis=-2)[..., inside, :] * scale)

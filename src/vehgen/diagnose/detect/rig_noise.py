@@ -2,8 +2,8 @@
 
 Ripple of a drive, or noise of a load cell, shakes a rig as a white force would. How large it is, and how quiet the sensors are, shows in
 the upper half of the band in what a fit leaves: what is missing from a model mostly shows below, at the motion's own frequencies. Where
-the whole band has less of it, that counts. So noise that was overrated, by harmonics above the band, comes down once the best model is
-known.
+the whole band has less of it than that half allows, that counts. So noise that was overrated, by harmonics above the band, comes down
+once the best model is known.
 """
 
 from __future__ import annotations
@@ -17,13 +17,15 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.fit.misfit import Noises
-from vehgen.fit.noise import Noise, RoadAnswer
+from vehgen.fit.noise import Noise, RoadAnswer, unstated_forces
 from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 SHARES = (1e-5, 0.05)
-"""Errors of a force beside it: smaller ones do not count, larger ones are no errors."""
+"""Errors of a force beside it: smaller ones do not count, larger ones are no errors. Of a load cell's noise, beside the loudest run's."""
+LESS_LIKELY = 4.0
+"""The upper half of the band allows errors of forces by which -2 ln of the likelihood grows by so much (two standard deviations)."""
 QUIETEST = 1e-6
 """Sensors may be quieter than the top of the band shows by this factor: it holds the force's error, and harmonics, too."""
 STARTS = tuple((share, own) for share in (1e-4, 1e-3, 0.01, 0.03) for own in (0.0, -1.0, -3.0, -6.0, -9.0, -12.0))
@@ -33,8 +35,8 @@ STARTS = tuple((share, own) for share in (1e-4, 1e-3, 0.01, 0.03) for own in (0.
 def rig_noises(fit: ModelFit, noises: Noises, quiet: Noises) -> Noises:
     """Return noises with what a fit's runs without a road show; others keep theirs, and so does what run files state.
 
-    Forces have an error that is the same share of them in all runs with the same channels. `quiet` is the noise of the sensors before any
-    fit, which they do not exceed.
+    Forces have an error that is either the same share of them in all runs with the same channels (ripple) or the same in newtons (a load
+    cell's noise), whichever is likelier. `quiet` is the noise of the sensors before any fit, which they do not exceed.
     """
     groups: dict[tuple[str, ...], list[_Left]] = {}
     for part in fit.parts:
@@ -44,9 +46,10 @@ def rig_noises(fit: ModelFit, noises: Noises, quiet: Noises) -> Noises:
                 groups.setdefault(trial.channels, []).append(left)
     found = dict(noises)
     for runs in groups.values():
-        search = _Search.of(runs, noises, quiet)
-        if search.size:
-            x = np.min([search.likeliest(part) for part in ([run.upper for run in runs], runs)], axis=0)
+        searches = _Search.of(runs, noises, quiet)
+        if searches[0].size:
+            answers = [np.minimum(item.largest([run.upper for run in runs]), item.likeliest(runs)) for item in searches]
+            search, x = min(zip(searches, answers, strict=True), key=lambda pair: pair[0].loss(pair[1], runs))
             found |= {run.trial.name: search.noise(run, x) for run in runs}
     return found
 
@@ -71,44 +74,66 @@ class _Left:
 
 @dataclass(frozen=True)
 class _Search:
-    """Noise of runs with the same channels, by numbers.
+    """Noise of runs with the same channels, by numbers; whether an error of forces is a share of them is told by `forces`.
 
-    They are the logarithm of the force's error, where there is one, and those of the `free` channels' noise over the `loudest`, which is
-    that of the quietest run.
+    They are the logarithm of the forces' error, where there is one, over `forces` [N], `shape (n_unstated,)` by run, and those of the
+    `free` channels' noise over the `loudest`, which is that of the quietest run.
     """
 
     noises: Noises
     quiet: Noises
     loudest: Array
     free: NDArray[np.intp]
-    has_force: bool
+    forces: dict[str, Array]
 
     @classmethod
-    def of(cls, runs: Sequence[_Left], noises: Noises, quiet: Noises) -> _Search:
+    def of(cls, runs: Sequence[_Left], noises: Noises, quiet: Noises) -> list[_Search]:
         free = [i for i, channel in enumerate(runs[0].trial.recording.channels) if channel.noise is None]
         loudest = np.min([quiet[run.trial.name].sigma for run in runs], axis=0)
-        return cls(noises, quiet, loudest, np.array(free, dtype=np.intp), any(run.answer.unstated is not None for run in runs))
+        sizes = {run.trial.name: unstated_forces(run.trial) for run in runs}
+        own = {name: item[item > 0] for name, item in sizes.items()}
+        largest = np.max(list(sizes.values()), axis=0)
+        forms = [own, dict.fromkeys(sizes, largest[largest > 0])] if largest.any() and len(runs) > 1 else [own]
+        return [cls(noises, quiet, loudest, np.array(free, dtype=np.intp), forces) for forces in forms]
 
     @property
     def size(self) -> int:
         return self.has_force + len(self.free)
 
+    @property
+    def has_force(self) -> bool:
+        return any(len(item) for item in self.forces.values())
+
     def noise(self, run: _Left, x: Array) -> Noise:
         """Return a run's noise by the numbers `shape (size,)`."""
         sigma = self.quiet[run.trial.name].sigma.copy()
         sigma[self.free] = self.loudest[self.free] * np.exp(x[int(self.has_force) :])
-        acting = float(np.exp(x[0])) if self.has_force else 0.0
+        acting = np.exp(x[0]) * self.forces[run.trial.name] if self.has_force else None
         return replace(self.noises[run.trial.name], acting=acting, sigma=sigma)
+
+    def loss(self, x: Array, runs: Sequence[_Left]) -> float:
+        """Return -2 ln of the likelihood of what is left of runs, less a constant."""
+        return sum(self.noise(run, x).loss(run.lines, run.answer) for run in runs)
 
     def likeliest(self, runs: Sequence[_Left]) -> Array:
         """Return the most likely numbers."""
         bounds = [*[tuple(np.log(SHARES))] * self.has_force, *[(float(np.log(QUIETEST)), 0.0)] * len(self.free)]
-
-        def loss(x: Array) -> float:
-            return sum(self.noise(run, x).loss(run.lines, run.answer) for run in runs)
-
         starts = [np.array([*[np.log(share)] * self.has_force, *[own] * len(self.free)]) for share, own in STARTS]
-        start = min(starts, key=loss)
+        start = min(starts, key=lambda x: self.loss(x, runs))
         simplex = start + np.vstack([np.zeros(self.size), 0.7 * np.eye(self.size)])
         options = {"xatol": 0.02, "fatol": 0.1, "initial_simplex": simplex}
-        return np.asarray(scipy.optimize.minimize(loss, start, method="Nelder-Mead", bounds=bounds, options=options).x)
+        return np.asarray(scipy.optimize.minimize(self.loss, start, (runs,), "Nelder-Mead", bounds=bounds, options=options).x)
+
+    def largest(self, runs: Sequence[_Left]) -> Array:
+        """Return the most likely numbers with the largest error of forces that is hardly less likely: quiet ones may tell nothing of it."""
+        x = self.likeliest(runs)
+        if not self.has_force:
+            return x
+        allowed = self.loss(x, runs) + LESS_LIKELY
+
+        def beyond(error: float) -> float:
+            return self.loss(np.array([error, *x[1:]]), runs) - allowed
+
+        end = float(np.log(SHARES[1]))
+        x[0] = scipy.optimize.brentq(beyond, x[0], end, xtol=0.02) if beyond(end) > 0 else end
+        return x

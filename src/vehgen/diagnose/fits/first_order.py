@@ -79,7 +79,7 @@ class ProbeMotion:
             lines: Complex = np.zeros((len(self.misfit.frequency(t)), len(trial.channels)), dtype=np.complex128)
             inside = np.isin(np.fft.rfftfreq(len(trial.recording.time), trial.recording.dt), self.misfit.frequency(t))
             for number, force in forces.items():
-                lines += transform(force[:, None], trial.recording.dt, inside, fade_in=trial.fade_in) * self._response(t, number)
+                lines += transform(force[:, None], trial.recording.dt, inside, seen=trial.window) * self._response(t, number)
             parts.append(flatten(self.misfit.whiten(t, self.misfit.read_at(t, lines, self.x))))
         return np.concatenate(parts)
 

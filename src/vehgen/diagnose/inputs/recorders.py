@@ -104,6 +104,6 @@ def _kept(trial: Trial, predicted: Array) -> Array:
     shares = []
     for low, high in (FAST_BAND_HZ, SLOW_BAND_HZ):
         inside = (frequency >= low) & (frequency <= min(high, 0.45 / dt))
-        measured, model = (transform(item, dt, inside, fade_in=trial.fade_in) for item in (trial.recording.values[:n], predicted))
+        measured, model = (transform(item, dt, inside, seen=trial.window) for item in (trial.recording.values[:n], predicted))
         shares.append(np.sqrt((np.abs(measured) ** 2).sum(axis=0) / np.maximum((np.abs(model) ** 2).sum(axis=0), 1e-300)))
     return np.asarray(shares[0] / np.maximum(shares[1], 1e-300))

@@ -163,7 +163,7 @@ def unrelated_recording(fit: LeastSquaresFit) -> tuple[MeasurementFault, ...]:
     misfit, shares = fit.misfit, []
     for t, (trial, (lines, _)) in enumerate(zip(misfit.problem.trials, misfit.residual_spectrum(fit.x), strict=True)):
         inside = np.isin(np.fft.rfftfreq(len(trial.recording.time), trial.recording.dt), misfit.frequency(t))
-        recorded = transform(trial.recording.values, trial.recording.dt, inside, fade_in=trial.fade_in)
+        recorded = transform(trial.recording.values, trial.recording.dt, inside, seen=trial.window)
         each = (np.abs(lines) ** 2).sum(axis=0) / (np.abs(recorded) ** 2).sum(axis=0)
         shares.append(float(np.median(each)))  # one channel alone that is wrong makes no stranger
     if min(shares) < UNRELATED_SHARE:

@@ -62,7 +62,7 @@ def decoy_shares(
                 force = np.sin(slope * d / scales[0] + rate * v / scales[1] + phase) - np.sin(phase)
                 frequency = np.fft.rfftfreq(len(d), trial.recording.dt)
                 inside = (frequency >= misfit.band[0]) & (frequency <= misfit.band[1])
-                lines = transform(force[:, None], trial.recording.dt, inside, fade_in=trial.fade_in) * responses[t]
+                lines = transform(force[:, None], trial.recording.dt, inside, seen=trial.window) * responses[t]
                 parts.append(flatten(misfit.whiten(t, misfit.read_at(t, lines, place.x))))
             columns.append(np.concatenate(parts))
         own = projection.remainder(np.array(columns).T)
