@@ -119,6 +119,9 @@ FREED = {"k": "the stiffness", "c": "the damping", "kt": "the tyre's stiffness"}
 """What an effect frees, in words."""
 PLACES = {"walking_beam": "axle4+axle5", "cargo_module": "semitrailer", "frame_bending": "semitrailer", "sensor_delay": "L2"}
 
+UNDRAWN = ("added_stiffness",)
+"""Effects that have no place on tractor5."""
+
 
 def page() -> str:
     """Return the page's text."""
@@ -144,7 +147,8 @@ def page() -> str:
             lines.append("")
         if effect.frees:
             lines += [f"Its fits search {' and '.join(map(FREED.get, effect.frees))} there within the file's whole range.", ""]
-        lines += [f"![{effect.title}, before and after](images/effects/{effect.name}.svg)", ""]
+        if effect.name not in UNDRAWN:
+            lines += [f"![{effect.title}, before and after](images/effects/{effect.name}.svg)", ""]
         lines += [f"Source: {effect.source}.", ""]
     return "\n".join(lines)
 

@@ -8,6 +8,7 @@ Data = dict[str, Any]
 WEAK = 1.0
 """A hidden law whose distinct strength is below cannot be asked for."""
 SYNONYMS: dict[str, tuple[str, ...]] = {
+    "hidden_spring": ("added_stiffness",),
     "free_play": ("damper_free_play",),
     "directional_friction": ("asymmetric_friction",),
 }

@@ -32,8 +32,8 @@ class EffectSite:
 
     `load` [N] is the static load of the axle (of the hinge, the link, the body's weight); `k` [N/m], `c` [N s/m] its suspension's
     or link's; `kt` [N/m] its tyre's; `mass` [kg] and `inertia` [kg m^2] its body's; `length` [m] the distance between the body's
-    outermost supports. On a rig without weight on axles `load` counts the largest force that occurs, too, and `stroke` is the largest
-    travel [m].
+    outermost supports. On a rig without weight on axles `load` counts the largest force that occurs, too; `stroke` is the largest
+    travel on any rig [m].
     """
 
     vehicle: Vehicle
@@ -108,7 +108,7 @@ class EffectLocator:
     values
         Its free parameters [SI].
     occurring
-        What occurs at suspensions and links of a rig without weight on axles, by name.
+        What occurs at suspensions and links of a rig, by name.
     """
 
     def __init__(self, vehicle: Vehicle, values: Mapping[str, float], occurring: Mapping[str, Occurring] | None = None) -> None:

@@ -66,6 +66,11 @@ def dampers(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     return tuple(name for name in suspensions(vehicle, trials) if damped.issuperset(alike(vehicle, name) or (name,)))
 
 
+def springless(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
+    """Return the links that have a damper or laws, but no stiffness."""
+    return tuple(name for name, link in vehicle.links.items() if not link.k.names and link.k.evaluate({}) == 0)
+
+
 def axles(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return every axle."""
     return tuple(vehicle.axles)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from importlib.metadata import entry_points
 
 from vehgen.effects.base import Effect
+from vehgen.effects.library.added_stiffness import ADDED_STIFFNESS_EFFECT
 from vehgen.effects.library.asymmetric_damping import ASYMMETRIC_DAMPING_EFFECT
 from vehgen.effects.library.asymmetric_friction import ASYMMETRIC_FRICTION_EFFECT
 from vehgen.effects.library.bump_stop import BUMP_STOP_EFFECT
@@ -41,6 +42,7 @@ EFFECTS: dict[str, Effect] = {
     for effect in (
         DRY_FRICTION_EFFECT,
         ASYMMETRIC_FRICTION_EFFECT,
+        ADDED_STIFFNESS_EFFECT,
         CUBIC_STIFFNESS_EFFECT,
         PROGRESSIVE_STIFFNESS_EFFECT,
         BUMP_STOP_EFFECT,
