@@ -26,19 +26,20 @@ OFFSET = 3.0
 """What acts beside the recorded force [N]."""
 
 
-def drive(friction, amplitude, seed, seconds=6.0, dt=1e-3):
+def drive(friction, amplitude, seed, spring=0.0, seconds=6.0, dt=1e-3):
     """Return times, recorded forces and places of a carriage under a position controller; Karnopp's friction, explicit small steps."""
     random = np.random.default_rng(seed)
     t = np.arange(0.0, seconds + dt / 2, dt)
     asked = amplitude * (1 - np.cos(2 * np.pi * t / 3.0)) / 2 + 0.05 * amplitude * np.sin(2 * np.pi * 1.7 * t)
     ripple = np.convolve(random.standard_normal(len(t)), np.ones(10) / 10, "same") * 2.0
     q = v = 0.0
+    beside = 0.0 if spring else OFFSET  # what a spring holds has settled
     force, place, h = np.zeros(len(t)), np.zeros(len(t)), dt / FINE
     for i in range(len(t)):
         place[i] = q
         force[i] = np.clip(4e3 * (asked[i] - q) - 900.0 * v, -150, 150)
         for _ in range(FINE):
-            push = force[i] + ripple[i] + OFFSET
+            push = force[i] + ripple[i] + beside - spring * q
             if abs(v) < 1e-5 and abs(push) <= friction:
                 v = 0.0
             else:
@@ -49,13 +50,13 @@ def drive(friction, amplitude, seed, seconds=6.0, dt=1e-3):
     return t, force, place
 
 
-def write(folder, friction, amplitudes=(0.15, 0.25, 0.2), cell=0.0):
+def write(folder, friction, amplitudes=(0.15, 0.25, 0.2), cell=0.0, spring=0.0):
     """Write runs of the carriage; `cell` is the noise of what measures its force [N]."""
     (folder / "carriage.yaml").write_text(VEHICLE, encoding="utf-8")
     runs = []
     for number, amplitude in enumerate(amplitudes):
         name = f"run{number}"
-        t, force, place = drive(friction, amplitude, number)
+        t, force, place = drive(friction, amplitude, number, spring)
         held = np.column_stack([t, force + cell * np.random.default_rng(number + 90).standard_normal(len(t))])
         np.savetxt(folder / f"{name}_force.csv", held, delimiter=",", header="t,F", comments="", fmt="%.9g")
         recorded = place + 1e-6 * np.random.default_rng(number + 50).standard_normal(len(t))
@@ -86,6 +87,12 @@ def test_a_load_cells_noise_is_as_loud_in_gentle_runs(tmp_path):
     found = diagnose(tmp_path / "carriage.yaml", write(tmp_path, 0.0, (0.07, 0.25, 0.12, 0.18), cell=2.0))
     assert found.verdict.verdict == "no_missing_effect"
     assert max(item.after for item in found.verdict.gap.runs) < 1.15
+
+
+def test_a_spring_where_the_file_has_none_is_named(tmp_path):
+    verdict = diagnose(tmp_path / "carriage.yaml", write(tmp_path, 0.0, spring=100.0)).verdict
+    assert (verdict.verdict, [item.name for item in verdict.effects]) == ("named", ["added_stiffness"])
+    assert verdict.effects[0].parameters["k"].value == pytest.approx(100.0, rel=0.05)
 
 
 DYNO = """name: dyno

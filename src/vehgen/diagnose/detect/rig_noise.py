@@ -48,7 +48,7 @@ def rig_noises(fit: ModelFit, noises: Noises, quiet: Noises) -> Noises:
     for runs in groups.values():
         searches = _Search.of(runs, noises, quiet)
         if searches[0].size:
-            answers = [np.minimum(item.largest([run.upper for run in runs]), item.likeliest(runs)) for item in searches]
+            answers = [item.numbers(runs) for item in searches]
             search, x = min(zip(searches, answers, strict=True), key=lambda pair: pair[0].loss(pair[1], runs))
             found |= {run.trial.name: search.noise(run, x) for run in runs}
     return found
@@ -115,25 +115,36 @@ class _Search:
         """Return -2 ln of the likelihood of what is left of runs, less a constant."""
         return sum(self.noise(run, x).loss(run.lines, run.answer) for run in runs)
 
-    def likeliest(self, runs: Sequence[_Left]) -> Array:
-        """Return the most likely numbers."""
-        bounds = [*[tuple(np.log(SHARES))] * self.has_force, *[(float(np.log(QUIETEST)), 0.0)] * len(self.free)]
-        starts = [np.array([*[np.log(share)] * self.has_force, *[own] * len(self.free)]) for share, own in STARTS]
-        start = min(starts, key=lambda x: self.loss(x, runs))
-        simplex = start + np.vstack([np.zeros(self.size), 0.7 * np.eye(self.size)])
-        options = {"xatol": 0.02, "fatol": 0.1, "initial_simplex": simplex}
-        return np.asarray(scipy.optimize.minimize(self.loss, start, (runs,), "Nelder-Mead", bounds=bounds, options=options).x)
+    def numbers(self, runs: Sequence[_Left]) -> Array:
+        """Return the numbers that stand: the largest error of forces that both answers allow, and the sensors' quieter noise beside it."""
+        parts = ([run.upper for run in runs], runs)
+        error = min(self.largest_error(parts[0]), self.likeliest(runs)[0]) if self.has_force else None
+        return np.asarray(np.min([self.likeliest(part, error) for part in parts], axis=0))
 
-    def largest(self, runs: Sequence[_Left]) -> Array:
-        """Return the most likely numbers with the largest error of forces that is hardly less likely: quiet ones may tell nothing of it."""
+    def likeliest(self, runs: Sequence[_Left], error: float | None = None) -> Array:
+        """Return the most likely numbers, with a given logarithm of the forces' error where there is one."""
+        known = [] if error is None else [error]
+        sought = int(self.has_force) - len(known)
+
+        def loss(x: Array) -> float:
+            return self.loss(np.array([*known, *x]), runs)
+
+        starts = [np.array([*[np.log(share)] * sought, *[own] * len(self.free)]) for share, own in STARTS]
+        size = len(starts[0])
+        if not size:
+            return np.array(known)
+        start = min(starts, key=loss)
+        bounds = [*[tuple(np.log(SHARES))] * sought, *[(float(np.log(QUIETEST)), 0.0)] * len(self.free)]
+        options = {"xatol": 0.02, "fatol": 0.1, "initial_simplex": start + np.vstack([np.zeros(size), 0.7 * np.eye(size)])}
+        return np.array([*known, *scipy.optimize.minimize(loss, start, method="Nelder-Mead", bounds=bounds, options=options).x])
+
+    def largest_error(self, runs: Sequence[_Left]) -> float:
+        """Return the logarithm of the largest error of forces that is hardly less likely than the likeliest: runs may tell little of it."""
         x = self.likeliest(runs)
-        if not self.has_force:
-            return x
         allowed = self.loss(x, runs) + LESS_LIKELY
 
         def beyond(error: float) -> float:
             return self.loss(np.array([error, *x[1:]]), runs) - allowed
 
         end = float(np.log(SHARES[1]))
-        x[0] = scipy.optimize.brentq(beyond, x[0], end, xtol=0.02) if beyond(end) > 0 else end
-        return x
+        return float(scipy.optimize.brentq(beyond, x[0], end, xtol=0.02)) if beyond(end) > 0 else end
