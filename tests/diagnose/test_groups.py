@@ -1,9 +1,15 @@
 """One law in several suspensions alike, several effects that only together explain the runs, and parameters that are far off."""
 
+from dataclasses import replace
+
 import pytest
 from benchmarks.hidden_effects.generator import Effect
 
+from vehgen.diagnose.fits.candidate import Candidate
+from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.pipeline import diagnose_trials
+from vehgen.diagnose.select.group_members import member_seeds, with_members
+from vehgen.diagnose.select.search import SearchRound
 from vehgen.effects import EFFECTS
 from vehgen.vehicle import load_vehicle
 
@@ -25,3 +31,39 @@ def test_a_stiffness_that_the_file_has_far_too_small_is_no_effect(trials_of):
     assert verdict.effects == ()
     assert "ktr" in verdict.reason
     assert verdict.verdict in ("insufficient_data", "measurement_fault")
+
+
+@pytest.mark.slow
+def test_a_law_that_two_suspensions_have_in_different_strength_is_named_at_each(trials_of):
+    apart = (Effect("dry_friction", "front", {"force": 500.0}), Effect("dry_friction", "rear", {"force": 1100.0}))
+    verdict = diagnose_trials(trials_of(*apart), [EFFECTS[name] for name in ("dry_friction", "quadratic_damping")]).verdict
+    assert verdict.verdict == "named", verdict.reason
+    assert {(item.name, item.place): item.parameters["force"].value for item in verdict.effects} == {
+        ("dry_friction", "front"): pytest.approx(500.0, rel=0.1),
+        ("dry_friction", "rear"): pytest.approx(1100.0, rel=0.1),
+    }
+
+
+def test_a_group_is_taken_apart_at_its_axles_the_simplest_law_first(detection_of):
+    base = detection_of(*BOTH).base
+
+    def fit(name, place, training, *axles):
+        return replace(base, effects=(Candidate(EFFECTS[name], place, (), members=axles or (place,)),), training=training)
+
+    every = [
+        Candidate(EFFECTS[name], place, (), members=(place,)) for name in ("dry_friction", "asymmetric_friction") for place in ("a", "b")
+    ]
+    found = SearchRound(base, (), (), (fit("asymmetric_friction", "a and b", 5.0, "a", "b"), fit("dry_friction", "a", 9.0)))
+    asked = []
+
+    def fit_one(candidate) -> ModelFit:
+        asked.append(candidate.label)
+        return fit(candidate.effect.name, candidate.place, 7.0 if candidate.place == "b" else 8.0)
+
+    apart = with_members(found, every, fit_one)
+    assert sorted(asked) == ["asymmetric_friction at a", "asymmetric_friction at b", "dry_friction at b"]
+    assert apart.fits[0] is found.fits[0]
+    assert [item.label for item in member_seeds(apart)] == ["dry_friction at b", "asymmetric_friction at b"]
+    single = replace(found, fits=found.fits[1:])
+    assert with_members(single, every, fit_one) is single
+    assert member_seeds(single) == []

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.detect.detection import Detection
+from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit
 from vehgen.diagnose.localise.localisation import suffices
 from vehgen.diagnose.select.criteria import adds, excess, needs_both, p_value_of, passes, seeds, unfinished
 from vehgen.diagnose.select.estimates import gain_interval
+from vehgen.diagnose.select.group_members import member_seeds, with_rest
 from vehgen.diagnose.select.search import SearchRound
 
 MOST_EFFECTS = 3
@@ -31,6 +33,8 @@ class Combiner:
         How many candidates could have been tried.
     search
         Looks for an effect beside those of a fit.
+    candidates
+        Returns every effect at every place of a fit's vehicle.
     looked
         The looks made so far, none of which is made again.
     """
@@ -39,7 +43,8 @@ class Combiner:
     base: ModelFit
     tried: int
     search: Callable[[ModelFit], SearchRound]
-    looked: Sequence[SearchRound]
+    candidates: Callable[[ModelFit], Sequence[Candidate]]
+    looked: list[SearchRound]
 
     def further(self, chain: Sequence[ModelFit]) -> list[ModelFit]:
         """Return a chain of fits with what is found in what the last one leaves, until nothing is left or nothing passes."""
@@ -54,12 +59,14 @@ class Combiner:
     def pair(self, first: SearchRound) -> list[ModelFit]:
         """Return a pair of effects that passes, with what is found beside it; nothing where none does.
 
-        Where one force leaves noise, only a tyre and its suspension can be two.
+        Where one force leaves noise, only a tyre and its suspension can be two. A law that a group has alike is tried first at its axles
+        alone, where each has numbers of its own.
         """
-        tried = seeds(first)[:1] if suffices(first.passed, self.base) else seeds(first)
-        for seed in tried:
+        others = seeds(first)[:1] if suffices(first.passed, self.base) else seeds(first)
+        members = {item.key: item for item in member_seeds(first)}
+        for seed in (members | {item.key: item for item in others}).values():
             known = self._checked(seed)
-            look = self._look(known)
+            look = self._apart(known, first.fits[0]) if seed.key in members else self._look(known)
             if look.stopped:
                 return []
             if look.fits and self._both(first, look, look.fits[0]):
@@ -81,6 +88,15 @@ class Combiner:
     def _look(self, known: ModelFit) -> SearchRound:
         """Return the look for an effect beside those of a fit."""
         return next((item for item in self.looked if item.current.key == known.key), None) or self.search(known)
+
+    def _apart(self, known: ModelFit, group: ModelFit) -> SearchRound:
+        """Return the look beside a law at one axle of a group, with what its other axles do from where the group's fit ended."""
+        look = self._look(known)
+        if look.stopped:
+            return look
+        found = with_rest(look, group, self.candidates(known), self.detection)
+        self.looked[:] = [found if item is look else item for item in self.looked]
+        return found
 
     def _checked(self, seed: ModelFit) -> ModelFit:
         return evaluate_fit(seed.effects, seed.least_squares, self.detection.validation_runs, self.detection.floor.noises)

@@ -25,6 +25,7 @@ from vehgen.diagnose.naming import Naming
 from vehgen.diagnose.result import Decided, DiagnosisModels
 from vehgen.diagnose.select.criteria import excess, p_value_of, passes, unfinished
 from vehgen.diagnose.select.estimates import gain_interval
+from vehgen.diagnose.select.group_members import with_members
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.search import DiagnosisProgress, Fitter, SearchRound, fit_leading_again, merit, search_round
 from vehgen.diagnose.verdict import Gap, PlaceChi, Verdict, VerdictName
@@ -203,10 +204,12 @@ class Decision:
         return found
 
     def _combiner(self) -> Combiner:
-        return Combiner(self.detection, self.base, self.tried, self._search_round, self.rounds)
+        return Combiner(self.detection, self.base, self.tried, self._search_round, self._candidates, self.rounds)
 
     def _combine(self, first: SearchRound) -> None:
         """Look for a pair of effects that passes, then for a set of parts."""
+        fitter = Fitter(self.detection, self.base, first.passed)
+        first = self.rounds[0] = with_members(first, self._candidates(self.base), fitter.fit)
         self.chain = self._combiner().pair(first)
         if not self.chain and not self.interrupted:
             self.chain = self._combiner().together(first)
