@@ -77,9 +77,7 @@ print(errors.median().round(2))
 print(f"{table['interval holds it'].sum()} of {len(table)} intervals of 90 % hold the truth")
 
 # %% [markdown]
-# Hop frequencies and the axles' parameters over their masses are known far better than single masses: the intervals say
-# so before the truth is seen. A road that was not used for the fit is the next check, [as the walk does
-# it](../calibrate.md).
+# A road that was not used for the fit is the next check, [as the walk does it](../calibrate.md).
 
 # %%
 calibrated.plot()

@@ -121,3 +121,25 @@ def test_links_of_notebooks_lead_somewhere(path):
 def test_files_that_notebooks_read_are_examples(path):
     for name in re.findall(r"\"((?:phones|hidden)/[\w.]+)\"", path.read_text(encoding="utf-8")):
         assert (DOCS / "examples" / name).exists(), name
+
+
+def test_docstrings_are_rewritten_for_the_site(site_module):
+    pytest.importorskip("griffe")
+    text = "Do it, as :func:`vehgen.x`.\n\nParameters\n----------\na, b\n    Both.\n\nReturns\n-------\nWhat was done;\nand more.\n"
+    expected = (
+        "Do it, as `vehgen.x`.\n\nParameters\n----------\na\n    Both.\nb\n    Both.\n"
+        "Returns\n-------\nfloat\n    What was done;\n    and more.\n"
+    )
+    assert site_module("docstrings").rewritten(text, "float") == expected
+    typed = "Do it.\n\nReturns\n-------\nfloat\n    What was done.\n"
+    assert site_module("docstrings").rewritten(typed, "float") == typed
+
+
+def test_what_a_page_loads_from_another_host_is_seen(site_module):
+    for package in ("mkdocs", "jupytext", "nbconvert"):
+        pytest.importorskip(package)
+    found = site_module("hooks").FROM_ELSEWHERE
+    for tag in ('<script src="https://x.org/a.js">', "<img alt='' src=//x.org/a.png>", '<link rel="stylesheet" href="http://x.org/a.css">'):
+        assert found.findall(tag) == [tag]
+    for tag in ('<a href="https://x.org">', '<script src="assets/a.js">', '<img src="images/a.svg" alt="https://x.org">'):
+        assert found.findall(tag) == []
