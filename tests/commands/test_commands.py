@@ -11,7 +11,8 @@ import pytest
 
 from tests.commands.calls import python, run_json
 from vehgen.commands import main
-from vehgen.simulate.run_file import RunFile
+from vehgen.mechanics.laws.schema import law_schema
+from vehgen.simulate.run_file.schema import run_schema
 from vehgen.vehicle import bundled_models
 from vehgen.vehicle.schema import vehicle_schema
 
@@ -160,10 +161,10 @@ def test_models(capsys: pytest.CaptureFixture[str]):
 def test_schema(capsys: pytest.CaptureFixture[str]):
     found = run_json(capsys, "schema")
     jsonschema.Draft202012Validator.check_schema(found)
-    assert found == vehicle_schema()
+    assert found == vehicle_schema(law_schema())
     run = run_json(capsys, "schema", "--run")
     jsonschema.Draft202012Validator.check_schema(run)
-    assert run == {"$schema": "https://json-schema.org/draft/2020-12/schema", **RunFile.model_json_schema()}
+    assert run == run_schema()
     assert main(["schema"]) == 0
     assert json.loads(capsys.readouterr().out) == found
 

@@ -1,7 +1,9 @@
 """What is said of the project in several places is the same everywhere."""
 
+import io
 import re
 import tomllib
+import zipfile
 
 import pytest
 
@@ -19,6 +21,19 @@ def test_the_version_is_that_of_the_package():
     assert re.findall(r"^version: (.*)$", citation, re.MULTILINE) == [vehgen.__version__]
     changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     assert re.findall(r"^## (.*)$", changes, re.MULTILINE)[:2] == ["Unreleased", vehgen.__version__]
+
+
+def test_the_package_stays_small_and_needs_no_more():
+    names = [re.split(r"[<>=]", item)[0] for item in PROJECT["project"]["dependencies"]]
+    core = {"numpy", "scipy", "sympy", "numba", "llvmlite", "matplotlib", "pydantic", "ruamel.yaml", "rich", "jinja2", "threadpoolctl"}
+    assert set(names) == core
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as wheel:
+        for folder in (ROOT / "src", ROOT / "models"):
+            for path in folder.rglob("*"):
+                if path.is_file() and "__pycache__" not in path.parts:
+                    wheel.write(path, path.relative_to(ROOT))
+    assert 500_000 < len(packed.getvalue()) < 970_000  # what tells of the package itself is not in it
 
 
 def test_what_the_source_package_holds_is_there():

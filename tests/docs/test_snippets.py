@@ -24,7 +24,7 @@ def blocks(page, language):
 def command_lines(page):
     """Return what follows `vehgen` in shell blocks, and in the text where a whole command is named."""
     lines = [line for text in blocks(page, "sh") for line in text.replace("\\\n", " ").splitlines() if line.startswith("vehgen ")]
-    return [shlex.split(line, comments=True)[1:] for line in lines]
+    return [shlex.split(line.partition(" > ")[0], comments=True)[1:] for line in lines]
 
 
 @pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "python") and page.name != OWN_TEST], ids=lambda path: path.name)

@@ -11,13 +11,13 @@ import jsonschema
 import pytest
 
 from vehgen.files.document import read_document, read_text
-from vehgen.simulate.run_file import RunFile
+from vehgen.simulate.run_file.schema import run_schema
 from vehgen.vehicle import bundled_models
 from vehgen.vehicle.schema import vehicle_schema
 
 DOCS = Path(__file__).parents[2] / "docs"
 VEHICLE = jsonschema.Draft202012Validator(vehicle_schema())
-RUN = jsonschema.Draft202012Validator(RunFile.model_json_schema())
+RUN = jsonschema.Draft202012Validator(run_schema())
 
 
 def examples(name: str) -> list[str]:
@@ -37,7 +37,7 @@ def test_bundled_models_pass(name: str):
     assert VEHICLE.is_valid(read_document(bundled_models()[name]).plain())
 
 
-@pytest.mark.parametrize("schema", [vehicle_schema(), RunFile.model_json_schema()], ids=["vehicle", "run"])
+@pytest.mark.parametrize("schema", [vehicle_schema(), run_schema()], ids=["vehicle", "run"])
 def test_the_schemas_are_valid_themselves(schema: dict[str, Any]):
     dialect = jsonschema.Draft202012Validator(jsonschema.Draft202012Validator.META_SCHEMA)
     assert list(dialect.iter_errors(schema)) == []

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from vehgen.errors import InputError, Position
 from vehgen.files.limits import VEHICLE_LIMITS, Limit
-from vehgen.files.quantities import limited
+from vehgen.files.quantities import limited, quantity_schema
 from vehgen.files.units import DAMPING, FORCE, INERTIA, LENGTH, MASS, NONE, STIFFNESS, Dimension
 
 AREA = LENGTH * LENGTH
@@ -25,27 +25,27 @@ SECTION_MOMENT = Limit("a second moment of a section", 1e-20, 100.0, SECOND_MOME
 RATIO = Limit("a damping ratio", 1e-9, 1.0, NONE)
 
 
-def _positive(limit: Limit) -> BeforeValidator:
-    return limited(limit, above=0.0)
+def _positive(limit: Limit) -> tuple[BeforeValidator, WithJsonSchema]:
+    return limited(limit, above=0.0), quantity_schema(limit.dimension)
 
 
-def _not_negative(limit: Limit) -> BeforeValidator:
-    return limited(limit, least=0.0)
+def _not_negative(limit: Limit) -> tuple[BeforeValidator, WithJsonSchema]:
+    return limited(limit, least=0.0), quantity_schema(limit.dimension)
 
 
-Distance = Annotated[float, limited(DISTANCE)]
-PositiveLength = Annotated[float, _positive(SIDE)]
-Mass = Annotated[float, _positive(VEHICLE_LIMITS[MASS])]
-OptionalMass = Annotated[float, _not_negative(VEHICLE_LIMITS[MASS])]
-Stiffness = Annotated[float, _positive(VEHICLE_LIMITS[STIFFNESS])]
-Damping = Annotated[float, _not_negative(VEHICLE_LIMITS[DAMPING])]
-DampingRatio = Annotated[float, Field(lt=1), _not_negative(RATIO)]
-Inertia = Annotated[float, _not_negative(VEHICLE_LIMITS[INERTIA])]
-Modulus = Annotated[float, _not_negative(MODULUS)]
-Density = Annotated[float, _not_negative(DENSITY_LIMIT)]
-Poisson = Annotated[float, Field(lt=0.5), _not_negative(Limit("Poisson's ratio", 0.0, 0.5, NONE))]
-Area = Annotated[float, _positive(SECTION_AREA)]
-SecondMoment = Annotated[float, _positive(SECTION_MOMENT)]
+Distance = Annotated[float, limited(DISTANCE), quantity_schema(DISTANCE.dimension)]
+PositiveLength = Annotated[float, *_positive(SIDE)]
+Mass = Annotated[float, *_positive(VEHICLE_LIMITS[MASS])]
+OptionalMass = Annotated[float, *_not_negative(VEHICLE_LIMITS[MASS])]
+Stiffness = Annotated[float, *_positive(VEHICLE_LIMITS[STIFFNESS])]
+Damping = Annotated[float, *_not_negative(VEHICLE_LIMITS[DAMPING])]
+DampingRatio = Annotated[float, Field(lt=1), *_not_negative(RATIO)]
+Inertia = Annotated[float, *_not_negative(VEHICLE_LIMITS[INERTIA])]
+Modulus = Annotated[float, *_not_negative(MODULUS)]
+Density = Annotated[float, *_not_negative(DENSITY_LIMIT)]
+Poisson = Annotated[float, Field(lt=0.5), *_not_negative(Limit("Poisson's ratio", 0.0, 0.5, NONE))]
+Area = Annotated[float, *_positive(SECTION_AREA)]
+SecondMoment = Annotated[float, *_positive(SECTION_MOMENT)]
 
 
 def check_derived(number: float, dimension: Dimension, what: str, place: Position) -> None:

@@ -13,11 +13,12 @@ from vehgen.effects.entry_reader import EntryReader
 from vehgen.effects.registry import library
 from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
 from vehgen.files.entry import read_entries
+from vehgen.files.schema import editor_schema
 
 
 def effects_schema() -> dict[str, Any]:
     """Return the JSON Schema of a file of effects, for editors."""
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **EffectsFile.model_json_schema(), "title": "vehgen effects file"}
+    return editor_schema(EffectsFile, "vehgen effects file")
 
 
 def effects(files: Iterable[str | os.PathLike[str]] | str | os.PathLike[str] = ()) -> dict[str, Effect]:

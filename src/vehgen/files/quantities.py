@@ -51,14 +51,15 @@ def limited(limit: Limit, above: float | None = None, least: float | None = None
 
 
 def _any(limit: Limit) -> tuple[BeforeValidator, WithJsonSchema]:
-    return limited(limit), _schema(limit.dimension)
+    return limited(limit), quantity_schema(limit.dimension)
 
 
 def _positive(limit: Limit) -> tuple[BeforeValidator, WithJsonSchema]:
-    return limited(limit, above=0.0), _schema(limit.dimension)
+    return limited(limit, above=0.0), quantity_schema(limit.dimension)
 
 
-def _schema(dimension: Dimension) -> WithJsonSchema:
+def quantity_schema(dimension: Dimension) -> WithJsonSchema:
+    """Return what editors are told of a quantity."""
     return WithJsonSchema({"type": ["string", "number"], "description": f"a number in {dimension}, with its unit"})
 
 
@@ -134,9 +135,11 @@ SpeedSpread = Annotated[Spread, *_spread_of(limits.SPEED_LIMIT.dimension)]
 ForceSpread = Annotated[Spread, *_spread_of(limits.FORCE_LIMIT.dimension)]
 LengthSpread = Annotated[Spread, *_spread_of(limits.HUMP_LENGTH.dimension)]
 TimeDeviation = Annotated[
-    float, BeforeValidator(lambda value: _from(value, limits.DURATION.dimension, 10.0)), _schema(limits.DURATION.dimension)
+    float, BeforeValidator(lambda value: _from(value, limits.DURATION.dimension, 10.0)), quantity_schema(limits.DURATION.dimension)
 ]
 LengthDeviation = Annotated[
-    float, BeforeValidator(lambda value: _from(value, limits.VEHICLE_LENGTH.dimension, 1.0)), _schema(limits.VEHICLE_LENGTH.dimension)
+    float,
+    BeforeValidator(lambda value: _from(value, limits.VEHICLE_LENGTH.dimension, 1.0)),
+    quantity_schema(limits.VEHICLE_LENGTH.dimension),
 ]
-AngleDeviation = Annotated[float, BeforeValidator(lambda value: _from(value, NONE, 1.0)), _schema(NONE)]
+AngleDeviation = Annotated[float, BeforeValidator(lambda value: _from(value, NONE, 1.0)), quantity_schema(NONE)]

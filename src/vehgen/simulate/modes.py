@@ -69,6 +69,8 @@ class Modes(Result, Sequence[Mode]):
 def natural_modes(model: ModelLike, values: Mapping[str, float] | None = None, *, parameter_set: str | None = None) -> Modes:
     """Return all modes, by ascending undamped frequency; force laws are not in them.
 
+    An overdamped pair of real eigenvalues -a, -b has the frequency sqrt(a b)/2 pi and the damping ratio (a + b)/(2 sqrt(a b)) > 1.
+
     Parameters
     ----------
     model
@@ -77,8 +79,6 @@ def natural_modes(model: ModelLike, values: Mapping[str, float] | None = None, *
         Parameters [SI] by name; what is not named keeps the value of the set, or the file's.
     parameter_set
         One of the vehicle's sets.
-
-    An overdamped pair of real eigenvalues -a, -b has the frequency sqrt(a b)/2 pi and the damping ratio (a + b)/(2 sqrt(a b)) > 1.
 
     Raises
     ------
