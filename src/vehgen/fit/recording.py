@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
 from vehgen.errors import InputError, shown
-from vehgen.files.checks import unit_factor
 from vehgen.files.quantities import read_quantity
 from vehgen.files.tables import TableColumns, read_columns
 from vehgen.files.units import read_unit
@@ -89,7 +88,7 @@ def read_recording(run: Run) -> Recording:
             channel = replace(_channel(sensor_name, sensor, quantity), noise=_noise(run, sensor_name, quantity, entry))
             channels.append(channel)
             columns.append(sensor.column(sensor_name, quantity))
-            factors.append(_factor(run, sensor_name, quantity, entry))
+            factors.append(sensor.factor(quantity))
     try:
         table = read_columns(path, (TIME_COLUMN, *columns))
     except InputError as error:
@@ -123,16 +122,6 @@ def _noise(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> f
     if not 0 < number < float("inf"):
         raise InputError(f"a noise above 0 was expected, found {shown(entry.noise)}", place)
     return number
-
-
-def _factor(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> float:
-    if isinstance(entry, str):
-        return 1.0
-    factor = float(entry.sign)
-    if entry.unit is not None:
-        place = run.document.find(("sensors", sensor, "channels", quantity, "unit"))
-        factor *= unit_factor(entry.unit, run.file.sensors[sensor].quantities[quantity], quantity, place)
-    return factor
 
 
 def _check_clock(table: TableColumns) -> None:
