@@ -16,6 +16,7 @@ from vehgen.mechanics import ElementOutput, EquationsOfMotion, Output, Place, de
 from vehgen.mechanics.quantities import WITH_STATIC
 from vehgen.simulate.acquired import acquire, kept_samples
 from vehgen.simulate.budgets import check_population
+from vehgen.simulate.profile_warnings import doubtful_profiles
 from vehgen.simulate.response import Response, ResponseChannel
 from vehgen.simulate.run_like import RunLike, as_run
 from vehgen.simulate.run_scenario import make_scenario
@@ -232,6 +233,7 @@ def simulate(run: RunLike, *, vehicle: VehicleLike | None = None) -> Response:
         *lift_off(simulator.model, values, responses[0, :, n:]),
         *spectral_nulls(simulator.model, values, scenario),
         *step_too_coarse(simulator.model, values, scenario),
+        *doubtful_profiles(simulator.model, values, scenario),
     ]
     readings = run.readings()
     items = simulator.model.channels[:n]
