@@ -82,18 +82,24 @@ def read_recording(run: Run) -> Recording:
         raise InputError("this run has a recording but no `sensors`", document.position)
     path = run.folder / file.recording
     place = document.find(("recording",))
-    channels, factors, columns = [], [], []
+    channels, units, signs, columns = [], [], [], []
     for sensor_name, sensor in file.sensors.items():
         for quantity, entry in sensor.channels.items():
             channel = replace(_channel(sensor_name, sensor, quantity), noise=_noise(run, sensor_name, quantity, entry))
             channels.append(channel)
             columns.append(sensor.column(sensor_name, quantity))
-            factors.append(sensor.factor(quantity))
+            stated = None if isinstance(entry, str) else entry.unit
+            units.append(
+                (sensor.quantities[quantity], quantity, stated, document.find(("sensors", sensor_name, "channels", quantity, "unit")))
+            )
+            signs.append(1 if isinstance(entry, str) else entry.sign)
     try:
-        table = read_columns(path, (TIME_COLUMN, *columns))
+        table = read_columns(path, (TIME_COLUMN, *columns)).in_si(0, "s", "time")
     except InputError as error:
         raise InputError(error.message, error.position or place) from error
-    values = np.column_stack(table.values[1:]) * np.array(factors)
+    for number, unit in enumerate(units, 1):
+        table = table.in_si(number, *unit)
+    values = np.column_stack(table.values[1:]) * np.array(signs, dtype=np.float64)
     _check_clock(table)
     rate = 1 / float(np.median(np.diff(table.values[0])))
     check_nyquist(run, rate)

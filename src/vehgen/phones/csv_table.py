@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError, Position, did_you_mean, shortened, shown
-from vehgen.files.csv_rows import csv_rows
 from vehgen.files.reading import split_lines
+from vehgen.files.tables.csv_rows import csv_rows
 from vehgen.files.units import ACCELERATION, FREQUENCY, TIME, Dimension, factor_to_si, parse_unit
 from vehgen.files.units import SPEED as SPEED_DIMENSION
 from vehgen.phones.export import PITCH_RATE_STREAM, SPEED_STREAM, VERTICAL_ACCELERATION_STREAM, PhoneExport, Stream

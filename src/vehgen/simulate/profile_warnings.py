@@ -51,8 +51,8 @@ def _too_short(name: str, profile: MeasuredProfile, scenario: Scenario) -> Itera
     if profile.end < along[-1] - MIN_END_GAP_M:
         when = float(np.interp(profile.end, along, scenario.time))
         yield (
-            f"{name} ends at {profile.end:.4g} m, the run at {along[-1]:.4g} m: from {when:.4g} s on the first wheel stays at its last height; "
-            "shorten `duration`, or measure a longer profile"
+            f"{name} ends at {profile.end:.4g} m, the run at {along[-1]:.4g} m: from {when:.4g} s on the first wheel stays "
+            "at its last height; shorten `duration`, or measure a longer profile"
         )
 
 
@@ -94,6 +94,6 @@ def _too_coarse(
     highest = scenario.top_speed / (2 * spacing)
     if highest < min(hops):
         yield (
-            f"{name} has a point every {spacing:.3g} m, no wave shorter than {2 * spacing:.3g} m: at {scenario.top_speed:.3g} m/s it excites "
-            f"nothing above {highest:.3g} Hz, and the axles hop at {min(hops):.3g} Hz"
+            f"{name} has a point every {spacing:.3g} m, no wave shorter than {2 * spacing:.3g} m: at {scenario.top_speed:.3g} m/s "
+            f"it excites nothing above {highest:.3g} Hz, and the axles hop at {min(hops):.3g} Hz"
         )
