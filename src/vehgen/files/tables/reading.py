@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import cast
 
 from vehgen.errors import InputError, Position
-from vehgen.files.reading import open_regular
+from vehgen.files.reading import open_regular, short_path
 from vehgen.files.tables.columns import MAX_TABLE_BYTES, TableColumns
 from vehgen.files.tables.csv_table import read_csv
 
@@ -22,6 +22,7 @@ _TABLE_READERS: tuple[tuple[re.Pattern[bytes], str], ...] = (
     (re.compile(rb"MATLAB 5\.0 MAT-file"), "matlab"),
     (re.compile(rb"\s*-1\s*\r?\n"), "uff"),
     (re.compile(rb"(\xef\xbb\xbf)?\s*<(\?xml|gpx|!)"), "gpx"),
+    (re.compile(rb"([^\n]*\n){0,20}\$(CT|ROAD_CRG)\b"), "crg"),
     (re.compile(rb"(![^\n]*\n|\s)*\$[A-Z]{2}[A-Z]{3},"), "nmea"),
 )
 """How a file begins, and the module of this box that reads it with its function `read`."""
@@ -33,8 +34,17 @@ _REFUSED_TABLES: tuple[tuple[bytes, str], ...] = (
 )
 
 
+def first_bytes(path: Path) -> bytes:
+    """Return how a file begins; raises InputError for one that is missing, not regular, too large or unreadable."""
+    with open_regular(path, MAX_TABLE_BYTES, "a table") as stream:
+        try:
+            return stream.read(_FIRST_BYTES)
+        except OSError as error:
+            raise InputError(f"cannot read {short_path(path)}: {error.strerror}") from error
+
+
 def read_columns(path: Path, names: tuple[str, ...]) -> TableColumns:
-    """Read columns of a table: CSV in any dialect, Parquet, Excel, MDF 4, UFF 58, MATLAB; `t` and `speed` of GPX and NMEA.
+    """Read columns of a table: CSV in any dialect, Parquet, Excel, MDF 4, UFF 58, MATLAB, OpenCRG; `t` and `speed` of GPX and NMEA.
 
     A unit that the file gives to a column, with it or in brackets in its heading, is in `units`; the numbers are those of the file.
 
@@ -44,8 +54,7 @@ def read_columns(path: Path, names: tuple[str, ...]) -> TableColumns:
         For a file that is missing, not regular, too large, of no such format or damaged, where a library is lacking, for a missing or
         repeated column, and at the place of anything that is not a number of at most LARGEST_MEASURED.
     """
-    with open_regular(path, MAX_TABLE_BYTES, "a table") as stream:
-        head = stream.read(_FIRST_BYTES)
+    head = first_bytes(path)
     for mark, what in _REFUSED_TABLES:
         if head.startswith(mark):
             raise InputError(f"the table is {what}", Position(path, 1, 1))
