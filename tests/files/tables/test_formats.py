@@ -113,6 +113,24 @@ def test_linear_conversions_of_mdf_count(tmp_path: Path):
     np.testing.assert_allclose(found.values[1], 1e3 * (0.5 * np.arange(200) - 3.0), rtol=1e-12)
 
 
+def test_packed_mdf_blocks_are_read_and_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    asammdf = pytest.importorskip("asammdf")
+    path = tmp_path / "run.mf4"
+    with asammdf.MDF(version="4.10") as file:
+        file.append([asammdf.Signal(AZ, T, name="az", unit="g")])
+        file.save(path, compression=2)
+    data = path.read_bytes()
+    at = data.index(b"##DZ")
+    np.testing.assert_allclose(read_columns(path, ("t", "az")).in_si(1, "m/s^2", "acceleration").values[1], 9.80665 * AZ)
+    monkeypatch.setattr("vehgen.files.tables.mdf.MAX_UNPACKED_MDF_BYTES", 1000)
+    with pytest.raises(InputError, match="packed blocks of at most 1000 bytes, by deflate, were expected"):
+        read_columns(path, ("t", "az"))
+    monkeypatch.undo()
+    path.write_bytes(data[: at + 32] + (100).to_bytes(8, "little") + data[at + 40 :])
+    with pytest.raises(InputError, match="a packed block is larger than it says"):
+        read_columns(path, ("t", "az"))
+
+
 def test_channels_of_two_mdf_clocks_are_refused(tmp_path: Path):
     asammdf = pytest.importorskip("asammdf")
     with asammdf.MDF(version="4.10") as file:

@@ -6,6 +6,8 @@ A file may hold formulas for its channels, and asammdf would compute them: only 
 from __future__ import annotations
 
 import logging
+import struct
+import zlib
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -13,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from vehgen.errors import InputError, Position, did_you_mean, shown
-from vehgen.files.tables.columns import TableColumns
+from vehgen.files.reading import read_bytes
+from vehgen.files.tables.columns import MAX_TABLE_BYTES, TableColumns
 from vehgen.files.tables.foreign import faults_of, library
 from vehgen.files.tables.sheet import Sheet, check_size
 
@@ -21,6 +24,12 @@ MDF_KIND = "an MDF 4 file"
 MDF_CLOCKS = ("t", "time")
 """What the clock of a group may be called in a run file, whatever its own name."""
 _VERSION_BYTES = 16
+MAX_UNPACKED_MDF_BYTES = 2 * MAX_TABLE_BYTES
+"""Packed blocks of one file, together, unpack to at most this [bytes]."""
+_PACKED = b"##DZ"
+_PACKED_HEADER = struct.Struct("<4s4xQQ2sBBIQQ")
+"""Mark, length and links of a packed block; what it held, how it is packed, and its sizes, unpacked and packed."""
+_DEFLATE = (0, 1)
 _PLAIN_OR_LINEAR = (0, 1)
 """Types of conversion of MDF 4: of the others one is a formula, and the rest are tables and texts."""
 
@@ -34,16 +43,35 @@ def read(path: Path, names: tuple[str, ...]) -> TableColumns:
         For a damaged, unfinished or older file, for a missing channel, one of several groups or clocks, one with a conversion that is
         neither plain nor linear, and as :meth:`Sheet.select`.
     """
-    with path.open("rb") as stream:
-        head = stream.read(_VERSION_BYTES)
+    head = read_bytes(path, MAX_TABLE_BYTES, MDF_KIND)[:_VERSION_BYTES]
     if head[:8] != b"MDF     " or head[8:10] != b"4.":
         version = head[8:12].decode("ascii", "replace")
         raise InputError(f"a finished MDF file of version 4 was expected, found {shown(version)}; convert it", Position(path, 1, 1))
+    _check_packed(path)
     asammdf = library("asammdf", "mdf", path)
     library("asammdf.blocks.mdf_v4", "mdf", path).MDF4.__del__ = _close
     logging.getLogger("asammdf").setLevel(logging.CRITICAL)
     with faults_of(path, MDF_KIND), asammdf.MDF(str(path), process_bus_logging=False) as file:
         return _select(path, file, names)
+
+
+def _check_packed(path: Path) -> None:
+    """Refuse packed blocks that unpack to more than they say, or all of them to more than any table; raises InputError."""
+    data = read_bytes(path, MAX_TABLE_BYTES, MDF_KIND)
+    place, total = data.find(_PACKED), 0
+    while place >= 0:
+        if place + _PACKED_HEADER.size <= len(data):
+            *_, method, _, _, told, size = _PACKED_HEADER.unpack_from(data, place)
+            begin = place + _PACKED_HEADER.size
+            total += told
+            if method not in _DEFLATE or told > MAX_UNPACKED_MDF_BYTES or total > MAX_UNPACKED_MDF_BYTES:
+                what = f"packed blocks of at most {MAX_UNPACKED_MDF_BYTES} bytes, by deflate, were expected"
+                raise InputError(f"{what}; save the file unpacked", Position(path, 1, 1))
+            with faults_of(path, MDF_KIND):
+                found = zlib.decompressobj().decompress(data[begin : begin + size], told + 1)
+            if len(found) > told:
+                raise InputError("a packed block is larger than it says: the file is damaged", Position(path, 1, 1))
+        place = data.find(_PACKED, place + 1)
 
 
 def _close(file: Any) -> None:
