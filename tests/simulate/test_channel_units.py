@@ -53,7 +53,7 @@ def test_a_response_reads_back_as_the_recording_of_its_own_run(tmp_path: Path):
     ("channel", "said"),
     [
         ("{column: az, unit: banana}", "run.yaml:6:63: unknown unit 'banana'; known: GN, GPa"),
-        ("{column: az, unit: M/s^2}", "run.yaml:6:63: unknown unit 'M/s^2'; did you mean 'm'? (acceleration is measured in m/s^2)"),
+        ("{column: az, unit: M/s^2}", "run.yaml:6:63: unknown unit 'M/s^2'; did you mean 'm'? (acceleration is measured in m/s^2, g, mg)"),
         ("{column: az, unit: kN}", "run.yaml:6:63: acceleration is measured in m/s^2, found 'kN', a unit of N"),
         ("{column: az, unit: m^70}", "run.yaml:6:63: the exponent of a unit"),
     ],

@@ -187,6 +187,11 @@ def factor_to_si(unit: str, dimension: Dimension) -> float | None:
     return found[0] if found is not None and found[2] == len(unit) and found[1] == dimension else None
 
 
+def units_of(dimension: Dimension) -> list[str]:
+    """Return the units that have a name of their own and a dimension, standard gravity's among those of an acceleration."""
+    return [unit for unit, (_, own) in UNITS.items() if own == dimension] + (list(GRAVITIES) if dimension == ACCELERATION else [])
+
+
 def counts_turns(text: str) -> bool:
     """Whether a unit, or a quantity with one, is in turns (Hz, rpm), not in radians, of a time."""
     return _TURNS.search(text) is not None

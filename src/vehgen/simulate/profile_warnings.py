@@ -32,13 +32,23 @@ MIN_END_GAP_M = 0.05
 
 def doubtful_profiles(model: EquationsOfMotion, values: Mapping[str, float], scenario: Scenario) -> Iterator[str]:
     """Warn of measured profiles that end before the run, have no long waves, or points too far apart for axle hop."""
-    profiles = [part for part in scenario.track.parts if isinstance(part, MeasuredProfile)]
-    for number, profile in enumerate(profiles):
-        name = "the measured profile" if len(profiles) == 1 else f"measured profile {number + 1}"
+    yield from profiles_that_end(scenario)
+    for name, profile in _measured(scenario):
         if not _is_obstacle(profile):
-            yield from _too_short(name, profile, scenario)
             yield from _without_long_waves(name, profile)
         yield from _too_coarse(name, profile, model, values, scenario)
+
+
+def profiles_that_end(scenario: Scenario) -> Iterator[str]:
+    """Warn of measured profiles that end before the run, but for obstacles on a level road."""
+    for name, profile in _measured(scenario):
+        if not _is_obstacle(profile):
+            yield from _too_short(name, profile, scenario)
+
+
+def _measured(scenario: Scenario) -> list[tuple[str, MeasuredProfile]]:
+    profiles = [part for part in scenario.track.parts if isinstance(part, MeasuredProfile)]
+    return [("the measured profile" if len(profiles) == 1 else f"measured profile {i + 1}", item) for i, item in enumerate(profiles)]
 
 
 def _is_obstacle(profile: MeasuredProfile) -> bool:
