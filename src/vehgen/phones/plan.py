@@ -212,7 +212,7 @@ def profile_road(profile: Mapping[str, str]) -> RoadOption:
     """Return a measured profile from the keys of a run file; raises InputError for a file or columns that are not there."""
     found = {"distance": "distance", "height": "height", **_known_keys(profile, "profile", PROFILE_KEYS)}
     if "file" not in found:
-        raise ArgumentError("`profile` lacks the key file, a CSV file with columns of distance and height", "profile")
+        raise ArgumentError("`profile` lacks the key file, a table with columns of distance and height", "profile")
     try:
         points = profile_table(Path(found["file"]), ProfileEntry.model_validate(found))
     except ValidationError as error:
