@@ -8,10 +8,13 @@ from fractions import Fraction
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from pydantic import TypeAdapter, ValidationError
 
-from vehgen.errors import InputError
+from vehgen.errors import InputError, Position
+from vehgen.files.checks import unit_factor
 from vehgen.files.expressions import ExpressionError, parse
-from vehgen.files.units import NAMED_DIMENSIONS, UNITS, Dimension, parse_unit, read_unit
+from vehgen.files.quantities import Frequency, PitchRate, read_quantity
+from vehgen.files.units import ACCELERATION, MASS, NAMED_DIMENSIONS, UNITS, Dimension, factor_to_si, parse_unit, read_unit
 
 # unit -> (factor to SI, exponents of metre, kilogram, second)
 TABLE = {
@@ -19,17 +22,24 @@ TABLE = {
     "mm": (0.001, (1, 0, 0)),
     "cm": (0.01, (1, 0, 0)),
     "km": (1000.0, (1, 0, 0)),
+    "in": (0.0254, (1, 0, 0)),
+    "ft": (0.3048, (1, 0, 0)),
     "kg": (1.0, (0, 1, 0)),
     "g": (0.001, (0, 1, 0)),
     "t": (1000.0, (0, 1, 0)),
+    "lb": (0.45359237, (0, 1, 0)),
     "s": (1.0, (0, 0, 1)),
     "ms": (0.001, (0, 0, 1)),
     "min": (60.0, (0, 0, 1)),
     "h": (3600.0, (0, 0, 1)),
     "Hz": (1.0, (0, 0, -1)),
+    "rpm": (1 / 60, (0, 0, -1)),
+    "mph": (0.44704, (1, 0, -1)),
     "N": (1.0, (1, 1, -2)),
     "kN": (1000.0, (1, 1, -2)),
     "MN": (1000000.0, (1, 1, -2)),
+    "GN": (1000000000.0, (1, 1, -2)),
+    "lbf": (4.4482216152605, (1, 1, -2)),
     "Pa": (1.0, (-1, 1, -2)),
     "kPa": (1000.0, (-1, 1, -2)),
     "MPa": (1000000.0, (-1, 1, -2)),
@@ -84,7 +94,7 @@ def test_products_of_units(parts: list[tuple[str, int]], separators: list[str], 
         ("kgs", r"unknown unit 'kgs'; did you mean 'kg'\?"),
         ("kn/m", r"unknown unit 'kn/m'; did you mean 'kN'\?"),
         ("mPa", r"unknown unit 'mPa'; did you mean 'MPa'\?"),
-        ("metre", "unknown unit 'metre'; known: GPa, Hz, "),
+        ("metre", "unknown unit 'metre'; known: GN, GPa, Hz, "),
         ("m//s", "unknown unit 'm//s'"),
         ("m s1", "unknown unit 'm s1'"),
         ("", "unknown unit ''"),
@@ -144,6 +154,41 @@ def test_every_name_of_a_dimension_can_be_written_as_a_unit():
     for name, found in NAMED_DIMENSIONS.items():
         if name not in ("no unit", "1/s"):
             assert parse_unit(name) == (1.0, found)
+
+
+def test_g_is_an_acceleration_where_one_is_asked_for_and_a_gram_elsewhere():
+    assert factor_to_si("g", ACCELERATION) == 9.80665
+    assert factor_to_si("mg", ACCELERATION) == pytest.approx(9.80665e-3, rel=1e-15)
+    assert factor_to_si("g", MASS) == 1e-3
+    assert factor_to_si("mg", MASS) is None
+    assert read_quantity("16 g", ACCELERATION) == pytest.approx(156.9064, rel=1e-12)
+    assert read_quantity("16 g", MASS) == 0.016
+
+
+@pytest.mark.parametrize(
+    ("unit", "message"),
+    [
+        ("banana", "unknown unit 'banana'; known: "),
+        ("rads", "unknown unit 'rads'; did you mean 'rad'"),
+        ("m/s", "pitch_rate is measured in rad/s, found 'm/s', a unit of m/s"),
+        ("rpm", "pitch_rate is measured in rad/s, found 'rpm', turns, not radians"),
+        ("Hz", "turns, not radians"),
+        ("m^99", "the exponent of a unit"),
+    ],
+)
+def test_a_column_of_another_unit_is_refused_at_its_place(unit: str, message: str):
+    place = Position("run.yaml", 3, 4)
+    with pytest.raises(InputError, match=r"run\.yaml:3:4: ") as caught:
+        unit_factor(unit, "rad/s", "pitch_rate", place)
+    assert message in str(caught.value)
+    assert unit_factor("deg/s", "rad/s", "pitch_rate", place) == pytest.approx(0.017453292519943295)
+
+
+def test_a_frequency_may_be_in_rpm_but_no_pitch_rate():
+    assert TypeAdapter(Frequency).validate_python("600 rpm") == pytest.approx(10.0)
+    assert TypeAdapter(PitchRate).validate_python("180 deg/s") == pytest.approx(math.pi)
+    with pytest.raises(ValidationError, match="expected rad/s or deg/s, found turns in '2 rpm'"):
+        TypeAdapter(PitchRate).validate_python("2 rpm")
 
 
 def test_dimensions_multiply_divide_and_take_roots():

@@ -163,13 +163,13 @@ def test_an_input_shorter_than_its_recording_is_refused(tmp_path, first, last, w
     ("unit", "words"),
     [
         (", unit: UNIT", "column 'x' has no unit; write the one it was recorded in, e.g. `unit: m`"),
-        ("UNIT", "'inch' is not a unit vehgen knows"),
+        ("UNIT", "unknown unit 'inch'; did you mean"),
         ("UNIT", "displacement is measured in m, found 'kN'"),
     ],
 )
 def test_a_measured_input_states_its_unit_beside_a_recording(tmp_path, unit, words):
     t = np.arange(0.0, 4.0, 0.01)
-    text = RUN.replace(unit, {"column": "", "'inch'": "inch"}.get(words.split()[0], "kN"))
+    text = RUN.replace(unit, {"column": "", "unknown": "inch"}.get(words.split()[0], "kN"))
     table(tmp_path / "stroke.csv", "t,x", t, 1e-3 * np.sin(t))
     with pytest.raises(InputError, match=words) as caught:
         load_trials([write(tmp_path, text, ("t,y,v", t, np.sin(t), np.cos(t)))])

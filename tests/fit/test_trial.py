@@ -8,7 +8,7 @@ import pytest
 from tests.fit.profile_world import FINE, RATE, fine_channels, misfit_of, motion_matrices, read_run, rough_road
 from tests.fit.profile_world import write_run as write_profile_run
 from tests.fit.recordings import sedan_truth, write_run
-from vehgen.errors import InputError
+from vehgen.errors import InputError, ModelWarning
 from vehgen.fit.least_squares import fit_least_squares
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.problem import make_problem
@@ -59,6 +59,14 @@ def driven_on_from_an_unknown_road(tmp_path, hump=False):
     only_hump = "[{hump: {shape: half_sine, length: 0.5 m, height: 0.03 m, at: 4 m}}]"
     path.write_text(path.read_text().replace("[{profile: {file: road.csv, distance: s, height: h}}]", only_hump))
     return load_trials([path])[0]
+
+
+def test_a_profile_that_ends_before_its_recording_is_told(tmp_path):
+    s, heights = rough_road()
+    sampled = fine_channels((s, heights), SPEED, 12.0)[::FINE]
+    path = write_profile_run(tmp_path, sampled, SPEED, (s[s <= 60.0], heights[s <= 60.0]))
+    with pytest.warns(ModelWarning, match="run: the measured profile ends at 60 m, the run at 95.88 m: from 5 s on the first wheel stays"):
+        load_trials([path])
 
 
 MORE_LEFT_OUT_S = MOST_LEFT_OUT * 8.0 + 2 / RATE

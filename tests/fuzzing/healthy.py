@@ -6,7 +6,8 @@ import io
 import math
 import zipfile
 from dataclasses import replace
-from functools import cache
+from functools import cache, reduce
+from operator import xor
 from pathlib import Path
 
 from tests.fuzzing.cases import Case
@@ -139,6 +140,36 @@ TABLES = {
 }
 
 
+def dialect(data: bytes) -> bytes:
+    """Return a CSV table with semicolons and decimal commas, and a row of units where its columns are a distance and a height."""
+    text = data.decode().replace(",", ";").replace(".", ",")
+    return text.replace("s;h\n", "s;h\nm;mm\n", 1).encode()
+
+
+def gpx() -> bytes:
+    """Return a track of six points, a second apart, at 2 m/s."""
+    points = (f'<trkpt lat="48.0" lon="11.0"><time>2024-05-01T12:00:0{i}Z</time><speed>2.0</speed></trkpt>\n' for i in range(6))
+    return f'<?xml version="1.0"?>\n<gpx version="1.0"><trk><trkseg>\n{"".join(points)}</trkseg></trk></gpx>\n'.encode()
+
+
+def nmea() -> bytes:
+    """Return a log of six fixes, a second apart, at four knots."""
+    bodies = (f"GPRMC,12000{i}.00,A,4807.038,N,01131.000,E,4.0,084.4,010524,," for i in range(6))
+    return "".join(f"${body}*{reduce(xor, body.encode()):02X}\r\n" for body in bodies).encode()
+
+
+def tables(run: Case, history: str) -> tuple[Case, ...]:
+    """Return runs with a speed history whose tables are of several formats."""
+    plain = replace(run.with_text(history, ()), format="table")
+    others = {name: dialect(data) for name, data in TABLES.items()}
+    found = [plain, replace(plain, files={**plain.files, **others})]
+    for name, data in (("drive.gpx", gpx()), ("drive.nmea", nmea())):
+        text = history.replace("{file: speed.csv, time: t, speed: v}", f"{{file: {name}, start: 0.5 s}}")
+        track = run.with_text(text, ())
+        found.append(replace(track, format="table", files={**track.files, name: data}))
+    return tuple(found)
+
+
 @cache
 def healthy() -> dict[str, tuple[Case, ...]]:
     """Return healthy cases by format."""
@@ -185,6 +216,6 @@ def healthy() -> dict[str, tuple[Case, ...]]:
         "frame": (Case("frame", {"frame.yaml": frame}, "frame.yaml"),),
         "facts": (Case("facts", {"facts.yaml": FACTS.encode()}, "facts.yaml"),),
         "effects": (Case("effects", {"effects.yaml": EFFECTS.encode()}, "effects.yaml"),),
-        "table": (replace(run.with_text(history, ()), format="table"),),
+        "table": tables(run, history),
         "export": tuple(exports),
     }

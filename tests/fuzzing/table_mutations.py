@@ -35,6 +35,8 @@ CELLS = (
     "1e12",
     "9" * 400,
 )
+TRACKS = (".gpx", ".nmea")
+"""Endings of tables that have no cells."""
 LARGEST = 1_000_000
 """What an archive may hold to be changed once more [bytes]."""
 
@@ -83,11 +85,11 @@ def mutate_cells(random: Random, data: bytes) -> tuple[bytes, str]:
 
 def mutate_table(random: Random, case: Case) -> Case:
     """Change one of the tables of a run."""
-    names = [name for name in case.files if name.endswith(".csv")]
+    names = [name for name in case.files if name.endswith((".csv", *TRACKS))]
     if not names:
         return case
     name = random.choice(names)
-    if random.random() < 0.3:
+    if name.endswith(TRACKS) or random.random() < 0.3:
         data = random.choice(TEXT_MUTATIONS)(random, replace(case, main=name)).files[name]
         return replace(case, files={**case.files, name: data}, mutations=(*case.mutations, f"text of {name}"))
     data, kind = mutate_cells(random, case.files[name])

@@ -14,6 +14,7 @@ from vehgen.mechanics import ElementOutput, Output, PointOutput, static_loads
 from vehgen.simulate import Run, Simulator, make_scenario
 from vehgen.simulate.budgets import MAX_RESPONSE_NUMBERS
 from vehgen.simulate.build import body_channels
+from vehgen.simulate.profile_warnings import doubtful_profiles
 from vehgen.simulate.warnings import lift_off, step_too_coarse
 
 Array = NDArray[np.float64]
@@ -89,7 +90,11 @@ def simulated_motion(run: Run) -> AssessedMotion:
         raise InputError(f"the vehicle has no finite response: {result.failures[0]}", run.document.find(("vehicle",)))
     response = result.responses[0]
     forces = [i for i, item in enumerate(outputs) if i >= len(asked) and item.quantity == "tyre_force"]
-    warnings = (*lift_off(simulator.model, values, response[:, forces]), *step_too_coarse(simulator.model, values, scenario))
+    warnings = (
+        *lift_off(simulator.model, values, response[:, forces]),
+        *step_too_coarse(simulator.model, values, scenario),
+        *doubtful_profiles(simulator.model, values, scenario),
+    )
     channels = tuple(
         AssessedChannel(item.name, item.quantity, item.unit, item.owner, isinstance(output, PointOutput), i < len(asked), response[:, i])
         for i, (item, output) in enumerate(zip(simulator.model.channels, outputs, strict=True))

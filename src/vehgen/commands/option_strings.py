@@ -84,9 +84,11 @@ def read_hump(text: str) -> dict[str, Any]:
 
 
 def read_profile(text: str) -> dict[str, str]:
-    """Read `FILE[,distance=COLUMN][,height=COLUMN]`, a measured profile; raises InputError for a malformed text."""
+    """Read `FILE[,distance=COLUMN][,height=COLUMN][,unit=UNIT]`, a measured profile; raises InputError for a malformed text."""
+    from vehgen.phones.plan import PROFILE_KEYS
+
     file, _, rest = text.partition(",")
-    return {"file": file, **(split_pairs(rest, "--profile", ("distance", "height")) if rest else {})}
+    return {"file": file, **(split_pairs(rest, "--profile", PROFILE_KEYS[1:]) if rest else {})}
 
 
 def read_column_map(text: str) -> ColumnMap:

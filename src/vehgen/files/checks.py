@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from vehgen.errors import InputError, Position, did_you_mean, shortened, shown
 from vehgen.files.document import Located
 from vehgen.files.expressions import Expression, ExpressionError
-from vehgen.files.units import NONE, UNITS, Dimension, read_unit
+from vehgen.files.units import NONE, Dimension, counts_turns, factor_to_si, parse_unit, units_of
 
 
 def check_known(name: str, allowed: Iterable[str], lacking: str, document: Located, *path: str | int, key: bool = False) -> None:
@@ -100,10 +100,15 @@ def unit_factor(unit: str, usual: str, quantity: str, place: Position | None) ->
     InputError
         At `place`, for a unit that there is not, and for one of another quantity.
     """
-    expected, found = read_unit(usual), read_unit(unit)
-    if found is None or found[2] != len(unit):
-        raise InputError(f"{shown(unit)} is not a unit vehgen knows; {did_you_mean(unit, UNITS)}", place)
-    assert expected is not None
-    if found[1] != expected[1]:
-        raise InputError(f"{quantity} is measured in {usual}, found {shown(unit)}, a unit of {found[1]}", place)
-    return found[0]
+    expected = parse_unit(usual)[1]
+    try:
+        factor = factor_to_si(unit, expected)
+        found = None if factor is not None else parse_unit(unit)[1]
+    except InputError as error:
+        usable = ", ".join(dict.fromkeys((usual, *(name for name in units_of(expected) if "rad" not in usual or not counts_turns(name)))))
+        raise InputError(f"{error.message} ({quantity} is measured in {usable})", place) from error
+    if factor is None:
+        raise InputError(f"{quantity} is measured in {usual}, found {shown(unit)}, a unit of {found}", place)
+    if "rad" in usual and counts_turns(unit):
+        raise InputError(f"{quantity} is measured in {usual}, found {shown(unit)}, turns, not radians", place)
+    return factor

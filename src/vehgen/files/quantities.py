@@ -13,7 +13,7 @@ from vehgen.errors import shortened, shown
 from vehgen.files import limits
 from vehgen.files.expressions import ExpressionError, parse
 from vehgen.files.limits import Limit
-from vehgen.files.units import MASS, NONE, Dimension
+from vehgen.files.units import MASS, NONE, Dimension, counts_turns, without_gravities
 
 
 def read_quantity(value: Any, dimension: Dimension) -> float:
@@ -21,7 +21,7 @@ def read_quantity(value: Any, dimension: Dimension) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         raise PydanticCustomError("quantity", "expected a number in {unit}", {"unit": str(dimension)})
     try:
-        expression = parse(str(value))
+        expression = parse(without_gravities(str(value), dimension))
         if expression.names:
             raise ExpressionError(f"expected a plain quantity in {dimension}, found a symbol in {shown(value)}")
         found, number = expression.dimension({}), expression.evaluate({})
@@ -36,6 +36,8 @@ def read_quantity(value: Any, dimension: Dimension) -> float:
 def _within(limit: Limit, value: Any, above: float | None, least: float | None) -> float:
     """Read a quantity; raises a pydantic error where it is not finite, not above or below what it must be, or outside its limit."""
     number = read_quantity(value, limit.dimension)
+    if limit is limits.PITCH_RATE and counts_turns(str(value)):
+        raise PydanticCustomError("quantity", "expected rad/s or deg/s, found turns in {value}", {"value": shown(value)})
     wrong = not math.isfinite(number) or (above is not None and number <= above) or (least is not None and number < least)
     if wrong:
         bound = "" if above is None and least is None else f" above {above:g}" if above is not None else f" of at least {least:g}"
@@ -76,6 +78,7 @@ PositivePitchRate = Annotated[float, *_positive(limits.PITCH_RATE)]
 PositiveAngle = Annotated[float, *_positive(limits.ANGLE)]
 Duration = Annotated[float, *_positive(limits.DURATION)]
 Step = Annotated[float, *_positive(limits.STEP)]
+TimeOfFile = Annotated[float, *_any(limits.TIME_OF_FILE)]
 Sample = Annotated[float, *_positive(limits.SAMPLE)]
 Speed = Annotated[float, *_positive(limits.SPEED_LIMIT)]
 Frequency = Annotated[float, *_positive(limits.FREQUENCY_LIMIT)]

@@ -74,22 +74,34 @@ NAMED_DIMENSIONS: dict[str, Dimension] = {
     "N m s": PITCH_DAMPING,
 }
 
+STANDARD_GRAVITY = 9.80665
+"""Standard acceleration of free fall [m/s^2], the unit g of accelerometers and of spectra; what pulls on a vehicle is mechanics.GRAVITY."""
+POUND_KG = 0.45359237
+"""The international avoirdupois pound [kg]."""
+
 UNITS: dict[str, tuple[float, Dimension]] = {
     "m": (1.0, LENGTH),
     "mm": (1e-3, LENGTH),
     "cm": (1e-2, LENGTH),
     "km": (1e3, LENGTH),
+    "in": (0.0254, LENGTH),
+    "ft": (0.3048, LENGTH),
     "kg": (1.0, MASS),
     "g": (1e-3, MASS),
     "t": (1e3, MASS),
+    "lb": (POUND_KG, MASS),
     "s": (1.0, TIME),
     "ms": (1e-3, TIME),
     "min": (60.0, TIME),
     "h": (3600.0, TIME),
     "Hz": (1.0, FREQUENCY),
+    "rpm": (1.0 / 60.0, FREQUENCY),
+    "mph": (0.44704, SPEED),
     "N": (1.0, FORCE),
     "kN": (1e3, FORCE),
     "MN": (1e6, FORCE),
+    "GN": (1e9, FORCE),
+    "lbf": (POUND_KG * STANDARD_GRAVITY, FORCE),
     "Pa": (1.0, FORCE / (LENGTH * LENGTH)),
     "kPa": (1e3, FORCE / (LENGTH * LENGTH)),
     "MPa": (1e6, FORCE / (LENGTH * LENGTH)),
@@ -97,12 +109,13 @@ UNITS: dict[str, tuple[float, Dimension]] = {
     "rad": (1.0, NONE),
     "deg": (math.pi / 180.0, NONE),
 }
-"""Unit name -> (factor to SI, dimension)."""
-
-STANDARD_GRAVITY = 9.80665
-"""Standard acceleration of free fall [m/s^2], the unit g of accelerometers and of spectra; what pulls on a vehicle is mechanics.GRAVITY."""
+"""Unit name -> (factor to SI, dimension); Hz and rpm count turns, so that neither is a unit of an angular rate."""
+GRAVITIES = {"g": STANDARD_GRAVITY, "mg": STANDARD_GRAVITY / 1000}
+"""What accelerometers are read in [m/s^2]; of a mass, g is the gram."""
 MAX_EXPONENT = 9
 _UNIT_FACTOR = re.compile(r"([A-Za-z]+)(?:(?:\^|\*\*)(-?[0-9]+))?")
+_TURNS = re.compile(r"(?<![A-Za-z_])(Hz|rpm)(?![A-Za-z0-9_])")
+_IN_GRAVITIES = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(m?g)\s*", re.ASCII)
 _JOIN = re.compile(r"\s*([/*·])\s*|\s+")
 
 
@@ -154,10 +167,37 @@ def nearest_unit(word: str) -> str:
     return "did you mean " + " or ".join(repr(unit) for unit in same) + "?" if same else did_you_mean(word, UNITS)
 
 
+def _first_word(text: str) -> str:
+    return text.strip().split("/")[0].split(" ")[0]
+
+
 def parse_unit(text: str) -> tuple[float, Dimension]:
     """Parse a whole unit such as `kN s/m`; raises InputError naming the nearest unit."""
     found = read_unit(text.strip())
     if found is None or found[2] != len(text.strip()):
-        word = text.strip().split("/")[0].split(" ")[0]
-        raise InputError(f"unknown unit {shown(text)}; {nearest_unit(word)}")
+        raise InputError(f"unknown unit {shown(text)}; {nearest_unit(_first_word(text))}")
     return found[0], found[1]
+
+
+def factor_to_si(unit: str, dimension: Dimension) -> float | None:
+    """Return what a unit is worth in SI; None where it is none of this dimension. Of an acceleration, `g` is standard gravity."""
+    if dimension == ACCELERATION and unit in GRAVITIES:
+        return GRAVITIES[unit]
+    found = read_unit(unit)
+    return found[0] if found is not None and found[2] == len(unit) and found[1] == dimension else None
+
+
+def units_of(dimension: Dimension) -> list[str]:
+    """Return the units that have a name of their own and a dimension, standard gravity's among those of an acceleration."""
+    return [unit for unit, (_, own) in UNITS.items() if own == dimension] + (list(GRAVITIES) if dimension == ACCELERATION else [])
+
+
+def counts_turns(text: str) -> bool:
+    """Whether a unit, or a quantity with one, is in turns (Hz, rpm), not in radians, of a time."""
+    return _TURNS.search(text) is not None
+
+
+def without_gravities(text: str, dimension: Dimension) -> str:
+    """Return the text of a quantity, its `g` written as m/s^2 where an acceleration is asked for: there it is no gram."""
+    found = _IN_GRAVITIES.fullmatch(text) if dimension == ACCELERATION else None
+    return text if found is None else f"{float(found.group(1)) * GRAVITIES[found.group(2)]!r} m/s^2"

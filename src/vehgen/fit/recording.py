@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
 from vehgen.errors import InputError, shown
-from vehgen.files.checks import unit_factor
 from vehgen.files.quantities import read_quantity
 from vehgen.files.tables import TableColumns, read_columns
 from vehgen.files.units import read_unit
@@ -83,18 +82,24 @@ def read_recording(run: Run) -> Recording:
         raise InputError("this run has a recording but no `sensors`", document.position)
     path = run.folder / file.recording
     place = document.find(("recording",))
-    channels, factors, columns = [], [], []
+    channels, units, signs, columns = [], [], [], []
     for sensor_name, sensor in file.sensors.items():
         for quantity, entry in sensor.channels.items():
             channel = replace(_channel(sensor_name, sensor, quantity), noise=_noise(run, sensor_name, quantity, entry))
             channels.append(channel)
             columns.append(sensor.column(sensor_name, quantity))
-            factors.append(_factor(run, sensor_name, quantity, entry))
+            stated = None if isinstance(entry, str) else entry.unit
+            units.append(
+                (sensor.quantities[quantity], quantity, stated, document.find(("sensors", sensor_name, "channels", quantity, "unit")))
+            )
+            signs.append(1 if isinstance(entry, str) else entry.sign)
     try:
-        table = read_columns(path, (TIME_COLUMN, *columns))
+        table = read_columns(path, (TIME_COLUMN, *columns)).in_si(0, "s", "time")
     except InputError as error:
         raise InputError(error.message, error.position or place) from error
-    values = np.column_stack(table.values[1:]) * np.array(factors)
+    for number, unit in enumerate(units, 1):
+        table = table.in_si(number, *unit)
+    values = np.column_stack(table.values[1:]) * np.array(signs, dtype=np.float64)
     _check_clock(table)
     rate = 1 / float(np.median(np.diff(table.values[0])))
     check_nyquist(run, rate)
@@ -123,16 +128,6 @@ def _noise(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> f
     if not 0 < number < float("inf"):
         raise InputError(f"a noise above 0 was expected, found {shown(entry.noise)}", place)
     return number
-
-
-def _factor(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> float:
-    if isinstance(entry, str):
-        return 1.0
-    factor = float(entry.sign)
-    if entry.unit is not None:
-        place = run.document.find(("sensors", sensor, "channels", quantity, "unit"))
-        factor *= unit_factor(entry.unit, run.file.sensors[sensor].quantities[quantity], quantity, place)
-    return factor
 
 
 def _check_clock(table: TableColumns) -> None:

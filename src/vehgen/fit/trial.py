@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,7 +13,7 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
-from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
+from vehgen.errors import ArgumentError, InputError, ModelWarning, did_you_mean, shown
 from vehgen.fit.recording import Recording, read_recording
 from vehgen.fit.run_checks import check_hump_reached, check_initial, check_inputs_last
 from vehgen.fit.window import AFTER_RELEASE, RAMP, Window
@@ -20,6 +21,7 @@ from vehgen.road import Hump
 from vehgen.simulate import Run, RunLike, Scenario, Simulator, SimulatorPool, as_run, make_scenario, natural_modes
 from vehgen.simulate.acquired import assumed_chains, channel_factors
 from vehgen.simulate.initial_state import initial_state
+from vehgen.simulate.profile_warnings import profiles_that_end
 from vehgen.simulate.run_file.acquisition import channel_chains
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 
@@ -174,6 +176,8 @@ def make_trial(run: Run, name: str, simulators: SimulatorPool | None = None) -> 
     check_hump_reached(run, scenario, simulator.model.wheel_offsets(values), name)
     check_inputs_last(run, scenario, measurement, simulator.model)
     check_initial(run, measurement, simulator, scenario, values)
+    for message in profiles_that_end(scenario):
+        warnings.warn(ModelWarning(f"{name}: {message}"), stacklevel=3)
     return _from_known_road(Trial(name, run, measurement, simulator, scenario, values, tuple(run.file.parameters)))
 
 

@@ -51,7 +51,7 @@ def import_phones(
     hump
         The hump that was crossed, with the keys of a run file: `{"shape": "half_sine", "length": 0.5, "height": 0.03}` [m].
     profile
-        Instead of a hump a measured road: a CSV file, or `{"file": ..., "distance": ..., "height": ...}` with its columns.
+        Instead of a hump a measured road: a table, or `{"file": ..., "distance": ..., "height": ...}` with its columns and units.
     out
         The run file to write, its recording beside it (default: nothing is written).
     parameter_set

@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError, Position, did_you_mean, shortened, shown
-from vehgen.files.csv_rows import csv_rows
 from vehgen.files.reading import split_lines
-from vehgen.files.units import ACCELERATION, FREQUENCY, STANDARD_GRAVITY, TIME, Dimension, parse_unit
+from vehgen.files.tables.csv_rows import csv_rows
+from vehgen.files.units import ACCELERATION, FREQUENCY, TIME, Dimension, factor_to_si, parse_unit
 from vehgen.files.units import SPEED as SPEED_DIMENSION
 from vehgen.phones.export import PITCH_RATE_STREAM, SPEED_STREAM, VERTICAL_ACCELERATION_STREAM, PhoneExport, Stream
 
@@ -181,10 +181,9 @@ def _column(table: Table, name: str) -> Array:
 
 def unit_factor(unit: str, dimension: Dimension, where: str) -> float:
     """Return the factor from a unit to SI; `g` is the standard acceleration where an acceleration is asked for, `ns` a nanosecond."""
-    extra = {("g", ACCELERATION): STANDARD_GRAVITY, ("ns", TIME): 1e-9, ("us", TIME): 1e-6}
-    if (unit, dimension) in extra:
-        return extra[unit, dimension]
-    factor, found = parse_unit(unit)
-    if found != dimension:
+    extra = {("ns", TIME): 1e-9, ("us", TIME): 1e-6}
+    factor = extra.get((unit, dimension), factor_to_si(unit, dimension))
+    if factor is None:
+        parse_unit(unit)
         raise ArgumentError(f"{where}: expected a unit of {dimension}, found {shown(unit)}", "columns")
     return factor

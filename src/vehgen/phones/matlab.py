@@ -5,9 +5,7 @@ MATLAB stores timetables in a way that scipy.io cannot read; the optional packag
 
 from __future__ import annotations
 
-import struct
 import warnings
-import zlib
 from pathlib import Path
 from typing import Any
 
@@ -15,13 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError, shortened
-from vehgen.files.reading import open_regular, read_bytes, short_path
+from vehgen.files.reading import open_regular
+from vehgen.files.tables.matlab import VERSION_5, check_unpacked
 from vehgen.phones.archive import MAX_FILE, MAX_TOTAL
 from vehgen.phones.export import ROTATION_STREAM, SPEED_STREAM, EpochMap, PhoneExport, Stream, acceleration_kind
 
-_MARKS = (b"MATLAB 5.0 MAT-file", b"MATLAB 7.3 MAT-file", b"\x89HDF")
-_HEADER, _COMPRESSED = 128, 15
-"""Length of the header of a MATLAB 5 file [bytes], and its mark of a packed element."""
+_MARKS = (VERSION_5, b"MATLAB 7.3 MAT-file", b"\x89HDF")
 _TABLES = ("Acceleration", "AngularVelocity", "Position")
 
 
@@ -34,27 +31,6 @@ def is_matlab(path: Path) -> bool:
         return False
 
 
-def _check_packed(path: Path) -> None:
-    """Refuse a MATLAB 5 file that would unpack to more than MAX_TOTAL, before anything unpacks it whole."""
-    data = read_bytes(path, MAX_FILE, "a MATLAB file")
-    place, total = _HEADER, 0
-    while data.startswith(_MARKS[0]) and place + 8 <= len(data):
-        kind, size = struct.unpack_from(">II" if data[126:128] == b"MI" else "<II", data, place)
-        place += 8
-        if kind == _COMPRESSED:
-            unpacker = zlib.decompressobj()
-            rest = data[place : place + size]
-            while rest and total <= MAX_TOTAL:
-                try:
-                    total += len(unpacker.decompress(rest, 2**20))
-                except zlib.error as error:
-                    raise InputError(f"{short_path(path)} is a damaged MATLAB file ({shortened(str(error))}); export again") from error
-                rest = unpacker.unconsumed_tail
-        place += size
-    if total > MAX_TOTAL:
-        raise InputError(f"{short_path(path)} would unpack to more than {MAX_TOTAL >> 20} MB")
-
-
 def read_matlab(path: Path) -> PhoneExport:
     """Read a log of MATLAB Mobile.
 
@@ -63,7 +39,7 @@ def read_matlab(path: Path) -> PhoneExport:
     InputError
         Without mat-io, for a file that it cannot read, and for one without acceleration.
     """
-    _check_packed(path)
+    check_unpacked(path, MAX_FILE, MAX_TOTAL)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # what mat-io and pandas have to tell each other is not for the user
         try:

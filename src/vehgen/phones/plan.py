@@ -16,17 +16,16 @@ from vehgen.errors import ArgumentError, did_you_mean, shown
 from vehgen.files.expressions import Expression, ExpressionError, parse
 from vehgen.files.limits import VEHICLE_LENGTH, Limit
 from vehgen.files.names import is_identifier
-from vehgen.files.tables import read_columns
 from vehgen.files.units import LENGTH, NONE, Dimension
 from vehgen.mechanics import Place, PointOutput
 from vehgen.phones.csv_table import ColumnMap
 from vehgen.road import Hump, MeasuredProfile, Profile
-from vehgen.simulate.run_file.entries import HumpEntry
-from vehgen.simulate.run_scenario import check_hump_points
+from vehgen.simulate.measured_tables import hump_table, profile_table
+from vehgen.simulate.run_file.entries import HumpEntry, ProfileEntry
 from vehgen.vehicle import Vehicle
 
-HUMP_KEYS = ("shape", "length", "height", "ramp", "radius", "file", "distance", "height_column")
-PROFILE_KEYS = ("file", "distance", "height")
+HUMP_KEYS = ("shape", "length", "height", "ramp", "radius", "file", "distance", "height_column", "distance_unit", "unit")
+PROFILE_KEYS = ("file", "distance", "height", "distance_unit", "unit")
 
 
 @dataclass(frozen=True)
@@ -201,8 +200,7 @@ def hump_road(hump: Mapping[str, Any]) -> RoadOption:
         raise ArgumentError(f"`hump`: {error.errors()[0]['msg']}", "hump") from error
     written = {"shape": entry.shape, **found}
     if entry.file is not None:
-        points = read_columns(Path(entry.file), (entry.distance, entry.height_column))
-        check_hump_points(points)
+        points = hump_table(Path(entry.file), entry)
         return RoadOption("hump", written, hump=Hump.from_points(0.0, *points.values))
     assert entry.length is not None
     assert entry.height is not None
@@ -214,10 +212,12 @@ def profile_road(profile: Mapping[str, str]) -> RoadOption:
     """Return a measured profile from the keys of a run file; raises InputError for a file or columns that are not there."""
     found = {"distance": "distance", "height": "height", **_known_keys(profile, "profile", PROFILE_KEYS)}
     if "file" not in found:
-        raise ArgumentError("`profile` lacks the key file, a CSV file with columns of distance and height", "profile")
-    points = read_columns(Path(found["file"]), (found["distance"], found["height"]))
-    points.check_ascending()
-    entry = {key: found[key] for key in PROFILE_KEYS}
+        raise ArgumentError("`profile` lacks the key file, a table with columns of distance and height", "profile")
+    try:
+        points = profile_table(Path(found["file"]), ProfileEntry.model_validate(found))
+    except ValidationError as error:
+        raise ArgumentError(f"`profile`: {error.errors()[0]['msg']}", "profile") from error
+    entry = {key: found[key] for key in PROFILE_KEYS if key in found}
     return RoadOption("profile", entry, profile=MeasuredProfile(*points.values))
 
 

@@ -8,13 +8,14 @@ from vehgen.simulate.frequency_response import FrequencyResponse, frequency_resp
 from vehgen.simulate.lint import lint
 from vehgen.simulate.modes import Mode, Modes, natural_modes
 from vehgen.simulate.pool import SimulatorPool
+from vehgen.simulate.response import Response, write_csv
 from vehgen.simulate.road_response import RoadResponse, road_response
 from vehgen.simulate.run_file import Run, load_run
 from vehgen.simulate.run_like import RunLike, as_run
 from vehgen.simulate.run_scenario import make_scenario
 from vehgen.simulate.scenario import Scenario
 from vehgen.simulate.signals import Signal
-from vehgen.simulate.simulator import Response, Simulator, simulate, write_csv
+from vehgen.simulate.simulator import Simulator, simulate
 from vehgen.simulate.state_space import StateSpace, state_space
 
 __all__ = [

@@ -8,9 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
-from vehgen.files.checks import unit_factor
-from vehgen.files.limits import HUMP_HEIGHT, HUMP_LENGTH, SPEED_LIMIT
-from vehgen.files.tables import TableColumns, read_columns
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.road import (
     ConstantSpeed,
@@ -26,6 +23,7 @@ from vehgen.road import (
 )
 from vehgen.simulate.budgets import check_run, placed
 from vehgen.simulate.initial_state import initial_state
+from vehgen.simulate.measured_tables import Finder, hump_table, input_table, profile_table, speed_table
 from vehgen.simulate.run_file import Run
 from vehgen.simulate.run_file.acquisition import channel_chains
 from vehgen.simulate.run_file.entries import DisplacementEntry, ForceEntry, HumpEntry
@@ -62,8 +60,7 @@ def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) 
         raise InputError("a run without a hump needs `duration`, e.g. 10 s", run.document.position)
     ground = tuple(_ground(run, link) for link in ground_links(model))
     forces = tuple(
-        Signal(harmonic=entry.harmonic) if entry.harmonic else _measured(run, entry, entry.force, "N", ("forces", name))
-        for name, entry in file.forces.items()
+        Signal(harmonic=entry.harmonic) if entry.harmonic else _measured(run, entry, "forces", name) for name, entry in file.forces.items()
     )
     chains = channel_chains(run, 1 / (file.step * run.decimation))
     return Scenario(track, speed, duration, file.step, run.decimation, ground, forces, chains=chains, initial=initial_state(run, model))
@@ -82,11 +79,9 @@ def _speed(run: Run) -> SpeedLaw:
     spec = run.file.speed
     if isinstance(spec, float):
         return ConstantSpeed(spec)
-    found = _columns(run, spec.file, (spec.time, spec.speed), ("speed", "file"))
-    found.check_ascending()
-    if (stands := np.flatnonzero(found.values[1] <= 0)).size:
-        raise InputError("every speed of a history must be above 0", found.place(int(stands[0]), 1))
-    found.check_limit(1, SPEED_LIMIT)
+    place = ("speed",)
+    with placed(run, *place, "file"):
+        found = speed_table(Path(run.folder) / spec.file, spec, _finder(run, *place))
     return SpeedHistory(*found.values)
 
 
@@ -95,9 +90,9 @@ def _road_part(number: int, run: Run, speed: SpeedLaw, offsets: Array) -> Profil
     if entry.hump is not None:
         return _hump(entry.hump, run, ("road", number, "hump"))
     if entry.profile is not None:
-        names = entry.profile.distance, entry.profile.height
-        found = _columns(run, entry.profile.file, names, ("road", number, "profile", "file"))
-        found.check_ascending()
+        place = ("road", number, "profile")
+        with placed(run, *place, "file"):
+            found = profile_table(Path(run.folder) / entry.profile.file, entry.profile, _finder(run, *place))
         return MeasuredProfile(*found.values)
     assert entry.iso8608 is not None
     with placed(run, "road", number, "iso8608", key=True):
@@ -117,8 +112,8 @@ def _random_length(run: Run, speed: SpeedLaw, offsets: Array) -> float:
 
 def _hump(entry: HumpEntry, run: Run, place: tuple[str | int, ...]) -> Hump:
     if entry.shape == "points":
-        found = _columns(run, entry.file or "", (entry.distance, entry.height_column), (*place, "file"))
-        check_hump_points(found)
+        with placed(run, *place, "file"):
+            found = hump_table(Path(run.folder) / (entry.file or ""), entry, _finder(run, *place))
         return Hump.from_points(entry.at, *found.values)
     extra = {"ramp": entry.ramp} if entry.ramp is not None else {}
     if entry.radius is not None:
@@ -135,24 +130,14 @@ def _ground(run: Run, link: str) -> Signal | None:
         return None
     if entry.harmonic is not None:
         return Signal(harmonic=entry.harmonic)
-    return _measured(run, entry, entry.displacement, "m", ("displacements", link))
+    return _measured(run, entry, "displacements", link)
 
 
-def _measured(run: Run, entry: ForceEntry | DisplacementEntry, column: str, usual: str, place: tuple[str, ...]) -> Signal:
-    found = _columns(run, entry.file or "", (entry.time, column), (*place, "file"))
-    found.check_ascending(least=1)
-    return Signal(time=found.values[0], values=found.values[1] * unit_factor(entry.unit or usual, usual, place[0], None))
+def _measured(run: Run, entry: ForceEntry | DisplacementEntry, *place: str) -> Signal:
+    with placed(run, *place, "file"):
+        found = input_table(Path(run.folder) / (entry.file or ""), entry, _finder(run, *place))
+    return Signal(time=found.values[0], values=found.values[1])
 
 
-def _columns(run: Run, file: str, names: tuple[str, str], place: tuple[str | int, ...]) -> TableColumns:
-    with placed(run, *place):
-        return read_columns(Path(run.folder) / file, names)
-
-
-def check_hump_points(points: TableColumns) -> None:
-    """Check the points of a hump, distance and height [m]; raises InputError at the row that is wrong."""
-    points.check_ascending()
-    points.check_limit(1, HUMP_HEIGHT)
-    length = float(np.ptp(points.values[0]))
-    if (reason := HUMP_LENGTH.refusal(length)) is not None:
-        raise InputError(reason, points.place(-1))
+def _finder(run: Run, *place: str | int) -> Finder:
+    return lambda key: run.document.find((*place, key))

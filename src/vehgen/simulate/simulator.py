@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
-from typing import ClassVar
 
 import numpy as np
 import sympy as sp
@@ -17,13 +12,12 @@ from numpy.typing import NDArray
 
 from vehgen.codegen import Kernel, KernelResult
 from vehgen.errors import InputError, ModelWarning, did_you_mean, shown
-from vehgen.files import write_text
-from vehgen.files.result_fields import Array1D, Array3D
-from vehgen.files.results import Cell, Result, Table
 from vehgen.mechanics import ElementOutput, EquationsOfMotion, Output, Place, derive, static_loads
 from vehgen.mechanics.quantities import WITH_STATIC
 from vehgen.simulate.acquired import acquire, kept_samples
 from vehgen.simulate.budgets import check_population
+from vehgen.simulate.profile_warnings import doubtful_profiles
+from vehgen.simulate.response import Response, ResponseChannel
 from vehgen.simulate.run_like import RunLike, as_run
 from vehgen.simulate.run_scenario import make_scenario
 from vehgen.simulate.scenario import Scenario
@@ -33,44 +27,6 @@ from vehgen.vehicle import VehicleLike
 Array = NDArray[np.float64]
 REMEMBERED = 1000
 """So many layouts of axles are remembered."""
-
-
-@dataclass(frozen=True)
-class ResponseChannel:
-    """What one column of a response is."""
-
-    name: str
-    quantity: str
-    unit: str
-
-
-@dataclass(frozen=True, eq=False)
-class Response(Result):
-    """What came out: `time shape (n_samples,)` [s], `values shape (n_individuals, n_samples, n_channels)` in the channels' units.
-
-    `warnings` says what makes the answer doubtful.
-    """
-
-    KIND: ClassVar[str] = "response"
-    DRAWING: ClassVar[str] = "vehgen.report.plots.result_plots:plot_simulation"
-
-    time: Array1D
-    values: Array3D
-    channels: tuple[ResponseChannel, ...]
-    warnings: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        if self.values.shape[1:] != (len(self.time), len(self.channels)):
-            raise ValueError("a value for every sample and channel was expected")
-
-    def channel(self, name: str) -> Array:
-        """Return one channel, `shape (n_individuals, n_samples)`."""
-        return np.asarray(self.values[:, :, [item.name for item in self.channels].index(name)])
-
-    def table(self) -> Table:
-        """Return the first individual's response, a row a sample."""
-        rows: list[tuple[Cell, ...]] = [(float(t), *row) for t, row in zip(self.time, self.values[0].tolist(), strict=True)]
-        return ("t", *(channel.name for channel in self.channels)), rows
 
 
 class Simulator:
@@ -247,6 +203,8 @@ def _warn_of(failures: Mapping[int, str], n_individuals: int) -> None:
 def simulate(run: RunLike, *, vehicle: VehicleLike | None = None) -> Response:
     """Simulate a run and look for what makes the answer doubtful.
 
+    Channels are in the units, and of the signs, that the run file gives to their columns, as its recording would be.
+
     Parameters
     ----------
     run
@@ -275,20 +233,14 @@ def simulate(run: RunLike, *, vehicle: VehicleLike | None = None) -> Response:
         *lift_off(simulator.model, values, responses[0, :, n:]),
         *spectral_nulls(simulator.model, values, scenario),
         *step_too_coarse(simulator.model, values, scenario),
+        *doubtful_profiles(simulator.model, values, scenario),
     ]
-    channels = tuple(ResponseChannel(item.name, item.quantity, item.unit) for item in simulator.model.channels[:n])
+    readings = run.readings()
+    items = simulator.model.channels[:n]
+    channels = tuple(ResponseChannel(item.name, item.quantity, unit) for item, (unit, _) in zip(items, readings, strict=True))
     time = np.arange(responses.shape[1], dtype=np.float64) * scenario.dt * scenario.decimation
-    return Response(time, responses[:, :, :n], channels, tuple(messages))
-
-
-def write_csv(path: Path, response: Response) -> None:
-    """Write the first individual's response: a column t [s] and one per channel, in SI units."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["t", *(channel.name for channel in response.channels)])
-    for t, row in zip(response.time, response.values[0], strict=True):
-        writer.writerow([f"{t:.9g}", *(f"{value:.9g}" for value in row)])
-    write_text(path, text.getvalue())
+    read = responses[:, :, :n] / np.array([factor for _, factor in readings])
+    return Response(time, read, channels, tuple(messages))
 
 
 def _distinct_rows(rows: Array) -> tuple[Array, NDArray[np.intp]]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from vehgen.diagnose.inputs.adjustments import RunGain
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always, place_words
 from vehgen.diagnose.inputs.refits import BaseRefits
-from vehgen.files.units import STANDARD_GRAVITY, read_unit
+from vehgen.files.units import STANDARD_GRAVITY, factor_to_si, parse_unit
 from vehgen.fit.trial import Trial
 from vehgen.mechanics import is_held
 
@@ -180,7 +180,6 @@ def _unit_fault(case: BaseRefits, channel: str, quantity: str, factor: float, ru
     pair = next((pair for pair in pairs if next(iter(units)) in pair), pairs[0])
     many = f"{factor:.4g} times too large" if factor > 1 else f"{1 / factor:.4g} times too small"
     message = f"{channel} is {many} {place_words(runs, case.runs)}: its readings are in {pair[1]}, and taken as {pair[0]}"
-    read = read_unit(pair[1])
-    known = read is not None and read[2] == len(pair[1]) and abs(read[0] / units[pair[1]] - 1) < 1e-6
+    known = factor_to_si(pair[1], parse_unit(next(iter(units)))[1]) is not None
     cure = f"set `unit: {pair[1]}` for it in the run file" if known else f"multiply its column by {1 / factor:.6g}"
     return MeasurementFault("unit", runs, (channel,), message, cure, factor)

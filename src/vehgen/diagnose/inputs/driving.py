@@ -16,13 +16,13 @@ from vehgen.diagnose.inputs.comparison import compare
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always, place_words
 from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.files.checks import unit_factor
-from vehgen.files.units import STANDARD_GRAVITY, UNITS
+from vehgen.files.units import POUND_KG, STANDARD_GRAVITY, UNITS
 from vehgen.fit.nuisances import measured_displacements, measured_forces
 from vehgen.fit.trial import Trial
 from vehgen.simulate.run_scenario import ground_links
 
 INPUT_UNITS = {
-    "force": {"N": 1.0, "kN": 1e3, "MN": 1e6, "lbf": 0.45359237 * STANDARD_GRAVITY, "kgf": STANDARD_GRAVITY},
+    "force": {"N": 1.0, "kN": 1e3, "MN": 1e6, "lbf": POUND_KG * STANDARD_GRAVITY, "kgf": STANDARD_GRAVITY},
     "displacement": {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254},
 }
 """What a measured input's units are worth in SI."""

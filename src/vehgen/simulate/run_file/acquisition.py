@@ -12,7 +12,7 @@ from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.entry import FileModel
 from vehgen.files.expressions import ExpressionError, parse
 from vehgen.files.quantities import Frequency, RecorderDelay
-from vehgen.files.units import Dimension, read_unit
+from vehgen.files.units import Dimension, read_unit, without_gravities
 from vehgen.measure.acquisition import FILTER_KINDS, MAX_ORDER, POINT_SAMPLES, UNKNOWN, AcquisitionChain, FilterKind
 from vehgen.measure.recorders import RECORDERS
 from vehgen.mechanics.quantities import QUANTITIES
@@ -126,7 +126,7 @@ def _size(run: Run, text: str | float | None, path: Path, quantity: str) -> floa
     if text is None:
         return None
     try:
-        expression = parse(str(text))
+        expression = parse(without_gravities(str(text), _dimension(quantity)))
         if expression.names:
             raise ExpressionError(f"expected a plain quantity, found a symbol in {shown(text)}")
         dimension, number = expression.dimension({}), expression.evaluate({})

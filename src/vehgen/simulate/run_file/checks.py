@@ -122,6 +122,8 @@ def _check_sensors(run: Run) -> None:
                     f"unknown quantity {shown(quantity)} of a sensor; {did_you_mean(quantity, sensor.quantities)}",
                     run.document.find(("sensors", name, "channels", quantity), key=True),
                 )
+            place = run.document.find(("sensors", name, "channels", quantity, "unit"))
+            unit_factor(sensor.unit(quantity), sensor.quantities[quantity], quantity, place)
 
 
 def _check_element(run: Run, entry: OfElement, *path: str) -> None:

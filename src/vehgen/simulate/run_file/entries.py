@@ -27,6 +27,7 @@ from vehgen.files.quantities import (
     Sample,
     Speed,
     Step,
+    TimeOfFile,
 )
 from vehgen.simulate.run_file.acquisition import AcquisitionEntry
 from vehgen.simulate.run_file.knowledge import InitialEntry, UncertaintyEntry
@@ -49,6 +50,8 @@ class HumpEntry(FileModel):
     file: FileName | None = None
     distance: Column = "distance"
     height_column: Column = "height"
+    distance_unit: str | None = None
+    unit: str | None = None
 
     @model_validator(mode="after")
     def _complete(self) -> HumpEntry:
@@ -67,11 +70,13 @@ class IsoEntry(FileModel):
 
 
 class ProfileEntry(FileModel):
-    """A measured profile: a CSV file with columns of distance and height [m]."""
+    """A measured profile: a table with columns of distance and height, in m, in the units that it gives itself or in those stated here."""
 
     file: FileName
     distance: Column = "distance"
     height: Column = "height"
+    distance_unit: str | None = None
+    unit: str | None = None
 
 
 class RoadEntry(FileModel):
@@ -89,11 +94,18 @@ class RoadEntry(FileModel):
 
 
 class SpeedFile(FileModel):
-    """A speed history: a CSV file with columns of time [s] and speed [m/s]."""
+    """A speed history: a table with columns of time and speed, in s and m/s, or in other units; or a GPX or NMEA track.
+
+    The run begins at the time `start` of the file (default: at its 0); rows before it and after `end` do not count.
+    """
 
     file: FileName
     time: Column = "t"
     speed: Column = "speed"
+    time_unit: str | None = None
+    unit: str | None = None
+    start: TimeOfFile | None = None
+    end: TimeOfFile | None = None
 
 
 class ForceHarmonic(FileModel):
@@ -113,7 +125,7 @@ class DisplacementHarmonic(FileModel):
 
 
 class ForceEntry(PlaceEntry):
-    """A vertical force on a body, upwards positive: harmonic, or measured in a CSV file, its columns in s and in `unit`.
+    """A vertical force on a body, upwards positive: harmonic, or measured in a table, its columns in s and in `unit`.
 
     `noise` is the standard deviation of what acts besides, white at the recording's samples [N].
     """
@@ -122,6 +134,7 @@ class ForceEntry(PlaceEntry):
     file: FileName | None = None
     time: Column = "t"
     force: Column = "force"
+    time_unit: str | None = None
     unit: str | None = None
     noise: PositiveForce | None = None
 
@@ -133,12 +146,13 @@ class ForceEntry(PlaceEntry):
 
 
 class DisplacementEntry(FileModel):
-    """How the ground end of a link moves: harmonic, or measured in a CSV file, its columns in s and in `unit`."""
+    """How the ground end of a link moves: harmonic, or measured in a table, its columns in s and in `unit`."""
 
     harmonic: DisplacementHarmonic | None = None
     file: FileName | None = None
     time: Column = "t"
     displacement: Column = "displacement"
+    time_unit: str | None = None
     unit: str | None = None
 
     @model_validator(mode="after")

@@ -10,6 +10,7 @@ from vehgen.files import note_read
 from vehgen.files.document import Located
 from vehgen.files.entry import read_entries
 from vehgen.mechanics.outputs import Output, Place, PointOutput
+from vehgen.mechanics.quantities import QUANTITIES
 from vehgen.simulate.run_file.checks import check_run
 from vehgen.simulate.run_file.entries import RunFile
 from vehgen.vehicle.loading import load_vehicle
@@ -46,6 +47,13 @@ class Run:
         if not found:
             found = [PointOutput(f"{name}_acceleration", Place(name, name), "acceleration") for name in self.vehicle.bodies]
         return tuple(found)
+
+    def readings(self) -> tuple[tuple[str, float], ...]:
+        """Return for the channels of :meth:`outputs` the unit of each, and what one of it is worth in SI, its sign included."""
+        sensors = self.file.sensors.values()
+        found = [(sensor.unit(quantity), sensor.factor(quantity)) for sensor in sensors for quantity in sensor.channels]
+        found += [(output.quantities[output.quantity], 1.0) for output in self.file.outputs.values()]
+        return tuple(found) or ((QUANTITIES["acceleration"], 1.0),) * len(self.outputs())
 
     def forces(self) -> tuple[Place, ...]:
         """Return the places of the applied forces."""

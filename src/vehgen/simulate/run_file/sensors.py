@@ -8,6 +8,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from vehgen.files.checks import unit_factor
 from vehgen.files.entry import FileModel
 from vehgen.files.expressions import Expression
 from vehgen.files.names import Column, Name, is_name
@@ -115,6 +116,17 @@ class SensorEntry(PlaceEntry, OfElement):
         """Return the column that holds a quantity; `name` is the sensor's."""
         entry = self.channels[quantity]
         return (entry if isinstance(entry, str) else entry.column) or f"{name}_{quantity}"
+
+    def unit(self, quantity: str) -> str:
+        """Return the unit of a quantity's column."""
+        entry = self.channels[quantity]
+        return self.quantities[quantity] if isinstance(entry, str) or entry.unit is None else entry.unit
+
+    def factor(self, quantity: str) -> float:
+        """Return what a reading of a quantity's column is worth in SI units, its sign included."""
+        entry = self.channels[quantity]
+        sign = 1 if isinstance(entry, str) else entry.sign
+        return sign * unit_factor(self.unit(quantity), self.quantities[quantity], quantity, None)
 
     def channel(self, name: str, quantity: str) -> str:
         """Return what the channel of a quantity is called: as its column where that is a name, else SENSOR_QUANTITY."""

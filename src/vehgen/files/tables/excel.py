@@ -1,0 +1,67 @@
+"""Excel workbooks (.xlsx): the first sheet, headings in its first row, a row of units below them if there is one."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from vehgen.errors import InputError, Position
+from vehgen.files.tables.columns import MAX_TABLE_BYTES, TableColumns
+from vehgen.files.tables.csv_rows import MOST_ROWS
+from vehgen.files.tables.foreign import faults_of, library
+from vehgen.files.tables.rows import Cell, read_rows
+
+EXCEL_KIND = "an Excel workbook (.xlsx)"
+MAX_WORKBOOK_BYTES = 5 * MAX_TABLE_BYTES
+"""Sheets are XML, packed to a tenth [bytes]."""
+MOST_WORKBOOK_PARTS = 1000
+_WORKBOOK = "xl/workbook.xml"
+_ENTITIES = (b"<!DOCTYPE", b"<!ENTITY")
+
+
+def read(path: Path, names: tuple[str, ...]) -> TableColumns:
+    """Read columns of the first sheet of a workbook; raises InputError for a damaged or hostile one, and as :func:`read_rows`."""
+    _check_parts(path)
+    openpyxl = library("openpyxl", "tables", path)
+    with faults_of(path, EXCEL_KIND):
+        book = openpyxl.load_workbook(path, read_only=True, data_only=True, keep_links=False)
+        try:
+            rows = _rows(book.worksheets[0].iter_rows(values_only=True), path)
+            header = [str(cell).strip() for cell in next(rows, (1, []))[1]]
+            return read_rows(path, header, rows, names)
+        finally:
+            book.close()
+
+
+def _rows(rows: Iterator[tuple[Any, ...]], path: Path) -> Iterator[tuple[int, list[Cell]]]:
+    """Yield the number and the cells of every row that is not blank, without blanks at its end."""
+    for number, row in enumerate(rows, 1):
+        if number > MOST_ROWS:
+            raise InputError(f"more than {MOST_ROWS} rows; cut the recording to the pass", Position(path, number, 1))
+        cells: list[Cell] = [_cell(value) for value in row]
+        while cells and cells[-1] == "":
+            cells.pop()
+        if cells:
+            yield number, cells
+
+
+def _cell(value: object) -> Cell:
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return float(value)
+    return "" if value is None else str(value)
+
+
+def _check_parts(path: Path) -> None:
+    """Refuse an archive that is no workbook, unpacks to too much, or whose XML declares entities, before anything reads it."""
+    with faults_of(path, EXCEL_KIND), zipfile.ZipFile(path) as archive:
+        parts = archive.infolist()
+        if _WORKBOOK not in archive.namelist():
+            raise InputError("a zip archive that is no Excel workbook; unpack the table first", Position(path, 1, 1))
+        if len(parts) > MOST_WORKBOOK_PARTS or sum(part.file_size for part in parts) > MAX_WORKBOOK_BYTES:
+            raise InputError(f"the workbook would unpack to more than {MAX_WORKBOOK_BYTES} bytes", Position(path, 1, 1))
+        for part in parts:
+            with archive.open(part) as stream:
+                if any(mark in (head := stream.read(65536)) for mark in _ENTITIES) or b"\x00" in head[:64]:
+                    raise InputError("the workbook declares entities, which no program writes", Position(path, 1, 1))

@@ -1,0 +1,43 @@
+"""Parquet files: columns with their units in the metadata of their fields (`unit`) or in brackets in their names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from vehgen.errors import InputError, Position
+from vehgen.files.tables.columns import MAX_TABLE_BYTES, TableColumns
+from vehgen.files.tables.foreign import faults_of, library
+from vehgen.files.tables.sheet import Sheet, check_size
+
+PARQUET_KIND = "a Parquet file"
+_UNIT_KEYS = (b"unit", b"units")
+
+
+def read(path: Path, names: tuple[str, ...]) -> TableColumns:
+    """Read columns of a Parquet file; raises InputError for one that is damaged, and as :meth:`Sheet.select`."""
+    parquet = library("pyarrow.parquet", "tables", path)
+    with faults_of(path, PARQUET_KIND), parquet.ParquetFile(str(path), memory_map=False) as file:
+        schema = file.schema_arrow
+        headings = tuple(str(name) for name in schema.names)
+        units = tuple(_unit(schema.field(i).metadata) for i in range(len(headings)))
+        n_rows = int(file.metadata.num_rows)
+        check_size(path, n_rows, len(names))
+        _check_unpacked(path, file.metadata)
+
+        def column(index: int) -> Any:
+            return file.read(columns=[headings[index]]).column(0).to_numpy(zero_copy_only=False)
+
+        return Sheet(path, headings, units, column, n_rows).select(names)
+
+
+def _unit(metadata: Any) -> str | None:
+    found = next((metadata[key] for key in _UNIT_KEYS if metadata and key in metadata), None)
+    return None if found is None else found.decode("utf-8", "replace")
+
+
+def _check_unpacked(path: Path, metadata: Any) -> None:
+    """Refuse what would unpack to more than any table."""
+    size = sum(int(metadata.row_group(i).total_byte_size) for i in range(metadata.num_row_groups))
+    if not 0 <= size <= 10 * MAX_TABLE_BYTES:
+        raise InputError(f"the table would unpack to {size} bytes; at most {10 * MAX_TABLE_BYTES} were expected", Position(path, 1, 1))

@@ -1,0 +1,115 @@
+"""Columns out of rows of cells, which are read one by one and never held: of a CSV file, or of an Excel sheet."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from vehgen.errors import InputError, Position, shown
+from vehgen.files.tables.columns import LARGEST_MEASURED, MAX_TABLE_NUMBERS, TableColumns
+from vehgen.files.tables.headings import declared_unit, find_heading, is_unit, name_and_unit
+
+Cell = str | float
+Rows = Iterator[tuple[int, list[Cell]]]
+
+
+def read_rows(path: Path, header: Sequence[str], rows: Rows, names: tuple[str, ...], comma: bool = False) -> TableColumns:
+    """Read columns of numbers below their headings; a row of units may stand between them.
+
+    Parameters
+    ----------
+    path
+        The file, for places.
+    header, rows
+        The headings, and every further row with its line.
+    names
+        The columns wanted.
+    comma
+        Whether a comma may be the decimal sign.
+
+    Raises
+    ------
+    InputError
+        For a missing or repeated column, and at the line and cell of anything that is not a number of at most LARGEST_MEASURED.
+    """
+    columns = [array("d") for _ in names]
+    lines = array("q")
+    places: list[int] = []
+    units: list[str | None] = []
+    signs: set[str] = set()
+    for line, row in rows:
+        if not places:
+            places = [find_heading(path, header, name) for name in names]
+            units = [name_and_unit(header[place])[1] for place in places]
+            if (below := _units_row(row, places)) is not None:
+                units = [own or other for own, other in zip(below, units, strict=True)]
+                continue
+        if any(_text(cell) for cell in row[len(header) :]):
+            raise InputError(f"{len(row)} cells below {len(header)} headings", Position(path, line, len(header) + 1))
+        for name, place, column in zip(names, places, columns, strict=True):
+            number = _number(row[place], signs if comma else None) if place < len(row) else np.nan
+            if not -LARGEST_MEASURED <= number <= LARGEST_MEASURED:
+                raise _wrong(row, name, place, path, line)
+            if len(signs) > 1:
+                raise InputError(
+                    f"{shown(row[place])} in column {shown(name)}: a decimal comma and a decimal point in one table; one was expected",
+                    Position(path, line, place + 1),
+                )
+            column.append(number)
+        lines.append(line)
+        if len(columns) * len(columns[0]) > MAX_TABLE_NUMBERS:
+            raise InputError(
+                f"more than {MAX_TABLE_NUMBERS} numbers in {len(columns)} columns; cut the recording to the pass", Position(path, line, 1)
+            )
+    if not len(lines):
+        raise InputError("a header line and at least one line of numbers were expected", Position(path, 1, 1))
+    cells = tuple(place + 1 for place in places)
+    values = tuple(np.array(column) for column in columns)
+    return TableColumns(path, names, values, cells, np.array(lines, dtype=np.int64), tuple(units))
+
+
+def _text(cell: Cell) -> str:
+    return str(cell).strip()
+
+
+def _units_row(row: list[Cell], places: list[int]) -> list[str | None] | None:
+    """Return the units of columns where a row holds nothing but them; else None."""
+    texts = [_text(row[place]) if place < len(row) else "" for place in places]
+    if not any(texts) or not all(declared_unit(text) is None or is_unit(text) for text in texts):
+        return None
+    return [declared_unit(text) for text in texts] if any(declared_unit(text) for text in texts) and not _any_number(texts) else None
+
+
+def _any_number(texts: list[str]) -> bool:
+    return any(text[:1].isdigit() for text in texts)
+
+
+def _number(cell: Cell, signs: set[str] | None) -> float:
+    """Return a cell's number, NaN where it is none; where a comma may be decimal, `signs` takes up which sign it was."""
+    try:
+        number = float(cell)
+        if signs is not None and isinstance(cell, str) and "." in cell:
+            signs.add(".")
+        return number
+    except ValueError:
+        if signs is None or not isinstance(cell, str) or cell.count(",") != 1 or "." in cell:
+            return float("nan")
+    signs.add(",")
+    try:
+        return float(cell.replace(",", "."))
+    except ValueError:
+        return float("nan")
+
+
+def _wrong(row: list[Cell], name: str, place: int, path: Path, line: int) -> InputError:
+    text = _text(row[place]) if place < len(row) else ""
+    position = Position(path, line, min(place, max(len(row) - 1, 0)) + 1)
+    try:
+        finite = np.isfinite(float(text))
+    except ValueError:
+        finite = False
+    reason = f"beyond {LARGEST_MEASURED:g}, which nothing measures" if finite else "not a finite number"
+    return InputError(f"{shown(text)} in column {shown(name)} is {reason}", position)

@@ -1,0 +1,124 @@
+"""Damaged, hostile and mistaken tables are refused with one line that says where; a lacking library is named with its extra."""
+
+from __future__ import annotations
+
+import io
+import sys
+import zipfile
+from contextlib import suppress
+from pathlib import Path
+from random import Random
+
+import numpy as np
+import pandas as pd
+import pytest
+import scipy.io
+
+from tests.files.tables.test_formats import WRITERS
+from vehgen.errors import InputError
+from vehgen.files.tables import read_columns
+
+CASES = [
+    ("t;az\n0;1,5\n1;2.5\n", "3:2: '2.5' in column 'az': a decimal comma and a decimal point in one table"),
+    ("t;az\n0;1.234,5\n", "2:2: '1.234,5' in column 'az' is not a finite number"),
+    ("t;az\n0;1,2,3\n", "2:2: '1,2,3' in column 'az' is not a finite number"),
+    ("t,az\n0,1,5\n", "2:3: 3 cells below 2 headings"),
+    ("t;az\n0;1;5\n", "2:3: 3 cells below 2 headings"),
+    ("t,az\ns,m/s^2\n", "1:1: a header line and at least one line of numbers were expected"),
+    ("t,az\ns,banana\n0,1\n", "2:1: 's' in column 't' is not a finite number"),
+    ("t [s],t [ms],az\n0,0,1\n", "1:2: two columns are named 't'"),
+    ("time;az\n0;1\n", "1:1: no column 't'; known: az, time"),
+    ("", "1:1: a header line"),
+]
+
+
+@pytest.mark.parametrize(("text", "said"), CASES, ids=range(len(CASES)))
+def test_a_table_of_text_is_refused_at_its_cell(tmp_path: Path, text: str, said: str):
+    (tmp_path / "run.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        read_columns(tmp_path / "run.csv", ("t", "az"))
+    assert f"run.csv:{said}" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (bytes.fromhex("d0cf11e0a1b11ae1") + bytes(600), "an Excel file of the old form (.xls); save it as .xlsx or CSV"),
+        (b"\x89HDF\r\n\x1a\n" + bytes(600), "an HDF5 file, as MATLAB writes with -v7.3"),
+        (b"\x1f\x8b" + bytes(60), "packed (gzip)"),
+        (b"UnFinMF 4.10    " + bytes(600), "a finished MDF file of version 4 was expected"),
+        (b"MDF     3.30    " + bytes(600), "a finished MDF file of version 4 was expected, found '3.30'"),
+        (b"MDF     4.10    " + bytes(600), "cannot be read as an MDF 4 file"),
+        (b"PAR1" + bytes(600), "cannot be read as a Parquet file"),
+        (b"PK\x03\x04" + bytes(600), "cannot be read as an Excel workbook"),
+        (b"    -1\n    58\nnothing\n    -1\n", "cannot be read as a universal file"),
+        (b"MATLAB 5.0 MAT-file" + bytes(600), "cannot be read as a MATLAB file"),
+    ],
+    ids=lambda item: repr(item[:8]),
+)
+def test_what_is_damaged_or_of_another_version_is_told(tmp_path: Path, data: bytes, said: str):
+    for mark, module in ((b"PAR1", "pyarrow"), (b"PK", "openpyxl"), (b"MDF", "asammdf"), (b"    -1", "pyuff")):
+        if data.startswith(mark):
+            pytest.importorskip(module)
+    (tmp_path / "run.dat").write_bytes(data)
+    with pytest.raises(InputError) as caught:
+        read_columns(tmp_path / "run.dat", ("t", "az"))
+    assert said in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["parquet", "excel", "mdf", "uff", "comma"])
+def test_damaged_files_are_refused_or_read_but_never_crash(tmp_path: Path, name: str):
+    path = tmp_path / "run.xlsx"
+    WRITERS[name](path)
+    whole, random = path.read_bytes(), Random(5)
+    for _ in range(40):
+        data = bytearray(whole[: random.randrange(len(whole))] if random.random() < 0.4 else whole)
+        for _ in range(random.randrange(1, 6)):
+            if data:
+                data[random.randrange(len(data))] = random.randrange(256)
+        path.write_bytes(bytes(data))
+        with suppress(InputError):
+            found = read_columns(path, ("t", "az"))
+            assert np.isfinite(np.array(found.values)).all()
+
+
+def test_a_workbook_with_entities_or_of_a_bomb_is_refused(tmp_path: Path):
+    pytest.importorskip("openpyxl")
+    pd.DataFrame({"t": [0.0], "az": [1.0]}).to_excel(tmp_path / "good.xlsx", index=False)
+    for name, said in (("entity", "the workbook declares entities"), ("bomb", "would unpack to more than")):
+        data = io.BytesIO()
+        with zipfile.ZipFile(tmp_path / "good.xlsx") as source, zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
+            for part in source.namelist():
+                text = source.read(part)
+                if part.endswith("sheet1.xml") and name == "entity":
+                    text = text.replace(b"<worksheet", b'<!DOCTYPE x [<!ENTITY a "b">]><worksheet', 1)
+                archive.writestr(part, text)
+            if name == "bomb":
+                with archive.open("xl/more.xml", "w", force_zip64=True) as stream:
+                    for _ in range(1001):
+                        stream.write(bytes(1_000_000))
+        (tmp_path / "bad.xlsx").write_bytes(data.getvalue())
+        with pytest.raises(InputError, match=said):
+            read_columns(tmp_path / "bad.xlsx", ("t", "az"))
+
+
+LIBRARIES = [("parquet", "pyarrow.parquet", "tables"), ("excel", "openpyxl", "tables"), ("mdf", "asammdf", "mdf"), ("uff", "pyuff", "uff")]
+
+
+@pytest.mark.parametrize(("name", "module", "extra"), LIBRARIES, ids=[name for name, _, _ in LIBRARIES])
+def test_a_lacking_library_is_named_with_its_extra(tmp_path: Path, name: str, module: str, extra: str, monkeypatch: pytest.MonkeyPatch):
+    path = tmp_path / "run.xlsx"
+    WRITERS[name](path)
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(InputError, match=rf"needs {module.partition('.')[0]}: pip install 'vehgen\[{extra}\]'"):
+        read_columns(path, ("t", "az"))
+
+
+def test_numbers_that_are_none_are_told_at_their_row(tmp_path: Path):
+    scipy.io.savemat(tmp_path / "run.mat", {"t": np.array([0.0, 1.0, np.nan]), "az": np.array([1.0, 1e13, 2.0]), "z": np.array([1j, 2, 3])})
+    with pytest.raises(InputError, match=r"run\.mat:3:1: nan in column 't' is not a finite number"):
+        read_columns(tmp_path / "run.mat", ("t", "az"))
+    with pytest.raises(InputError, match=r"run\.mat:2:1: 1e\+13 in column 'az' is beyond 1e\+12"):
+        read_columns(tmp_path / "run.mat", ("az",))
+    with pytest.raises(InputError, match="'z' holds complex128 of shape"):
+        read_columns(tmp_path / "run.mat", ("z",))
