@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 from tests.report.vehicles import EVERY, HOSTILE, model
 from vehgen.codegen import write_kernel
 from vehgen.errors import InputError
+from vehgen.files.number_text import grouped, kilonewtons
 from vehgen.mechanics import derive, static_loads
 from vehgen.report import plot_response, save_figure, write_build_folder
 from vehgen.report.figure_files import inline_svg
-from vehgen.report.pages.build_page import grouped
 from vehgen.simulate import natural_modes
 from vehgen.vehicle import load_vehicle
 
@@ -159,9 +159,9 @@ def test_axle_loads_sum_to_the_weight(name, pages):
     m = model(name)
     loads = static_loads(m)
     for force in loads.axles.values():
-        assert grouped(round(force)) in pages(name)
+        assert kilonewtons(force) in pages(name)
     found = dict(re.findall(r"<th>(sum|weight)</th>(?:<th></th>)?<th class=\"n\">([^<]*)</th>", pages(name)))
-    assert found["weight"] == grouped(round(_weight(m)))
+    assert found["weight"] == kilonewtons(_weight(m))
     if name != "rig":
         assert found["sum"] == found["weight"]
 

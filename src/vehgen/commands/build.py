@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehgen.commands.results import add_out, folder_named
-from vehgen.commands.terminal import add_vehicle, load, print_json, print_table, say, warn
+from vehgen.commands.terminal import add_vehicle, force_text, load, print_json, print_table, say, warn
+from vehgen.files.number_text import grouped, on_terminal
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -71,7 +72,7 @@ def _show(model: EquationsOfMotion, values: dict[str, float], modes: Sequence[Mo
     parameter_rows = [
         (
             name,
-            f"{everything[name]:.6g}",
+            on_terminal(grouped(everything[name])),
             str(dimensions[name]).replace("no unit", "-"),
             str(item.equals or ""),
             item.meaning,
@@ -85,8 +86,8 @@ def _show(model: EquationsOfMotion, values: dict[str, float], modes: Sequence[Mo
     if not load_rows and vehicle.gravity:
         load_rows, owners = [(name, force) for (_, name), force in loads.elements.items()], "link"
     if load_rows:
-        rows_of_loads = [(name, f"{force:,.0f}") for name, force in load_rows]
-        print_table("Static loads", (owners, "force, N"), rows_of_loads, right=(1,))
+        rows_of_loads = [(name, force_text(force)) for name, force in load_rows]
+        print_table("Static loads", (owners, "force, kN"), rows_of_loads, right=(1,))
 
 
 def _summary(model: EquationsOfMotion, found: Build, counts: dict[str, int], folder: Path, written: list[Path]) -> dict[str, object]:

@@ -88,6 +88,21 @@ def element_rows(model: EquationsOfMotion, values: Mapping[str, float]) -> tuple
     return rows, np.array(model.evaluate_list((element.k for element in model.elements), values))
 
 
+def static_deflections(model: EquationsOfMotion, values: Mapping[str, float], loads: StaticLoads) -> dict[tuple[str, str], float]:
+    """Return how far every suspension, tyre and link is compressed at rest [m], and how far every hinge is turned [rad], by (kind, name).
+
+    Parameters
+    ----------
+    values
+        Parameters [SI] by name.
+    loads
+        The vehicle's static loads at these values.
+    """
+    rows, _ = element_rows(model, values)
+    travels = rows @ loads.displacement
+    return {(element.kind, element.name): float(travel) for element, travel in zip(model.elements, travels, strict=True)}
+
+
 def is_held(model: EquationsOfMotion, values: Mapping[str, float]) -> bool:
     """Return whether springs hold the vehicle in every motion, at values of its parameters [SI]."""
     return _scaled_modes(model.numeric(values).K)[2]

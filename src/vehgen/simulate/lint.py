@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from vehgen.errors import InputError
+from vehgen.files.number_text import kilonewtons, on_terminal
 from vehgen.mechanics.energies import pitch_inertia
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.static_loads import static_loads
@@ -36,7 +37,7 @@ def _loads(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[st
         return
     for name, force in loads.axles.items():
         if force < 0:
-            yield f"negative load on {name}: {force:,.0f} N; its tyre would have to pull the vehicle down"
+            yield f"negative load on {name}: {on_terminal(kilonewtons(force))} kN; its tyre would have to pull the vehicle down"
 
 
 def _gyration(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[str]:

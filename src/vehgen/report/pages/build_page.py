@@ -14,8 +14,10 @@ from matplotlib.figure import Figure
 
 from vehgen.codegen import KernelSource, write_kernel
 from vehgen.files import write_text
+from vehgen.files.number_text import grouped, kilonewtons, millimetres
 from vehgen.files.results import json_text
 from vehgen.mechanics import GRAVITY, EquationsOfMotion, StaticLoads, derive
+from vehgen.mechanics.static_loads import static_deflections
 from vehgen.report.drawing.mode_shapes import draw_modes
 from vehgen.report.drawing.vehicle import draw_vehicle
 from vehgen.report.equations import writing as equations
@@ -90,7 +92,7 @@ def write_build(build: Build, folder: Path, model: EquationsOfMotion, kernel: Ke
 
 def _page(build: Build, model: EquationsOfMotion, texts: Mapping[str, str]) -> str:
     environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
-    environment.filters["grouped"] = grouped
+    environment.filters |= {"grouped": grouped, "kilonewtons": kilonewtons, "millimetres": millimetres}
     template = environment.from_string((files("vehgen.report") / "templates" / "page.html.j2").read_text(encoding="utf-8"))
     symbols = equations.coordinate_mathml(model)
     return template.render(
@@ -101,7 +103,7 @@ def _page(build: Build, model: EquationsOfMotion, texts: Mapping[str, str]) -> s
         modes=build.modes,
         axles=_axles(model, build.loads),
         hinges=build.loads.hinges,
-        links=[(name, force) for (kind, name), force in build.loads.elements.items() if kind == "link"],
+        springs=_springs(model, build),
         total=sum(build.loads.axles.values()),
         weight=build.weight,
         mass=model.total_mass(build.values),
@@ -144,20 +146,20 @@ def _parameters(build: Build, model: EquationsOfMotion) -> list[dict[str, object
     return rows
 
 
-def grouped(value: float) -> str:
-    """Write a number with six digits that count, thousands apart."""
-    short = float(f"{value:.6g}")
-    if short and not 1e-4 <= abs(short) < 1e10:
-        return f"{short:.6g}"
-    return (f"{short:,.0f}" if short.is_integer() else f"{short:,.10f}".rstrip("0")).replace(",", "\u202f").replace("-", "\u2212")
-
-
 def _unit(unit: str) -> str:
     return unit.replace("no unit", "–").replace("^2", "²").replace("^3", "³")
 
 
 def _axles(model: EquationsOfMotion, loads: StaticLoads) -> list[tuple[str, str, float]]:
     return [(name, model.vehicle.axles[name].title, force) for name, force in loads.axles.items()]
+
+
+def _springs(model: EquationsOfMotion, build: Build) -> list[tuple[str, str, float, float]]:
+    """Return kind, name, force [N] and deflection [m] of suspensions, tyres and links at rest; none without gravity."""
+    if not model.vehicle.gravity:
+        return []
+    deflections = static_deflections(model, build.values, build.loads)
+    return [(*key, force, deflections[key]) for key, force in build.loads.elements.items() if key[0] != "hinge"]
 
 
 def _figures(model: EquationsOfMotion, texts: Mapping[str, str]) -> dict[str, Markup]:
