@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from tests.commands.calls import python
 from vehgen.commands import main
 from vehgen.commands.diagnose import _show
 from vehgen.commands.progress import Bars

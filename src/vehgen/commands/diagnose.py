@@ -15,7 +15,7 @@ from vehgen.files import check_results, write_text
 if TYPE_CHECKING:
     from vehgen.diagnose import Diagnosis
 
-EXAMPLE = "vehgen diagnose tractor5.yaml hump_2ms.yaml hump_3ms.yaml high_2ms.yaml --out diagnosis"
+EXAMPLE = "vehgen diagnose tractor5.yaml hump_2ms.yaml hump_3ms.yaml high_2.5ms.yaml --out diagnosis"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
