@@ -16,6 +16,7 @@ from vehgen.commands import (
     bench,
     build,
     calibrate,
+    completion,
     diagnose,
     effects,
     export,
@@ -24,6 +25,7 @@ from vehgen.commands import (
     models,
     modes,
     module,
+    new,
     report,
     response,
     schema,
@@ -39,6 +41,7 @@ from vehgen.errors import ArgumentError, InputError, shortened
 from vehgen.files import guarding_results, noting_reads
 
 COMMANDS = (
+    new,
     build,
     modes,
     static,
@@ -59,6 +62,7 @@ COMMANDS = (
     report,
     models,
     schema,
+    completion,
     bench,
 )
 
