@@ -51,6 +51,8 @@ def run(options: argparse.Namespace) -> None:
 
 
 def _show(model: EquationsOfMotion, values: dict[str, float], modes: Sequence[Mode], loads: StaticLoads) -> None:
+    from vehgen.simulate.mode_groups import alike_modes, group_name
+
     vehicle = model.vehicle
     title = vehicle.title or vehicle.name
     counts = (
@@ -80,7 +82,8 @@ def _show(model: EquationsOfMotion, values: dict[str, float], modes: Sequence[Mo
         for name, item in vehicle.parameters.items()
     ]
     print_table("Parameters", ("name", "value", "unit", "equals", "meaning"), parameter_rows, right=(1,))
-    mode_rows = [(mode.name, f"{mode.undamped_hz:.3f}", f"{mode.damped_hz:.3f}", f"{mode.damping_ratio:.3f}") for mode in modes]
+    groups = [(group_name(group), group[0]) for group in alike_modes(modes)]
+    mode_rows = [(name, f"{mode.undamped_hz:.3f}", f"{mode.damped_hz:.3f}", f"{mode.damping_ratio:.3f}") for name, mode in groups]
     print_table("Modes", ("mode", "undamped, Hz", "damped, Hz", "damping ratio"), mode_rows, right=(1, 2, 3))
     load_rows, owners = [*loads.axles.items(), *loads.hinges.items()], "axle or hinge"
     if not load_rows and vehicle.gravity:

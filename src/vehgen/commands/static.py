@@ -32,7 +32,7 @@ def run(options: argparse.Namespace) -> None:
     loads = static_loads(model, values)
     deflections = static_deflections(model, values, loads)
     findings = lint(model, values)
-    springs = [(*key, force, deflections[key]) for key, force in loads.elements.items() if key[0] != "hinge"]
+    springs = [(*key, loads.elements[key], deflection) for key, deflection in deflections.items()]
     if options.json:
         keys = ("kind", "name", "force", "deflection")
         found = [dict(zip(keys, item, strict=True)) for item in springs]

@@ -89,7 +89,7 @@ def element_rows(model: EquationsOfMotion, values: Mapping[str, float]) -> tuple
 
 
 def static_deflections(model: EquationsOfMotion, values: Mapping[str, float], loads: StaticLoads) -> dict[tuple[str, str], float]:
-    """Return how far every suspension, tyre and link is compressed at rest [m], and how far every hinge is turned [rad], by (kind, name).
+    """Return how far every suspension, tyre and link is compressed at rest [m], by (kind, name).
 
     Parameters
     ----------
@@ -100,7 +100,8 @@ def static_deflections(model: EquationsOfMotion, values: Mapping[str, float], lo
     """
     rows, _ = element_rows(model, values)
     travels = rows @ loads.displacement
-    return {(element.kind, element.name): float(travel) for element, travel in zip(model.elements, travels, strict=True)}
+    found = {(element.kind, element.name): float(travel) for element, travel in zip(model.elements, travels, strict=True)}
+    return {key: travel for key, travel in found.items() if key[0] in ("suspension", "tyre", "link")}
 
 
 def is_held(model: EquationsOfMotion, values: Mapping[str, float]) -> bool:

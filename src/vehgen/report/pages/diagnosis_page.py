@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from importlib import resources
 from pathlib import Path
 
 import numpy as np
-from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
@@ -14,6 +12,7 @@ from vehgen.diagnose.evidence import BaseParameter, Evidence, FittedCandidate, R
 from vehgen.diagnose.result import Diagnosis
 from vehgen.files import write_text
 from vehgen.report.figure_files import figure_svg, inline_svg
+from vehgen.report.pages.assets import page_environment, template_text
 from vehgen.report.plots.comparison import QUANTITY_UNITS, plot_histories, plot_psds
 from vehgen.report.plots.diagnosis_plots import plot_places, plot_waterfall
 from vehgen.report.plots.force_plots import plot_force
@@ -21,8 +20,8 @@ from vehgen.report.plots.force_plots import plot_force
 
 def write_diagnosis_page(diagnosis: Diagnosis, path: Path) -> None:
     """Write the report of a diagnosis to an HTML file."""
-    text = resources.files("vehgen.report").joinpath("templates/diagnosis.html.j2").read_text(encoding="utf-8")
-    environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
+    text = template_text("diagnosis.html.j2")
+    environment = page_environment()
     evidence = diagnosis.evidence
     page = environment.from_string(text).render(
         vehicle=evidence.vehicle,
