@@ -80,3 +80,19 @@ def test_a_hinge_shows_what_resists_it():
         for keys in ("k: 0 N m", "k: 2 MN m", "k: 2 MN m, c: 20 kN m s")
     )
     assert lines(free) < lines(sprung) < lines(damped)
+
+
+@pytest.mark.parametrize(
+    ("labels", "parts"),
+    [
+        (["suspension axle4"], {"suspension-axle4"}),
+        (["tyre axle1", "hinge fifth_wheel"], {"tyre-axle1", "hinge-fifth_wheel"}),
+        (["axle4 and axle5"], {"suspension-axle4", "suspension-axle5"}),
+        (["all suspensions"], {f"suspension-axle{i}" for i in range(1, 6)}),
+        (["link seat", "cab"], {"link-seat", "body-cab"}),
+        (["nowhere", "<b>"], set()),
+    ],
+)
+def test_places_of_a_diagnosis_are_ringed(labels, parts):
+    patches = draw_vehicle(model("tractor5_cab"), marked=labels).axes[0].patches
+    assert {patch.get_gid() for patch in patches if (patch.get_gid() or "").startswith("marked-")} == {f"marked-{part}" for part in parts}

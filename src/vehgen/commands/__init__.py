@@ -6,6 +6,7 @@ import argparse
 import ast
 import inspect
 import io
+import shlex
 import sys
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -111,6 +112,7 @@ def _run(words: list[str]) -> int | None:
             raise InputError(f"{shortened(word.removesuffix('=--'))} wants a value; found '--'")
     parser = make_parser()
     options = parser.parse_args(words)
+    options.command_line = shlex.join(["vehgen", *words])
     if options.version:
         from vehgen import __version__
 

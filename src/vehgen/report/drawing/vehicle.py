@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -15,6 +15,7 @@ from vehgen.mechanics import EquationsOfMotion, ModelLike, all_values, as_model
 from vehgen.mechanics.symbols import to_sympy
 from vehgen.report.drawing.canvas import ACCENT, FAINT, FILLS, INK, Canvas, Spot, text_size, within, wrap
 from vehgen.report.drawing.dimensions import Chain, draw_chains, draw_hinge_heights
+from vehgen.report.drawing.marks import draw_marks, marked_parts
 from vehgen.report.drawing.sketch import Sketch, make_sketch
 from vehgen.report.drawing.symbols import draw_bending, draw_ceiling, draw_pin_resistance
 from vehgen.vehicle.parts import GROUND, Axle, Hinge, Spring
@@ -24,7 +25,9 @@ _ROW, _TILT = 25.0, 35.0
 """Height of a row of dimensions in points; slope of crowded names in degrees."""
 
 
-def draw_vehicle(model: ModelLike, values: Mapping[str, float] | None = None, *, parameter_set: str | None = None) -> Figure:
+def draw_vehicle(
+    model: ModelLike, values: Mapping[str, float] | None = None, *, parameter_set: str | None = None, marked: Sequence[str] = ()
+) -> Figure:
     """Draw a side view to scale: bodies, axles, hinges, links, COGs, and their distances [m].
 
     Parameters
@@ -35,6 +38,8 @@ def draw_vehicle(model: ModelLike, values: Mapping[str, float] | None = None, *,
         Parameters [SI] by name; what is not named keeps the value of the set, or the file's.
     parameter_set
         One of the vehicle's sets.
+    marked
+        Places to ring, as a diagnosis calls them: `tyre rear`, `axle4 and axle5`, `fifth_wheel`.
 
     Notes
     -----
@@ -66,6 +71,7 @@ def draw_vehicle(model: ModelLike, values: Mapping[str, float] | None = None, *,
     draw_chains(canvas, chains, -depth, _ROW, _TEXT - 0.5)
     _name_axles(canvas, sketch, names)
     _name_parts(canvas, model, sketch)
+    draw_marks(canvas, sketch, marked_parts(model, marked))
     return canvas.figure
 
 
