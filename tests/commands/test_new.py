@@ -13,7 +13,7 @@ from vehgen.vehicle import load_vehicle
 
 @pytest.mark.parametrize("kind", ["truck", "semitrailer"])
 def test_a_starter_vehicle_can_be_used_in_all_its_sets(kind: str, work: Path):
-    assert main(["new", "my lorry.yaml", "--kind", kind]) == 0
+    assert main(["new", kind, "--out", "my lorry.yaml"]) == 0
     vehicle = load_vehicle("my lorry.yaml")
     assert vehicle.name == "my_lorry"
     model = derive(vehicle)
@@ -23,7 +23,7 @@ def test_a_starter_vehicle_can_be_used_in_all_its_sets(kind: str, work: Path):
 
 
 def test_what_stands_in_comments_can_be_used_too(work: Path):
-    assert main(["new", "a.yaml"]) == 0
+    assert main(["new", "--out", "a.yaml"]) == 0
     text = Path("a.yaml").read_text()
     text = text.replace("# suspension: {k: kr", "suspension: {k: kr").replace("    suspension: {k: kr, c: 18 kN s/m}\n", "", 1)
     text = text.replace("# links:\n#   seat", "links:\n  seat").replace("# silence", "silence")
@@ -36,19 +36,19 @@ def test_what_stands_in_comments_can_be_used_too(work: Path):
 
 
 def test_a_starter_run_can_be_simulated(work: Path):
-    assert main(["new", "r.yaml", "--kind", "run"]) == 0
+    assert main(["new", "run", "--out", "r.yaml"]) == 0
     response = simulate(load_run("r.yaml"))
     assert response.warnings == ()
     assert [item.name for item in response.channels] == ["front_az", "front_q", "rear_az"]
 
 
 def test_an_edited_starter_is_kept(work: Path, capsys: pytest.CaptureFixture[str]):
-    assert main(["new", "a.yaml"]) == 0
-    assert main(["new", "a.yaml"]) == 0
+    assert main(["new", "--out", "a.yaml"]) == 0
+    assert main(["new", "--out", "a.yaml"]) == 0
     with Path("a.yaml").open("a") as stream:
         stream.write("# mine\n")
     capsys.readouterr()
-    assert main(["new", "a.yaml"]) == 2
+    assert main(["new", "--out", "a.yaml"]) == 2
     assert "was not written by vehgen (or was changed since)" in capsys.readouterr().err
     assert Path("a.yaml").read_text().endswith("# mine\n")
     assert run_json(capsys, "static", "a.yaml")["warnings"] == []
