@@ -137,5 +137,5 @@ def _picture(sketch: Sketch, swing: float, title: str, body: str, data: str) -> 
     left, right, top = sketch.left - 0.6, sketch.right + 0.6, sketch.top + swing + 0.1
     low = -0.15 - swing
     box = f"{_UNIT * left:.0f} {-_UNIT * top:.0f} {_UNIT * (right - left):.0f} {_UNIT * (top - low):.0f}"
-    road = f'<line class="road" x1="{_UNIT * left:.0f}" y1="0" x2="{_UNIT * right:.0f}" y2="0"/>'
+    road = f'<line class="road" x1="{_UNIT * (left - 99):.0f}" y1="0" x2="{_UNIT * (right + 99):.0f}" y2="0"/>'
     return Markup(f'<svg class="moving" viewBox="{box}" role="img" {data}><title>{escape(title)}</title>{road}{body}</svg>')
