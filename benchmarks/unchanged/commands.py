@@ -21,7 +21,7 @@ COMMANDS = {
     "sensitivity": "-m vehgen sensitivity {vehicle} {run} --out sensitivity --json",
     "sensors": "-m vehgen sensors {vehicle} {run} --count 2 --json",
     # docs/diagnose.md
-    "hidden": "-m vehgen diagnose sedan2.yaml low_2ms.yaml high_2ms.yaml high_4ms.yaml rough.yaml --out diagnosis --json",
+    "hidden": "-m vehgen diagnose sedan2.yaml low_2ms.yaml high_2.5ms.yaml high_4ms.yaml rough.yaml --out diagnosis --json",
     # docs/silverbox.md
     "prepare silverbox": "{examples}/silverbox/prepare.py {data} runs",
     "silverbox multisine": "-m vehgen diagnose {examples}/silverbox/silverbox.yaml "

@@ -12,7 +12,7 @@ IGNORED = {"machine", "provenance", "files", "vehicle_file"}
 """Versions, dates, hashes of inputs, settings and paths."""
 PROSE = {"reason", "notes", "warnings", "next_experiment", "title", "source", "meaning", "speed_source", "failed"}
 """Sentences for people: other words are told, but are no change of what was computed; more or fewer sentences are."""
-RENAMED: dict[str, str] = {"DHCM-1&2": "DHCM-1-2", "DHCM-F&R": "DHCM-F-R", "gauge": "unidentifiable"}
+RENAMED: dict[str, str] = {"DHCM-1&2": "DHCM-1-2", "DHCM-F&R": "DHCM-F-R", "gauge": "unidentifiable", "high_2ms": "high_2.5ms"}
 """Keys, their parts between commas, and words such as a status, of the older record -> what the newer one calls them."""
 
 

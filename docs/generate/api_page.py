@@ -136,7 +136,7 @@ print(rough.to_dataframe(), rough.cannot_tell)
 humps = ["hidden/low_2ms.yaml", "hidden/high_4ms.yaml"]
 calibrated = vehgen.calibrate("sedan2", humps, size=20, generations=5, starts=2)  # small, so that it is quick
 print(calibrated.to_dataframe())
-print(vehgen.validate("sedan2", "hidden/high_2ms.yaml").worst)
+print(vehgen.validate("sedan2", "hidden/high_2.5ms.yaml").worst)
 print(vehgen.sensitivity(humps[0], ["kf", "kr"]).to_dataframe())
 print(vehgen.advise_sensors(humps[0], 2, parameters=["kf", "kr"]).to_dataframe())
 """,
@@ -146,7 +146,7 @@ print(vehgen.advise_sensors(humps[0], 2, parameters=["kf", "kr"]).to_dataframe()
         ("effects", "Effect", "diagnose"),
         """\
 assert isinstance(vehgen.effects()["dry_friction"], vehgen.Effect)
-diagnosis = vehgen.diagnose("sedan2", [*humps, "hidden/high_2ms.yaml"], effects=["dry_friction"])
+diagnosis = vehgen.diagnose("sedan2", [*humps, "hidden/high_2.5ms.yaml"], effects=["dry_friction"])
 print(diagnosis.verdict.reason)
 """,
     ),

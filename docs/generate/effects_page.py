@@ -130,8 +130,9 @@ def page() -> str:
         "",
         "Made by `python docs/generate/effects_page.py` from the library.",
         "",
-        "What `vehgen diagnose` can name. Ranges are what it searches, as multiples of the place's own size where it has one",
-        "(static load, stiffness, typical travel). Every picture shows tractor5 over a hump of 50 mm at 2.5 m/s, without the",
+        "What `vehgen diagnose` can name. Ranges are what it searches: in the parameter's unit, or as multiples of a size",
+        "of the place: its static load, stiffness or damping, or a typical travel (a tenth of what the static load compresses the spring",
+        "by, between 2 and 20 mm; half the stroke on a rig). Every picture shows tractor5 over a hump of 50 mm at 2.5 m/s, without the",
         "effect (grey) and with it (blue), at the strength at which a search begins. What lives at a suspension is also looked for in",
         "all suspensions alike (`all suspensions`), and in those of a body's axles behind the first (`axle4 and axle5`).",
         "",
@@ -143,7 +144,7 @@ def page() -> str:
         lines += [f"Lives at: {effect.attaches}. Looks like: {effect.signature}.", ""]
         if effect.parameters:
             lines += ["| parameter | unit | searched | meaning |", "|---|---|---|---|"]
-            lines += [f"| `{item.name}` | {item.unit} | {item.low:g} to {item.high:g} | {item.meaning} |" for item in effect.parameters]
+            lines += [f"| `{item.name}` | {item.unit} | {item.searched} | {item.meaning} |" for item in effect.parameters]
             lines.append("")
         if effect.frees:
             lines += [f"Its fits search {' and '.join(map(FREED.get, effect.frees))} there within the file's whole range.", ""]

@@ -227,4 +227,4 @@ def test_names_of_strangers_stay_text_on_the_page(tmp_path, capsys, monkeypatch)
         f'vehicle: sedan2\ntitle: "{title}"\nspeed: 10 m/s\nduration: 2 s\nroad: [{{iso8608: {{class: A}}}}]\n'
     )
     assert main(["assess", "run.yaml", "--out", "out"]) == 0
-    assert "<script>" not in (tmp_path / "out" / "assessment.html").read_text()
+    assert (tmp_path / "out" / "assessment.html").read_text().count("<script") == 1

@@ -104,7 +104,7 @@ def test_build_without_plots_into_a_chosen_folder_twice_the_same(work: Path, cap
     assert main(["build", "quarter_car", "--no-plots", "--out", "a/b"]) == 0
     text = capsys.readouterr().out
     assert "Quarter car: layout" in text
-    assert "107,910" in text
+    assert "107.910" in text
     assert "a/b/index.html" in text
     files = written(work)
     assert {"a/b/kernel.py", "a/b/index.html"} <= files

@@ -135,3 +135,14 @@ def test_what_cannot_be_done_is_said_in_one_line(run, tmp_path, capsys, argument
     error = capsys.readouterr().err
     assert said in error
     assert error.count("\n") == 1
+
+
+@pytest.mark.parametrize("command", [("sensors", "--count", "1"), ("sensitivity", "--out", "s")])
+def test_a_terminal_is_told_how_far_sensors_and_sensitivity_are(command, run, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("TTY_COMPATIBLE", "1")
+    assert main([command[0], "sedan2.yaml", run, "--parameters", "kf,mr", *command[1:]]) == 0
+    told = capsys.readouterr().err
+    assert "derivatives" in told
+    assert "2/2" in told
+    assert "left" in told

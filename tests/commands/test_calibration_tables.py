@@ -37,7 +37,8 @@ def open_summary(summary):
 
 def printed(capsys, summary):
     show_calibration(summary)
-    return " ".join(capsys.readouterr().out.split())
+    captured = capsys.readouterr()
+    return " ".join(f"{captured.out} {captured.err}".split())
 
 
 def test_runs_are_told_with_what_was_known_of_them(summary, capsys):
@@ -50,7 +51,10 @@ def test_runs_are_told_with_what_was_known_of_them(summary, capsys):
 
 def test_what_is_told_comes_before_what_is_not(open_summary, capsys):
     text = printed(capsys, open_summary)
-    places = [text.index(part) for part in ("body heave", "39 to 41", "unidentifiable", "help most", "can determine 9")]
+    places = [
+        text.index(part)
+        for part in ("body heave", "39 to 41", "unidentifiable", "help most", "warning: recordings of these sensors can determine 9")
+    ]
     assert places == sorted(places)
     low, high = open_summary.parameters["kf"].interval_given_pivots
     assert "if mf were known" in text

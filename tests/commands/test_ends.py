@@ -120,7 +120,9 @@ def test_markup_in_names_is_text(capsys: pytest.CaptureFixture[str]):
     assert f"measure next: {SHOWN}" in text
     print_table(MARKUP, (MARKUP,), [(MARKUP,)])
     warn([MARKUP])
-    assert capsys.readouterr().out.count(SHOWN) == 4
+    captured = capsys.readouterr()
+    assert captured.out.count(SHOWN) == 3
+    assert captured.err == f"warning: {SHOWN}\n"
 
 
 def test_markup_in_progress_is_text(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):

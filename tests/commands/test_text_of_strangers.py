@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from tests.commands.calls import python
 from vehgen.commands import main
 from vehgen.commands.diagnose import _show
 from vehgen.commands.progress import Bars
@@ -68,8 +69,9 @@ def test_a_heading_that_is_a_formula_does_not_head_a_result(work: Path, capsys: 
 def test_markup_is_printed_as_it_stands(capsys: pytest.CaptureFixture[str]):
     print_table(MARKUP, (MARKUP, "x"), [(MARKUP, "1")])
     warn([MARKUP])
-    captured = capsys.readouterr().out
-    assert captured.count(MARKUP) == 4
+    captured = capsys.readouterr()
+    assert captured.out.count(MARKUP) == 3
+    assert captured.err == f"warning: {MARKUP}\n"
     with Bars(quiet=True) as bars:
         bars.tell(MARKUP, 0, 1, MARKUP)
         bars.say(MARKUP)
@@ -109,3 +111,12 @@ def test_an_effect_of_another_package_has_a_name_too(name: str, monkeypatch: pyt
     with pytest.raises(InputError, match="which is no name") as caught:
         registry.library()
     assert "\u202e" not in str(caught.value)
+
+
+def test_warnings_in_a_pipe_are_a_line_each_on_stderr(work: Path):
+    found = python("-m", "vehgen", "static", "vbi2d_2A3", folder=work, COLUMNS="40")
+    lines = found.stderr.splitlines()
+    assert lines
+    assert all(line.startswith("warning: ") for line in lines)
+    assert any(len(line) > 100 for line in lines)
+    assert "warning" not in found.stdout

@@ -276,7 +276,12 @@ def test_the_command_lists_them(file, capsys):
     listed = json.loads(capsys.readouterr().out)
     assert [item["name"] for item in listed if item["is_global"]][-1] == "stiff_carcass"
     assert listed[-5]["name"] == "soft_damper"
-    assert listed[-5]["parameters"][0] == {"name": "c3", "unit": "N s^3/m^3", "meaning": "cubic damping"}
+    assert listed[-5]["parameters"][0] == {
+        "name": "c3",
+        "unit": "N s^3/m^3",
+        "searched": "0.01 to 100 times c/(0.1 m/s)^2",
+        "meaning": "cubic damping",
+    }
     assert main(["effects", "--library", "missing.yaml"]) == 2
     assert "no file missing.yaml" in capsys.readouterr().err
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from vehgen.effects import EFFECTS, Effect, EffectLocator
+from vehgen.effects.base import one
 from vehgen.files.yaml_writer import yaml_document
 from vehgen.mechanics import derive
 from vehgen.simulate import natural_modes
@@ -147,3 +148,10 @@ def test_a_walking_beam_is_no_place_for_cargo_and_takes_its_axles_suspensions_aw
     for effect in (item for item in EFFECTS.values() if item.attaches == "body"):
         assert effect.places(changed, ()) == effect.places(vehicle, ())
     assert {"axle1", "axle4", "axle5"} == set(EFFECTS["dry_friction"].places(changed, ())) & set(vehicle.axles)
+
+
+def test_every_scaled_parameter_says_what_its_range_is_a_multiple_of():
+    for effect in EFFECTS.values():
+        for item in effect.parameters:
+            assert bool(item.of) == (item.scale is not one), (effect.name, item.name)
+    assert EFFECTS["dry_friction"].parameters[0].searched == "0.002 to 0.4 times the static load"

@@ -33,6 +33,8 @@ QUICK = (
     "transmissibility phone.csv --columns time=t,acceleration=az,pitch_rate=q --vehicle car.yaml --set stiff --sensor S:body=body"
     " --reference S --speed 5 --bands 4,15 --segment 0.6 --forward y --out rough",
     "models --json",
+    "new semitrailer --out begun.yaml",
+    "completion bash",
     "schema --run",
     "response car.yaml --set stiff --speed 5 --road B --at S:body=body,behind=axle1,distance=0.1 --out roads",
     "export car.yaml --to json --set stiff --run run.yaml --step 0.001 --out car.json",

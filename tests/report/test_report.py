@@ -74,14 +74,14 @@ def test_the_page_is_whole_and_fetches_nothing(tmp_path):
     for part in ("semitrailer pitch", "look out", "module heave", "fifth_wheel", "SHA-256", "<svg", "<math"):
         assert part in page
     assert not re.search(r"(src|href)\s*=\s*[\"']?(https?:)?//", page)
-    assert "<script" not in page
+    assert page.count("<script") == 1
 
 
 def test_hostile_texts_are_escaped(tmp_path):
     text = "extends: quarter_car\ntitle: '<script>alert(1)</script>'\ndescription: '<img src=x onerror=y>'\n"
     build(parse_vehicle(text), tmp_path)
     page = (tmp_path / "index.html").read_text(encoding="utf-8")
-    assert "<script>" not in page
+    assert page.count("<script") == 1
     assert "<img" not in page
     assert "&lt;script&gt;" in page
 

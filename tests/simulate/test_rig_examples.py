@@ -55,20 +55,20 @@ def test_what_a_rig_has_not_is_left_out_of_tables_and_page(tmp_path, capsys):
     assert "; 5 kg." in page
     main(["static", vehicle])
     words = " ".join(capsys.readouterr().out.split())
-    assert "static forces in its links" in words
-    assert "load_cell 0.0" in words
+    assert "springs at rest" in words
+    assert "load_cell 0.000 0.00" in words
 
 
 def test_the_page_of_a_rig_with_weight_shows_what_its_links_carry_and_no_empty_table(tmp_path, capsys):
     main(["build", "shaker", "--out", str(tmp_path / "built"), "--no-plots"])
     printed = " ".join(capsys.readouterr().out.split())
-    assert "link force, N" in printed
-    assert "front 589" in printed
+    assert "force, kN" in printed
+    assert "front 0.589" in printed
     page = (tmp_path / "built" / "index.html").read_text(encoding="utf-8")
     assert "<th>axle</th>" not in page
-    assert "<th>link</th>" in page
-    assert page.count(f"{120 * 9.81 / 2:.0f}") >= 2
-    assert f"1\u202f{120 * 9.81 - 1000:.0f}" in page
+    assert "<th>spring</th>" in page
+    assert page.count(f"{120 * 9.81 / 2e3:.3f}") >= 2
+    assert f"{120 * 9.81 / 1e3:.3f}" in page
 
 
 def test_every_rig_is_a_bundled_model_with_a_run():

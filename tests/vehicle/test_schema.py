@@ -12,7 +12,7 @@ import pytest
 
 from vehgen.files.document import read_document, read_text
 from vehgen.simulate.run_file.schema import run_schema
-from vehgen.vehicle import bundled_models
+from vehgen.vehicle import bundled_models, load_vehicle
 from vehgen.vehicle.schema import vehicle_schema
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -138,3 +138,13 @@ def test_every_key_of_the_docs_tables_is_in_the_schema():
         keys = set(re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE))
         assert keys == set(schema["$defs"][definition]["properties"]), heading
     assert {"extends", "name", "title", "source", "parameters", "bodies", "hinges", "axles", "links", "sets"} <= set(schema["properties"])
+
+
+def test_what_a_file_says_of_itself_is_not_inherited(tmp_path):
+    (tmp_path / "a.yaml").write_text("extends: quarter_car\nsource: mine\n")
+    (tmp_path / "b.yaml").write_text("extends: a.yaml\ndescription: own\n")
+    assert load_vehicle("quarter_car").description
+    assert load_vehicle(tmp_path / "a.yaml").source == "mine"
+    assert load_vehicle(tmp_path / "a.yaml").description == ""
+    assert load_vehicle(tmp_path / "b.yaml").source == ""
+    assert load_vehicle(tmp_path / "b.yaml").description == "own"

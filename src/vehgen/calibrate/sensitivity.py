@@ -17,7 +17,7 @@ from vehgen.files.units import DAMPING, LENGTH, MASS, STIFFNESS
 from vehgen.measure import record_psd
 from vehgen.mechanics import derive
 from vehgen.simulate import RunLike, as_run, make_scenario
-from vehgen.simulate.sensitivity import direct_sensitivities
+from vehgen.simulate.sensitivity import SensitivityProgress, direct_sensitivities
 from vehgen.vehicle import Vehicle, VehicleLike
 
 Array = NDArray[np.float64]
@@ -54,7 +54,13 @@ class SensitivityIndices(Result):
         return ("parameter", *self.channels), [(name, *row) for name, row in zip(self.names, self.relative.tolist(), strict=True)]
 
 
-def sensitivity(run: RunLike, parameters: Sequence[str] | None = None, *, vehicle: VehicleLike | None = None) -> SensitivityIndices:
+def sensitivity(
+    run: RunLike,
+    parameters: Sequence[str] | None = None,
+    *,
+    vehicle: VehicleLike | None = None,
+    progress: SensitivityProgress | None = None,
+) -> SensitivityIndices:
     """Return the sensitivity indices, PSD of d(channel)/d(parameter), of a run's channels by direct differentiation (Eq. 19).
 
     Parameters
@@ -65,6 +71,8 @@ def sensitivity(run: RunLike, parameters: Sequence[str] | None = None, *, vehicl
         Those to differentiate by (default: all with a range).
     vehicle
         In place of the one that the run names: itself, its file, or the name of a bundled model.
+    progress
+        Is told of every piece of work its name, and how much of how much is done.
 
     Raises
     ------
@@ -77,7 +85,7 @@ def sensitivity(run: RunLike, parameters: Sequence[str] | None = None, *, vehicl
     values = model.values(overrides=run.values())
     scenario = make_scenario(run, model, values)
     excitation = scenario.excitation(model.wheel_offsets(values))
-    response, derived = direct_sensitivities(model, excitation, chosen, scenario.decimation, values)
+    response, derived = direct_sensitivities(model, excitation, chosen, scenario.decimation, values, progress)
     dt = scenario.dt * scenario.decimation
     frequency, density = record_psd(derived, dt, axis=1)
     rms = np.sqrt(np.mean(response**2, axis=0))

@@ -24,7 +24,7 @@ from vehgen.files.results import Cell, Result, Table
 from vehgen.mechanics import derive
 from vehgen.mechanics.outputs import Place, PointOutput
 from vehgen.simulate import Run, RunLike, as_run, make_scenario
-from vehgen.simulate.sensitivity import direct_sensitivities
+from vehgen.simulate.sensitivity import SensitivityProgress, direct_sensitivities
 from vehgen.vehicle import VehicleLike
 
 Array = NDArray[np.float64]
@@ -92,7 +92,12 @@ class SensorAdvice(Result):
 
 
 def advise_sensors(
-    run: RunLike, count: int = 3, *, parameters: Sequence[str] | None = None, vehicle: VehicleLike | None = None
+    run: RunLike,
+    count: int = 3,
+    *,
+    parameters: Sequence[str] | None = None,
+    vehicle: VehicleLike | None = None,
+    progress: SensitivityProgress | None = None,
 ) -> SensorAdvice:
     """Return where to put 1, 2, ... `count` sensors on a run's vehicle.
 
@@ -106,6 +111,8 @@ def advise_sensors(
         Those that matter (default: all with a range).
     vehicle
         In place of the one that the run names: itself, its file, or the name of a bundled model.
+    progress
+        Is told of every piece of work its name, and how much of how much is done.
 
     Raises
     ------
@@ -121,7 +128,7 @@ def advise_sensors(
     values = model.values(overrides=run.values())
     scenario = make_scenario(run, model, values)
     excitation = scenario.excitation(model.wheel_offsets(values))
-    response, derived = direct_sensitivities(model, excitation, chosen, scenario.decimation, values)
+    response, derived = direct_sensitivities(model, excitation, chosen, scenario.decimation, values, progress)
     response, derived = response @ mixing, derived @ mixing * np.abs([values[name] for name in chosen])[:, None, None]
     floor = np.tile(list(SIGMA.values()), len(places))
     white = derived / np.hypot(floor, SHARE * np.sqrt(np.mean(response**2, axis=0)))
@@ -137,6 +144,8 @@ def advise_sensors(
         winner = int(np.argmin([item.score for item in layouts]))
         taken = sets[winner]
         best.append(layouts[winner])
+        if progress is not None:
+            progress("sets of sensors", size, min(count, len(places)))
     single = np.array([_layout(places, information, basis, (i,)).score for i in range(len(places))])
     return SensorAdvice(chosen, tuple(best), places, single)
 

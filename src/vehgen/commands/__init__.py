@@ -6,6 +6,7 @@ import argparse
 import ast
 import inspect
 import io
+import shlex
 import sys
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -16,6 +17,7 @@ from vehgen.commands import (
     bench,
     build,
     calibrate,
+    completion,
     diagnose,
     effects,
     export,
@@ -24,6 +26,7 @@ from vehgen.commands import (
     models,
     modes,
     module,
+    new,
     report,
     response,
     schema,
@@ -39,6 +42,7 @@ from vehgen.errors import ArgumentError, InputError, shortened
 from vehgen.files import guarding_results, noting_reads
 
 COMMANDS = (
+    new,
     build,
     modes,
     static,
@@ -59,6 +63,7 @@ COMMANDS = (
     report,
     models,
     schema,
+    completion,
     bench,
 )
 
@@ -107,6 +112,7 @@ def _run(words: list[str]) -> int | None:
             raise InputError(f"{shortened(word.removesuffix('=--'))} wants a value; found '--'")
     parser = make_parser()
     options = parser.parse_args(words)
+    options.command_line = shlex.join(["vehgen", *words])
     if options.version:
         from vehgen import __version__
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from vehgen.commands.terminal import add_json, print_json, print_table
+from vehgen.commands.terminal import add_json, number_text, print_json, print_table
 
 EXAMPLE = "vehgen bench --individuals 300"
 
@@ -34,7 +34,7 @@ def run(options: argparse.Namespace) -> None:
             case["name"],
             str(case["threads"]),
             f"{case['ns_per_step_individual']:.2f}",
-            f"{case['individuals_per_second']:,.0f}",
+            number_text(case["individuals_per_second"], 0),
             f"{case['peak_share']:.0%}",
         )
         for case in result["cases"]
@@ -49,6 +49,6 @@ def run(options: argparse.Namespace) -> None:
     print_table(
         "Peers, times slower than vehgen on one thread",
         ("peer", "ratio"),
-        [(name, f"{ratio:,.0f}") for name, ratio in result["ratios"].items()],
+        [(name, number_text(ratio, 0)) for name, ratio in result["ratios"].items()],
         right=(1,),
     )

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehgen.commands.results import add_out, folder_named
-from vehgen.commands.terminal import add_vehicle, load, print_json, print_table, say, warn
+from vehgen.commands.terminal import add_vehicle, force_text, load, print_json, print_table, say, warn
+from vehgen.files.number_text import grouped, on_terminal
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -50,6 +51,8 @@ def run(options: argparse.Namespace) -> None:
 
 
 def _show(model: EquationsOfMotion, values: dict[str, float], modes: Sequence[Mode], loads: StaticLoads) -> None:
+    from vehgen.simulate.mode_groups import alike_modes, group_name
+
     vehicle = model.vehicle
     title = vehicle.title or vehicle.name
     counts = (
@@ -71,7 +74,7 @@ def _show(model: EquationsOfMotion, values: dict[str, float], modes: Sequence[Mo
     parameter_rows = [
         (
             name,
-            f"{everything[name]:.6g}",
+            on_terminal(grouped(everything[name])),
             str(dimensions[name]).replace("no unit", "-"),
             str(item.equals or ""),
             item.meaning,
@@ -79,14 +82,15 @@ def _show(model: EquationsOfMotion, values: dict[str, float], modes: Sequence[Mo
         for name, item in vehicle.parameters.items()
     ]
     print_table("Parameters", ("name", "value", "unit", "equals", "meaning"), parameter_rows, right=(1,))
-    mode_rows = [(mode.name, f"{mode.undamped_hz:.3f}", f"{mode.damped_hz:.3f}", f"{mode.damping_ratio:.3f}") for mode in modes]
+    groups = [(group_name(group), group[0]) for group in alike_modes(modes)]
+    mode_rows = [(name, f"{mode.undamped_hz:.3f}", f"{mode.damped_hz:.3f}", f"{mode.damping_ratio:.3f}") for name, mode in groups]
     print_table("Modes", ("mode", "undamped, Hz", "damped, Hz", "damping ratio"), mode_rows, right=(1, 2, 3))
     load_rows, owners = [*loads.axles.items(), *loads.hinges.items()], "axle or hinge"
     if not load_rows and vehicle.gravity:
         load_rows, owners = [(name, force) for (_, name), force in loads.elements.items()], "link"
     if load_rows:
-        rows_of_loads = [(name, f"{force:,.0f}") for name, force in load_rows]
-        print_table("Static loads", (owners, "force, N"), rows_of_loads, right=(1,))
+        rows_of_loads = [(name, force_text(force)) for name, force in load_rows]
+        print_table("Static loads", (owners, "force, kN"), rows_of_loads, right=(1,))
 
 
 def _summary(model: EquationsOfMotion, found: Build, counts: dict[str, int], folder: Path, written: list[Path]) -> dict[str, object]:

@@ -15,7 +15,7 @@ from vehgen.files import check_results, write_text
 if TYPE_CHECKING:
     from vehgen.diagnose import Diagnosis
 
-EXAMPLE = "vehgen diagnose tractor5.yaml hump_2ms.yaml hump_3ms.yaml high_2ms.yaml --out diagnosis"
+EXAMPLE = "vehgen diagnose tractor5.yaml hump_2ms.yaml hump_3ms.yaml high_2.5ms.yaml --out diagnosis"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -51,6 +51,9 @@ def run(options: argparse.Namespace) -> int | None:
     check_results([*files, *files_named_so(vehicle.name, folder)])
     with Bars(quiet=options.json) as bars:
         found = diagnose(vehicle, trials, effects=chosen, everywhere=options.everywhere, workers=os.cpu_count() or 1, progress=bars.tell)
+    if found.evidence.origin is not None:
+        origin = replace(found.evidence.origin, command=options.command_line)
+        found = replace(found, evidence=replace(found.evidence, origin=origin))
     if found.chosen:
         name = file_name(vehicle.name, found.chosen[-1])
         path = folder / f"{name}.yaml"

@@ -32,7 +32,10 @@ def run(options: argparse.Namespace) -> None:
                     "meaning": effect.meaning,
                     "signature": effect.signature,
                     "source": effect.source,
-                    "parameters": [{"name": item.name, "unit": item.unit, "meaning": item.meaning} for item in effect.parameters],
+                    "parameters": [
+                        {"name": item.name, "unit": item.unit, "searched": item.searched, "meaning": item.meaning}
+                        for item in effect.parameters
+                    ],
                 }
                 for effect in known.values()
             ]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import logging
-import os
 import select
 import signal
 import sys
@@ -16,6 +15,7 @@ from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import NoReturn, TextIO
 
+from vehgen.commands.streams import say_on_stderr, silence
 from vehgen.commands.terminal import one_line
 from vehgen.errors import CacheWarning, InputError, ModelWarning, shortened
 
@@ -58,14 +58,14 @@ def end_of(work: Callable[[], int | None], debug: bool = False) -> int:
         raise
     except Exception as error:
         if isinstance(error, BrokenPipeError) and _nobody_reads():
-            _silence(sys.stdout)
+            silence(sys.stdout)
             return 0
         if debug:
             with suppress(OSError):
                 traceback.print_exc()
         _say(f"error: {fault(error)}")
         if isinstance(error, OSError):
-            _silence(sys.stdout)
+            silence(sys.stdout)
         return UNUSABLE
     if code == STOPPED:
         _say("stopped")
@@ -103,10 +103,7 @@ def show_warnings() -> None:
 
 
 def _say(text: str) -> None:
-    try:
-        print(one_line(text), file=sys.stderr, flush=True)
-    except (OSError, ValueError):  # closed or full: the exit code must tell
-        _silence(sys.stderr)
+    say_on_stderr(one_line(text))
 
 
 def _nobody_reads() -> bool:
@@ -119,16 +116,6 @@ def _nobody_reads() -> bool:
         return any(event & (select.POLLERR | select.POLLHUP) for _, event in poll.poll(0))
     except (OSError, ValueError):
         return False
-
-
-def _silence(stream: TextIO) -> None:
-    """Send what is still to be written nowhere, so that Python does not complain of it when it ends."""
-    with suppress(OSError, ValueError):
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        try:
-            os.dup2(nowhere, stream.fileno())
-        finally:
-            os.close(nowhere)
 
 
 @contextmanager

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from vehgen.commands.results import add_out, file_named, tell_written
-from vehgen.commands.terminal import add_json, print_json, print_table
+from vehgen.commands.terminal import add_json, force_text, number_text, print_json, print_table
 
 EXAMPLE = "vehgen laden tractor5.yaml bananas.yaml --out laden.yaml"
 
@@ -42,15 +42,20 @@ def run(options: argparse.Namespace) -> None:
         print_json({**data, "files": [str(path)]})
         return
     rows = [
-        ("mass", f"{before.mass:,.1f} kg", f"{after.mass:,.1f} kg", f"{after.mass - before.mass:+,.1f} kg"),
+        (
+            "mass",
+            f"{number_text(before.mass)} kg",
+            f"{number_text(after.mass)} kg",
+            f"{number_text(after.mass - before.mass, sign='+')} kg",
+        ),
         ("COG ahead of the empty body's", f"{before.x:.4f} m", f"{after.x:.4f} m", f"{forward:+.4f} m"),
         ("COG above the empty body's", f"{before.z:.4f} m", f"{after.z:.4f} m", f"{up:+.4f} m"),
     ]
     print_table(f"{cargo.file.on} with what it carries", ("", "unladen", "laden", "change"), rows, right=(1, 2, 3))
     loads = [(name, *pair) for name, pair in found.axles.items()]
     loads.append(("all", sum(item[1] for item in loads), sum(item[2] for item in loads)))
-    axle_rows = [(name, f"{light:,.1f}", f"{heavy:,.1f}", f"{heavy - light:+,.1f}") for name, light, heavy in loads]
-    print_table("Static axle loads, N", ("axle", "unladen", "laden", "change"), axle_rows, right=(1, 2, 3))
+    axle_rows = [(name, force_text(light), force_text(heavy), number_text((heavy - light) / 1e3, 3, "+")) for name, light, heavy in loads]
+    print_table("Static axle loads, kN", ("axle", "unladen", "laden", "change"), axle_rows, right=(1, 2, 3))
     mode_rows = [(name, "" if light is None else f"{light:.4f}", f"{heavy:.4f}") for name, light, heavy in found.modes]
     print_table("Undamped natural frequencies, Hz", ("mode", "unladen", "laden"), mode_rows, right=(1, 2))
     tell_written([path])

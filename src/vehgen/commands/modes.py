@@ -19,6 +19,7 @@ def run(options: argparse.Namespace) -> None:
     vehicle, values = load(options)
     from vehgen.mechanics import derive
     from vehgen.simulate import natural_modes
+    from vehgen.simulate.mode_groups import alike_modes, group_name
 
     model = derive(vehicle)
     modes = natural_modes(model, values)
@@ -26,7 +27,8 @@ def run(options: argparse.Namespace) -> None:
         keys = ("name", "undamped_hz", "damped_hz", "damping_ratio")
         print_json({"n_dof": model.n_dof, "modes": [{key: getattr(mode, key) for key in keys} for mode in modes]})
         return
-    rows = [(mode.name, f"{mode.undamped_hz:.4f}", f"{mode.damped_hz:.4f}", f"{mode.damping_ratio:.4f}") for mode in modes]
+    groups = [(group_name(group), group[0]) for group in alike_modes(modes)]
+    rows = [(name, f"{mode.undamped_hz:.4f}", f"{mode.damped_hz:.4f}", f"{mode.damping_ratio:.4f}") for name, mode in groups]
     print_table(
         f"{vehicle.title or vehicle.name}: natural modes",
         ("mode", "undamped, Hz", "damped, Hz", "damping ratio"),

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehgen.commands.results import add_out, file_named, tell_written
-from vehgen.commands.terminal import add_json, print_json, print_table, warn
+from vehgen.commands.terminal import add_json, number_text, print_json, print_table, warn
 from vehgen.files import check_results, write_text
 
 if TYPE_CHECKING:
@@ -97,19 +97,19 @@ def _level(model: ModuleModel) -> dict[str, float]:
 
 def _print_model(model: ModuleModel) -> None:
     body, modes = model.body, model.modes
-    fixed = [("fixed mass, moves with the carrier", f"{model.fixed_mass:,.1f} kg")] if model.fixed_mass > 0 else []
+    fixed = [("fixed mass, moves with the carrier", f"{number_text(model.fixed_mass)} kg")] if model.fixed_mass > 0 else []
     rows = [
-        ("total mass", f"{body.mass:,.1f} kg"),
-        ("m0, mass on the spring", f"{model.mass:,.1f} kg"),
+        ("total mass", f"{number_text(body.mass)} kg"),
+        ("m0, mass on the spring", f"{number_text(model.mass)} kg"),
         *fixed,
         ("f0, principal vertical mode", f"{model.frequency:.4f} Hz"),
-        ("effective mass of that mode", f"{model.effective_mass:,.1f} kg = {model.effective_share:.1%} of the total"),
-        ("k0", f"{model.stiffness / 1e3:,.1f} kN/m"),
+        ("effective mass of that mode", f"{number_text(model.effective_mass)} kg = {model.effective_share:.1%} of the total"),
+        ("k0", f"{number_text(model.stiffness / 1e3)} kN/m"),
         ("damping ratio", f"{model.damping_ratio:.4f}"),
-        ("c0", f"{model.damping / 1e3:,.3f} kN s/m"),
+        ("c0", f"{number_text(model.damping / 1e3, 3)} kN s/m"),
         ("COG behind the front", f"{body.cog[0]:.4f} m"),
         ("COG above the floor", f"{body.cog[2]:.4f} m"),
-        ("pitch inertia about the COG", f"{body.pitch_inertia:,.1f} kg m^2"),
+        ("pitch inertia about the COG", f"{number_text(body.pitch_inertia)} kg m^2"),
     ]
     print_table(model.frame.file.title or model.frame.path.stem, ("", "value"), rows)
     strongest = sorted(range(len(modes.frequency)), key=lambda i: -modes.effective_mass[i])[:6]

@@ -7,7 +7,7 @@ from vehgen.errors import printable
 
 
 class Bars:
-    """A progress bar for every piece of work, with the best result so far.
+    """A progress bar for every piece of work, with the best result so far, the time it took and the time that is left.
 
     Parameters
     ----------
@@ -16,7 +16,7 @@ class Bars:
     """
 
     def __init__(self, quiet: bool) -> None:
-        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
         self._console = console(stderr=True)
         self._bars = Progress(
@@ -24,6 +24,8 @@ class Bars:
             BarColumn(),
             TextColumn("{task.completed:.0f}/{task.total:.0f}  {task.fields[best]}", markup=False),
             TimeElapsedColumn(),
+            TextColumn("left"),
+            TimeRemainingColumn(),
             console=self._console,
             disable=quiet or not self._console.is_terminal,
         )
@@ -36,7 +38,7 @@ class Bars:
     def __exit__(self, *_: object) -> None:
         self._bars.stop()
 
-    def tell(self, label: str, done: int, total: int, best: str) -> None:
+    def tell(self, label: str, done: int, total: int, best: str = "") -> None:
         """Show what is done."""
         from rich.progress import TaskID
 

@@ -25,6 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> None:
     """Compute sensitivity indices, print their ranking and draw them."""
     from vehgen.calibrate import sensitivity
+    from vehgen.commands.progress import Bars
     from vehgen.files.results import json_text
     from vehgen.report.plots.sensitivity_plots import save_sensitivity_figures, sensitivity_figure_files
     from vehgen.simulate import load_run
@@ -33,7 +34,8 @@ def run(options: argparse.Namespace) -> None:
     run_ = load_run(options.run_file, load_vehicle(options.vehicle))
     folder = folder_named(options.out, f"{Path(options.vehicle).stem}_sensitivity")
     check_results([folder / "sensitivity.json", *sensitivity_figure_files([output.name for output in run_.outputs()], folder)])
-    found = sensitivity(run_, split_list(options.parameters))
+    with Bars(quiet=options.json) as bars:
+        found = sensitivity(run_, split_list(options.parameters), progress=bars.tell)
     files = [folder / "sensitivity.json"]
     write_text(files[0], json_text(found))
     files += save_sensitivity_figures(found, folder)

@@ -22,8 +22,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> None:
     """Print the best places for 1, 2, ... sensors."""
     from vehgen.calibrate import advise_sensors
+    from vehgen.commands.progress import Bars
 
-    found = advise_sensors(options.run_file, options.count, parameters=split_list(options.parameters), vehicle=options.vehicle)
+    with Bars(quiet=options.json) as bars:
+        found = advise_sensors(
+            options.run_file, options.count, parameters=split_list(options.parameters), vehicle=options.vehicle, progress=bars.tell
+        )
     if options.json:
         print_json(
             {

@@ -11,7 +11,9 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from vehgen.commands.streams import say_on_stderr
 from vehgen.errors import escaped, printable
+from vehgen.files.number_text import kilonewtons, on_terminal, thousands
 
 MAX_LINE = 600
 """Characters of an error or a warning; the middle of a longer one is left out."""
@@ -63,11 +65,22 @@ def console(stderr: bool = False) -> Console:
     return found if stderr or found.is_terminal else Console(width=120, markup=False, emoji=False, highlight=False)
 
 
+def number_text(value: float, decimals: int = 1, sign: str = "") -> str:
+    """Return a number with so many decimals as tables show it, thousands apart."""
+    return on_terminal(thousands(value, decimals, sign))
+
+
+def force_text(force: float) -> str:
+    """Return a force [N] in kN as tables show it."""
+    return on_terminal(kilonewtons(force))
+
+
 def say(text: str, heading: str = "", style: str = "bold") -> None:
-    """Print text, after a heading in a style of its own."""
+    """Print text, after a heading in a style of its own; where that is no terminal, without breaking its lines."""
     from rich.text import Text
 
-    console().print(Text.assemble((printable(heading), style), printable(text)))
+    shown = console()
+    shown.print(Text.assemble((printable(heading), style), printable(text)), soft_wrap=not shown.is_terminal)
 
 
 def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], right: Sequence[int] = ()) -> None:
@@ -76,15 +89,23 @@ def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(title=Text(printable(title)), title_justify="left", title_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for index, column in enumerate(columns):
         table.add_column(Text(printable(column)), justify="right" if index in right else "left")
     for row in rows:
         table.add_row(*(Text(printable(cell)) for cell in row))
+    say("", title)
     console().print(table)
 
 
 def warn(messages: Iterable[str]) -> None:
-    """Print warnings beneath the tables."""
+    """Print warnings on stderr, in a line each where that is no terminal."""
+    from rich.text import Text
+
+    shown = console(stderr=True)
     for message in messages:
-        say(message, "warning: ", "bold yellow")
+        line = one_line(message)
+        if shown.is_terminal:
+            shown.print(Text.assemble(("warning: ", "bold yellow"), line))
+        else:
+            say_on_stderr(f"warning: {line}")

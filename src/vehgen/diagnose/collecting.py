@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from vehgen import __version__
+from vehgen.diagnose.curves import residual_curves, response_curves
 from vehgen.diagnose.detect.detection import Detection, band_gaps, run_gaps
 from vehgen.diagnose.detect.harmonics import distortions
 from vehgen.diagnose.evidence import (
@@ -28,15 +29,13 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.localise.free_form import Curve, FreeForm, fit_free_form, recover, strongest
 from vehgen.diagnose.localise.recovered_force import RecoveredForce
 from vehgen.diagnose.localise.unknown_force import PlaceResult
+from vehgen.diagnose.origin import origin_of
 from vehgen.diagnose.result import DiagnosisModels
 from vehgen.diagnose.select.estimates import estimate, estimates_by_run
 from vehgen.diagnose.select.search import SearchRound
 from vehgen.diagnose.verdict import RunChi
 from vehgen.files.result_fields import Array1D, rounded
 from vehgen.files.units import NONE
-from vehgen.fit.trial import Trial
-from vehgen.measure import record_psd
-from vehgen.measure.curves import ChannelCurves
 
 MAX_KEPT_CANDIDATES = 12
 """So many candidates of a look are kept at most."""
@@ -78,6 +77,8 @@ def collect(models: DiagnosisModels, quick: bool = False) -> Evidence:
         parameters=tuple(_parameters(models)),
         conditions=tuple(_conditions(models.last)),
         force=None if quick else _force(models),
+        responses=response_curves(models),
+        origin=origin_of(detection.trials),
     )
 
 
@@ -160,31 +161,6 @@ def _steps(models: DiagnosisModels) -> Iterator[StepChi]:
     steps += [(f"+ {fit.last.effect.name}\nat {fit.last.place}", fit.training, fit.validation) for fit in models.chosen]
     for label, training, validation in steps:
         yield StepChi(label, float(np.sqrt(training)), float(np.sqrt(validation)))
-
-
-def residual_curves(models: DiagnosisModels) -> tuple[tuple[ChannelCurves, ...], tuple[ChannelCurves, ...]]:
-    """Return PSDs and histories of the residual before and after, of the loudest validation run's channels; none without an effect."""
-    old, new = models.detection.base.validation_fit, models.chosen[-1].validation_fit if models.chosen else None
-    if old is None or new is None:
-        return (), ()
-    trials = old.misfit.problem.trials
-    loudest = _loudest(trials)
-    trial = trials[loudest]
-    before, after = (trial.recording.values - fit.misfit.simulate(fit.x)[loudest] for fit in (old, new))
-    psds, histories = [], []
-    for i, channel in enumerate(trial.recording.channels):
-        frequency, earlier = record_psd(before[:, i], trial.recording.dt)
-        later = record_psd(after[:, i], trial.recording.dt)[1]
-        name = trial.name, channel.name, channel.quantity
-        psds.append(ChannelCurves(*name, rounded(frequency, 7), rounded(earlier), rounded(later)))
-        histories.append(ChannelCurves(*name, rounded(trial.recording.time, 7), rounded(before[:, i]), rounded(after[:, i])))
-    return tuple(psds), tuple(histories)
-
-
-def _loudest(trials: tuple[Trial, ...]) -> int:
-    """Return the number of the loudest hump run, or of the loudest run where there is no hump."""
-    humps = [any(entry.hump is not None for entry in trial.run.file.road) for trial in trials]
-    return max(range(len(trials)), key=lambda t: (humps[t], float(np.mean(trials[t].recording.values ** 2))))
 
 
 def _force(models: DiagnosisModels) -> ForceEvidence | None:

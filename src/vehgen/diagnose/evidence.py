@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import Field
 
@@ -179,6 +179,28 @@ class ForceEvidence:
             raise ValueError("histories of one length, of two points or more, were expected")
 
 
+@dataclass(frozen=True)
+class Origin:
+    """What a diagnosis was made from.
+
+    Attributes
+    ----------
+    command, made_on
+        The command line, empty where it was called from Python; date and time [UTC].
+    inputs, versions
+        Names of files with their SHA-256; of vehgen, Python and packages.
+    vehicle, values
+        The plain data of the vehicle's file, with all that this extends; its free parameters as filed [SI].
+    """
+
+    command: str
+    made_on: str
+    inputs: dict[str, str]
+    versions: dict[str, str]
+    vehicle: dict[str, Any]
+    values: dict[str, float]
+
+
 @dataclass(frozen=True, eq=False)
 class Evidence:
     """What stands behind a verdict.
@@ -205,6 +227,10 @@ class Evidence:
         The base model, and what is supposed of the runs.
     force
         The unknown force where the model errs.
+    responses
+        The loudest run as measured and as the last model, with its effects, simulates it.
+    origin
+        What it was made from; None in a file of an earlier version.
     """
 
     vehicle: str
@@ -226,3 +252,5 @@ class Evidence:
     parameters: tuple[BaseParameter, ...]
     conditions: tuple[RunConditions, ...]
     force: ForceEvidence | None = None
+    responses: Annotated[tuple[ChannelCurves, ...], Field(max_length=MAX_PANELS)] = ()
+    origin: Origin | None = None

@@ -37,7 +37,10 @@ def one(site: EffectSite) -> float:
 
 @dataclass(frozen=True)
 class EffectParameter:
-    """A parameter of an effect: searched from `low` to `high`, begun at each of `starts`, all times `scale(site)`, in `unit`."""
+    """A parameter of an effect: searched from `low` to `high`, begun at each of `starts`, all times `scale(site)`, in `unit`.
+
+    `of` says what `scale` is in words, as in "0.002 to 0.4 times the static load"; empty where it is 1.
+    """
 
     name: str
     unit: str
@@ -47,6 +50,12 @@ class EffectParameter:
     high: float
     starts: tuple[float, ...]
     scale: Callable[[EffectSite], float] = one
+    of: str = ""
+
+    @property
+    def searched(self) -> str:
+        """What is searched, in words."""
+        return f"{self.low:g} to {self.high:g}" + (f" times {self.of}" if self.of else f" {self.unit}" if self.unit else "")
 
     def bounds(self, site: EffectSite) -> tuple[float, float]:
         """Return what is searched at a place [unit]."""

@@ -170,8 +170,9 @@ class EntryReader:
         unit = item.unit if factor == 1.0 else str(dimension)
         if item.times is not None:
             self.expect(item.times, dimension, {}, *path, "times", names=SIZES)
+            scale = partial(_size, item.times)
             return EffectParameter(
-                name, unit, item.meaning, low=item.low, high=item.high, starts=item.starts, scale=partial(_size, item.times)
+                name, unit, item.meaning, low=item.low, high=item.high, starts=item.starts, scale=scale, of=str(item.times)
             )
         starts = tuple(start * factor for start in item.starts)
         return EffectParameter(name, unit, item.meaning, low=item.low * factor, high=item.high * factor, starts=starts)

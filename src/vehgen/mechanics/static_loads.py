@@ -95,6 +95,22 @@ def element_rows(model: EquationsOfMotion, values: Mapping[str, float]) -> tuple
     return rows, np.array(model.evaluate_list((element.k for element in model.elements), values))
 
 
+def static_deflections(model: EquationsOfMotion, values: Mapping[str, float], loads: StaticLoads) -> dict[tuple[str, str], float]:
+    """Return how far every suspension, tyre and link is compressed at rest [m], by (kind, name).
+
+    Parameters
+    ----------
+    values
+        Parameters [SI] by name.
+    loads
+        The vehicle's static loads at these values.
+    """
+    rows, _ = element_rows(model, values)
+    travels = rows @ loads.displacement
+    found = {(element.kind, element.name): float(travel) for element, travel in zip(model.elements, travels, strict=True)}
+    return {key: travel for key, travel in found.items() if key[0] in ("suspension", "tyre", "link")}
+
+
 def is_held(model: EquationsOfMotion, values: Mapping[str, float]) -> bool:
     """Return whether springs hold the vehicle in every motion, at values of its parameters [SI]."""
     return _scaled_modes(model.numeric(values).K)[2]

@@ -5,11 +5,12 @@ from __future__ import annotations
 import io
 import re
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
 import matplotlib as mpl
+from markupsafe import escape
 from matplotlib.figure import Figure
 
 from vehgen.errors import InputError, shown
@@ -69,6 +70,20 @@ def inline_svg(svg: str, name: str, title: str) -> str:
     element = re.sub(r"\n *", "\n", element)
     opening = element.index(">")
     return f'{element[:opening]} role="img"><title>{title}</title>{element[opening + 1 :]}'
+
+
+def with_titles(svg: str, titles: Mapping[str, str]) -> str:
+    """Return an SVG file whose groups say what they are when pointed at.
+
+    Parameters
+    ----------
+    titles
+        Plain texts by the ids of groups.
+    """
+    for name, text in titles.items():
+        opening = f'<g id="{name}">'
+        svg = svg.replace(opening, f"{opening}<title>{escape(text)}</title>", 1)
+    return svg
 
 
 @contextmanager

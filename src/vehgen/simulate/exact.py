@@ -8,7 +8,7 @@ average-acceleration method with the acceleration as a state, in plain numpy: th
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import scipy.linalg
@@ -18,6 +18,9 @@ from vehgen.codegen.kernel import Excitation
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion, NumericModel
 
 Array = NDArray[np.float64]
+StepProgress = Callable[[int, int], None]
+"""Is told how many steps of how many are done."""
+STEPS_BETWEEN_REPORTS = 200
 
 
 def exact_response(
@@ -71,8 +74,13 @@ def newmark_response(
     return channel_values(numeric, a, v, q, excitation, excitation.rates)[::decimation]
 
 
-def newmark_states(numeric: NumericModel, forces: Array, dt: float, initial: Array | None = None) -> tuple[Array, Array, Array]:
-    """Return displacements, velocities and accelerations under forces `shape (n_steps + 1, n_dof)` or `(n_steps + 1, n_dof, n_cases)`."""
+def newmark_states(
+    numeric: NumericModel, forces: Array, dt: float, initial: Array | None = None, progress: StepProgress | None = None
+) -> tuple[Array, Array, Array]:
+    """Return displacements, velocities and accelerations under forces `shape (n_steps + 1, n_dof)` or `(n_steps + 1, n_dof, n_cases)`.
+
+    `progress` is told now and then how many steps of how many are done.
+    """
     h, n = dt, forces.shape[1]
     effective = scipy.linalg.lu_factor(numeric.M + h / 2 * numeric.C + h * h / 4 * numeric.K)
     q, v, a = (np.zeros_like(forces) for _ in range(3))
@@ -80,6 +88,8 @@ def newmark_states(numeric: NumericModel, forces: Array, dt: float, initial: Arr
         q[0], v[0] = initial[:n], initial[n:]
     a[0] = np.linalg.solve(numeric.M, forces[0] - numeric.C @ v[0] - numeric.K @ q[0])
     for k in range(len(forces) - 1):
+        if progress is not None and k % STEPS_BETWEEN_REPORTS == 0:
+            progress(k, len(forces) - 1)
         q_free = q[k] + h * v[k] + h * h / 4 * a[k]
         v_free = v[k] + h / 2 * a[k]
         a[k + 1] = scipy.linalg.lu_solve(effective, forces[k + 1] - numeric.C @ v_free - numeric.K @ q_free)

@@ -8,11 +8,14 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from vehgen.errors import InputError
+from vehgen.files.number_text import kilonewtons, on_terminal
 from vehgen.mechanics.energies import pitch_inertia
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.static_loads import static_loads
 from vehgen.mechanics.symbols import to_sympy
 from vehgen.simulate.modes import natural_modes
+from vehgen.vehicle.checks.silenced import is_silenced
+from vehgen.vehicle.parts import GROUND
 
 GYRATION = (0.12, 0.75)
 """Radius of gyration over the span of what is attached to a body: a uniform rod has 0.29, two masses at its ends 0.5."""
@@ -20,26 +23,32 @@ BODY_BAND = (0.5, 5.0)
 """Where body modes of road vehicles lie, Hz."""
 AXLE_GAP = 0.6
 """Two axles closer than this [m] would share a wheel's space."""
+MOUNT_BAND = (0.5, 30.0)
+"""Where modes of what is mounted on a body lie, Hz: seats and cabs low, engines high."""
+Finding = tuple[str, str, str]
+"""The kind of a warning, the part that it speaks of, and what it says."""
 
 
 def lint(model: EquationsOfMotion, values: Mapping[str, float] | None = None) -> list[str]:
-    """Return one sentence for each thing that deserves a second look, at these parameter values."""
+    """Return one sentence for each thing that deserves a second look, at these parameter values, but for what the file silences."""
     values = values or model.values()
-    return [*_loads(model, values), *_gyration(model, values), *_gaps(model, values), *_modes(model, values)]
-
-
-def _loads(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[str]:
     try:
-        loads = static_loads(model, values)
+        loads = static_loads(model, values).axles
+        found: list[str] = []
     except InputError as error:
-        yield error.message
-        return
-    for name, force in loads.axles.items():
+        loads, found = {}, [error.message]
+    findings = (*_loads(loads), *_gyration(model, values), *_gaps(model, values), *_modes(model, values))
+    return [*found, *(text for kind, part, text in findings if not is_silenced(model.vehicle, kind, part))]
+
+
+def _loads(loads: Mapping[str, float]) -> Iterator[Finding]:
+    for name, force in loads.items():
         if force < 0:
-            yield f"negative load on {name}: {force:,.0f} N; its tyre would have to pull the vehicle down"
+            text = f"negative load on {name}: {on_terminal(kilonewtons(force))} kN; its tyre would have to pull the vehicle down"
+            yield "negative_load", name, text
 
 
-def _gyration(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[str]:
+def _gyration(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[Finding]:
     vehicle = model.vehicle
     for name, body in vehicle.bodies.items():
         places = [to_sympy(axle.x) for axle in vehicle.axles.values() if axle.body == name]
@@ -53,27 +62,45 @@ def _gyration(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator
         radius = float(np.sqrt(inertia / mass))
         if not GYRATION[0] <= radius / span <= GYRATION[1]:
             yield (
+                "gyration",
+                name,
                 f"radius of gyration of {name} out of scale: {radius:.2f} m for a body whose joints and axles span {span:.2f} m "
-                f"({GYRATION[0] * span:.2f} to {GYRATION[1] * span:.2f} m would be usual)"
+                f"({GYRATION[0] * span:.2f} to {GYRATION[1] * span:.2f} m would be usual)",
             )
 
 
-def _gaps(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[str]:
+def _gaps(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[Finding]:
     offsets = model.wheel_offsets(values)
     names = list(model.vehicle.axles)
     order = np.argsort(offsets)
     for first, second in itertools.pairwise(order):
         gap = offsets[second] - offsets[first]
         if gap < AXLE_GAP:
-            yield f"overlapping axles: {names[first]} and {names[second]} are {gap:.2f} m apart"
+            text = f"overlapping axles: {names[first]} and {names[second]} are {gap:.2f} m apart"
+            yield "axle_gap", names[second], text
 
 
-def _modes(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[str]:
+def _modes(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[Finding]:
     vehicle = model.vehicle
     if not vehicle.axles:
         return  # a rig may move as fast or as slowly as it likes
     unsprung = {axle.body for axle in vehicle.axles.values() if axle.suspension is None and len(vehicle.axles) > 1}
-    body = np.array([item.motion != "hop" and item.owner not in unsprung for item in model.coordinates])
+    mounted = mounted_bodies(model, values)
+    rigid = [item.motion in ("heave", "pitch") and item.owner not in unsprung for item in model.coordinates]
     for mode in natural_modes(model, values):
-        if mode.energy[body].sum() > 0.5 and not BODY_BAND[0] <= mode.undamped_hz <= BODY_BAND[1]:
-            yield f"body mode outside {BODY_BAND[0]:g}-{BODY_BAND[1]:g} Hz: {mode.name} at {mode.undamped_hz:.2f} Hz"
+        share = mode.energy * rigid
+        if share.sum() <= 0.5:
+            continue
+        body = model.coordinates[int(np.argmax(share))].owner
+        what, (low, high) = ("mount mode", MOUNT_BAND) if body in mounted else ("body mode", BODY_BAND)
+        if not low <= mode.undamped_hz <= high:
+            yield "body_mode", body, f"{what} outside {low:g}-{high:g} Hz: {mode.name} at {mode.undamped_hz:.2f} Hz"
+
+
+def mounted_bodies(model: EquationsOfMotion, values: Mapping[str, float]) -> set[str]:
+    """Return the bodies that are mounted on others by links alone, as cabs, seats and engines are; never the heaviest body."""
+    vehicle = model.vehicle
+    masses = dict(zip(vehicle.bodies, model.evaluate_list([to_sympy(body.mass) for body in vehicle.bodies.values()], values), strict=True))
+    held = {axle.body for axle in vehicle.axles.values()} | {name for hinge in vehicle.hinges.values() for name in hinge.points}
+    linked = {name for link in vehicle.links.values() for name in link.points if GROUND not in link.points}
+    return (linked & set(masses)) - held - {max(masses, key=masses.__getitem__)}

@@ -15,6 +15,7 @@ from vehgen.errors import InputError
 from vehgen.files.result_fields import Array1D
 from vehgen.files.results import Result, Table
 from vehgen.mechanics import EquationsOfMotion, ModelLike, NumericModel, all_values, as_model
+from vehgen.simulate.mode_groups import scaled_to_peak, settled_shapes
 
 Array = NDArray[np.float64]
 _SHARED = 0.6
@@ -92,13 +93,14 @@ def natural_modes(model: ModelLike, values: Mapping[str, float] | None = None, *
         squares, shapes = scipy.linalg.eigh(numeric.K, numeric.M)
     except np.linalg.LinAlgError as error:
         raise InputError("the mass matrix is not positive definite: a motion has no inertia") from error
+    shapes = settled_shapes(squares, shapes, numeric.M)
     damped = _match(_damped_pairs(numeric), numeric, shapes)
     shares = [_energy(numeric.M, shape) for shape in shapes.T]
     names = _names(model, shares)
     modes = []
     for square, shape, share, name, (radius, ratio) in zip(squares, shapes.T, shares, names, damped, strict=True):
-        peak = shape[np.argmax(np.abs(shape))]
-        modes.append(Mode(name, float(np.sqrt(max(square, 0.0)) / (2 * np.pi)), radius / (2 * np.pi), ratio, shape / peak, share))
+        frequency = float(np.sqrt(max(square, 0.0)) / (2 * np.pi))
+        modes.append(Mode(name, frequency, radius / (2 * np.pi), ratio, scaled_to_peak(shape), share))
     return Modes(tuple(item.name for item in model.coordinates), tuple(modes))
 
 

@@ -7,7 +7,7 @@ solved by the same Newmark method for all parameters at once.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import sympy as sp
@@ -19,10 +19,17 @@ from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.simulate.exact import channel_values, newmark_states
 
 Array = NDArray[np.float64]
+SensitivityProgress = Callable[[str, int, int], None]
+"""Is told a piece of work, and how much of how much is done."""
 
 
 def direct_sensitivities(
-    model: EquationsOfMotion, excitation: Excitation, names: Sequence[str], decimation: int = 10, values: Mapping[str, float] | None = None
+    model: EquationsOfMotion,
+    excitation: Excitation,
+    names: Sequence[str],
+    decimation: int = 10,
+    values: Mapping[str, float] | None = None,
+    progress: SensitivityProgress | None = None,
 ) -> tuple[Array, Array]:
     """Return a response and its derivatives by parameters, exact for the Newmark solution.
 
@@ -38,6 +45,8 @@ def direct_sensitivities(
         Every how many steps a sample is kept.
     values
         SI values by parameter name (default: the file's).
+    progress
+        Is told of every piece of work how much of how much is done.
 
     Returns
     -------
@@ -54,11 +63,17 @@ def direct_sensitivities(
     q, v, a = newmark_states(numeric, forces, excitation.dt)
     response = channel_values(numeric, a, v, q, excitation, excitation.rates)[::decimation]
     loads = np.zeros((*q.shape, len(names)))
-    derived = [matrix_derivatives(model, name, values) for name in names]
+    tell = progress or _silent
+    derived = []
+    for i, name in enumerate(names, 1):
+        derived.append(matrix_derivatives(model, name, values))
+        tell("derivatives", i, len(names))
     for i, d in enumerate(derived):
         load = excitation.inputs @ d["P"].T + excitation.rates @ d["Q"].T + excitation.forces @ d["F"].T
         loads[:, :, i] = load - a @ d["M"].T - v @ d["C"].T - q @ d["K"].T
-    sq, sv, sa = newmark_states(numeric, loads, excitation.dt)
+    n_steps = len(q) - 1
+    sq, sv, sa = newmark_states(numeric, loads, excitation.dt, progress=lambda done, total: tell("sensitivities", done, total))
+    tell("sensitivities", n_steps, n_steps)
     rows = numeric.outputs
     sensitivities = np.empty((len(names), *response.shape))
     for i, d in enumerate(derived):
@@ -67,6 +82,10 @@ def direct_sensitivities(
         moved += excitation.inputs @ d["input"].T + excitation.rates @ d["input_rate"].T + excitation.forces @ d["force"].T
         sensitivities[i] = (own + moved)[::decimation]
     return response, sensitivities
+
+
+def _silent(label: str, done: int, total: int) -> None:
+    """Tell nobody."""
 
 
 def matrix_derivatives(model: EquationsOfMotion, name: str, values: Mapping[str, float]) -> dict[str, Array]:

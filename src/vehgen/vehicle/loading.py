@@ -14,6 +14,8 @@ from vehgen.vehicle.changes import merge
 from vehgen.vehicle.model import Vehicle
 
 MAX_EXTENDS = 20
+NOT_INHERITED = ("description", "source")
+"""Said of one file: what extends it is another vehicle, from elsewhere."""
 
 
 def models_folder() -> Path:
@@ -113,4 +115,6 @@ def _extend(document: Located, path: Path | None, seen: tuple[Path, ...]) -> tup
     base, base_files = _read_extended(base_path, seen, base_name.position)
     own = {key: item for key, item in document.value.items() if key != "extends"}
     merged = merge(base, Located(own, document.position))
-    return merged, (*files, *base_files)
+    assert isinstance(merged.value, dict)
+    kept = {key: item for key, item in merged.value.items() if key in own or key not in NOT_INHERITED}
+    return Located(kept, merged.position, merged.key_position), (*files, *base_files)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, PrivateAttr
 
@@ -16,6 +16,9 @@ from vehgen.files.names import FreeText, Name
 from vehgen.files.units import DAMPING, FREQUENCY, INERTIA, LENGTH, MASS, MOMENT, NONE, PITCH_DAMPING, STIFFNESS, Dimension
 from vehgen.vehicle.changes import merge
 from vehgen.vehicle.parts import Axle, Body, Hinge, Link, Parameter
+
+WarningName = Annotated[str, Field(pattern=r"^\s*[A-Za-z]\w*(\s+[A-Za-z]\w*)?\s*$", max_length=200)]
+"""The kind of a warning, alone or with the part that it speaks of."""
 
 
 class Vehicle(FileModel):
@@ -42,6 +45,7 @@ class Vehicle(FileModel):
     axles: dict[Name, Axle] = Field(default_factory=dict)
     links: dict[Name, Link] = Field(default_factory=dict)
     sets: dict[Name, dict[Name, Expression]] = Field(default_factory=dict)
+    silence: tuple[WarningName, ...] = Field((), description="warnings not to be given: `gyration`, or of one part only, `gyration cab`")
 
     _document: Located = PrivateAttr()
     _files: tuple[Path, ...] = PrivateAttr(())

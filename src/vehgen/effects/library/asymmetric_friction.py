@@ -20,6 +20,7 @@ ASYMMETRIC_FRICTION_EFFECT = suspension_law(
             high=0.4,
             starts=(0.03, 0.12),
             scale=lambda site: site.load,
+            of="the static load",
         ),
         EffectParameter("ratio", "", "force in compression over that in extension", low=0.1, high=10.0, starts=(0.6, 1.6)),
     ),

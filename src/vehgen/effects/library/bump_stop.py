@@ -10,7 +10,16 @@ BUMP_STOP_EFFECT = suspension_law(
     law="bump_stop",
     signature="sharp peaks of acceleration when travel passes a threshold; nothing below it",
     parameters=(
-        EffectParameter("k", "N/m", "stiffness of the stops", low=0.5, high=30.0, starts=(6.0,), scale=lambda site: site.k),
+        EffectParameter(
+            "k",
+            "N/m",
+            "stiffness of the stops",
+            low=0.5,
+            high=30.0,
+            starts=(6.0,),
+            scale=lambda site: site.k,
+            of="the stiffness there",
+        ),
         EffectParameter(
             "clearance",
             "m",
@@ -19,9 +28,17 @@ BUMP_STOP_EFFECT = suspension_law(
             high=4.0,
             starts=(0.5, 1.2, 2.0),
             scale=lambda site: site.travel,
+            of="a typical travel",
         ),
         EffectParameter(
-            "rebound", "m", "travel in rebound before the stop is met", low=0.05, high=6.0, starts=(1.5,), scale=lambda site: site.travel
+            "rebound",
+            "m",
+            "travel in rebound before the stop is met",
+            low=0.05,
+            high=6.0,
+            starts=(1.5,),
+            scale=lambda site: site.travel,
+            of="a typical travel",
         ),
     ),
 )

@@ -12,7 +12,14 @@ CUBIC_STIFFNESS_EFFECT = suspension_law(
     signature="frequencies rise with amplitude; odd harmonics; bump and rebound alike",
     parameters=(
         EffectParameter(
-            "k3", "N/m^3", "cubic stiffness", low=0.01, high=30.0, starts=(0.3, 3.0), scale=lambda site: site.k / site.travel**2
+            "k3",
+            "N/m^3",
+            "cubic stiffness",
+            low=0.01,
+            high=30.0,
+            starts=(0.3, 3.0),
+            scale=lambda site: site.k / site.travel**2,
+            of="the stiffness there over the square of a typical travel",
         ),
     ),
 )

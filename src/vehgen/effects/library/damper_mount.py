@@ -40,6 +40,7 @@ DAMPER_MOUNT_EFFECT = VehicleEffect(
             high=60.0,
             starts=(25.0, 8.0, 2.5),
             scale=lambda site: 2 * math.pi * site.c,
+            of="2 pi 1/s times the damping there",
         ),
     ),
     frees=("c",),

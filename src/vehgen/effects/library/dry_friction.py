@@ -14,7 +14,14 @@ DRY_FRICTION_EFFECT = suspension_law(
     ),
     parameters=(
         EffectParameter(
-            "force", "N", "force at which it slips", low=0.002, high=0.4, starts=(0.02, 0.06, 0.15), scale=lambda site: site.load
+            "force",
+            "N",
+            "force at which it slips",
+            low=0.002,
+            high=0.4,
+            starts=(0.02, 0.06, 0.15),
+            scale=lambda site: site.load,
+            of="the static load",
         ),
     ),
 )

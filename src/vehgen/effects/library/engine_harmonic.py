@@ -26,6 +26,7 @@ ENGINE_HARMONIC_EFFECT = LineEffect(
             high=0.1,
             starts=(0.02,),
             scale=lambda site: site.load,
+            of="the static load",
         ),
     ),
     looked_for=(5.0, 40.0),

@@ -31,7 +31,14 @@ FRAME_BENDING_EFFECT = VehicleEffect(
         EffectParameter("frequency", "Hz", "natural frequency of the free body", low=3.0, high=30.0, starts=(4.5, 7.0, 10.0, 15.0)),
         EffectParameter("damping_ratio", "", "damping ratio", low=0.003, high=0.3, starts=(0.06,)),
         EffectParameter(
-            "length", "m", "length over which it bends", low=0.8, high=2.5, starts=(1.2,), scale=lambda site: max(site.length, 1.0)
+            "length",
+            "m",
+            "length over which it bends",
+            low=0.8,
+            high=2.5,
+            starts=(1.2,),
+            scale=lambda site: max(site.length, 1.0),
+            of="the distance of the body's outermost supports, at least 1 m",
         ),
     ),
     is_global=True,

@@ -12,6 +12,15 @@ HINGE_FRICTION_EFFECT = hinge_law(
     meaning="a greased plate that sticks: both bodies pitch as one until the moment slips",
     signature="small pitch motions of the two bodies are locked together, large ones are not",
     parameters=(
-        EffectParameter("force", "N m", "moment at which it slips", low=0.002, high=0.4, starts=(0.02, 0.1), scale=lambda site: site.load),
+        EffectParameter(
+            "force",
+            "N m",
+            "moment at which it slips",
+            low=0.002,
+            high=0.4,
+            starts=(0.02, 0.1),
+            scale=lambda site: site.load,
+            of="the hinge's static load times 1 m",
+        ),
     ),
 )

@@ -23,7 +23,14 @@ HINGE_STIFFNESS_EFFECT = VehicleEffect(
     places=hinges,
     parameters=(
         EffectParameter(
-            "k", "N m", "stiffness against pitch, per rad", low=0.02, high=100.0, starts=(1.0, 10.0), scale=lambda site: site.load
+            "k",
+            "N m",
+            "stiffness against pitch, per rad",
+            low=0.02,
+            high=100.0,
+            starts=(1.0, 10.0),
+            scale=lambda site: site.load,
+            of="the hinge's static load times 1 m",
         ),
     ),
     edit=_edit,

@@ -11,10 +11,24 @@ HYSTERESIS_EFFECT = suspension_law(
     signature="a loop of force over travel that does not depend on the rate; rounded corners tell it from dry friction",
     parameters=(
         EffectParameter(
-            "force", "N", "force of the fully developed loop", low=0.002, high=0.4, starts=(0.03, 0.12), scale=lambda site: site.load
+            "force",
+            "N",
+            "force of the fully developed loop",
+            low=0.002,
+            high=0.4,
+            starts=(0.03, 0.12),
+            scale=lambda site: site.load,
+            of="the static load",
         ),
         EffectParameter(
-            "travel", "m", "travel over which the loop develops", low=0.05, high=3.0, starts=(0.3, 1.0), scale=lambda site: site.travel
+            "travel",
+            "m",
+            "travel over which the loop develops",
+            low=0.05,
+            high=3.0,
+            starts=(0.3, 1.0),
+            scale=lambda site: site.travel,
+            of="a typical travel",
         ),
         EffectParameter("beta", "", "share of the loss that follows |v|", low=0.3, high=1.0, starts=(0.55,)),
     ),

@@ -33,10 +33,26 @@ def mass_edit(name: str) -> Callable[[EffectSite, Symbols], Change]:
 def mass_parameters(frequencies: tuple[float, ...], share: tuple[float, ...]) -> tuple[EffectParameter, ...]:
     """Return mass, natural frequency, damping ratio and place of a mounted mass."""
     return (
-        EffectParameter("mass", "kg", "mass", low=0.01, high=0.6, starts=share, scale=lambda site: site.mass),
+        EffectParameter(
+            "mass",
+            "kg",
+            "mass",
+            low=0.01,
+            high=0.6,
+            starts=share,
+            scale=lambda site: site.mass,
+            of="the body's mass",
+        ),
         EffectParameter("frequency", "Hz", "natural frequency on its mounts", low=0.8, high=12.0, starts=frequencies),
         EffectParameter("damping_ratio", "", "damping ratio", low=0.005, high=0.7, starts=(0.1,)),
         EffectParameter(
-            "x", "m", "ahead of the COG of the body", low=-0.7, high=0.7, starts=(0.0,), scale=lambda site: max(site.length, 1.0)
+            "x",
+            "m",
+            "ahead of the COG of the body",
+            low=-0.7,
+            high=0.7,
+            starts=(0.0,),
+            scale=lambda site: max(site.length, 1.0),
+            of="the distance of the body's outermost supports, at least 1 m",
         ),
     )

@@ -11,9 +11,25 @@ PROGRESSIVE_STIFFNESS_EFFECT = suspension_law(
     frees=("k",),
     signature="stiffer in bump than in rebound: even harmonics and a shifted mean over rough roads",
     parameters=(
-        EffectParameter("k", "N/m", "stiffness added beyond `start`", low=0.05, high=5.0, starts=(0.5, 2.0), scale=lambda site: site.k),
         EffectParameter(
-            "start", "m", "travel in bump at which it joins in", low=0.02, high=3.0, starts=(0.3, 1.0), scale=lambda site: site.travel
+            "k",
+            "N/m",
+            "stiffness added beyond `start`",
+            low=0.05,
+            high=5.0,
+            starts=(0.5, 2.0),
+            scale=lambda site: site.k,
+            of="the stiffness there",
+        ),
+        EffectParameter(
+            "start",
+            "m",
+            "travel in bump at which it joins in",
+            low=0.02,
+            high=3.0,
+            starts=(0.3, 1.0),
+            scale=lambda site: site.travel,
+            of="a typical travel",
         ),
     ),
 )

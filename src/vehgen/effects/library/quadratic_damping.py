@@ -11,6 +11,15 @@ QUADRATIC_DAMPING_EFFECT = suspension_law(
     frees=("c",),
     signature="damping grows with amplitude and speed; odd harmonics",
     parameters=(
-        EffectParameter("c2", "N s^2/m^2", "quadratic damping", low=0.02, high=30.0, starts=(0.5, 4.0), scale=lambda site: site.c / 0.2),
+        EffectParameter(
+            "c2",
+            "N s^2/m^2",
+            "quadratic damping",
+            low=0.02,
+            high=30.0,
+            starts=(0.5, 4.0),
+            scale=lambda site: site.c / 0.2,
+            of="the damping there over 0.2 m/s",
+        ),
     ),
 )

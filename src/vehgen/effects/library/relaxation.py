@@ -11,7 +11,16 @@ RELAXATION_EFFECT = suspension_law(
     frees=("k", "c"),
     signature="stiffness and damping change with frequency, not with amplitude: low and high frequencies want different k and c",
     parameters=(
-        EffectParameter("k", "N/m", "stiffness of the series spring", low=0.05, high=10.0, starts=(0.5, 2.0), scale=lambda site: site.k),
+        EffectParameter(
+            "k",
+            "N/m",
+            "stiffness of the series spring",
+            low=0.05,
+            high=10.0,
+            starts=(0.5, 2.0),
+            scale=lambda site: site.k,
+            of="the stiffness there",
+        ),
         EffectParameter("time", "s", "relaxation time, dashpot over spring", low=0.002, high=1.0, starts=(0.02, 0.1)),
     ),
 )

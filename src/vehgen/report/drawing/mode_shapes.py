@@ -20,21 +20,28 @@ from vehgen.simulate import Mode
 Array = NDArray[np.float64]
 _TITLE_GAP, _LINE_HEIGHT = 14.0, 11.5
 """Space around a panel and height of a line of text, in points."""
+_BENT_POINTS = 17
+"""Points along the long sides of a body that bends."""
 _BREAK = (np.nan, np.nan)
 
 
 @dataclass(frozen=True)
 class Movement:
-    """How a mode moves every part: (forward, up, pitch) of each body's COG [m, rad], rise of each wheel [m]."""
+    """How a mode moves every part: (forward, up, pitch) of each body's COG [m, rad], rise of each wheel [m].
+
+    `bending` holds what bends: how far its ends rise against heave and pitch, and over what length it bends [m].
+    """
 
     bodies: dict[str, tuple[float, float, float]]
     wheels: dict[str, float]
+    bending: dict[str, tuple[float, float]] = field(default_factory=dict)
 
     def point(self, sketch: Sketch, body: str, x: float, z: float) -> tuple[float, float]:
         """Return how far a body's point moves forward and up [m]."""
         forward, up, pitch = self.bodies[body]
         box = sketch.boxes[body]
-        return forward + pitch * (z - box.z), up - pitch * (x - box.x)
+        rise, length = self.bending.get(body, (0.0, 1.0))
+        return forward + pitch * (z - box.z), up - pitch * (x - box.x) + rise * (6 * ((x - box.x) / length) ** 2 - 0.5)
 
 
 def mode_movements(model: EquationsOfMotion, modes: Sequence[Mode], values: Mapping[str, float]) -> list[Movement]:
@@ -43,6 +50,9 @@ def mode_movements(model: EquationsOfMotion, modes: Sequence[Mode], values: Mapp
     rows = [row for name in bodies for row in (model.motion.fore_aft[name], model.motion.heave[name], model.motion.pitch[name])]
     for name, axle in model.vehicle.axles.items():
         rows.append(model.motion.hop[name] if name in model.motion.hop else model.motion.rise(axle.body, to_sympy(axle.x)))
+    bent, everything = model.motion.bending, model.vehicle.all_values({name: values[name] for name in model.vehicle.free_parameters})
+    lengths = {name: bending.length.evaluate(everything) for name in bent if (bending := model.vehicle.bodies[name].bending) is not None}
+    rows += [bent[name][0] for name in lengths]
     masses = [term.inertia for group in model.energies.fore_aft.values() for term in group]
     entries: SparseMatrix = {(i, j): value for i, row in enumerate(rows) for j, value in row.items()}
     matrix = model.evaluate_matrix(entries, (len(rows), n), values)
@@ -58,7 +68,9 @@ def mode_movements(model: EquationsOfMotion, modes: Sequence[Mode], values: Mapp
     for mode in modes:
         moved = matrix @ mode.shape
         places = {name: (float(moved[3 * i]), float(moved[3 * i + 1]), float(moved[3 * i + 2])) for i, name in enumerate(bodies)}
-        found.append(Movement(places, {name: float(moved[3 * len(bodies) + i]) for i, name in enumerate(model.vehicle.axles)}))
+        wheels = {name: float(moved[3 * len(bodies) + i]) for i, name in enumerate(model.vehicle.axles)}
+        ends = moved[3 * len(bodies) + len(wheels) :]
+        found.append(Movement(places, wheels, {name: (float(end), lengths[name]) for name, end in zip(lengths, ends, strict=True)}))
     return found
 
 
@@ -162,7 +174,7 @@ def _draw_mode(
     for name, (x, z) in sketch.hinges.items():
         strokes.pins.append(moved(next(iter(model.vehicle.hinges[name].points)), x, z))
     for index, (name, box) in enumerate(sketch.boxes.items()):
-        corners = box.corners()
+        corners = box.outline(_BENT_POINTS if name in movement.bending else 2)
         strokes.rest += [(x + shift, z + ground) for x, z in (*corners, corners[0])] + [_BREAK]
         shape = [moved(name, x, z) for x, z in corners]
         fill = FILLS[index % len(FILLS)]

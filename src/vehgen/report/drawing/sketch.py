@@ -10,49 +10,8 @@ import numpy as np
 import sympy as sp
 
 from vehgen.mechanics import EquationsOfMotion
+from vehgen.report.drawing.stacking import HALF_HEIGHT, Box, Strut, is_beam, set_apart, stack_heights, stand_link, stand_suspension
 from vehgen.vehicle.parts import GROUND
-
-CLEARANCE = 0.12
-"""The lowest body's outline stands this far above the wheels [m]."""
-_HALF = 0.4
-_STRUT = 0.55
-
-
-@dataclass(frozen=True)
-class Box:
-    """A body: its COG, and the left, right, bottom and top of its outline [m].
-
-    `declared` where the file gives its size; `height_known` where the COG stands at the height that the file gives relative to the first
-    body (a beam stands at hub height instead).
-    """
-
-    x: float
-    z: float
-    left: float
-    right: float
-    bottom: float
-    top: float
-    declared: bool
-    height_known: bool
-
-    def edge(self, x: float, z: float) -> tuple[float, float]:
-        """Return the point of the outline (or inside it) nearest to (x, z)."""
-        return float(np.clip(x, self.left, self.right)), float(np.clip(z, self.bottom, self.top))
-
-    def corners(self) -> list[tuple[float, float]]:
-        """Return the corners of the outline."""
-        return [(self.left, self.bottom), (self.right, self.bottom), (self.right, self.top), (self.left, self.top)]
-
-
-@dataclass(frozen=True)
-class Strut:
-    """A spring and damper at x between `bottom` and `top` [m]; `lower` and `upper` hold it (a body, the ground, or an axle's hub)."""
-
-    x: float
-    bottom: float
-    top: float
-    lower: str
-    upper: str
 
 
 @dataclass(frozen=True)
@@ -80,7 +39,8 @@ class Sketch:
     @property
     def top(self) -> float:
         """The highest point."""
-        return max([box.top for box in self.boxes.values()] + [z for _, z in self.hinges.values()])
+        ends = [strut.top for strut in (*self.suspensions.values(), *self.links.values())]
+        return max([box.top for box in self.boxes.values()] + [z for _, z in self.hinges.values()] + ends)
 
 
 def _places(
@@ -108,7 +68,7 @@ def make_sketch(model: EquationsOfMotion, values: Mapping[str, float]) -> Sketch
     radius = _wheel_radius([x for x, _ in bodies.values()], list(axles.values()))
     attached = _attached(model, axles, {name: x for name, (x, _) in pins.items()}, links)
     outlines = _outlines(model, {name: x for name, (x, _) in bodies.items()}, attached, everything)
-    heights, lift = _heights(model, bodies, outlines, links, radius)
+    heights, lift = stack_heights(model, bodies, outlines, links, radius)
     hinges = {name: (x, heights[next(iter(vehicle.hinges[name].points))] if z is None else z + lift) for name, (x, z) in pins.items()}
     boxes = {}
     for name, (left, right, half, declared) in outlines.items():
@@ -118,11 +78,12 @@ def make_sketch(model: EquationsOfMotion, values: Mapping[str, float]) -> Sketch
         known = given is not None and abs(given + lift - z) < 1e-9
         boxes[name] = Box(x, z, left, right, min([z - half, *low]), z + half, declared, known)
     suspensions = {
-        name: _suspension(axles[name], name, axle.body, boxes[axle.body], radius)
+        name: stand_suspension(axles[name], name, axle.body, boxes[axle.body], radius)
         for name, axle in vehicle.axles.items()
         if axle.suspension is not None
     }
-    struts = {name: _link(x, first, second, boxes) for name, (x, first, second) in links.items()}
+    struts = {name: stand_link(x, first, second, boxes) for name, (x, first, second) in links.items()}
+    struts = set_apart(struts, {name: second == GROUND for name, (_, _, second) in links.items()}, boxes)
     arms = [(body, *hinges[name]) for name, hinge in vehicle.hinges.items() for body in hinge.points]
     arms += [(strut.upper, strut.x, strut.top) for strut in (*suspensions.values(), *struts.values())]
     arms += [(strut.lower, strut.x, strut.bottom) for strut in struts.values()]
@@ -162,6 +123,9 @@ def _outlines(
     outlines = {}
     for name, body in model.vehicle.bodies.items():
         x, reach = places[name], [*attached[name], places[name]]
+        if body.bending is not None:
+            half = body.bending.length.evaluate(everything) / 2
+            reach += [x - half + 0.4, x + half - 0.4]
         if body.size is not None:
             half = body.size.length.evaluate(everything) / 2
             outlines[name] = (x - half, x + half, body.size.height.evaluate(everything) / 2, True)
@@ -172,55 +136,5 @@ def _outlines(
             half = float(np.clip(0.42 * np.cbrt(max(body.mass.evaluate(everything), 1.0) / 1000.0), 0.2, largest))
             outlines[name] = (min(reach) - half, max(reach) + half, 0.9 * half, False)
         else:
-            outlines[name] = (min(reach) - 0.4, max(reach) + 0.4, _HALF, False)
+            outlines[name] = (min(reach) - 0.4, max(reach) + 0.4, HALF_HEIGHT, False)
     return outlines
-
-
-def is_beam(model: EquationsOfMotion, body: str, reach: list[float]) -> bool:
-    """Tell whether a body is a beam at hub height: short, not alone, and all its wheels sit on it without a suspension."""
-    wheels = [axle for axle in model.vehicle.axles.values() if axle.body == body]
-    rigid = bool(wheels) and all(axle.suspension is None for axle in wheels)
-    return rigid and len(model.vehicle.bodies) > 1 and max(reach) - min(reach) < 3.0
-
-
-def _heights(
-    model: EquationsOfMotion,
-    bodies: Mapping[str, tuple[float, float | None]],
-    outlines: Mapping[str, tuple[float, float, float, bool]],
-    links: Mapping[str, tuple[float, str, str]],
-    radius: float,
-) -> tuple[dict[str, float], float]:
-    """Return COG heights above the road, and what was added to the heights that the file gives, to clear the wheels."""
-    floor = 2 * radius + CLEARANCE
-    beams = {name for name in bodies if is_beam(model, name, [outlines[name][0], outlines[name][1]])}
-    known = {name: z for name, (_, z) in bodies.items() if z is not None and name not in beams}
-    lift = max((floor + outlines[name][2] - z for name, z in known.items()), default=floor + _HALF)
-    heights = {name: z + lift for name, z in known.items()} | dict.fromkeys(beams, radius)
-    others = {name: [two if one == name else one for _, one, two in links.values() if name in (one, two)] for name in bodies}
-    for name in [*bodies] * len(bodies):
-        tops = [heights[other] + outlines[other][2] for other in others[name] if other in heights]
-        if name not in heights and tops:
-            heights[name] = max(tops) + 0.4 + outlines[name][2]
-    for name in bodies:
-        heights.setdefault(name, floor + outlines[name][2])
-    return heights, lift
-
-
-def _suspension(x: float, axle: str, body: str, box: Box, radius: float) -> Strut:
-    """Stand a suspension on its hub; a body high above holds it by an arm."""
-    bottom = 1.15 * radius
-    return Strut(x, bottom, max(min(box.bottom, bottom + max(_STRUT, 1.1 * radius)), bottom + 0.2), axle, body)
-
-
-def _link(x: float, first: str, second: str, boxes: Mapping[str, Box]) -> Strut:
-    """Put a link between two outlines; where they overlap, below the upper one."""
-    if GROUND in (first, second):
-        body = second if first == GROUND else first
-        return Strut(x, 0.0, max(min(boxes[body].bottom, _STRUT), 0.2), GROUND, body)
-    lower, upper = sorted((first, second), key=lambda name: boxes[name].z)
-    top, bottom = boxes[upper].bottom, boxes[lower].top
-    if top - bottom < 0.15:
-        bottom = max(boxes[lower].bottom, top - 0.35)
-    if top - bottom < 0.15:
-        bottom = top - 0.25
-    return Strut(x, max(bottom, top - _STRUT), top, lower, upper)

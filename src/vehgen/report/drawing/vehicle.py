@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -15,15 +15,19 @@ from vehgen.mechanics import EquationsOfMotion, ModelLike, all_values, as_model
 from vehgen.mechanics.symbols import to_sympy
 from vehgen.report.drawing.canvas import ACCENT, FAINT, FILLS, INK, Canvas, Spot, text_size, within, wrap
 from vehgen.report.drawing.dimensions import Chain, draw_chains, draw_hinge_heights
+from vehgen.report.drawing.marks import draw_marks, marked_parts
 from vehgen.report.drawing.sketch import Sketch, make_sketch
-from vehgen.vehicle.parts import Axle, Spring
+from vehgen.report.drawing.symbols import draw_bending, draw_ceiling, draw_pin_resistance
+from vehgen.vehicle.parts import GROUND, Axle, Hinge, Spring
 
 _TEXT = 8.5
 _ROW, _TILT = 25.0, 35.0
 """Height of a row of dimensions in points; slope of crowded names in degrees."""
 
 
-def draw_vehicle(model: ModelLike, values: Mapping[str, float] | None = None, *, parameter_set: str | None = None) -> Figure:
+def draw_vehicle(
+    model: ModelLike, values: Mapping[str, float] | None = None, *, parameter_set: str | None = None, marked: Sequence[str] = ()
+) -> Figure:
     """Draw a side view to scale: bodies, axles, hinges, links, COGs, and their distances [m].
 
     Parameters
@@ -34,6 +38,8 @@ def draw_vehicle(model: ModelLike, values: Mapping[str, float] | None = None, *,
         Parameters [SI] by name; what is not named keeps the value of the set, or the file's.
     parameter_set
         One of the vehicle's sets.
+    marked
+        Places to ring, as a diagnosis calls them: `tyre rear`, `axle4 and axle5`, `fifth_wheel`.
 
     Notes
     -----
@@ -53,12 +59,19 @@ def draw_vehicle(model: ModelLike, values: Mapping[str, float] | None = None, *,
     for name, link in model.vehicle.links.items():
         strut = sketch.links[name]
         canvas.spring_damper(strut.x, strut.bottom, strut.top, _acts(link.k), _acts(link.c), ACCENT, law=bool(link.laws))
+        if strut.upper == GROUND:
+            draw_ceiling(canvas, strut.x, strut.top)
+    everything = model.vehicle.all_values({name: values[name] for name in model.vehicle.free_parameters})
+    for name, body in model.vehicle.bodies.items():
+        if body.bending is not None:
+            draw_bending(canvas, sketch.boxes[name], body.bending.length.evaluate(everything))
     for name, (x, z) in sketch.hinges.items():
-        _draw_hinge(canvas, name, x, z, bool(model.vehicle.hinges[name].laws))
+        _draw_hinge(canvas, name, x, z, model.vehicle.hinges[name])
     draw_hinge_heights(canvas, model, sketch, _TEXT - 1)
     draw_chains(canvas, chains, -depth, _ROW, _TEXT - 0.5)
     _name_axles(canvas, sketch, names)
     _name_parts(canvas, model, sketch)
+    draw_marks(canvas, sketch, marked_parts(model, marked))
     return canvas.figure
 
 
@@ -100,6 +113,8 @@ def _notes(model: EquationsOfMotion, sketch: Sketch) -> str:
         notes.append("Dashed outlines are not in the vehicle file.")
     if any(element.laws for element in model.elements):
         notes.append("An arrow across a symbol: a force law.")
+    if any(body.bending is not None for body in model.vehicle.bodies.values()):
+        notes.append("A dash-dotted line: how a body bends.")
     return " ".join(notes)
 
 
@@ -160,11 +175,12 @@ def _draw_axle(canvas: Canvas, name: str, axle: Axle, sketch: Sketch) -> None:
     canvas.spring_damper(strut.x, strut.bottom, strut.top, _acts(spring.k), _acts(spring.c), law=bool(spring.laws))
 
 
-def _draw_hinge(canvas: Canvas, name: str, x: float, z: float, law: bool) -> None:
+def _draw_hinge(canvas: Canvas, name: str, x: float, z: float, hinge: Hinge) -> None:
     radius = 3.6 * canvas.point
     canvas.axes.add_patch(Circle((x, z), radius, facecolor="white", edgecolor=ACCENT, lw=1.6, zorder=7, gid=f"hinge-{name}"))
     canvas.take(x - radius, z - radius, x + radius, z + radius)
-    if law:
+    draw_pin_resistance(canvas, x, z, _acts(hinge.k), _acts(hinge.c))
+    if hinge.laws:
         canvas.spring_damper(x, z - 2 * radius, z + 2 * radius, spring=False, damper=False, law=True)
 
 

@@ -186,7 +186,7 @@ def equations_mathml(model: EquationsOfMotion) -> list[Section]:
                     place, value = matrix.at(i, j)
                     row.append("<mn>0</mn>" if value == 0 else left[place] if is_long(value) else values[place])
                 cells.append("<mtr>" + "".join(f"<mtd>{cell}</mtd>" for cell in row) + "</mtr>")
-            whole = math(f"<mi>{matrix.symbol}</mi><mo>=</mo><mo>[</mo><mtable>{''.join(cells)}</mtable><mo>]</mo>")
+            whole = math(f"<mi>{matrix.symbol}</mi><mo>=</mo><mtable>{''.join(cells)}</mtable>")
             rows = [place for place in values if is_long(matrix.entries[place])]
         listed = [(place_text(matrix, place), math(left[place] + "<mo>=</mo>"), math(values[place])) for place in rows]
         sections.append(Section(matrix.symbol, matrix.meaning + (" (symmetric)" if matrix.symmetric else ""), whole, listed))

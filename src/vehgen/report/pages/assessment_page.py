@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from importlib import resources
 from pathlib import Path
 
-from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
 from vehgen.assess import Assessment
@@ -13,6 +11,7 @@ from vehgen.assess.tables import NumberTable, assessment_tables
 from vehgen.files import write_text
 from vehgen.files.results import csv_text
 from vehgen.report.figure_files import figure_svg, inline_svg, save_figure
+from vehgen.report.pages.assets import page_environment, template_text
 from vehgen.report.plots.assessment_plot import plot_assessment
 
 
@@ -33,7 +32,7 @@ def assessment_files(folder: Path) -> list[Path]:
 
 def assessment_page(found: Assessment, tables: list[NumberTable], svg: str) -> str:
     """Return the page's text."""
-    text = resources.files("vehgen.report").joinpath("templates/assessment.html.j2").read_text(encoding="utf-8")
-    environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
+    text = template_text("assessment.html.j2")
+    environment = page_environment()
     figure = Markup(inline_svg(svg, "assessment", "PSDs, shock response spectra, tyre loads and cycles"))
     return environment.from_string(text).render(found=found, tables=tables, figure=figure)

@@ -2,32 +2,33 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
-from importlib.resources import files
 from pathlib import Path
 
 import sympy as sp
-from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup, escape
 from matplotlib.figure import Figure
 
 from vehgen.codegen import KernelSource, write_kernel
 from vehgen.files import write_text
+from vehgen.files.number_text import grouped, kilonewtons, millimetres
 from vehgen.files.results import json_text
 from vehgen.mechanics import GRAVITY, EquationsOfMotion, StaticLoads, derive
+from vehgen.mechanics.static_loads import static_deflections
+from vehgen.report.drawing.animation import drive_picture, mode_pictures
 from vehgen.report.drawing.mode_shapes import draw_modes
 from vehgen.report.drawing.vehicle import draw_vehicle
 from vehgen.report.equations import writing as equations
 from vehgen.report.equations.latex import equations_latex
 from vehgen.report.equations.notation import tidy
-from vehgen.report.figure_files import figure_svg, inline_svg
+from vehgen.report.figure_files import figure_svg, inline_svg, with_titles
+from vehgen.report.pages.assets import page_environment, template_text
 from vehgen.simulate import Mode
 from vehgen.simulate.build import Build, body_channels, summarise_build
+from vehgen.simulate.hump_drive import DRIVE_HUMP_HEIGHT, DRIVE_HUMP_LENGTH, DRIVE_SPEED, hump_drive
+from vehgen.simulate.mode_groups import alike_modes, group_name
 
 GONE = "no longer there when this page was written"
-_WIDE_EM = 14.0
-"""A drawing wider than this is scrolled on the page instead of shrunk [inches]."""
 
 
 def write_build_folder(
@@ -89,26 +90,28 @@ def write_build(build: Build, folder: Path, model: EquationsOfMotion, kernel: Ke
 
 
 def _page(build: Build, model: EquationsOfMotion, texts: Mapping[str, str]) -> str:
-    environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
-    environment.filters["grouped"] = grouped
-    template = environment.from_string((files("vehgen.report") / "templates" / "page.html.j2").read_text(encoding="utf-8"))
+    environment = page_environment()
+    environment.filters |= {"grouped": grouped, "kilonewtons": kilonewtons, "millimetres": millimetres}
+    template = environment.from_string(template_text("page.html.j2"))
     symbols = equations.coordinate_mathml(model)
     return template.render(
         vehicle=model.vehicle,
         title=model.vehicle.title or model.vehicle.name,
         coordinates=[(i, item, Markup(symbols[i - 1])) for i, item in enumerate(model.coordinates, 1)],
         parameters=_parameters(build, model),
-        modes=build.modes,
+        modes=[(group_name(group), group[0]) for group in alike_modes(build.modes)],
+        moving=_moving(build, model),
+        drive=_drive(build, model),
+        hump=f"A half sine of {1e3 * DRIVE_HUMP_HEIGHT:g} mm over {DRIVE_HUMP_LENGTH:g} m, at {DRIVE_SPEED:g} m/s.",
         axles=_axles(model, build.loads),
-        hinges=build.loads.hinges,
-        links=[(name, force) for (kind, name), force in build.loads.elements.items() if kind == "link"],
+        hinges=[(name, model.vehicle.hinges[name].title, force) for name, force in build.loads.hinges.items()],
+        springs=_springs(model, build),
         total=sum(build.loads.axles.values()),
         weight=build.weight,
         mass=model.total_mass(build.values),
         gravity=GRAVITY if model.vehicle.gravity else 0,
         warnings=build.warnings,
-        figures=_figures(model, texts),
-        long="drawing.svg" in texts and _width(texts["drawing.svg"]) > _WIDE_EM,
+        figures=_figures(build, model, texts),
         balance=Markup(equations.balance_mathml(model)),
         vectors=equations.vectors(model),
         sections=[
@@ -144,14 +147,6 @@ def _parameters(build: Build, model: EquationsOfMotion) -> list[dict[str, object
     return rows
 
 
-def grouped(value: float) -> str:
-    """Write a number with six digits that count, thousands apart."""
-    short = float(f"{value:.6g}")
-    if short and not 1e-4 <= abs(short) < 1e10:
-        return f"{short:.6g}"
-    return (f"{short:,.0f}" if short.is_integer() else f"{short:,.10f}".rstrip("0")).replace(",", "\u202f").replace("-", "\u2212")
-
-
 def _unit(unit: str) -> str:
     return unit.replace("no unit", "–").replace("^2", "²").replace("^3", "³")
 
@@ -160,17 +155,48 @@ def _axles(model: EquationsOfMotion, loads: StaticLoads) -> list[tuple[str, str,
     return [(name, model.vehicle.axles[name].title, force) for name, force in loads.axles.items()]
 
 
-def _figures(model: EquationsOfMotion, texts: Mapping[str, str]) -> dict[str, Markup]:
+def _springs(model: EquationsOfMotion, build: Build) -> list[tuple[str, str, str, float, float]]:
+    """Return kind, name, title, force [N] and deflection [m] of suspensions, tyres and links at rest; none without gravity."""
+    if not model.vehicle.gravity:
+        return []
+    deflections = static_deflections(model, build.values, build.loads)
+    titles = {name: part.title for parts in (model.vehicle.axles, model.vehicle.links) for name, part in parts.items()}
+    return [(*key, titles[key[1]], build.loads.elements[key], deflection) for key, deflection in deflections.items()]
+
+
+def _moving(build: Build, model: EquationsOfMotion) -> list[tuple[str, Mode, Markup]]:
+    """Return name, mode and moving picture, one of every group of modes that are alike."""
+    if not build.plots:
+        return []
+    groups = list(alike_modes(build.modes))
+    pictures = mode_pictures(model, [group[0] for group in groups], build.values)
+    return [(group_name(group), group[0], picture) for group, picture in zip(groups, pictures, strict=True)]
+
+
+def _drive(build: Build, model: EquationsOfMotion) -> Markup | None:
+    """Return the moving picture of a drive; None for a rig without axles."""
+    if not (build.plots and model.vehicle.axles):
+        return None
+    return drive_picture(model, build.values, hump_drive(model, build.values))
+
+
+def _figures(build: Build, model: EquationsOfMotion, texts: Mapping[str, str]) -> dict[str, Markup]:
     title = str(escape(model.vehicle.title or model.vehicle.name))
-    said = {"drawing": f"Side view of {title}, to scale", "modes": f"Mode shapes of {title}"}
-    there = {name: texts.get(f"{name}.svg", "") for name in said}
-    return {name: Markup(inline_svg(svg, name, said[name]) if svg else "") for name, svg in there.items()}
+    svg = with_titles(texts.get("drawing.svg", ""), _hover(build, model))
+    return {"drawing": Markup(inline_svg(svg, "drawing", f"Side view of {title}, to scale") if svg else "")}
 
 
-def _width(svg: str) -> float:
-    """Return the width of an SVG file [inches]."""
-    found = re.search(r'width="([\d.]+)pt"', svg)
-    return float(found[1]) / 72 if found else 0.0
+def _hover(build: Build, model: EquationsOfMotion) -> dict[str, str]:
+    """Return what the parts of a drawing say when pointed at, by their ids."""
+    vehicle, said = model.vehicle, {}
+    everything = vehicle.all_values({name: build.values[name] for name in vehicle.free_parameters})
+    for name, body in vehicle.bodies.items():
+        said[f"body-{name}"] = said[f"cog-{name}"] = f"{body.title or name}: {grouped(body.mass.evaluate(everything))} kg"
+    for name, force in build.loads.axles.items():
+        said[f"wheel-{name}"] = f"{vehicle.axles[name].title or name}: static load {kilonewtons(force)} kN"
+    for name, force in build.loads.hinges.items():
+        said[f"hinge-{name}"] = f"{vehicle.hinges[name].title or name}: {kilonewtons(force)} kN at rest"
+    return said
 
 
 def _laws(model: EquationsOfMotion) -> list[tuple[str, Markup, list[tuple[str, str, list[tuple[str, Markup, str]]]]]]:

@@ -2,27 +2,31 @@
 
 from __future__ import annotations
 
-from importlib import resources
+import json
 from pathlib import Path
 
 import numpy as np
-from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from vehgen.diagnose.evidence import BaseParameter, Evidence, FittedCandidate, RoundEvidence
+from vehgen.diagnose.evidence import BaseParameter, Evidence, FittedCandidate, Origin, RoundEvidence
 from vehgen.diagnose.result import Diagnosis
+from vehgen.errors import InputError
 from vehgen.files import write_text
+from vehgen.files.document import MAX_DOCUMENT_BYTES
+from vehgen.report.drawing.vehicle import draw_vehicle
 from vehgen.report.figure_files import figure_svg, inline_svg
+from vehgen.report.pages.assets import page_environment, template_text
 from vehgen.report.plots.comparison import QUANTITY_UNITS, plot_histories, plot_psds
 from vehgen.report.plots.diagnosis_plots import plot_places, plot_waterfall
 from vehgen.report.plots.force_plots import plot_force
+from vehgen.vehicle import parse_vehicle
 
 
 def write_diagnosis_page(diagnosis: Diagnosis, path: Path) -> None:
     """Write the report of a diagnosis to an HTML file."""
-    text = resources.files("vehgen.report").joinpath("templates/diagnosis.html.j2").read_text(encoding="utf-8")
-    environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
+    text = template_text("diagnosis.html.j2")
+    environment = page_environment()
     evidence = diagnosis.evidence
     page = environment.from_string(text).render(
         vehicle=evidence.vehicle,
@@ -47,6 +51,8 @@ def write_diagnosis_page(diagnosis: Diagnosis, path: Path) -> None:
         alone=_alone(evidence),
         meanings=evidence.meanings,
         version=evidence.made_by,
+        origin=evidence.origin,
+        marked=_marked(diagnosis),
     )
     write_text(path, page)
 
@@ -114,9 +120,30 @@ def _alone(evidence: Evidence) -> list[tuple[str, str, list[str]]]:
     return [(*key, told) for key, told in found.items()]
 
 
+def _marked(diagnosis: Diagnosis) -> list[str]:
+    """Return the places to ring: those of the effects named, else those that pass the place test."""
+    named = [effect.place for effect in diagnosis.verdict.effects]
+    return named or [place.label for place in diagnosis.evidence.places if place.passes]
+
+
+def _draw(origin: Origin, marked: list[str]) -> Figure:
+    """Return the drawing of the vehicle with places ringed; its data are checked as a file's are."""
+    text = json.dumps(origin.vehicle)
+    if len(text) > MAX_DOCUMENT_BYTES:
+        raise InputError(f"the diagnosis holds no vehicle's data of at most {MAX_DOCUMENT_BYTES} bytes")
+    vehicle = parse_vehicle(text, "the diagnosis")
+    if not set(vehicle.free_parameters) <= set(origin.values):
+        raise InputError("the diagnosis holds other parameters than its vehicle has: diagnose it again")
+    return draw_vehicle(vehicle, origin.values, marked=marked)
+
+
 def _figures(diagnosis: Diagnosis) -> dict[str, Markup]:
     evidence = diagnosis.evidence
-    found: dict[str, Figure | None] = dict.fromkeys(("places", "force", "waterfall", "psd", "histories"))
+    found: dict[str, Figure | None] = dict.fromkeys(("places", "force", "waterfall", "psd", "histories", "responses", "vehicle"))
+    if evidence.responses:
+        found["responses"] = plot_histories(evidence.responses, ("measured", "simulated"))
+    if evidence.origin is not None and evidence.origin.vehicle:
+        found["vehicle"] = _draw(evidence.origin, _marked(diagnosis))
     if evidence.places:
         found["places"] = plot_places(evidence.places)
     if evidence.force is not None:

@@ -6,6 +6,7 @@ from vehgen.errors import InputError
 from vehgen.files.limits import MOST_PARTS
 from vehgen.vehicle.checks.graph import check_carriers, check_circles, check_connections, check_hinges, check_placement
 from vehgen.vehicle.checks.names import check_names
+from vehgen.vehicle.checks.silenced import check_silenced
 from vehgen.vehicle.checks.units import check_units
 from vehgen.vehicle.checks.values import check_all_values, check_values
 from vehgen.vehicle.model import Vehicle
@@ -19,6 +20,7 @@ def check_vehicle(vehicle: Vehicle) -> None:
         if (count := len(getattr(vehicle, kind))) > most:
             raise InputError(f"{count} {kind}; a vehicle has at most {most}", vehicle.position(kind, key=True))
     check_names(vehicle)
+    check_silenced(vehicle)
     check_circles(vehicle)
     check_units(vehicle)
     check_connections(vehicle)

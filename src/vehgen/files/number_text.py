@@ -1,0 +1,39 @@
+"""Numbers as people read them: thousands apart, forces in kN, alike on pages and terminals."""
+
+from __future__ import annotations
+
+_TERMINAL = str.maketrans({"\u202f": " ", "\u2212": "-"})
+
+
+def grouped(value: float) -> str:
+    """Return a number with six digits that count, thousands apart by a narrow space."""
+    short = float(f"{value:.6g}")
+    if short and not 1e-4 <= abs(short) < 1e10:
+        return f"{short:.6g}"
+    return _typeset(f"{short:,.0f}" if short.is_integer() else f"{short:,.10f}".rstrip("0"))
+
+
+def kilonewtons(force: float) -> str:
+    """Return a force [N] in kN, to the newton."""
+    text = f"{force / 1e3:,.3f}"
+    return _typeset(text.removeprefix("-") if float(text.replace(",", "")) == 0 else text)
+
+
+def millimetres(length: float) -> str:
+    """Return a length [m] in mm, to the hundredth."""
+    text = f"{length * 1e3:,.2f}"
+    return _typeset(text.removeprefix("-") if float(text.replace(",", "")) == 0 else text)
+
+
+def thousands(value: float, decimals: int = 1, sign: str = "") -> str:
+    """Return a number with so many decimals, thousands apart; `sign` is "+" where a positive one shows its sign."""
+    return _typeset(f"{value:{sign},.{decimals}f}")
+
+
+def on_terminal(text: str) -> str:
+    """Return a typeset number with signs that every terminal has: a plain space and a hyphen."""
+    return text.translate(_TERMINAL)
+
+
+def _typeset(text: str) -> str:
+    return text.replace(",", "\u202f").replace("-", "\u2212")

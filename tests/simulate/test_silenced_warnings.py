@@ -1,0 +1,60 @@
+"""Warnings of a vehicle: silenced by its file, and none for mounts and bending that move as such do."""
+
+import pytest
+
+from vehgen.errors import InputError
+from vehgen.mechanics import derive
+from vehgen.simulate import lint
+from vehgen.vehicle import parse_vehicle
+
+SHORT_AXLES = """
+bodies: {frame: {mass: 8 t, pitch_inertia: 20 t m^2%s}}
+axles:
+  one: {body: frame, x: 2 m, tyre: {k: 1 MN/m, c: 5 kN s/m}}
+  two: {body: frame, x: -2 m, tyre: {k: 1 MN/m, c: 5 kN s/m}}
+  three: {body: frame, x: -2.5 m, tyre: {k: 1 MN/m, c: 5 kN s/m}}
+"""
+MOUNTED = """
+extends: quarter_car
+bodies: {engine: {mass: 300 kg, motions: [heave]}}
+links: {mount: {body: {}, engine: {}, k: %s}}
+"""
+
+
+def warnings(text: str) -> list[str]:
+    return lint(derive(parse_vehicle(text)))
+
+
+def test_a_file_silences_a_kind_or_one_of_its_parts():
+    text = SHORT_AXLES % ""
+    assert [item for item in warnings(text) if "overlapping" in item]
+    for entry in ("axle_gap", "axle_gap three"):
+        assert not [item for item in warnings(text + f"silence: [{entry}]\n") if "overlapping" in item]
+    assert warnings(text + "silence: [axle_gap two]\n") == warnings(text)
+
+
+@pytest.mark.parametrize(
+    ("entry", "said"),
+    [
+        ("gyrations", "unknown warning 'gyrations'; did you mean 'gyration'"),
+        ("gyration frme", "no bodies are called 'frme'; did you mean 'frame'"),
+        ("gyration one", "no bodies are called 'one'"),
+    ],
+)
+def test_what_cannot_be_silenced_is_refused_at_its_place(entry, said):
+    with pytest.raises(InputError, match=said) as caught:
+        parse_vehicle(SHORT_AXLES % "" + f"silence: [axle_gap, {entry}]\n")
+    assert caught.value.position.line == 7
+
+
+def test_an_engine_on_its_mounts_may_move_faster_than_a_body():
+    assert warnings(MOUNTED % "1.5 MN/m") == []
+    (found,) = warnings(MOUNTED % "30 MN/m")
+    assert found.startswith("mount mode outside 0.5-30 Hz: engine heave")
+
+
+def test_bending_is_no_body_mode():
+    rigid = SHORT_AXLES % ""
+    bent = SHORT_AXLES % ", bending: {frequency: 12 Hz, length: 6 m}"
+    assert [item for item in warnings(bent) if "bending" in item] == []
+    assert len(warnings(bent)) <= len(warnings(rigid))
