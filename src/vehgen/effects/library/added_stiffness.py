@@ -23,9 +23,17 @@ ADDED_STIFFNESS_EFFECT = VehicleEffect(
     attaches="suspension",
     places=springless,
     parameters=(
-        EffectParameter("k", "N/m", "stiffness beside what is there", low=0.003, high=10.0, starts=(0.03, 0.3), scale=lambda site: site.k),
+        EffectParameter(
+            "k",
+            "N/m",
+            "stiffness beside what is there",
+            low=0.003,
+            high=10.0,
+            starts=(0.03, 0.3),
+            scale=lambda site: site.k,
+            of="the largest force that occurs over the largest travel",
+        ),
     ),
     frees=("c",),
     edit=_edit,
 )
-"""Where there is no stiffness, `site.k` is the largest force that occurs over the largest travel."""
