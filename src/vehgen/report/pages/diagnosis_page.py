@@ -21,10 +21,15 @@ from vehgen.report.plots.force_plots import plot_force
 
 def write_diagnosis_page(diagnosis: Diagnosis, path: Path) -> None:
     """Write the report of a diagnosis to an HTML file."""
+    write_text(path, diagnosis_page(diagnosis))
+
+
+def diagnosis_page(diagnosis: Diagnosis) -> str:
+    """Return the report of a diagnosis as HTML."""
     text = resources.files("vehgen.report").joinpath("templates/diagnosis.html.j2").read_text(encoding="utf-8")
     environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
     evidence = diagnosis.evidence
-    page = environment.from_string(text).render(
+    return environment.from_string(text).render(
         vehicle=evidence.vehicle,
         verdict=diagnosis.verdict,
         stopped=diagnosis.stopped,
@@ -48,7 +53,6 @@ def write_diagnosis_page(diagnosis: Diagnosis, path: Path) -> None:
         meanings=evidence.meanings,
         version=evidence.made_by,
     )
-    write_text(path, page)
 
 
 def _parameter(item: BaseParameter) -> dict[str, str]:
