@@ -8,12 +8,13 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-
-import matplotlib as mpl
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING
 
 from vehgen.errors import InputError, shown
 from vehgen.files import write_bytes
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 FORMATS = ("png", "svg", "pdf")
 """What a figure can be saved as."""
@@ -74,6 +75,8 @@ def inline_svg(svg: str, name: str, title: str) -> str:
 @contextmanager
 def _reproducible() -> Iterator[None]:
     """Fix what matplotlib would choose at random; a sign that the font lacks is drawn as a box without a warning."""
+    import matplotlib as mpl
+
     with mpl.rc_context({"svg.hashsalt": "vehgen", "svg.fonttype": "path"}), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph .* missing from", category=UserWarning)
         yield

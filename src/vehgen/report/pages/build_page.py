@@ -6,24 +6,25 @@ import re
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import sympy as sp
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup, escape
-from matplotlib.figure import Figure
 
 from vehgen.codegen import KernelSource, write_kernel
 from vehgen.files import write_text
 from vehgen.files.results import json_text
 from vehgen.mechanics import GRAVITY, EquationsOfMotion, StaticLoads, derive
-from vehgen.report.drawing.mode_shapes import draw_modes
-from vehgen.report.drawing.vehicle import draw_vehicle
 from vehgen.report.equations import writing as equations
 from vehgen.report.equations.latex import equations_latex
 from vehgen.report.equations.notation import tidy
 from vehgen.report.figure_files import figure_svg, inline_svg
 from vehgen.simulate import Mode
 from vehgen.simulate.build import Build, body_channels, summarise_build
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 GONE = "no longer there when this page was written"
 _WIDE_EM = 14.0
@@ -67,6 +68,8 @@ def redraw_build(build: Build, folder: Path, source: str) -> list[Path]:
 
 def draw_built_vehicle(build: Build) -> Figure:
     """Return the drawing of a built vehicle, to scale."""
+    from vehgen.report.drawing.vehicle import draw_vehicle
+
     return draw_vehicle(derive(build.read_vehicle("the build")), build.values)
 
 
@@ -79,6 +82,9 @@ def write_build(build: Build, folder: Path, model: EquationsOfMotion, kernel: Ke
         "equations.tex": equations_latex(model),
     }
     if build.plots:
+        from vehgen.report.drawing.mode_shapes import draw_modes
+        from vehgen.report.drawing.vehicle import draw_vehicle
+
         texts["drawing.svg"] = figure_svg(draw_vehicle(model, build.values))
         texts["modes.svg"] = figure_svg(draw_modes(model, build.modes, build.values))
     texts |= {"build.json": json_text(build), "index.html": _page(build, model, texts)}
