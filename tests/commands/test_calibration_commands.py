@@ -1,4 +1,5 @@
 import json
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -135,3 +136,15 @@ def test_what_cannot_be_done_is_said_in_one_line(run, tmp_path, capsys, argument
     error = capsys.readouterr().err
     assert said in error
     assert error.count("\n") == 1
+
+
+def test_the_result_is_told_before_its_figures_are_drawn(run, tmp_path, capsys, monkeypatch):
+    def draw(*_):
+        raise InputError("no figures")
+
+    monkeypatch.setattr(import_module("vehgen.report.plots.calibration_plots"), "save_calibration_figures", draw)
+    assert main(["calibrate", "sedan2.yaml", run, "--out", str(tmp_path / "o"), *SMALL]) == 2
+    told = capsys.readouterr()
+    assert "sedan2: parameters" in told.out
+    assert told.err == "error: no figures\n"
+    assert (tmp_path / "o" / "calibration.json").is_file()

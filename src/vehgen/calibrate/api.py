@@ -6,6 +6,8 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
+from threadpoolctl import threadpool_limits
+
 from vehgen.calibrate.calibration import CalibrationProgress, Settings, calibrate_problem
 from vehgen.calibrate.genetic import GeneticSearch
 from vehgen.calibrate.result import CalibrationSummary
@@ -111,7 +113,7 @@ def calibrate(
     problem = make_problem(load_trials(runs, as_vehicle(vehicle)))
     prior_data = None if facts is None else load_prior_data(Path(facts), problem)
     path = None if checkpoint is None else Path(checkpoint)
-    with runner_at(scheduler) as runner:
+    with runner_at(scheduler) as runner, threadpool_limits(1, user_api="blas"):  # small matrices: more threads only wait
         found = calibrate_problem(problem, settings, prior_data, progress, path, resume, runner)
         return summarise(found, prior_data, _names(combinations, "combinations"), 0 if found.stopped else bootstrap, runner)
 

@@ -95,11 +95,12 @@ def run(options: argparse.Namespace) -> int | None:
             progress.say("stopped: the best so far is kept; --resume goes on")
     write_text(files[0], outcome.vehicle_text(folder, name))
     write_text(files[1], json_text(outcome))
+    if not options.json:
+        show_calibration(outcome)  # figures take seconds
     files += save_calibration_figures(outcome, folder)
     if options.json:
         data = {key: value for key, value in outcome.to_dict().items() if key not in CALIBRATION_CURVES}
         print_json({**data, "files": [str(path) for path in files]})
     else:
-        show_calibration(outcome)
         tell_written(files)
     return STOPPED if outcome.stopped else None

@@ -47,28 +47,32 @@ def run(options: argparse.Namespace) -> int | None:
     from vehgen.diagnose.writing import files_named_so
     from vehgen.effects import effects_named
     from vehgen.fit.trial import load_trials
-    from vehgen.report.diagnosis_files import diagnosis_files
+    from vehgen.report.diagnosis_files import DIAGNOSIS_PAGE, result_files
+    from vehgen.report.pages.diagnosis_page import write_diagnosis_page
     from vehgen.vehicle import load_vehicle
 
     chosen = effects_named(split_list(options.effects) or None, options.library)
     vehicle = load_vehicle(options.vehicle)
     trials = load_trials(options.runs, vehicle)
     folder = folder_named(options.out, f"{Path(options.vehicle).stem}_diagnosis")
-    check_results([folder / "diagnosis.json", folder / "report.html", *files_named_so(vehicle.name, folder)])
+    check_results([folder / "diagnosis.json", folder / DIAGNOSIS_PAGE, *files_named_so(vehicle.name, folder)])
     with Bars(quiet=options.json) as bars:
         found = diagnose(vehicle, trials, effects=chosen, everywhere=options.everywhere, workers=os.cpu_count() or 1, progress=bars.tell)
-    found, texts = diagnosis_files(found, folder)
-    files = [folder / name for name in texts]
-    for path, text in zip(files, texts.values(), strict=True):
-        write_text(path, text)
+    found, texts = result_files(found, folder)
+    for name, text in texts.items():
+        write_text(folder / name, text)
+    if not options.json:
+        _show(found)
+    write_diagnosis_page(found, folder / DIAGNOSIS_PAGE)
+    files = [folder / name for name in (*texts, DIAGNOSIS_PAGE)]
     if options.json:
         print_json({**found.verdict.to_dict(), "files": [str(path) for path in files]})
     else:
-        _show(found, files)
+        tell_written(files)
     return STOPPED if found.stopped else None
 
 
-def _show(found: Diagnosis, files: list[Path]) -> None:
+def _show(found: Diagnosis) -> None:
     verdict = found.verdict
     say("", heading=f"{verdict.reason}.")
     effect_rows = [
@@ -96,4 +100,3 @@ def _show(found: Diagnosis, files: list[Path]) -> None:
         say(f"note: {note}")
     if verdict.next_experiment:
         say(f"measure next: {verdict.next_experiment}")
-    tell_written(files)
