@@ -3,6 +3,7 @@
 import json
 import shutil
 import time
+from contextlib import nullcontext
 
 import pytest
 
@@ -58,7 +59,7 @@ def here(monkeypatch):
                 done.append(item.name)
                 yield item, answer
 
-    monkeypatch.setattr(diagnosing, "ProcessRunner", lambda processes: Here())
+    monkeypatch.setattr(diagnosing, "ProcessRunner", lambda processes: nullcontext(Here()))
     return done
 
 
@@ -147,7 +148,7 @@ def test_a_fault_or_a_lost_worker_is_a_row(fleet, monkeypatch):
     def break_down(*_):
         raise ZeroDivisionError("a fault")
 
-    monkeypatch.setattr(diagnosing, "ProcessRunner", lambda processes: Breaking())
+    monkeypatch.setattr(diagnosing, "ProcessRunner", lambda processes: nullcontext(Breaking()))
     monkeypatch.setattr(work, "diagnose_trials", break_down)
     found = rows(diagnosed(fleet))
     assert found["first"].error.startswith("internal fault: ZeroDivisionError: a fault")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
 
 from vehgen.commands.calibration_tables import show_calibration
@@ -87,6 +88,7 @@ def run(options: argparse.Namespace) -> int | None:
             combinations=options.combination,
             bootstrap=options.bootstrap,
             scheduler=options.scheduler,
+            workers=os.cpu_count() or 1,
             checkpoint=checkpoint,
             resume=options.resume,
             progress=lambda label, done, total, best: progress.tell(label, done, total, f"best {best:.5g}"),

@@ -93,14 +93,20 @@ def _why(future: Any) -> str:
 
 
 @contextmanager
-def runner_at(scheduler: str | None) -> Iterator[Runner]:
-    """Yield a runner: on the Dask scheduler at an address such as `tcp://host:8786`, or here where there is none.
+def runner_at(scheduler: str | None, processes: int = 1) -> Iterator[Runner]:
+    """Yield a runner: on the Dask scheduler at an address such as `tcp://host:8786`; where there is none, here, by so many processes.
 
     Raises
     ------
     InputError
         Where the extra `cluster` is not installed, or nothing answers at the address.
     """
+    if scheduler is None and processes > 1:
+        from vehgen.fit.processes import ProcessRunner
+
+        with ProcessRunner(processes) as runner:
+            yield runner
+        return
     if scheduler is None:
         yield Runner()
         return

@@ -93,7 +93,8 @@ def diagnose_fleet(
 @contextmanager
 def _runner(scheduler: str | None, processes: int | None) -> Iterator[Runner]:
     if scheduler is None:
-        yield ProcessRunner(processes=processes)
+        with ProcessRunner(processes) as own:
+            yield own
         return
     with runner_at(scheduler) as runner:
         yield runner
