@@ -16,6 +16,7 @@ PAGE = HERE / "architecture.md"
 MARKS = "<!-- {}: start -->", "<!-- {}: end -->"
 ROOMS = [
     "errors",
+    "late_imports",
     "files",
     "vehicle",
     "mechanics",

@@ -5,10 +5,9 @@ The names below are imported when they are first used, so that `import vehgen` s
 
 from __future__ import annotations
 
-import sys
-from importlib import import_module
-from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from vehgen.late_imports import import_late
 
 __version__ = "0.1.0"
 
@@ -85,25 +84,4 @@ if TYPE_CHECKING:
     from vehgen.vehicle import Axle, Body, Hinge, Link, Parameter, Spring, Vehicle, bundled_models, load_vehicle, parse_vehicle
 
 
-class _Package(ModuleType):
-    """The package, in which functions stand before the rooms that share their names: `vehgen.simulate` is the function.
-
-    An import of a room would set the attribute to the room itself; `from vehgen.simulate import ...` needs none.
-    """
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        if not (name in _HOMES and isinstance(value, ModuleType)):
-            super().__setattr__(name, value)
-
-
-sys.modules[__name__].__class__ = _Package
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOMES:
-        raise AttributeError(f"module 'vehgen' has no attribute {name!r}")
-    return getattr(import_module(_HOMES[name]), name)
-
-
-def __dir__() -> list[str]:
-    return [*__all__, "__version__"]
+import_late(__name__, {home: [name for name in _HOMES if _HOMES[name] == home] for home in _HOMES.values()})

@@ -13,6 +13,7 @@ from vehgen.calibrate.sensitivity import sensitivity
 from vehgen.calibrate.sensor_placement import advise_sensors
 from vehgen.calibrate.summary import summarise
 from vehgen.calibrate.validation import validate
+from vehgen.fit import processes
 from vehgen.fit.parallel import Runner, runner_at
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
@@ -123,6 +124,13 @@ def test_a_bootstrap_is_the_same_on_threads(calibration, here):
 def test_a_bootstrap_is_the_same_in_other_processes(calibration, here):
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
         check_same(calibration, here, Runner(pool))
+
+
+def test_a_bootstrap_is_the_same_in_processes_that_last(calibration, here, monkeypatch):
+    monkeypatch.setattr(processes, "WORTH_PROCESSES_S", 0.0)
+    with runner_at(None, 2) as runner:
+        check_same(calibration, here, runner)
+        check_same(calibration, here, runner)
 
 
 @pytest.mark.filterwarnings("ignore")

@@ -1,4 +1,5 @@
 import json
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -146,3 +147,15 @@ def test_a_terminal_is_told_how_far_sensors_and_sensitivity_are(command, run, tm
     assert "derivatives" in told
     assert "2/2" in told
     assert "left" in told
+
+
+def test_the_result_is_told_before_its_figures_are_drawn(run, tmp_path, capsys, monkeypatch):
+    def draw(*_):
+        raise InputError("no figures")
+
+    monkeypatch.setattr(import_module("vehgen.report.plots.calibration_plots"), "save_calibration_figures", draw)
+    assert main(["calibrate", "sedan2.yaml", run, "--out", str(tmp_path / "o"), *SMALL]) == 2
+    told = capsys.readouterr()
+    assert "sedan2: parameters" in told.out
+    assert told.err == "error: no figures\n"
+    assert (tmp_path / "o" / "calibration.json").is_file()

@@ -113,7 +113,7 @@ def test_markup_in_names_is_text(capsys: pytest.CaptureFixture[str]):
         notes=[MARKUP],
         next_experiment=MARKUP,
     )
-    diagnose._show(SimpleNamespace(verdict=verdict), [Path(MARKUP)])
+    diagnose._show(SimpleNamespace(verdict=verdict))
     text = capsys.readouterr().out
     assert f"{SHOWN} fits." in text
     assert f"note: {SHOWN}" in text

@@ -98,7 +98,7 @@ def test_a_verdict_on_a_sensor_with_brackets_is_printed(capsys: pytest.CaptureFi
         verdict="sensor_fault", reason=MARKUP, effects=(), faults=(), notes=[MARKUP], next_experiment=MARKUP, gap=SimpleNamespace(runs=[])
     )
     found: Any = SimpleNamespace(verdict=verdict)
-    _show(found, [Path("report.html")])
+    _show(found)
     assert capsys.readouterr().out.count(MARKUP) == 3
 
 

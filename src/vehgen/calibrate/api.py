@@ -6,6 +6,8 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
+from threadpoolctl import threadpool_limits
+
 from vehgen.calibrate.calibration import CalibrationProgress, Settings, calibrate_problem
 from vehgen.calibrate.genetic import GeneticSearch
 from vehgen.calibrate.result import CalibrationSummary
@@ -44,6 +46,7 @@ def calibrate(
     combinations: Sequence[str] = (),
     bootstrap: int = 0,
     scheduler: str | None = None,
+    workers: int = 1,
     checkpoint: str | os.PathLike[str] | None = None,
     resume: bool = False,
     progress: CalibrationProgress | None = None,
@@ -81,7 +84,10 @@ def calibrate(
     bootstrap
         So many refits to redrawn noise check the intervals (0 leaves them out).
     scheduler
-        Address of a Dask cluster for polish and bootstrap (default: this process).
+        Address of a Dask cluster for polish and bootstrap (default: this machine).
+    workers
+        So many processes of this machine polish and refit, where that takes long. More than one needs `if __name__ == "__main__":` around a
+        script's work.
     checkpoint, resume
         A file that holds the search's state; go on from it.
     progress
@@ -111,7 +117,7 @@ def calibrate(
     problem = make_problem(load_trials(runs, as_vehicle(vehicle)))
     prior_data = None if facts is None else load_prior_data(Path(facts), problem)
     path = None if checkpoint is None else Path(checkpoint)
-    with runner_at(scheduler) as runner:
+    with runner_at(scheduler, workers) as runner, threadpool_limits(1, user_api="blas"):  # small matrices: more threads only wait
         found = calibrate_problem(problem, settings, prior_data, progress, path, resume, runner)
         return summarise(found, prior_data, _names(combinations, "combinations"), 0 if found.stopped else bootstrap, runner)
 

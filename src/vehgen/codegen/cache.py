@@ -16,15 +16,13 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
+from importlib import metadata
 from pathlib import Path
 from types import ModuleType
 
-import llvmlite
-import numba
 import numpy as np
 
 from vehgen.codegen.cache_pruning import prune
-from vehgen.codegen.emit_llvm import compiles
 from vehgen.codegen.kernel_store import PARTS, private_folder, read_parts, refuse_open_folder, writable_folder, write_parts
 from vehgen.errors import CacheWarning, InputError
 
@@ -49,22 +47,26 @@ _WRITER = (Path(__file__).parent / "emit_llvm.py").read_text(encoding="utf-8")
 """What turns a kernel's text into instructions: numba does not see when it changes."""
 
 
-_VERSIONS = f"{numba.__version__} {llvmlite.__version__} {np.__version__} {sys.implementation.cache_tag}"
 _SOURCE_TIME = 1_000_000_000
 """Time of change of every kernel's source [s]: byte code, and numba's index before version 0.62, hold for this time only."""
 _importing = threading.Lock()
 
 
+@cache
+def _versions() -> str:
+    return f"{metadata.version('numba')} {metadata.version('llvmlite')} {np.__version__} {sys.implementation.cache_tag}"
+
+
 def kernel_name(text: str) -> str:
     """Return the module name of a kernel: the hash of its source, of what writes its instructions, and of the versions that compile it."""
-    digest = hashlib.sha256(f"{_VERSIONS}\n{_WRITER}\n{text}".encode()).hexdigest()
+    digest = hashlib.sha256(f"{_versions()}\n{_WRITER}\n{text}".encode()).hexdigest()
     return f"kernel_{digest[:20]}"
 
 
 def is_compiled(text: str, folder: Path) -> bool:
     """Whether this process has loaded a kernel, or the folder holds its compiled code, or none is wanted (NUMBA_DISABLE_JIT)."""
     name = kernel_name(text)
-    return bool(f"vehgen_{name}" in sys.modules or not compiles() or read_parts(folder, name))
+    return bool(f"vehgen_{name}" in sys.modules or read_parts(folder, name) or not _compiles())
 
 
 def import_kernel(text: str, folder: Path | None = None) -> ModuleType:
@@ -83,17 +85,23 @@ def import_kernel(text: str, folder: Path | None = None) -> ModuleType:
     with _importing:
         if f"vehgen_{name}" in sys.modules:
             return sys.modules[f"vehgen_{name}"]
-        if not compiles():
+        if not _compiles():
             _warn_of_plain_python()
         known = read_parts(folder, name)
         try:
             module, parts = _import_in(None, text, name, known)
         except OSError:  # the folder of temporary files is full, or open to everybody
             module, parts = _import_in(writable_folder(folder), text, name, known)
-        if parts != known and compiles():
+        if parts != known and _compiles():
             write_parts(folder, name, parts)
             prune(writable_folder(folder))
         return module
+
+
+def _compiles() -> bool:
+    from vehgen.codegen.emit_llvm import compiles
+
+    return compiles()
 
 
 @cache
@@ -138,6 +146,8 @@ def _execute(text: str, name: str, stage: Path) -> ModuleType:
 @contextmanager
 def _numba_beside_the_source() -> Iterator[None]:
     """Let numba look for compiled code beside the source only, wherever NUMBA_CACHE_DIR and the like point to."""
+    import numba
+
     kept = {key: getattr(numba.config, key) for key in ("CACHE_DIR", "CACHE_LOCATOR_CLASSES") if hasattr(numba.config, key)}
     for key in kept:
         setattr(numba.config, key, "")

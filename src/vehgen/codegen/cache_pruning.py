@@ -13,7 +13,7 @@ from vehgen.codegen.kernel_store import SECONDS_PER_DAY
 MAX_UNUSED_DAYS = 60.0
 MAX_CACHE_BYTES = 1_000_000_000
 STAMP = "pruned"
-_OWN = re.compile(r"\.?(kernel_[0-9a-f]{20})\..+")
+_OWN = re.compile(r"\.?((?:kernel|model)_[0-9a-f]{20})\..+")
 """Files of vehgen's cache, those of former versions and unfinished ones (with a dot in front) included."""
 
 

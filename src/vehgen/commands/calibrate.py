@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
 
 from vehgen.commands.calibration_tables import show_calibration
@@ -87,6 +88,7 @@ def run(options: argparse.Namespace) -> int | None:
             combinations=options.combination,
             bootstrap=options.bootstrap,
             scheduler=options.scheduler,
+            workers=os.cpu_count() or 1,
             checkpoint=checkpoint,
             resume=options.resume,
             progress=lambda label, done, total, best: progress.tell(label, done, total, f"best {best:.5g}"),
@@ -95,11 +97,12 @@ def run(options: argparse.Namespace) -> int | None:
             progress.say("stopped: the best so far is kept; --resume goes on")
     write_text(files[0], outcome.vehicle_text(folder, name))
     write_text(files[1], json_text(outcome))
+    if not options.json:
+        show_calibration(outcome)  # figures take seconds
     files += save_calibration_figures(outcome, folder)
     if options.json:
         data = {key: value for key, value in outcome.to_dict().items() if key not in CALIBRATION_CURVES}
         print_json({**data, "files": [str(path) for path in files]})
     else:
-        show_calibration(outcome)
         tell_written(files)
     return STOPPED if outcome.stopped else None

@@ -7,9 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehgen.commands.faults import STOPPED
+from vehgen.commands.fleet import add_fleet, run_fleet
 from vehgen.commands.option_strings import split_list
 from vehgen.commands.results import add_out, folder_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table, say
+from vehgen.errors import InputError
 from vehgen.files import check_results, write_text
 
 if TYPE_CHECKING:
@@ -20,8 +22,11 @@ EXAMPLE = "vehgen diagnose tractor5.yaml hump_2ms.yaml hump_3ms.yaml high_2.5ms.
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
-    parser.add_argument("vehicle", metavar="VEHICLE", help="a vehicle file whose `range`s say what may be refitted, within 35 %%")
-    parser.add_argument("runs", metavar="RUN", nargs="+", help="run files with recordings; three or more, at two hump heights or speeds")
+    vehicle = parser.add_argument("vehicle", metavar="VEHICLE", help="a vehicle file whose `range`s say what may be refitted, within 35 %%")
+    runs = parser.add_argument(
+        "runs", metavar="RUN", nargs="+", help="run files with recordings; three or more, at two hump heights or speeds"
+    )
+    add_fleet(parser, vehicle, runs)
     parser.add_argument("--effects", metavar="A,B", help="try these effects only (default: the whole library)")
     parser.add_argument("--library", metavar="FILE", action="append", default=[], help="a file of your own effects; may be repeated")
     parser.add_argument("--everywhere", action="store_true", help="try every effect at every place, whatever the place test says")
@@ -31,15 +36,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int | None:
     """Diagnose, write the report and the vehicle file, and print the verdict; returns an exit code where Ctrl-C ended it early."""
+    if options.fleet is not None:
+        return run_fleet(options)
+    if options.scheduler is not None:
+        raise InputError("--scheduler is for many vehicles, named by --fleet; one is diagnosed on this machine")
     import os
     from dataclasses import replace
 
     from vehgen.commands.progress import Bars
     from vehgen.diagnose import diagnose
-    from vehgen.diagnose.writing import effect_file, file_name, files_named_so
+    from vehgen.diagnose.writing import files_named_so
     from vehgen.effects import effects_named
-    from vehgen.files.results import json_text
     from vehgen.fit.trial import load_trials
+    from vehgen.report.diagnosis_files import DIAGNOSIS_PAGE, result_files
     from vehgen.report.pages.diagnosis_page import write_diagnosis_page
     from vehgen.vehicle import load_vehicle
 
@@ -47,29 +56,27 @@ def run(options: argparse.Namespace) -> int | None:
     vehicle = load_vehicle(options.vehicle)
     trials = load_trials(options.runs, vehicle)
     folder = folder_named(options.out, f"{Path(options.vehicle).stem}_diagnosis")
-    files = [folder / "diagnosis.json", folder / "report.html"]
-    check_results([*files, *files_named_so(vehicle.name, folder)])
+    check_results([folder / "diagnosis.json", folder / DIAGNOSIS_PAGE, *files_named_so(vehicle.name, folder)])
     with Bars(quiet=options.json) as bars:
         found = diagnose(vehicle, trials, effects=chosen, everywhere=options.everywhere, workers=os.cpu_count() or 1, progress=bars.tell)
     if found.evidence.origin is not None:
         origin = replace(found.evidence.origin, command=options.command_line)
         found = replace(found, evidence=replace(found.evidence, origin=origin))
-    if found.chosen:
-        name = file_name(vehicle.name, found.chosen[-1])
-        path = folder / f"{name}.yaml"
-        write_text(path, effect_file(found.chosen[-1], found.detection.problem, found.verdict, folder, name))
-        found = replace(found, verdict=replace(found.verdict, vehicle_file=str(path)))
-        files.append(path)
-    write_text(files[0], json_text(found))
-    write_diagnosis_page(found, files[1])
+    found, texts = result_files(found, folder)
+    for name, text in texts.items():
+        write_text(folder / name, text)
+    if not options.json:
+        _show(found)
+    write_diagnosis_page(found, folder / DIAGNOSIS_PAGE)
+    files = [folder / name for name in (*texts, DIAGNOSIS_PAGE)]
     if options.json:
         print_json({**found.verdict.to_dict(), "files": [str(path) for path in files]})
     else:
-        _show(found, files)
+        tell_written(files)
     return STOPPED if found.stopped else None
 
 
-def _show(found: Diagnosis, files: list[Path]) -> None:
+def _show(found: Diagnosis) -> None:
     verdict = found.verdict
     say("", heading=f"{verdict.reason}.")
     effect_rows = [
@@ -97,4 +104,3 @@ def _show(found: Diagnosis, files: list[Path]) -> None:
         say(f"note: {note}")
     if verdict.next_experiment:
         say(f"measure next: {verdict.next_experiment}")
-    tell_written(files)

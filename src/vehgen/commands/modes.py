@@ -17,15 +17,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> None:
     """Print the modes of a vehicle."""
     vehicle, values = load(options)
-    from vehgen.mechanics import derive
-    from vehgen.simulate import natural_modes
     from vehgen.simulate.mode_groups import alike_modes, group_name
+    from vehgen.simulate.modes import natural_modes
 
-    model = derive(vehicle)
-    modes = natural_modes(model, values)
+    modes = natural_modes(vehicle, values)
     if options.json:
         keys = ("name", "undamped_hz", "damped_hz", "damping_ratio")
-        print_json({"n_dof": model.n_dof, "modes": [{key: getattr(mode, key) for key in keys} for mode in modes]})
+        print_json({"n_dof": len(modes), "modes": [{key: getattr(mode, key) for key in keys} for mode in modes]})
         return
     groups = [(group_name(group), group[0]) for group in alike_modes(modes)]
     rows = [(name, f"{mode.undamped_hz:.4f}", f"{mode.damped_hz:.4f}", f"{mode.damping_ratio:.4f}") for name, mode in groups]

@@ -18,16 +18,17 @@ from vehgen.fit.problem import Problem
 from vehgen.vehicle.writing import base_reference, quantity
 
 
-def effect_file(fit: ModelFit, base: Problem, verdict: Verdict, folder: Path, name: str) -> str:
+def effect_file(fit: ModelFit, base: Problem, verdict: Verdict, folder: Path, name: str, extends: str | None = None) -> str:
     """Return the text of a vehicle file that extends the base vehicle with its refitted parameters and the effects of a fit.
 
-    The evidence stands in comments. An effect of runs or sensors changes no vehicle: its numbers are told in a comment.
+    The evidence stands in comments. An effect of runs or sensors changes no vehicle: its numbers are told in a comment. `extends` is what
+    the file calls the base vehicle (default: as it is found from the folder on this machine).
     """
     trial = base.trials[0]
     vehicle = extended = trial.run.vehicle
     values = fit.least_squares.misfit.problem.best_values(fit.least_squares.values)
     data: dict[str, Any] = {
-        "extends": base_reference(vehicle, folder),
+        "extends": extends or base_reference(vehicle, folder),
         "name": name,
         "title": f"{vehicle.title or vehicle.name}, with {fit.label}"[:MAX_TEXT],
         "parameters": {key: {"value": quantity(vehicle, key, value)} for key, value in values.items() if key in vehicle.parameters},

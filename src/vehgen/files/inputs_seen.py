@@ -25,6 +25,19 @@ def noting_reads() -> Iterator[None]:
         _SEEN.reset(token)
 
 
+@contextmanager
+def collecting_reads() -> Iterator[set[str]]:
+    """Collect the real paths of what is read until the block ends; a block around it sees them too."""
+    outer, own = _SEEN.get(), set[str]()
+    token = _SEEN.set(own)
+    try:
+        yield own
+    finally:
+        _SEEN.reset(token)
+        if outer is not None:
+            outer |= own
+
+
 def note_read(path: str | Path) -> None:
     """Note that a file is read, or named as an input; it need not exist."""
     seen = _SEEN.get()

@@ -24,4 +24,9 @@ def versions(packages: Iterable[str] = PACKAGES) -> dict[str, str]:
 
 def file_hashes(paths: Iterable[Path]) -> dict[str, str]:
     """Return the SHA-256 of files by name; what is no file is left out."""
-    return {path.name: hashlib.sha256(read_bytes(path, MAX_TABLE_BYTES)).hexdigest() for path in paths if path.is_file()}
+    return {path.name: file_hash(path) for path in paths if path.is_file()}
+
+
+def file_hash(path: Path) -> str:
+    """Return the SHA-256 of a file; raises InputError where it cannot be read."""
+    return hashlib.sha256(read_bytes(path, MAX_TABLE_BYTES)).hexdigest()

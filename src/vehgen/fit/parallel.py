@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
+from itertools import islice
 from typing import Any, TypeVar
 
 from vehgen.errors import ArgumentError, InputError
@@ -14,7 +15,16 @@ from vehgen.errors import ArgumentError, InputError
 Input = TypeVar("Input")
 R = TypeVar("R")
 RETRIES = 3
-"""How often a cluster tries a piece of work again whose worker was lost."""
+"""How often a piece of work is tried again whose worker was lost."""
+AHEAD = 2
+"""So many pieces of work a cluster holds for each of its threads."""
+
+
+@dataclass(frozen=True)
+class Lost:
+    """Stands for the value of a piece of work that was lost with its worker, again and again; `reason` says what is known of it."""
+
+    reason: str
 
 
 @dataclass(frozen=True)
@@ -33,6 +43,14 @@ class Runner:
         """Yield the function's values, in the order of the inputs."""
         yield from map(function, inputs) if self.executor is None else self.executor.map(function, inputs)
 
+    def as_completed(self, function: Callable[[Input], R], inputs: Iterable[Input]) -> Generator[tuple[Input, R | Lost], None, None]:
+        """Yield every input with the function's value as soon as it is there; inputs are taken when there is somebody to work on them.
+
+        The function must not raise: what goes wrong belongs into its value.
+        """
+        for item in inputs:
+            yield item, function(item)
+
 
 @dataclass(frozen=True)
 class DaskRunner(Runner):
@@ -45,16 +63,50 @@ class DaskRunner(Runner):
         for future in self.client.map(function, list(inputs), retries=RETRIES, pure=False):
             yield future.result()
 
+    def as_completed(self, function: Callable[[Input], R], inputs: Iterable[Input]) -> Generator[tuple[Input, R | Lost], None, None]:
+        """Yield every input with the function's value as soon as it is there; what is under way is cancelled with the iteration."""
+        left = iter(inputs)
+        under_way: dict[Any, Input] = {}
+        results = import_module("distributed").as_completed()
+
+        def submit(count: int) -> None:
+            for item in islice(left, count):
+                future = self.client.submit(function, item, retries=RETRIES, pure=False)
+                under_way[future] = item
+                results.add(future)
+
+        submit(max(1, AHEAD * sum(self.client.nthreads().values())))
+        try:
+            for future in results:
+                item = under_way.pop(future)
+                yield item, future.result() if future.status == "finished" else Lost(_why(future))
+                submit(1)
+        finally:
+            self.client.cancel(list(under_way))
+
+
+def _why(future: Any) -> str:
+    """Say why a piece of work on a cluster has no value."""
+    error = future.exception() if future.status == "error" else None
+    told = " ".join(str(error).split()) if error else "its worker or the scheduler is gone"
+    return f"lost on the cluster: {told}"
+
 
 @contextmanager
-def runner_at(scheduler: str | None) -> Iterator[Runner]:
-    """Yield a runner: on the Dask scheduler at an address such as `tcp://host:8786`, or here where there is none.
+def runner_at(scheduler: str | None, processes: int = 1) -> Iterator[Runner]:
+    """Yield a runner: on the Dask scheduler at an address such as `tcp://host:8786`; where there is none, here, by so many processes.
 
     Raises
     ------
     InputError
         Where the extra `cluster` is not installed, or nothing answers at the address.
     """
+    if scheduler is None and processes > 1:
+        from vehgen.fit.processes import ProcessRunner
+
+        with ProcessRunner(processes) as runner:
+            yield runner
+        return
     if scheduler is None:
         yield Runner()
         return

@@ -3,12 +3,18 @@
 Layout, kinematics, energies, Lagrange's equations, sensor rows, static loads and equilibria, and the one evaluator of expressions.
 """
 
-from vehgen.mechanics.derivation import derive
-from vehgen.mechanics.equations_of_motion import GRAVITY, Channel, EquationsOfMotion, NumericModel
-from vehgen.mechanics.kinematics import Coordinate
-from vehgen.mechanics.model_like import ModelLike, all_values, as_model
-from vehgen.mechanics.outputs import ElementOutput, Output, Place, PointOutput
-from vehgen.mechanics.static_loads import StaticLoads, is_held, static_loads
+from typing import TYPE_CHECKING
+
+from vehgen.late_imports import import_late
+
+if TYPE_CHECKING:
+    from vehgen.mechanics.coordinates import Coordinate
+    from vehgen.mechanics.derivation import derive
+    from vehgen.mechanics.equations_of_motion import GRAVITY, Channel, EquationsOfMotion
+    from vehgen.mechanics.model_like import ModelLike, all_values, as_model
+    from vehgen.mechanics.numeric_model import NumericModel
+    from vehgen.mechanics.outputs import ElementOutput, Output, Place, PointOutput
+    from vehgen.mechanics.static_loads import StaticLoads, is_held, static_loads
 
 __all__ = [
     "GRAVITY",
@@ -28,3 +34,33 @@ __all__ = [
     "is_held",
     "static_loads",
 ]
+
+import_late(
+    __name__,
+    {
+        "vehgen.mechanics.derivation": ("derive",),
+        "vehgen.mechanics.equations_of_motion": (
+            "GRAVITY",
+            "Channel",
+            "EquationsOfMotion",
+        ),
+        "vehgen.mechanics.coordinates": ("Coordinate",),
+        "vehgen.mechanics.model_like": (
+            "ModelLike",
+            "all_values",
+            "as_model",
+        ),
+        "vehgen.mechanics.numeric_model": ("NumericModel",),
+        "vehgen.mechanics.outputs": (
+            "ElementOutput",
+            "Output",
+            "Place",
+            "PointOutput",
+        ),
+        "vehgen.mechanics.static_loads": (
+            "StaticLoads",
+            "is_held",
+            "static_loads",
+        ),
+    },
+)

@@ -13,7 +13,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.optimize
 import sympy as sp
 from numpy.typing import NDArray
 
@@ -157,6 +156,8 @@ class _Balance:
 
     def alone(self) -> Array:
         """Return the displacement `shape (1, n_dof)` of the only individual, its weight growing from nothing to its whole."""
+        import scipy.optimize
+
         scale = self.scale[0]
 
         def residual(x: Array, load: float) -> Array:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
@@ -119,7 +118,7 @@ def is_held(model: EquationsOfMotion, values: Mapping[str, float]) -> bool:
 def _scaled_modes(K: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], bool]:
     """Return what scales coordinates alike `shape (n_dof,)`, the softest direction, and whether a spring holds it."""
     scale = np.sqrt(np.maximum(np.diag(K), np.finfo(float).tiny))
-    eigenvalues, vectors = scipy.linalg.eigh(K / np.outer(scale, scale))
+    eigenvalues, vectors = np.linalg.eigh(K / np.outer(scale, scale))
     return scale, vectors[:, 0], bool(eigenvalues[0] >= 1e-12 * max(eigenvalues[-1], 1.0))
 
 
@@ -131,7 +130,7 @@ def _solve(model: EquationsOfMotion, K: NDArray[np.float64], weight: NDArray[np.
             f"singular stiffness: nothing holds {free.name} against gravity; give it a spring, a tyre or a link",
             model.vehicle.position("axles" if free.motion == "hop" else "bodies", free.owner, key=True),
         )
-    return np.asarray(scipy.linalg.solve(K / np.outer(scale, scale), weight / scale, assume_a="pos") / scale, dtype=np.float64)
+    return np.asarray(np.linalg.solve(K / np.outer(scale, scale), weight / scale) / scale, dtype=np.float64)
 
 
 def _hinge_force(model: EquationsOfMotion, name: str, elements: Mapping[tuple[str, str], float], values: Mapping[str, float]) -> float:

@@ -49,7 +49,8 @@ def build(
     modes, loads = natural_modes(model, values), static_loads(model, values)
     findings = lint(model, values)
     kernel = Kernel(model)
-    kernel.compile()
+    if not kernel.is_compiled:
+        kernel.compile()
     found = replace(summarise_build(model, values, modes, loads, findings, plots), kernel=kernel)
     if folder is not None:
         write_build(found, Path(folder), model, kernel.source)

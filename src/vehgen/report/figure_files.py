@@ -8,13 +8,15 @@ import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import matplotlib as mpl
 from markupsafe import escape
-from matplotlib.figure import Figure
 
 from vehgen.errors import InputError, shown
 from vehgen.files import write_bytes
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 FORMATS = ("png", "svg", "pdf")
 """What a figure can be saved as."""
@@ -89,6 +91,8 @@ def with_titles(svg: str, titles: Mapping[str, str]) -> str:
 @contextmanager
 def _reproducible() -> Iterator[None]:
     """Fix what matplotlib would choose at random; a sign that the font lacks is drawn as a box without a warning."""
+    import matplotlib as mpl
+
     with mpl.rc_context({"svg.hashsalt": "vehgen", "svg.fonttype": "path"}), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph .* missing from", category=UserWarning)
         yield

@@ -10,6 +10,7 @@ import numpy as np
 from vehgen.assess import Assessment
 from vehgen.calibrate import CalibrationSummary, SensitivityIndices, SensorAdvice, Validation
 from vehgen.diagnose import Diagnosis
+from vehgen.diagnose.fleet import Fleet
 from vehgen.diagnose.verdict import Verdict
 from vehgen.errors import ArgumentError, InputError
 from vehgen.files.results import Result, kind_of, read_json
@@ -19,6 +20,7 @@ from vehgen.phones import PhoneImport
 from vehgen.report.pages.assessment_page import write_assessment
 from vehgen.report.pages.build_page import redraw_build
 from vehgen.report.pages.diagnosis_page import write_diagnosis_page
+from vehgen.report.pages.fleet_page import write_fleet_page
 from vehgen.report.plots.calibration_plots import save_calibration_figures
 from vehgen.report.plots.road_response_plot import save_road_response_figures
 from vehgen.report.plots.sensitivity_plots import save_sensitivity_figures
@@ -27,7 +29,7 @@ from vehgen.report.plots.validation_plots import save_validation_figures
 from vehgen.simulate import FrequencyResponse, Modes, Response, RoadResponse, StateSpace
 from vehgen.simulate.build import Build
 
-PAGES = (Diagnosis, CalibrationSummary, Validation, SensitivityIndices, Transmissibility, RoadResponse, Assessment, Build)
+PAGES = (Diagnosis, Fleet, CalibrationSummary, Validation, SensitivityIndices, Transmissibility, RoadResponse, Assessment, Build)
 """Results with a page or several figures."""
 SINGLE_FIGURES = (Modes, StaticLoads, Response, StateSpace, FrequencyResponse, SensorAdvice, PhoneImport, Verdict)
 """Results with one figure."""
@@ -53,7 +55,7 @@ def report(result: Result | str | os.PathLike[str], folder: str | os.PathLike[st
     Parameters
     ----------
     result
-        A diagnosis, calibration, validation, sensitivity, transmissibility, road response, assessment or build, or its JSON file.
+        A diagnosis, fleet, calibration, validation, sensitivity, transmissibility, road response, assessment or build, or its JSON file.
     folder
         Where they go.
 
@@ -84,6 +86,8 @@ def _draw(result: Result, folder: Path, source: str) -> list[Path]:
         page = folder / "report.html"
         write_diagnosis_page(result, page)
         return [page]
+    if isinstance(result, Fleet):
+        return [write_fleet_page(result, folder)]
     if isinstance(result, CalibrationSummary):
         return save_calibration_figures(result, folder)
     if isinstance(result, Validation):

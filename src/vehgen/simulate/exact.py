@@ -15,7 +15,8 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from vehgen.codegen.kernel import Excitation
-from vehgen.mechanics.equations_of_motion import EquationsOfMotion, NumericModel
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion
+from vehgen.mechanics.numeric_model import NumericModel
 
 Array = NDArray[np.float64]
 StepProgress = Callable[[int, int], None]

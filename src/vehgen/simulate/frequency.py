@@ -8,7 +8,8 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from vehgen.mechanics.equations_of_motion import EquationsOfMotion, NumericModel
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion
+from vehgen.mechanics.numeric_model import NumericModel
 from vehgen.mechanics.rows import Row
 from vehgen.simulate.sensitivity import matrix_derivatives
 

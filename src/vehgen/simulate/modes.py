@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, overload
+from typing import TYPE_CHECKING, ClassVar, overload
 
 import numpy as np
-import scipy.linalg
-import scipy.optimize
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
 from vehgen.files.result_fields import Array1D
 from vehgen.files.results import Result, Table
-from vehgen.mechanics import EquationsOfMotion, ModelLike, NumericModel, all_values, as_model
+from vehgen.mechanics.coordinates import Coordinate
+from vehgen.mechanics.numeric_model import NumericModel
+from vehgen.simulate.assignment import assign
 from vehgen.simulate.mode_groups import scaled_to_peak, settled_shapes
+from vehgen.simulate.remembered_equations import equations_as_data
+from vehgen.vehicle import Vehicle, as_vehicle
+
+if TYPE_CHECKING:
+    from vehgen.mechanics import ModelLike
 
 Array = NDArray[np.float64]
 _SHARED = 0.6
@@ -87,21 +93,44 @@ def natural_modes(model: ModelLike, values: Mapping[str, float] | None = None, *
         When M is not positive definite at these values.
 
     """
-    model = as_model(model)
-    numeric = model.numeric(all_values(model, values, parameter_set))
+    coordinates, numeric = _evaluated(model, values, parameter_set)
     try:
-        squares, shapes = scipy.linalg.eigh(numeric.K, numeric.M)
+        squares, shapes = _undamped(numeric)
     except np.linalg.LinAlgError as error:
         raise InputError("the mass matrix is not positive definite: a motion has no inertia") from error
     shapes = settled_shapes(squares, shapes, numeric.M)
     damped = _match(_damped_pairs(numeric), numeric, shapes)
     shares = [_energy(numeric.M, shape) for shape in shapes.T]
-    names = _names(model, shares)
+    names = _names(coordinates, shares)
     modes = []
     for square, shape, share, name, (radius, ratio) in zip(squares, shapes.T, shares, names, damped, strict=True):
         frequency = float(np.sqrt(max(square, 0.0)) / (2 * np.pi))
         modes.append(Mode(name, frequency, radius / (2 * np.pi), ratio, scaled_to_peak(shape), share))
-    return Modes(tuple(item.name for item in model.coordinates), tuple(modes))
+    return Modes(tuple(item.name for item in coordinates), tuple(modes))
+
+
+def _evaluated(
+    model: ModelLike, values: Mapping[str, float] | None, parameter_set: str | None
+) -> tuple[tuple[Coordinate, ...], NumericModel]:
+    """Return a model's coordinates and its matrices at values of its parameters; those of a vehicle need not be derived again."""
+    if isinstance(model, Vehicle | str | os.PathLike):
+        model = as_vehicle(model)
+        plain = equations_as_data(model)
+        if plain is not None:
+            given = values is not None and parameter_set is None and all(name in values for name in plain.parameters)
+            return plain.coordinates, plain.numeric(values if given and values is not None else model.values(parameter_set, values))
+    from vehgen.mechanics import all_values, as_model
+
+    equations = as_model(model)
+    return equations.coordinates, equations.numeric(all_values(equations, values, parameter_set))
+
+
+def _undamped(numeric: NumericModel) -> tuple[Array, Array]:
+    """Return the eigenvalues of K - lambda M, ascending, and vectors of unit modal mass; raises LinAlgError for M not positive definite."""
+    lower = np.linalg.cholesky(numeric.M)
+    scaled = np.linalg.solve(lower, np.linalg.solve(lower, numeric.K).T)
+    squares, vectors = np.linalg.eigh((scaled + scaled.T) / 2)
+    return squares, np.asarray(np.linalg.solve(lower.T, vectors), dtype=np.float64)
 
 
 def _energy(M: Array, shape: Array) -> Array:
@@ -140,7 +169,7 @@ def _match(pairs: list[tuple[complex, complex, NDArray[np.complex128]]], numeric
         for j, (_, _, vector) in enumerate(pairs):
             detuning = abs(np.log(max(radii[j], 1e-9) / max(frequency[i], 1e-9)))
             cost[i, j] = -_likeness(scale * vector, (scale * shape).astype(complex)) + 0.5 * min(detuning, 2.0)
-    _, chosen = scipy.optimize.linear_sum_assignment(cost)
+    chosen = assign(cost)
     result = []
     for j in chosen:
         first, second, _ = pairs[j]
@@ -154,9 +183,9 @@ def _ratio(total: complex, radius: float) -> float:
     return ratio if abs(ratio) > 1e-12 else 0.0
 
 
-def _names(model: EquationsOfMotion, shares: list[Array]) -> list[str]:
+def _names(coordinates: Sequence[Coordinate], shares: list[Array]) -> list[str]:
     """Name modes by their largest energy; where a name would repeat, its second share (or a number) tells them apart."""
-    plain = [f"{item.owner} {item.motion}" for item in model.coordinates]
+    plain = [f"{item.owner} {item.motion}" for item in coordinates]
     names = []
     for share in shares:
         order = np.argsort(share)[::-1]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import sympy as sp
 from markupsafe import Markup, escape
-from matplotlib.figure import Figure
 
 from vehgen.codegen import KernelSource, write_kernel
 from vehgen.files import write_text
@@ -15,9 +15,6 @@ from vehgen.files.number_text import grouped, kilonewtons, millimetres
 from vehgen.files.results import json_text
 from vehgen.mechanics import GRAVITY, EquationsOfMotion, StaticLoads, derive
 from vehgen.mechanics.static_loads import static_deflections
-from vehgen.report.drawing.animation import drive_picture, mode_pictures
-from vehgen.report.drawing.mode_shapes import draw_modes
-from vehgen.report.drawing.vehicle import draw_vehicle
 from vehgen.report.equations import writing as equations
 from vehgen.report.equations.latex import equations_latex
 from vehgen.report.equations.notation import tidy
@@ -27,6 +24,9 @@ from vehgen.simulate import Mode
 from vehgen.simulate.build import Build, body_channels, summarise_build
 from vehgen.simulate.hump_drive import DRIVE_HUMP_HEIGHT, DRIVE_HUMP_LENGTH, DRIVE_SPEED, hump_drive
 from vehgen.simulate.mode_groups import alike_modes, group_name
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 GONE = "no longer there when this page was written"
 
@@ -68,6 +68,8 @@ def redraw_build(build: Build, folder: Path, source: str) -> list[Path]:
 
 def draw_built_vehicle(build: Build) -> Figure:
     """Return the drawing of a built vehicle, to scale."""
+    from vehgen.report.drawing.vehicle import draw_vehicle
+
     return draw_vehicle(derive(build.read_vehicle("the build")), build.values)
 
 
@@ -80,6 +82,9 @@ def write_build(build: Build, folder: Path, model: EquationsOfMotion, kernel: Ke
         "equations.tex": equations_latex(model),
     }
     if build.plots:
+        from vehgen.report.drawing.mode_shapes import draw_modes
+        from vehgen.report.drawing.vehicle import draw_vehicle
+
         texts["drawing.svg"] = figure_svg(draw_vehicle(model, build.values))
         texts["modes.svg"] = figure_svg(draw_modes(model, build.modes, build.values))
     texts |= {"build.json": json_text(build), "index.html": _page(build, model, texts)}
@@ -168,6 +173,8 @@ def _moving(build: Build, model: EquationsOfMotion) -> list[tuple[str, Mode, Mar
     """Return name, mode and moving picture, one of every group of modes that are alike."""
     if not build.plots:
         return []
+    from vehgen.report.drawing.animation import mode_pictures
+
     groups = list(alike_modes(build.modes))
     pictures = mode_pictures(model, [group[0] for group in groups], build.values)
     return [(group_name(group), group[0], picture) for group, picture in zip(groups, pictures, strict=True)]
@@ -177,6 +184,8 @@ def _drive(build: Build, model: EquationsOfMotion) -> Markup | None:
     """Return the moving picture of a drive; None for a rig without axles."""
     if not (build.plots and model.vehicle.axles):
         return None
+    from vehgen.report.drawing.animation import drive_picture
+
     return drive_picture(model, build.values, hump_drive(model, build.values))
 
 

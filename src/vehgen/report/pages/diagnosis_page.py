@@ -25,10 +25,15 @@ from vehgen.vehicle import parse_vehicle
 
 def write_diagnosis_page(diagnosis: Diagnosis, path: Path) -> None:
     """Write the report of a diagnosis to an HTML file."""
+    write_text(path, diagnosis_page(diagnosis))
+
+
+def diagnosis_page(diagnosis: Diagnosis) -> str:
+    """Return the report of a diagnosis as HTML."""
     text = template_text("diagnosis.html.j2")
     environment = page_environment()
     evidence = diagnosis.evidence
-    page = environment.from_string(text).render(
+    return environment.from_string(text).render(
         vehicle=evidence.vehicle,
         verdict=diagnosis.verdict,
         stopped=diagnosis.stopped,
@@ -54,7 +59,6 @@ def write_diagnosis_page(diagnosis: Diagnosis, path: Path) -> None:
         origin=evidence.origin,
         marked=_marked(diagnosis),
     )
-    write_text(path, page)
 
 
 def _parameter(item: BaseParameter) -> dict[str, str]:

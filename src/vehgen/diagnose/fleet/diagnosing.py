@@ -1,0 +1,174 @@
+"""The diagnoses of a fleet: what is kept is taken, the rest goes wherever there is room, and every result is written as it comes."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+from vehgen.diagnose.fleet.layout import LoadedVehicle, load_fleet_vehicle, vehicle_folders
+from vehgen.diagnose.fleet.result import Fleet, FleetRow
+from vehgen.diagnose.fleet.work import FilesOf, FleetAnswer, FleetSettings, FleetWork, diagnose_work
+from vehgen.diagnose.select.search import DiagnosisProgress
+from vehgen.diagnose.writing import files_named_so
+from vehgen.effects import effects_named
+from vehgen.errors import ArgumentError, InputError
+from vehgen.files import check_results, write_text
+from vehgen.files.document import MAX_DOCUMENT_BYTES
+from vehgen.files.provenance import versions
+from vehgen.files.reading import read_text
+from vehgen.files.results import MAX_RESULT_BYTES, csv_text, json_text
+from vehgen.fit.parallel import Lost, Runner, runner_at
+from vehgen.fit.processes import ProcessRunner
+from vehgen.vehicle.writing import base_reference
+
+FLEET_FILE, FLEET_TABLE = "fleet.json", "fleet.csv"
+"""The results of all vehicles: what is kept for the next start, and the same as a table."""
+
+
+def diagnose_fleet(
+    fleet: str | os.PathLike[str],
+    out: str | os.PathLike[str],
+    *,
+    files_of: FilesOf,
+    effects: Sequence[str] | None = None,
+    library: Iterable[str | os.PathLike[str]] = (),
+    everywhere: bool = False,
+    scheduler: str | None = None,
+    processes: int | None = None,
+    progress: DiagnosisProgress | None = None,
+) -> Fleet:
+    """Find what the model of every vehicle of a fleet lacks.
+
+    Parameters
+    ----------
+    fleet
+        A folder with a subfolder for every vehicle (see :mod:`vehgen.diagnose.fleet.layout`).
+    out
+        A folder outside of it for the results: a subfolder for every vehicle, and `fleet.json`, which is written again after each. Started
+        again, a vehicle that is finished there is not diagnosed again unless its inputs, the settings or the version changed.
+    files_of
+        Makes the files of a diagnosis.
+    effects, library, everywhere
+        As those of :func:`vehgen.diagnose.diagnose`; effects by name.
+    scheduler
+        Address of a Dask cluster (default: processes on this machine). Its machines need vehgen, and no common folder.
+    processes
+        So many at once on this machine (default: one per core). They need `if __name__ == "__main__":` around a script's work.
+    progress
+        Called whenever a vehicle is done.
+
+    Returns
+    -------
+    A row for every vehicle; what went wrong with one stands in its row. After Ctrl-C what was finished until then.
+
+    Raises
+    ------
+    InputError
+        For folders and settings that cannot be used, and a cluster that does not answer.
+    """
+    folder, target = Path(fleet), Path(out).absolute()
+    if target.resolve().is_relative_to(folder.resolve()):
+        raise ArgumentError(f"`out`: a folder outside of {folder} was expected; found {target}", "out")
+    paths = [Path(path) for path in library]
+    chosen = tuple(effect.name for effect in effects_named(effects, paths))
+    texts = tuple(read_text(path, MAX_DOCUMENT_BYTES) for path in paths)
+    settings = FleetSettings(chosen, texts, everywhere, files_of)
+    folders = vehicle_folders(folder)
+    check_results([target / FLEET_FILE, target / FLEET_TABLE])
+    state = _State(folder.resolve().name, target, settings, progress, {path.name: FleetRow(path.name) for path in folders})
+    try:
+        with _runner(scheduler, processes) as runner, closing(runner.as_completed(diagnose_work, state.works(folders))) as answers:
+            for work, answer in answers:
+                state.take(work, answer)
+    except KeyboardInterrupt:
+        return state.write(stopped=True)
+    return state.write()
+
+
+@contextmanager
+def _runner(scheduler: str | None, processes: int | None) -> Iterator[Runner]:
+    if scheduler is None:
+        with ProcessRunner(processes) as own:
+            yield own
+        return
+    with runner_at(scheduler) as runner:
+        yield runner
+
+
+@dataclass
+class _State:
+    """The rows so far, and those of former starts."""
+
+    fleet: str
+    target: Path
+    settings: FleetSettings
+    progress: DiagnosisProgress | None
+    rows: dict[str, FleetRow]
+    kept: dict[str, FleetRow] = field(default_factory=dict)
+
+    def works(self, folders: Sequence[Path]) -> Iterator[FleetWork]:
+        """Yield the vehicles that must be diagnosed; those that are kept or cannot be read become rows at once."""
+        self.kept = _kept(self.target / FLEET_FILE)
+        for folder in folders:
+            try:
+                loaded = load_fleet_vehicle(folder)
+                own = self.target / folder.name
+                check_results([own / "diagnosis.json", own / "report.html", *files_named_so(loaded.vehicle.name, own)])
+            except InputError as error:
+                self.note(FleetRow(folder.name, "failed", error=str(error)))
+                continue
+            fingerprint = self.fingerprint(loaded)
+            former = self.kept.get(folder.name)
+            if former is not None and former.fingerprint == fingerprint and (own / "diagnosis.json").is_file():
+                self.note(former)
+                continue
+            extends = base_reference(loaded.vehicle, own)
+            yield FleetWork(folder.name, loaded.trials, own, extends, fingerprint, loaded.inputs, self.settings)
+
+    def take(self, work: FleetWork, answer: FleetAnswer | Lost) -> None:
+        """Write what a worker sent, and note its row."""
+        runs = tuple(trial.name for trial in work.trials)
+        if isinstance(answer, Lost) or answer.verdict is None:
+            told = answer.reason if isinstance(answer, Lost) else answer.error
+            self.note(FleetRow(work.name, "failed", runs, error=told))
+            return
+        for name, text in answer.files:
+            write_text(work.folder / name, text)
+        self.note(FleetRow(work.name, "finished", runs, answer.verdict, None, work.fingerprint, work.inputs))
+
+    def note(self, row: FleetRow) -> None:
+        """Note a vehicle's row, and keep it for the next start."""
+        self.rows[row.name] = row
+        self.write()
+        if self.progress is not None:
+            done = sum(item.status != "waiting" for item in self.rows.values())
+            self.progress("vehicles", done, len(self.rows), f"{row.name}: {row.found}")
+
+    def write(self, stopped: bool = False) -> Fleet:
+        """Write all rows and return them. What is kept of vehicles that were not reached stays in the file."""
+        found = Fleet(self.fleet, tuple(self.rows.values()), versions(), stopped)
+        rows = [self.kept.get(row.name, row) if row.status == "waiting" else row for row in found.rows]
+        write_text(self.target / FLEET_FILE, json_text(Fleet(found.fleet, tuple(rows), found.made_by, stopped)))
+        write_text(self.target / FLEET_TABLE, csv_text(found.table()))
+        return found
+
+    def fingerprint(self, loaded: LoadedVehicle) -> str:
+        """Return a hash of all that a vehicle's diagnosis depends on: inputs, settings, versions."""
+        settings = {key: value for key, value in asdict(self.settings).items() if key != "files_of"}
+        data = json.dumps([loaded.inputs, settings, versions()], sort_keys=True)
+        return hashlib.sha256(data.encode()).hexdigest()
+
+
+def _kept(path: Path) -> dict[str, FleetRow]:
+    """Return the finished rows of former starts; none where there is no file, or one that cannot be used."""
+    try:
+        data = json.loads(read_text(path, MAX_RESULT_BYTES, "the JSON file of a result", state=True))
+        rows = Fleet.from_dict(data, str(path)).rows
+    except (InputError, ValueError, RecursionError):
+        return {}
+    return {row.name: row for row in rows if row.status == "finished"}

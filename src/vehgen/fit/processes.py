@@ -1,0 +1,174 @@
+"""Pieces of work on this machine, side by side in processes: one that is killed costs the others nothing."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import time
+import warnings
+from collections.abc import Callable, Generator, Iterable, Iterator
+from contextlib import closing, contextmanager, suppress
+from dataclasses import dataclass
+from itertools import islice
+from multiprocessing import resource_tracker
+from multiprocessing.connection import Connection, wait
+from multiprocessing.context import SpawnProcess
+from typing import Any, Self
+
+from vehgen.errors import InputError
+from vehgen.fit.parallel import RETRIES, Input, Lost, R, Runner
+
+WORTH_PROCESSES_S = 3.0
+"""Pieces of work that take longer are spread over processes [s]; these need a second or two to start."""
+LOST_PROCESS = "its process ended before it was done, {} times: too little memory, or a script without `if __name__ == '__main__':`"
+
+
+@dataclass
+class _Job:
+    """A piece of work under way: its number, its input, its process, and how often it was begun."""
+
+    number: int
+    item: Any
+    process: SpawnProcess
+    begun: int
+
+
+class ProcessRunner(Runner):
+    """A runner on so many processes at once (default: one per core), which last until it is closed.
+
+    They start afresh (spawn): a script that uses it needs the usual `if __name__ == "__main__":` around its work.
+    """
+
+    def __init__(self, processes: int | None = None) -> None:
+        super().__init__()
+        self._most = processes or os.cpu_count() or 1
+        self._idle: list[tuple[Connection, SpawnProcess]] = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        while self._idle:
+            end, process = self._idle.pop()
+            end.close()
+            _end(process)
+
+    def map(self, function: Callable[[Input], R], inputs: Iterable[Input]) -> Iterator[R]:
+        """Yield the function's values, in the order of the inputs; an error of the function is raised here.
+
+        Short work is done here, until a piece takes so long that the others are worth processes.
+        """
+        left = iter(inputs)
+        if not self._idle:
+            for item in left:
+                begun = time.perf_counter()
+                value = function(item)
+                taken = time.perf_counter() - begun
+                yield value
+                if taken > WORTH_PROCESSES_S:
+                    break
+        found: dict[int, Any] = {}
+        after = 0
+        with closing(self._completed(function, left)) as answers:
+            for job, answer in answers:
+                if isinstance(answer, Lost):
+                    raise InputError(f"a piece of work was lost: {answer.reason}")
+                found[job.number] = answer
+                while after in found:
+                    yield _value(found.pop(after))
+                    after += 1
+
+    def as_completed(self, function: Callable[[Input], R], inputs: Iterable[Input]) -> Generator[tuple[Input, R | Lost], None, None]:
+        """Yield every input with its value as soon as it is there; processes still at work are ended with the iteration."""
+        with closing(self._completed(function, inputs)) as answers:
+            for job, answer in answers:
+                yield job.item, answer if isinstance(answer, Lost) else _value(answer)
+
+    def _completed(self, function: Callable[[Input], R], inputs: Iterable[Input]) -> Generator[tuple[_Job, Any], None, None]:
+        """Yield every job with what its process sent, or with its loss."""
+        jobs: dict[Connection, _Job] = {}
+        left = enumerate(inputs)
+        try:
+            while True:
+                for number, item in islice(left, self._most - len(jobs)):
+                    self._begin(jobs, function, number, item)
+                if not jobs:
+                    return
+                for end in wait(list(jobs)):
+                    assert isinstance(end, Connection)
+                    job = jobs.pop(end)
+                    try:
+                        answer = end.recv()
+                    except (EOFError, OSError):
+                        end.close()
+                        _end(job.process)
+                        if job.begun <= RETRIES:
+                            self._begin(jobs, function, job.number, job.item, job.begun + 1)
+                        else:
+                            yield job, Lost(LOST_PROCESS.format(job.begun))
+                        continue
+                    self._idle.append((end, job.process))
+                    yield job, answer
+        finally:
+            for end, job in jobs.items():
+                end.close()
+                _end(job.process)
+
+    def _begin(self, jobs: dict[Connection, _Job], function: Callable[[Input], R], number: int, item: Input, begun: int = 1) -> None:
+        with _unstopped():
+            end, process = self._idle.pop() if self._idle else _started()
+            jobs[end] = _Job(number, item, process, begun)
+        with suppress(OSError):  # it has died meanwhile, which is seen when its answer is read
+            end.send((function, item))
+
+
+def _started() -> tuple[Connection, SpawnProcess]:
+    """Return a new process, and the end of its pipe."""
+    context = multiprocessing.get_context("spawn")
+    ours, theirs = context.Pipe()
+    process = context.Process(target=_work, args=(theirs,), daemon=True)
+    process.start()
+    theirs.close()  # the process holds the only end, so that its death ends the pipe
+    return ours, process
+
+
+def _end(process: SpawnProcess) -> None:
+    process.terminate()
+    process.join()
+
+
+def _work(end: Connection) -> None:
+    """Do pieces of work until the pipe ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that waits: it ends this one
+    warnings.simplefilter("ignore")
+    with suppress(EOFError):
+        while True:
+            function, item = end.recv()
+            answer: tuple[Any, Exception | None]
+            try:
+                answer = function(item), None
+            except Exception as error:  # raised again by the process that waits
+                answer = None, error
+            end.send(answer)
+
+
+def _value(answer: tuple[Any, Exception | None]) -> Any:
+    value, error = answer
+    if error is not None:
+        raise error
+    return value
+
+
+@contextmanager
+def _unstopped() -> Iterator[None]:
+    """Begin processes that Ctrl-C passes by from their first moment on; here it comes when the block ends."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    resource_tracker.ensure_running()  # when it begins, it lets Ctrl-C through
+    former = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, former)
