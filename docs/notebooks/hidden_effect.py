@@ -8,7 +8,7 @@
 # %matplotlib inline
 import vehgen
 
-runs = ["hidden/low_2ms.yaml", "hidden/high_4ms.yaml", "hidden/high_2ms.yaml"]
+runs = ["hidden/low_2ms.yaml", "hidden/high_4ms.yaml", "hidden/high_2.5ms.yaml"]
 
 # %% [markdown]
 # ## Does the model fit?

@@ -43,7 +43,9 @@ def _results(item: Any) -> Iterator[type]:
     """Yield the package's own classes that a function returns."""
     if inspect.isclass(item):
         return
-    returned = typing.get_type_hints(item).get("return")
+    packages = [importlib.import_module(f"vehgen.{name}") for name in ("mechanics", "simulate", "vehicle")]
+    late = {name: getattr(package, name) for package in packages for name in package.__all__}
+    returned = typing.get_type_hints(item, localns=late).get("return")
     for kind in (returned, *typing.get_args(returned)):
         if inspect.isclass(kind) and kind.__module__.startswith("vehgen."):
             yield kind

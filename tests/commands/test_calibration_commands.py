@@ -157,5 +157,5 @@ def test_the_result_is_told_before_its_figures_are_drawn(run, tmp_path, capsys, 
     assert main(["calibrate", "sedan2.yaml", run, "--out", str(tmp_path / "o"), *SMALL]) == 2
     told = capsys.readouterr()
     assert "sedan2: parameters" in told.out
-    assert told.err == "error: no figures\n"
+    assert told.err.splitlines()[-1] == "error: no figures"
     assert (tmp_path / "o" / "calibration.json").is_file()

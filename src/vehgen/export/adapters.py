@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping
 from importlib import import_module
 from typing import Any
 
+import numpy as np
+
 from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
 from vehgen.mechanics import ModelLike, all_values, as_model
 from vehgen.simulate import StateSpace
@@ -82,6 +84,7 @@ def _columns(system: StateSpace, inputs: Iterable[str] | None) -> list[int]:
 
 def _library(module: str, title: str) -> Any:
     try:
-        return import_module(module)
+        with np.printoptions():  # pyYeti makes numpy print as of old
+            return import_module(module)
     except ModuleNotFoundError as error:
         raise InputError(f"{title} is not installed: pip install 'vehgen[export]'") from error

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.mechanics import EquationsOfMotion
-from vehgen.simulate.exact import newmark_states
 
 Array = NDArray[np.float64]
 DRIVE_HUMP_LENGTH, DRIVE_HUMP_HEIGHT = 0.5, 0.05
@@ -60,6 +59,8 @@ def hump_drive(model: EquationsOfMotion, values: Mapping[str, float]) -> HumpDri
     numeric = model.numeric(values)
     columns = [model.inputs.index(f"road.{name}") for name in model.vehicle.axles]
     forces = road @ numeric.P[:, columns].T + rate @ numeric.Q[:, columns].T
+    from vehgen.simulate.exact import newmark_states
+
     q = newmark_states(numeric, forces, _DRIVE_STEP)[0]
     every = round(1.0 / (FRAMES_PER_SECOND * _DRIVE_STEP))
     return HumpDrive(q[::every], road[::every], start)

@@ -57,12 +57,16 @@ def excel(path: Path) -> None:
 
 
 WRITERS: dict[str, Callable[[Path], object]] = {
-    "comma": lambda path: WITH_UNITS.to_csv(path, index=False),
-    "semicolon and decimal comma": lambda path: WITH_UNITS.to_csv(path, index=False, sep=";", decimal=","),
-    "semicolon and decimal point": lambda path: WITH_UNITS.to_csv(path, index=False, sep=";"),
-    "tab and decimal comma, quoted": lambda path: WITH_UNITS.to_csv(path, index=False, sep="\t", decimal=",", quoting=1),
-    "byte order mark": lambda path: WITH_UNITS.to_csv(path, index=False, sep=";", decimal=",", encoding="utf-8-sig"),
-    "row of units": lambda path: path.write_text("t;az\ns;m/s^2\n" + FRAME[["t", "az"]].to_csv(None, index=False, header=False, sep=";")),
+    "comma": lambda path: WITH_UNITS.to_csv(path, float_format="%.17g", index=False),
+    "semicolon and decimal comma": lambda path: WITH_UNITS.to_csv(path, float_format="%.17g", index=False, sep=";", decimal=","),
+    "semicolon and decimal point": lambda path: WITH_UNITS.to_csv(path, float_format="%.17g", index=False, sep=";"),
+    "tab and decimal comma, quoted": lambda path: WITH_UNITS.to_csv(
+        path, float_format="%.17g", index=False, sep="\t", decimal=",", quoting=1
+    ),
+    "byte order mark": lambda path: WITH_UNITS.to_csv(path, float_format="%.17g", index=False, sep=";", decimal=",", encoding="utf-8-sig"),
+    "row of units": lambda path: path.write_text(
+        "t;az\ns;m/s^2\n" + FRAME[["t", "az"]].to_csv(None, float_format="%.17g", index=False, header=False, sep=";")
+    ),
     "parquet": parquet,
     "parquet of pandas": lambda path: pytest.importorskip("pyarrow") and WITH_UNITS.to_parquet(path),
     "excel": excel,
