@@ -1,13 +1,14 @@
 """Where the errors of runs begin in a fit: each run laid over its recording, slow motions first.
 
 How a speed and its wander are off turns the phase of fast motions by whole cycles, and least squares would lock onto a wrong one. So speeds
-are tried with the delay at which measured and simulated correlate best; from the best of them each run's own errors are fitted to slow
-motions, then to faster and faster ones.
+are tried, and lengths of a hump that is but guessed, each with the delay at which measured and simulated correlate best; from the best of
+them each run's own errors are fitted to slow motions, then to faster and faster ones.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,8 @@ from vehgen.fit.window import transform
 Array = NDArray[np.float64]
 SPEED_SIGMAS = tuple(0.5 * i for i in range(-7, 8))
 """Errors of the speed that are tried, in standard deviations."""
+GUESSED, LENGTH_SIGMAS = 0.1, (-1.0, -0.5, 0.0, 0.5, 1.0)
+"""Of a hump whose length has a larger standard deviation than this share, errors of the length that are tried, in standard deviations."""
 BANDS_HZ = (3.0, 8.0, 20.0)
 """Highest frequencies of the motions that are laid over one another, the slow ones first [Hz]."""
 MOST_SIGMAS = 4.0
@@ -62,10 +65,12 @@ def _laid_over(misfit: Misfit, x: Array, number: int, bands: Sequence[float]) ->
     sigma = alone.errors[0].own[names.index("delay")].sigma
     top = min(misfit.band[1], BANDS_HZ[1])
     best, start = -np.inf, np.zeros(len(names))
-    for speed in SPEED_SIGMAS if "speed" in names else (0.0,):
+    guessed = any(item.name == "length" and item.sigma > GUESSED for item in alone.errors[0].own)
+    ways = {"speed": SPEED_SIGMAS, "length": LENGTH_SIGMAS if guessed else (0.0,)}
+    known = [name for name in ways if name in names]
+    for errors in product(*(ways[name] for name in known)):
         tried = np.zeros(len(names))
-        if "speed" in names:
-            tried[names.index("speed")] = speed
+        tried[[names.index(name) for name in known]] = errors
         simulated = alone.motions(np.concatenate([np.zeros(len(alone.shared)), tried]))[0]
         late, likeness = best_delay(trial.recording.values, simulated, trial.recording.dt, (misfit.band[0], top))
         if likeness > best:
