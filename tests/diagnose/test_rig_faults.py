@@ -59,7 +59,7 @@ def strokes(folder):
     ("factor", "kind", "words", "cure"),
     [
         (1e3, "unit", "its numbers are in mm, and taken as m, or F is as much too small", "set `unit: mm` for it in the run file"),
-        (1 / 0.0254, "unit", "its numbers are in in, and taken as m", "multiply its column by 0.0254"),
+        (1 / 0.0254, "unit", "its numbers are in in, and taken as m", "set `unit: in` for it in the run file"),
         (-1.0, "turned", "acts the other way round in all runs than its column says, or F has its sign turned", "turn the sign"),
     ],
 )

@@ -48,17 +48,16 @@ def test_a_column_is_found_by_any_heading_and_its_channel_has_a_name(tmp_path):
         ({"az": np.clip(10 * np.sin(np.arange(600) * 0.3) * np.exp(-((np.arange(600) - 300) ** 2) / 500), -1.5, 1.5)}, "clipped"),
         ({"az": np.r_[np.nan, np.ones(599)]}, "not a finite number"),
         ({"az": np.full(600, 9.81)}, "constant"),
-        ({"text": RUN.replace("deg/s", "deg")}, "pitch_rate is measured in rad/s"),
-        ({"text": RUN.replace("deg/s", "dge/s")}, "not a unit"),
+        ({"text": RUN.replace("deg/s", "deg")}, "pitch_rate is measured in rad/s, found .deg., an angle"),
+        ({"text": RUN.replace("deg/s", "dge/s")}, "unknown unit 'dge/s'"),
         ({"text": RUN.replace("az,", "ax,")}, "no column 'ax'"),
         ({"text": RUN.replace("data.csv", "date.csv")}, "no file"),
         ({"text": RUN.replace("recording: data.csv\n", "")}, "no `recording`"),
     ],
 )
 def test_a_recording_that_cannot_be_used_says_why(tmp_path, change, said):
-    run = write(tmp_path, **change)
     with pytest.raises(InputError, match=said) as caught:
-        read_recording(run)
+        read_recording(write(tmp_path, **change))
     assert "\n" not in str(caught.value)
 
 

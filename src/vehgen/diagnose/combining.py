@@ -12,7 +12,7 @@ from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit
 from vehgen.diagnose.localise.localisation import suffices
 from vehgen.diagnose.select.criteria import adds, excess, needs_both, p_value_of, passes, seeds, unfinished
 from vehgen.diagnose.select.estimates import gain_interval
-from vehgen.diagnose.select.group_members import member_seeds, with_rest
+from vehgen.diagnose.select.group_members import leading_group, member_seeds, with_rest
 from vehgen.diagnose.select.search import SearchRound
 
 MOST_EFFECTS = 3
@@ -66,7 +66,7 @@ class Combiner:
         members = {item.key: item for item in member_seeds(first)}
         for seed in (members | {item.key: item for item in others}).values():
             known = self._checked(seed)
-            look = self._apart(known, first.fits[0]) if seed.key in members else self._look(known)
+            look = self._apart(known, leading_group(first)) if seed.key in members else self._look(known)
             if look.stopped:
                 return []
             if look.fits and self._both(first, look, look.fits[0]):
@@ -89,10 +89,10 @@ class Combiner:
         """Return the look for an effect beside those of a fit."""
         return next((item for item in self.looked if item.current.key == known.key), None) or self.search(known)
 
-    def _apart(self, known: ModelFit, group: ModelFit) -> SearchRound:
+    def _apart(self, known: ModelFit, group: ModelFit | None) -> SearchRound:
         """Return the look beside a law at one axle of a group, with what its other axles do from where the group's fit ended."""
         look = self._look(known)
-        if look.stopped:
+        if look.stopped or group is None:
             return look
         found = with_rest(look, group, self.candidates(known), self.detection)
         self.looked[:] = [found if item is look else item for item in self.looked]

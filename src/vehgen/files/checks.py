@@ -108,7 +108,8 @@ def unit_factor(unit: str, usual: str, quantity: str, place: Position | None) ->
         usable = ", ".join(dict.fromkeys((usual, *(name for name in units_of(expected) if "rad" not in usual or not counts_turns(name)))))
         raise InputError(f"{error.message} ({quantity} is measured in {usable})", place) from error
     if factor is None:
-        raise InputError(f"{quantity} is measured in {usual}, found {shown(unit)}, a unit of {found}", place)
+        what = "an angle or a pure number" if str(found) == "no unit" else f"a unit of {found}"
+        raise InputError(f"{quantity} is measured in {usual}, found {shown(unit)}, {what}", place)
     if "rad" in usual and counts_turns(unit):
         raise InputError(f"{quantity} is measured in {usual}, found {shown(unit)}, turns, not radians", place)
     return factor

@@ -47,16 +47,23 @@ class Candidate:
 
     def is_alike(self, other: Candidate) -> bool:
         """Return whether another candidate is the same effect, at a place that holds this one's or lies in it."""
+        return self.effect.name == other.effect.name and self._lies_with(other)
+
+    def _lies_with(self, other: Candidate) -> bool:
         own, others = (set(item.members or (item.place,)) for item in (self, other))
-        return self.effect.name == other.effect.name and (own <= others or others <= own)
+        return own <= others or others <= own
+
+    def _is_kin(self, other: Candidate) -> bool:
+        """Return whether one candidate's effect is a special case of the other's, at a place that holds the other's or lies in it."""
+        kin = self.effect.special_case == other.effect.name or other.effect.special_case == self.effect.name
+        return kin and self._lies_with(other)
 
     def is_among(self, others: Iterable[Candidate]) -> bool:
         """Return whether it, its special case, or something that searches or adjusts the same, is among others."""
         own = {(type(item), item.place) for item in self.shared}
         return any(
             self.is_alike(item)
-            or self.holds(item)
-            or item.holds(self)
+            or self._is_kin(item)
             or not set(self.parameters).isdisjoint(item.parameters)
             or not own.isdisjoint((type(other), other.place) for other in item.shared)
             for item in others

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
@@ -48,9 +50,11 @@ def shortlist(
     """Return the candidates worth fitting: those that live at the places left, and those that no single force explains.
 
     A sensor's effects are tried where leaving out the sensor or one of its channels helps; effects of the whole vehicle, and those at a
-    body's axles and hinges, where one unknown force at one place does not suffice.
+    body's axles and hinges, where one unknown force at one place does not suffice. A channel whose absence leaves more than noise says
+    nothing of the vehicle: the quietest one, and the one next to the cause, hold most of any gap.
     """
-    if not passed:
+    silent = not any(item.place.rows for item in passed)
+    if silent and min((item.chi for item in passed), default=np.inf) > limit.PLACE_PASSES:
         return list(candidates)
     names = {owner(item.place) for item in passed if item.place.rows}
     single = suffices(passed, base)

@@ -10,38 +10,45 @@ import numpy as np
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
-from vehgen.diagnose.select.search import Fitter, SearchRound, merit
+from vehgen.diagnose.select.search import CONTENDER, Fitter, SearchRound, merit
 from vehgen.diagnose.select.special_cases import simplest_first
 
 
 def with_members(found: SearchRound, candidates: Sequence[Candidate], fit_one: Callable[[Candidate], ModelFit | None]) -> SearchRound:
-    """Return a round whose best effect, where it is of a group, has been fitted at every axle of the group alone, too.
+    """Return a round in which the effect of the leading group has been fitted at every axle of it alone, too.
 
     Parameters
     ----------
     found
-        The round; one whose best effect is of a single place stays as it is.
+        The round; one without a leading group stays as it is.
     candidates
         Every effect at every place.
     fit_one
         Fits a candidate on top of the round's model.
     """
-    best = found.fits[0].last if found.fits else None
-    if best is None or len(best.members) < 2:
+    group = leading_group(found)
+    if group is None:
         return found
-    laws, known = _laws(best), {fit.last.label for fit in found.fits}
-    wanted = [item for item in candidates if item.effect.name in laws and item.place in best.members and item.label not in known]
+    laws, known = _laws(group.last), {fit.last.label for fit in found.fits}
+    wanted = [item for item in candidates if item.effect.name in laws and item.place in group.last.members and item.label not in known]
     fits = [fit for item in wanted if (fit := fit_one(item)) is not None]
     return replace(found, fits=(found.fits[0], *sorted([*found.fits[1:], *fits], key=merit)))
 
 
 def member_seeds(found: SearchRound) -> list[ModelFit]:
-    """Return the best fits at one axle of the group that a round's best effect is of: of its special case, then of the law itself."""
-    best = found.fits[0].last if found.fits else None
-    if best is None or len(best.members) < 2:
+    """Return the best fits at one axle of the leading group: of its law's special case, then of the law itself."""
+    group = leading_group(found)
+    if group is None:
         return []
-    own = [[fit for fit in found.fits if fit.last.place in best.members and fit.last.effect.name == name] for name in _laws(best)]
+    here = [fit for fit in found.fits if fit.last.place in group.last.members]
+    own = [[fit for fit in here if fit.last.effect.name == name] for name in _laws(group.last)]
     return [fits[0] for fits in own if fits]
+
+
+def leading_group(found: SearchRound) -> ModelFit | None:
+    """Return the best fit of a law that a group of axles has alike, where it is nearly as good as the best fit of all."""
+    group = next((fit for fit in found.fits if len(fit.last.members) > 1), None)
+    return group if group is not None and group.training <= CONTENDER * found.fits[0].training else None
 
 
 def with_rest(look: SearchRound, group: ModelFit, candidates: Sequence[Candidate], detection: Detection) -> SearchRound:

@@ -8,6 +8,7 @@ from vehgen.effects.library.law_effect import suspension_law
 HYSTERESIS_EFFECT = suspension_law(
     name="hysteresis",
     law="hysteresis",
+    special_case="added_stiffness",  # whose loop never develops
     signature="a loop of force over travel that does not depend on the rate; rounded corners tell it from dry friction",
     parameters=(
         EffectParameter(
