@@ -27,6 +27,7 @@ from vehgen.diagnose.select.criteria import excess, p_value_of, passes, unfinish
 from vehgen.diagnose.select.estimates import gain_interval
 from vehgen.diagnose.select.group_members import with_members
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
+from vehgen.diagnose.select.reaching_runs import with_reaching_run
 from vehgen.diagnose.select.search import DiagnosisProgress, Fitter, SearchRound, fit_leading_again, merit, search_round
 from vehgen.diagnose.verdict import Gap, PlaceChi, Verdict, VerdictName
 from vehgen.effects import Effect
@@ -125,7 +126,7 @@ class Decision:
         best = first.fits[0] if first.fits else None
         if best is None or best.training - 1 > LOOK_AGAIN_SHARE * (self.base.training - 1):
             return first
-        detection = look_again(self.detection, best)
+        detection = look_again(self.detection, best) or with_reaching_run(self.detection, best)
         if detection is None:
             return first
         held, before = self.validation_runs, self.base.training

@@ -202,9 +202,11 @@ def believable(detection: Detection) -> Detection:
 def _with_telling_runs(detection: Detection) -> Detection:
     """Return a detection with other validation runs where its own cannot show what is missing."""
     other = split_by_gap(detection.base, detection.trials)
-    if other is None:
-        return detection
-    training, validation_runs = other
+    return detection if other is None else with_runs(detection, *other)
+
+
+def with_runs(detection: Detection, training: Sequence[Trial], validation_runs: Sequence[Trial]) -> Detection:
+    """Return a detection with other training and validation runs."""
     problem = detection.problem.with_trials(training)
     base = fit_base(problem, validation_runs, detection.floor.noises, detection.band)
     return _detection(problem, validation_runs, detection.floor, base, detection.recorder, detection.asked_band)
