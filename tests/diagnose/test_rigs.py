@@ -1,9 +1,12 @@
 """A carriage that a motor drives along a rail, simulated by another hand's rules: friction that truly sticks, a ripple, a false zero."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from vehgen.diagnose.api import diagnose
+from vehgen.diagnose.detect.rig_noise import _Search, _unstated
 
 VEHICLE = """name: carriage
 gravity: false
@@ -156,3 +159,29 @@ def test_friction_that_is_stronger_one_way_is_named_where_the_damper_begins_at_r
     assert found["force"].value == pytest.approx(65.0, rel=0.05)
     assert found["ratio"].value == pytest.approx(1.6, rel=0.1)
     assert 0.8 < verdict.gap.after < 1.3
+
+
+def test_runs_that_other_forces_drive_have_errors_by_name(tmp_path):
+    """Two forces in two runs, in another order, one in a third, none in a fourth: each keeps its own size."""
+    runs = [Driven("both", {"ram": 100.0, "fan": 50.0}), Driven("turned", {"fan": 60.0, "ram": 80.0}), Driven("one", {"fan": 5.0})]
+    sizes = [_unstated(item.trial) for item in runs]
+    assert sizes[1] == {"fan": pytest.approx(60.0), "ram": pytest.approx(80.0)}
+    found = _Search.of(
+        [*runs, Driven("none", {})], {}, {name: SimpleNamespace(sigma=np.ones(1)) for name in ("both", "turned", "one", "none")}
+    )
+    shares, alike = (item.forces for item in found)
+    assert shares["one"] == pytest.approx([5.0])
+    assert alike["turned"] == pytest.approx([60.0, 100.0])
+    assert alike["one"] == pytest.approx([60.0])
+    assert alike["none"].size == shares["none"].size == 0
+
+
+class Driven:
+    """What a search reads of a run that forces of these standard deviations drive."""
+
+    def __init__(self, name, forces):
+        values = [SimpleNamespace(values=size * np.array([1.0, -1.0])) for size in forces.values()]
+        entries = {force: SimpleNamespace(noise=None) for force in forces}
+        recording = SimpleNamespace(channels=[SimpleNamespace(noise=None)])
+        run = SimpleNamespace(file=SimpleNamespace(forces=entries))
+        self.trial = SimpleNamespace(name=name, recording=recording, run=run, scenario=SimpleNamespace(forces=values))

@@ -62,3 +62,8 @@ def test_points_too_far_apart_for_axle_hop_are_told(tmp_path: Path):
     said = warnings_of(tmp_path, s, h, 5, 10)
     assert "has a point every 0.5 m, no wave shorter than 1 m: at 5 m/s it excites nothing above 5 Hz" in said
     assert "a point every" not in warnings_of(tmp_path, *road(60.0, 0.1), 5, 10)
+
+
+def test_points_that_nearly_coincide_ask_for_no_memory():
+    distance = np.r_[1e-9 * np.arange(51), 100.0]
+    assert np.isfinite(long_wave_share(MeasuredProfile(distance, 1e-3 * np.sin(distance))))

@@ -82,7 +82,7 @@ def _without_long_waves(name: str, profile: MeasuredProfile) -> Iterator[str]:
 
 def long_wave_share(profile: MeasuredProfile) -> float:
     """Return how strong a profile's waves of 10 m and longer are over what those of 1 to 4 m let expect (power, exponent 2 of ISO 8608)."""
-    step = min(float(np.median(np.diff(profile.distance))), SHORT_WAVES_M[0] / 4)
+    step = SHORT_WAVES_M[0] / 4
     even = np.arange(profile.distance[0], profile.distance[-1], step)
     heights = np.interp(even, profile.distance, profile.heights)
     n, density = scipy.signal.periodogram(heights, 1 / step, window="hann", detrend="linear")

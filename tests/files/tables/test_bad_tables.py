@@ -85,13 +85,21 @@ def test_damaged_files_are_refused_or_read_but_never_crash(tmp_path: Path, name:
 def test_a_workbook_with_entities_or_of_a_bomb_is_refused(tmp_path: Path):
     pytest.importorskip("openpyxl")
     pd.DataFrame({"t": [0.0], "az": [1.0]}).to_excel(tmp_path / "good.xlsx", index=False)
-    for name, said in (("entity", "the workbook declares entities"), ("bomb", "would unpack to more than")):
+    declared = b'<!DOCTYPE x [<!ENTITY a "7">]><worksheet'
+    entities = {
+        "first": lambda text: text.replace(b"<worksheet", declared, 1),
+        "padded": lambda text: text.replace(b"<worksheet", b"<!--" + b"x" * 140_000 + b"-->" + declared, 1),
+        "wide": lambda text: text.replace(b"<worksheet", declared, 1).decode().replace("UTF-8", "UTF-16").encode("utf-16"),
+        "other": lambda text: b'<?xml version="1.0" encoding="cp037"?>' + text.decode().partition("?>")[2].encode("cp037"),
+    }
+    cases = [*((name, "the workbook declares entities") for name in entities), ("bomb", "would unpack to more than")]
+    for name, said in cases:
         data = io.BytesIO()
         with zipfile.ZipFile(tmp_path / "good.xlsx") as source, zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
             for part in source.namelist():
                 text = source.read(part)
-                if part.endswith("sheet1.xml") and name == "entity":
-                    text = text.replace(b"<worksheet", b'<!DOCTYPE x [<!ENTITY a "b">]><worksheet', 1)
+                if part.endswith("sheet1.xml") and name in entities:
+                    text = entities[name](text)
                 archive.writestr(part, text)
             if name == "bomb":
                 with archive.open("xl/more.xml", "w", force_zip64=True) as stream:
@@ -122,3 +130,17 @@ def test_numbers_that_are_none_are_told_at_their_row(tmp_path: Path):
         read_columns(tmp_path / "run.mat", ("az",))
     with pytest.raises(InputError, match="'z' holds complex128 of shape"):
         read_columns(tmp_path / "run.mat", ("z",))
+
+
+@pytest.mark.parametrize(("own", "stated"), [("kN", "g"), ("mm", "m/s^2"), ("m/s^2", "g")])
+def test_two_units_of_a_column_that_contradict_each_other_are_refused(tmp_path: Path, own: str, stated: str):
+    (tmp_path / "run.csv").write_text(f"t,az [{own}]\n0,1\n1,2\n")
+    table = read_columns(tmp_path / "run.csv", ("t", "az"))
+    with pytest.raises(InputError, match="correct one of them"):
+        table.in_si(1, "m/s^2", "acceleration", stated, None)
+
+
+def test_a_heading_that_names_no_unit_leaves_the_word_to_who_states_one(tmp_path: Path):
+    (tmp_path / "run.csv").write_text("t,az [banana]\n0,1\n1,2\n")
+    table = read_columns(tmp_path / "run.csv", ("t", "az"))
+    assert table.in_si(1, "m/s^2", "acceleration", "g", None).values[1] == pytest.approx([9.80665, 2 * 9.80665])

@@ -76,6 +76,8 @@ GOOD = [(48.0, 11.0, f"2024-05-01T12:00:0{i}Z", "<speed>2</speed>") for i in ran
 FAULTS = [
     (gpx(GOOD, BOMB), "run.gpx:2:15: a GPX file has no DOCTYPE; one with entities is refused"),
     (gpx(GOOD)[:-30], "not XML: "),
+    (gpx(GOOD).replace("UTF-8", "foo"), "run.gpx:1:1: not XML: an encoding that cannot be read; UTF-8 was expected"),
+    (gpx(GOOD).replace("UTF-8", "utf-7"), "run.gpx:1:1: not XML: an encoding that cannot be read; UTF-8 was expected"),
     (gpx(GOOD[:1]), "a track of at least two points was expected"),
     (gpx([GOOD[0], GOOD[0]]), "run.gpx:4:1: the times of a track must ascend"),
     (gpx([GOOD[0], (91.0, 0.0, "", "")]), "run.gpx:4:3: a number of at most 90 was expected, found '91.000000000'"),

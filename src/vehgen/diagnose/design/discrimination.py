@@ -228,4 +228,4 @@ def _difference(truth: FittedModel, fitted: FittedModel, run: CandidateRun) -> C
     difference, dt = truth.predict(run) - fitted.predict(run), fitted.trial.recording.dt
     frequency = np.fft.rfftfreq(len(difference), dt)
     low, high = fitted.fit.least_squares.misfit.band
-    return transform(difference, dt, (frequency >= low) & (frequency <= high))
+    return transform(difference, dt, (frequency >= low) & (frequency <= high), seen=fitted.trial.window)

@@ -90,10 +90,13 @@ class _Search:
     def of(cls, runs: Sequence[_Left], noises: Noises, quiet: Noises) -> list[_Search]:
         free = [i for i, channel in enumerate(runs[0].trial.recording.channels) if channel.noise is None]
         loudest = np.min([quiet[run.trial.name].sigma for run in runs], axis=0)
-        sizes = {run.trial.name: unstated_forces(run.trial) for run in runs}
-        own = {name: item[item > 0] for name, item in sizes.items()}
-        largest = np.max(list(sizes.values()), axis=0)
-        forms = [own, dict.fromkeys(sizes, largest[largest > 0])] if largest.any() and len(runs) > 1 else [own]
+        sizes = {run.trial.name: _unstated(run.trial) for run in runs}
+        largest: dict[str, float] = {}
+        for found in sizes.values():
+            largest |= {force: max(size, largest.get(force, 0.0)) for force, size in found.items()}
+        shares = {run: np.array(list(found.values())) for run, found in sizes.items()}
+        alike = {run: np.array([largest[force] for force in found]) for run, found in sizes.items()}
+        forms = [shares, alike] if largest and len(runs) > 1 else [shares]
         return [cls(noises, quiet, loudest, np.array(free, dtype=np.intp), forces) for forces in forms]
 
     @property
@@ -148,3 +151,8 @@ class _Search:
 
         end = float(np.log(SHARES[1]))
         return float(scipy.optimize.brentq(beyond, x[0], end, xtol=0.02)) if beyond(end) > 0 else end
+
+
+def _unstated(trial: Trial) -> dict[str, float]:
+    """Return the standard deviation of each measured force whose error the run file does not state, by name [N]."""
+    return {name: float(size) for name, size in zip(trial.run.file.forces, unstated_forces(trial), strict=True) if size > 0}

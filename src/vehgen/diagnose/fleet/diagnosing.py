@@ -122,12 +122,13 @@ class _State:
             except InputError as error:
                 self.note(FleetRow(folder.name, "failed", error=str(error)))
                 continue
-            fingerprint = self.fingerprint(loaded)
+            extends = base_reference(loaded.vehicle, own)
+            fingerprint = self.fingerprint(loaded, extends)
             former = self.kept.get(folder.name)
-            if former is not None and former.fingerprint == fingerprint and (own / "diagnosis.json").is_file():
+            files = [own / name for name in ("diagnosis.json", "report.html")]
+            if former is not None and former.fingerprint == fingerprint and all(path.is_file() for path in files):
                 self.note(former)
                 continue
-            extends = base_reference(loaded.vehicle, own)
             yield FleetWork(folder.name, loaded.trials, own, extends, fingerprint, loaded.inputs, self.settings)
 
     def take(self, work: FleetWork, answer: FleetAnswer | Lost) -> None:
@@ -137,8 +138,12 @@ class _State:
             told = answer.reason if isinstance(answer, Lost) else answer.error
             self.note(FleetRow(work.name, "failed", runs, error=told))
             return
-        for name, text in answer.files:
-            write_text(work.folder / name, text)
+        try:
+            for name, text in answer.files:
+                write_text(work.folder / name, text)
+        except InputError as error:
+            self.note(FleetRow(work.name, "failed", runs, error=str(error)))
+            return
         self.note(FleetRow(work.name, "finished", runs, answer.verdict, None, work.fingerprint, work.inputs))
 
     def note(self, row: FleetRow) -> None:
@@ -157,10 +162,10 @@ class _State:
         write_text(self.target / FLEET_TABLE, csv_text(found.table()))
         return found
 
-    def fingerprint(self, loaded: LoadedVehicle) -> str:
-        """Return a hash of all that a vehicle's diagnosis depends on: inputs, settings, versions."""
+    def fingerprint(self, loaded: LoadedVehicle, extends: str) -> str:
+        """Return a hash of all that a vehicle's files depend on: inputs, settings, versions, and what they call the base vehicle."""
         settings = {key: value for key, value in asdict(self.settings).items() if key != "files_of"}
-        data = json.dumps([loaded.inputs, settings, versions()], sort_keys=True)
+        data = json.dumps([loaded.inputs, settings, versions(), extends], sort_keys=True)
         return hashlib.sha256(data.encode()).hexdigest()
 
 

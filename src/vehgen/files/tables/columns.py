@@ -62,8 +62,7 @@ class TableColumns:
         """
         own = self.units[column]
         factor = unit_factor(stated or own or usual, usual, quantity, place if stated else self.heading(column))
-        theirs = None if own is None or stated is None else factor_to_si(own, parse_unit(usual)[1])
-        if theirs is not None and abs(theirs / factor - 1) > 1e-9:
+        if own is not None and stated is not None and _contradicts(own, usual, factor):
             what = f"the column {shown(self.names[column])} is in {shown(own)} as its file says ({self.heading(column)})"
             raise InputError(f"{what}, and in {shown(stated)} as stated here; leave `unit` out, or correct one of them", place)
         return self if factor == 1 else self.scaled(column, factor)
@@ -95,3 +94,15 @@ class TableColumns:
         for row in wrong:
             if (reason := limit.refusal(float(self.values[column][row]))) is not None:
                 raise InputError(reason, self.place(int(row), column))
+
+
+def _contradicts(own: str, usual: str, factor: float) -> bool:
+    """Return whether a table's own unit is not worth `factor` of the usual one; what is no unit at all says nothing."""
+    theirs = factor_to_si(own, parse_unit(usual)[1])
+    if theirs is not None:
+        return abs(theirs / factor - 1) > 1e-9
+    try:
+        parse_unit(own)
+    except InputError:
+        return False
+    return True

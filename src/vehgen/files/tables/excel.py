@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,6 +20,11 @@ MAX_WORKBOOK_BYTES = 5 * MAX_TABLE_BYTES
 MOST_WORKBOOK_PARTS = 1000
 _WORKBOOK = "xl/workbook.xml"
 _ENTITIES = (b"<!DOCTYPE", b"<!ENTITY")
+_COMMENT, _ELEMENT = re.compile(rb"<!--.*?-->", re.DOTALL), re.compile(rb"<[A-Za-z_]")
+_ENCODING = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([^"']*)""")
+_OTHER_ENCODINGS = (b"\xff\xfe", b"\xfe\xff", b"<\x00", b"\x00<")
+HEAD_BYTES = 65536
+"""The first element of every part of a workbook begins within so many bytes: nothing can be declared after it."""
 
 
 def read(path: Path, names: tuple[str, ...]) -> TableColumns:
@@ -63,5 +69,20 @@ def _check_parts(path: Path) -> None:
             raise InputError(f"the workbook would unpack to more than {MAX_WORKBOOK_BYTES} bytes", Position(path, 1, 1))
         for part in parts:
             with archive.open(part) as stream:
-                if any(mark in (head := stream.read(65536)) for mark in _ENTITIES) or b"\x00" in head[:64]:
+                if not _is_plain(stream.read(HEAD_BYTES)):
                     raise InputError("the workbook declares entities, which no program writes", Position(path, 1, 1))
+
+
+def _is_plain(head: bytes) -> bool:
+    """Return whether a part is no XML, or XML in UTF-8 whose first element begins within its head with no declaration before it."""
+    start = head.removeprefix(b"\xef\xbb\xbf").lstrip()
+    if start[:2] in _OTHER_ENCODINGS:
+        return False
+    if not start.startswith(b"<"):
+        return True
+    encoding = _ENCODING.match(start)
+    if encoding is not None and encoding[1].lower() not in (b"utf-8", b"us-ascii"):
+        return False
+    before = _COMMENT.sub(b"", start)
+    element = _ELEMENT.search(before)
+    return element is not None and not any(mark in before[: element.start()] for mark in _ENTITIES)

@@ -97,6 +97,8 @@ def read(path: Path, names: tuple[str, ...]) -> TableColumns:
         parser.Parse(read_bytes(path, MAX_TABLE_BYTES, GPX_KIND), True)
     except expat.ExpatError as error:
         raise InputError(f"not XML: {expat.ErrorString(error.code)}", Position(path, error.lineno, error.offset + 1)) from error
+    except (LookupError, ValueError) as error:
+        raise InputError("not XML: an encoding that cannot be read; UTF-8 was expected", Position(path, 1, 1)) from error
     if len(points.lines) < 2:
         raise InputError("a GPX file with a track of at least two points was expected", Position(path, 1, 1))
     time, lines = np.array(points.times), np.array(points.lines, dtype=np.int64)

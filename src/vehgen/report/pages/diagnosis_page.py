@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from vehgen.diagnose.evidence import BaseParameter, Evidence, FittedCandidate, Origin, RoundEvidence
 from vehgen.diagnose.result import Diagnosis
+from vehgen.effects import EFFECTS
 from vehgen.errors import InputError
 from vehgen.files import write_text
 from vehgen.files.document import MAX_DOCUMENT_BYTES
@@ -126,8 +127,12 @@ def _alone(evidence: Evidence) -> list[tuple[str, str, list[str]]]:
 
 def _marked(diagnosis: Diagnosis) -> list[str]:
     """Return the places to ring: those of the effects named, else those that pass the place test."""
-    named = [effect.place for effect in diagnosis.verdict.effects]
-    return named or [place.label for place in diagnosis.evidence.places if place.passes]
+    of_sensors = {name for name, effect in EFFECTS.items() if not effect.changes_vehicle}
+    named = [effect.place for effect in diagnosis.verdict.effects if effect.name not in of_sensors]
+    if diagnosis.verdict.effects:
+        return named
+    labels = [place.label for place in diagnosis.evidence.places if place.passes]
+    return [label for label in labels if not label.startswith(("sensor ", "channel "))]
 
 
 def _draw(origin: Origin, marked: list[str]) -> Figure:
