@@ -125,8 +125,7 @@ class _State:
             extends = base_reference(loaded.vehicle, own)
             fingerprint = self.fingerprint(loaded, extends)
             former = self.kept.get(folder.name)
-            files = [own / name for name in ("diagnosis.json", "report.html")]
-            if former is not None and former.fingerprint == fingerprint and all(path.is_file() for path in files):
+            if former is not None and former.fingerprint == fingerprint and (own / "diagnosis.json").is_file():
                 self.note(former)
                 continue
             yield FleetWork(folder.name, loaded.trials, own, extends, fingerprint, loaded.inputs, self.settings)
