@@ -53,14 +53,14 @@ def drive(friction, amplitude, seed, spring=0.0, seconds=6.0, dt=1e-3):
     return t, force, place
 
 
-def write(folder, friction, amplitudes=(0.15, 0.25, 0.2), cell=0.0, spring=0.0):
-    """Write runs of the carriage; `cell` is the noise of what measures its force [N]."""
+def write(folder, friction, amplitudes=(0.15, 0.25, 0.2), cell=0.0, spring=0.0, zero=0.0):
+    """Write runs of the carriage; `cell` is the noise of what measures its force [N], `zero` what that reads of none [N]."""
     (folder / "carriage.yaml").write_text(VEHICLE, encoding="utf-8")
     runs = []
     for number, amplitude in enumerate(amplitudes):
         name = f"run{number}"
         t, force, place = drive(friction, amplitude, number, spring)
-        held = np.column_stack([t, force + cell * np.random.default_rng(number + 90).standard_normal(len(t))])
+        held = np.column_stack([t, force + zero + cell * np.random.default_rng(number + 90).standard_normal(len(t))])
         np.savetxt(folder / f"{name}_force.csv", held, delimiter=",", header="t,F", comments="", fmt="%.9g")
         recorded = place + 1e-6 * np.random.default_rng(number + 50).standard_normal(len(t))
         np.savetxt(folder / f"{name}.csv", np.column_stack([t, recorded])[::10], delimiter=",", header="t,q", comments="", fmt="%.9g")
@@ -93,7 +93,7 @@ def test_a_load_cells_noise_is_as_loud_in_gentle_runs(tmp_path):
 
 
 def test_a_spring_where_the_file_has_none_is_named(tmp_path):
-    verdict = diagnose(tmp_path / "carriage.yaml", write(tmp_path, 0.0, spring=100.0)).verdict
+    verdict = diagnose(tmp_path / "carriage.yaml", write(tmp_path, 0.0, spring=100.0, zero=1.5)).verdict
     assert (verdict.verdict, [item.name for item in verdict.effects]) == ("named", ["added_stiffness"])
     assert verdict.effects[0].parameters["k"].value == pytest.approx(100.0, rel=0.05)
 

@@ -42,8 +42,12 @@ def exact(time, force, dt, k):
     return found
 
 
-@pytest.mark.parametrize(("gravity", "k", "offset"), [("true", 40e3, 0.0), ("false", 0.0, 4.0)], ids=["held", "free"])
-def test_errors_of_a_force_are_found(tmp_path, gravity, k, offset):
+@pytest.mark.parametrize(
+    ("gravity", "k", "beside", "zero"),
+    [("true", 40e3, 0.0, 0.0), ("false", 300.0, 0.0, 2.0), ("false", 0.0, 4.0, 0.0)],
+    ids=["held", "held softly, with a false zero", "free, with a constant force"],
+)
+def test_errors_of_a_force_are_found(tmp_path, gravity, k, beside, zero):
     dt, t = 1e-3, np.arange(0.0, 8.0, 1e-3)
     random = np.random.default_rng(5)
     parts = [(a, f, p) for a, f, p in zip(random.uniform(5, 15, 12), np.linspace(0.4, 20, 12), random.uniform(0, 6, 12), strict=True)]
@@ -52,10 +56,10 @@ def test_errors_of_a_force_are_found(tmp_path, gravity, k, offset):
         return sum(a * np.sin(2 * np.pi * f * s + p) for a, f, p in parts) * (1 - np.exp(-2 * s))
 
     def acting(s):
-        return 1.02 * recorded(s - 0.004) * (s >= 0.004) + offset
+        return 1.02 * recorded(s - 0.004) * (s >= 0.004) + beside
 
     motion = exact(t, acting, dt, k)
-    np.savetxt(tmp_path / "force.csv", np.column_stack([t, recorded(t)]), delimiter=",", header="t,F", comments="")
+    np.savetxt(tmp_path / "force.csv", np.column_stack([t, recorded(t) + zero]), delimiter=",", header="t,F", comments="")
     sigma = np.array([2e-6, 2e-4])
     noisy = motion + sigma * random.standard_normal(motion.shape)
     np.savetxt(tmp_path / "recording.csv", np.column_stack([t, noisy])[::10], delimiter=",", header="t,y,v", comments="")
@@ -67,6 +71,5 @@ def test_errors_of_a_force_are_found(tmp_path, gravity, k, offset):
     found = {item.name: item.value for item in fit.conditions()}
     assert found["force_gain"] == pytest.approx(0.02, abs=2e-3)
     assert found["delay"] == pytest.approx(0.004, abs=2e-4)
-    assert ("force_offset" in found) == (offset > 0)
-    assert found.get("force_offset", 0.0) == pytest.approx(offset, abs=0.02)
+    assert found["force_offset"] == pytest.approx(beside - 1.02 * zero, abs=0.05)
     assert fit.chi2 < 1.3

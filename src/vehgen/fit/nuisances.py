@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from vehgen.files.quantities import Spread
 from vehgen.fit.trial import Trial
-from vehgen.mechanics import is_held
 from vehgen.simulate.initial_state import initial_values
 from vehgen.simulate.run_file.acquisition import channel_chains
 from vehgen.simulate.run_scenario import ground_links
@@ -69,7 +68,7 @@ class Nuisances:
         Of each channel's gain (relative), of each sensor's nose-down tilt [rad] and place along its body [m].
     force_gain, force_offset
         Of each measured force's gain, relative, and of a constant force beside it, relative to its root mean square in the
-        loudest run. What a spring holds has no offset: it would have settled.
+        loudest run. A force sensor's zero matters where springs hold the rig too: the simulation begins with it as a step.
     displacement_gain
         Of each measured displacement's gain, relative. It has no offset: a damper feels none, and what it would shift of a spring's force
         has settled.
@@ -137,10 +136,9 @@ class Nuisances:
             for force, rms in measured_forces(trial).items():
                 spread = self._stated(trial)
                 names.setdefault(("force_gain", force), Nuisance("force_gain", force, spread["force_gain"]))
-                if not is_held(trial.simulator.model, trial.values):
-                    known = names.get(("force_offset", force))
-                    sigma = max(rms * spread["force_offset"], 0.0 if known is None else known.sigma)  # of the loudest run
-                    names["force_offset", force] = Nuisance("force_offset", force, sigma)
+                known = names.get(("force_offset", force))
+                sigma = max(rms * spread["force_offset"], 0.0 if known is None else known.sigma)  # of the loudest run
+                names["force_offset", force] = Nuisance("force_offset", force, sigma)
             for link in measured_displacements(trial):
                 names.setdefault(("displacement_gain", link), Nuisance("displacement_gain", link, self._stated(trial)["displacement_gain"]))
         return tuple(item for item in names.values() if item.sigma > 0)
