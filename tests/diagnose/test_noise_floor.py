@@ -38,3 +38,15 @@ def test_a_channel_that_hums_is_louder_there_and_nowhere_else(trials_of):
 
 def test_healthy_lead_ins_are_no_louder_than_their_noise(trials_of):
     assert all(noise.louder is None for noise in find_noise_floor(humps_of(trials_of())).noises.values())
+
+
+def test_harmonics_of_loud_runs_leave_a_quiet_run_its_noise(trials_of):
+    random = np.random.default_rng(3)
+    rough = next(trial for trial in trials_of() if trial.name == "rough")
+    runs = []
+    for number, (size, harmonics) in enumerate([(0.5, 0.6), (4.7, 0.35), (2.2, 0.0), (2.9, 1.2)]):
+        motion = size * np.sin(2 * np.pi * 2.0 * rough.recording.time)[:, None]
+        values = motion + random.normal(scale=np.hypot(0.05, harmonics), size=rough.recording.values.shape)
+        runs.append(replace(rough, name=f"run{number}", recording=replace(rough.recording, values=values)))
+    noises = find_noise_floor(runs).noises
+    assert all(np.all(noise.sigma > 0.04) for noise in noises.values())

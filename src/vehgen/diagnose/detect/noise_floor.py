@@ -167,7 +167,10 @@ def lead_in_lines(part: Trial, band: tuple[float, float]) -> tuple[Complex, Road
 
 
 def _smooth(variance: Array, weight: Array, power: Array) -> Array:
-    """Return variances a + b power, a, b >= 0, by least squares of relative errors; all `shape (n_runs, n_channels)`."""
+    """Return variances a + b power, a, b >= 0, by least squares of relative errors; all `shape (n_runs, n_channels)`.
+
+    None is less than the quietest run shows: where louder runs hold harmonics, b alone would fit them, and leave a quiet run no noise.
+    """
     if len(variance) < 3:
         return variance
     found = np.empty_like(variance)
@@ -175,7 +178,7 @@ def _smooth(variance: Array, weight: Array, power: Array) -> Array:
         scale = np.sqrt(weight[:, j]) / variance[:, j]
         columns = np.column_stack([np.ones(len(variance)), power[:, j]])
         coefficients, _ = scipy.optimize.nnls(columns * scale[:, None], variance[:, j] * scale)
-        found[:, j] = columns @ coefficients
+        found[:, j] = np.maximum(columns @ coefficients, variance[:, j].min())
     return found
 
 
