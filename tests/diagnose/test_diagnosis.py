@@ -102,6 +102,13 @@ def test_a_validation_run_that_shows_nothing_is_changed_for_one_that_does(trials
     assert {trial.name for trial in training} == {"rough", "low", "high"}
 
 
+def test_a_gap_that_a_validation_run_alone_shows_is_fitted(trials_of):
+    trials = trials_of()
+    training, held = split_by_gap(gaps({"rough": 1.2, "high": 1.4, "fast": 1.1}, {"low": 40.0}), trials)
+    assert [trial.name for trial in held] == ["high"]
+    assert {trial.name for trial in training} == {"rough", "low", "fast"}
+
+
 @pytest.mark.parametrize(
     ("training", "validation"),
     [

@@ -33,7 +33,7 @@ DETECTION_ROUNDS = 3
 BELIEVED_SIGMAS = 2.5
 """Errors of so many standard deviations need no explanation."""
 UNSHOWN = 0.1
-"""Validation runs that show less than this share of the excess of the training runs show nothing."""
+"""Validation runs that show less than this share of the excess of the training runs show nothing, and the other way round."""
 BAND_EDGES_HZ = (0.0, 3.0, 8.0, 15.0, np.inf)
 """Bands of the table of gaps [Hz]: rigid-body motion, between, wheel hop, above."""
 
@@ -104,13 +104,13 @@ def split_runs(trials: Sequence[Trial]) -> tuple[list[Trial], list[Trial]]:
 
 
 def split_by_gap(base: ModelFit, trials: Sequence[Trial]) -> tuple[list[Trial], list[Trial]] | None:
-    """Return other training and validation runs where those of a fit cannot show what is missing; None where they can, or none could.
+    """Return other training and validation runs where those of a fit do not both show what is missing; None where they do, or none could.
 
-    They cannot where they show less than UNSHOWN of the gap's excess that the training runs show. Then every second run by gap is one, the
-    clearest and the least clear ones aside.
+    One part shows nothing where its excess is less than UNSHOWN of the other's: a stop is met by the roughest run alone. Then every second
+    run by gap is a validation run, the clearest and the least clear ones aside.
     """
     before, shown = max(base.training - 1, 0.0), max(base.validation - 1, 0.0)
-    if base.validation_fit is None or base.training <= WEAK**2 or shown >= UNSHOWN * before:
+    if base.validation_fit is None or max(base.training, base.validation) <= WEAK**2 or max(before, shown) * UNSHOWN <= min(before, shown):
         return None
     ordered = sorted(trials, key=lambda trial: base.mean_squares[trial.name])
     held = ordered[-2:0:-2]
