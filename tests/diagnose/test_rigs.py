@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from vehgen.diagnose.api import diagnose
-from vehgen.diagnose.detect.rig_noise import _Search, _unstated
+from vehgen.fit.rig_noise import RigNoiseSearch, unstated_sizes
 
 VEHICLE = """name: carriage
 gravity: false
@@ -164,9 +164,9 @@ def test_friction_that_is_stronger_one_way_is_named_where_the_damper_begins_at_r
 def test_runs_that_other_forces_drive_have_errors_by_name(tmp_path):
     """Two forces in two runs, in another order, one in a third, none in a fourth: each keeps its own size."""
     runs = [Driven("both", {"ram": 100.0, "fan": 50.0}), Driven("turned", {"fan": 60.0, "ram": 80.0}), Driven("one", {"fan": 5.0})]
-    sizes = [_unstated(item.trial) for item in runs]
+    sizes = [unstated_sizes(item.trial) for item in runs]
     assert sizes[1] == {"fan": pytest.approx(60.0), "ram": pytest.approx(80.0)}
-    found = _Search.of(
+    found = RigNoiseSearch.of(
         [*runs, Driven("none", {})], {}, {name: SimpleNamespace(sigma=np.ones(1)) for name in ("both", "turned", "one", "none")}
     )
     shares, alike = (item.forces for item in found)

@@ -50,10 +50,10 @@ def exact(time, force, dt, k):
 def test_errors_of_a_force_are_found(tmp_path, gravity, k, beside, zero):
     dt, t = 1e-3, np.arange(0.0, 8.0, 1e-3)
     random = np.random.default_rng(5)
-    parts = [(a, f, p) for a, f, p in zip(random.uniform(5, 15, 12), np.linspace(0.4, 20, 12), random.uniform(0, 6, 12), strict=True)]
+    parts = list(zip(random.uniform(5, 15, 12), np.linspace(0.4, 20, 12), random.uniform(0, 6, 12), strict=True))
 
     def recorded(s):
-        return sum(a * np.sin(2 * np.pi * f * s + p) for a, f, p in parts) * (1 - np.exp(-2 * s))
+        return pushes(s, parts)
 
     def acting(s):
         return 1.02 * recorded(s - 0.004) * (s >= 0.004) + beside
@@ -73,3 +73,31 @@ def test_errors_of_a_force_are_found(tmp_path, gravity, k, beside, zero):
     assert found["delay"] == pytest.approx(0.004, abs=2e-4)
     assert found["force_offset"] == pytest.approx(beside - 1.02 * zero, abs=0.05)
     assert fit.chi2 < 1.3
+
+
+def pushes(s, pieces):
+    """Return a force of sines at times, that grows from nothing [N]."""
+    return sum(a * np.sin(2 * np.pi * f * s + p) for a, f, p in pieces) * (1 - np.exp(-2 * s))
+
+
+def test_a_load_cells_noise_is_found_beside_the_sensors(tmp_path):
+    cell, k = 2.0, 4e3
+    t = np.arange(0.0, 8.0, 1e-3)
+    for number in range(2):
+        random = np.random.default_rng(number)
+        pieces = list(zip(random.uniform(10, 30, 20), np.linspace(0.4, 15, 20), random.uniform(0, 6, 20), strict=True))
+        motion = exact(t, lambda s, pieces=pieces: pushes(s, pieces), 1e-3, k)
+        force = pushes(t, pieces) + cell * random.standard_normal(len(t))
+        np.savetxt(tmp_path / "force.csv", np.column_stack([t, force]), delimiter=",", header="t,F", comments="")
+        noisy = motion + np.array([2e-7, 3e-4]) * random.standard_normal(motion.shape)
+        np.savetxt(tmp_path / f"recording{number}.csv", np.column_stack([t, noisy])[::10], delimiter=",", header="t,y,v", comments="")
+        own = RUN.replace("recording.csv", f"recording{number}.csv").replace("force.csv", f"force{number}.csv")
+        (tmp_path / "force.csv").rename(tmp_path / f"force{number}.csv")
+        (tmp_path / f"run{number}.yaml").write_text(own, encoding="utf-8")
+    (tmp_path / "rig.yaml").write_text(RIG.format(gravity="true", k=f"{k} N/m"), encoding="utf-8")
+    trials = load_trials([tmp_path / "run0.yaml", tmp_path / "run1.yaml"])
+    fit = fit_least_squares(Problem(tuple(trials), NOTHING), np.zeros(0), FitOptions(Nuisances(gain=0, clock=0), (0.3, 40.0)))
+    for trial in trials:
+        noise = fit.misfit.noises[trial.name]
+        assert noise.acting == pytest.approx([cell * np.sqrt(1e-3 / 1e-2)], rel=0.15)  # as dense as white noise at the recording's rate
+        assert noise.sigma == pytest.approx([2e-7, 3e-4], rel=0.5)

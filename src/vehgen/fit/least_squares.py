@@ -19,6 +19,7 @@ from vehgen.fit.noise import EVEN, Noise, estimate_noise
 from vehgen.fit.nuisances import Condition, Nuisances
 from vehgen.fit.prior_data import PriorData
 from vehgen.fit.problem import Problem
+from vehgen.fit.rig_noise import RunResidual, likeliest_noises, unstated_sizes
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -205,11 +206,18 @@ def first_noises(problem: Problem) -> Noises:
 
 
 def estimate_noises(misfit: Misfit, x: Array) -> Noises:
-    """Return the noise that the residuals show: sensors alike in all trials with the same channels, roads of one kind."""
+    """Return the noise that the residuals show: sensors alike in all trials with the same channels, roads of one kind.
+
+    Where measured forces drive rigs, and no run file states their noise, that is part of it.
+    """
     found: Noises = {}
     lines = dict(zip((trial.name for trial in misfit.problem.trials), misfit.residual_spectrum(x), strict=True))
     for channels in dict.fromkeys(trial.channels for trial in misfit.problem.trials):
-        names = [trial.name for trial in misfit.problem.trials if trial.channels == channels]
+        group = [trial for trial in misfit.problem.trials if trial.channels == channels]
+        names = [trial.name for trial in group]
+        if not any(trial.scenario.track.parts for trial in group) and any(unstated_sizes(trial) for trial in group):
+            found |= likeliest_noises([RunResidual(trial, *lines[trial.name]) for trial in group])
+            continue
         old = misfit.noises[names[0]]
         each = estimate_noise([lines[name] for name in names], Noise(np.maximum(old.levels, FIRST_LEVEL), old.sigma / 2))
         found |= dict(zip(names, each, strict=True))
