@@ -9,7 +9,7 @@ from benchmarks.hidden_effects.generator import Case, Effect, simulate_case
 
 from tests.diagnose.conftest import CUBIC, RUNS
 from vehgen.commands import main
-from vehgen.diagnose.detect.detection import split_by_gap
+from vehgen.diagnose.detect.splitting import split_by_gap
 from vehgen.diagnose.pipeline import diagnose_trials, split_runs
 from vehgen.effects import EFFECTS
 from vehgen.fit.trial import load_trials
@@ -116,8 +116,9 @@ def test_a_gap_that_a_validation_run_alone_shows_is_fitted(trials_of):
         ({"rough": 1.0, "high": 9.0, "fast": 1.0}, {"low": 1.1}),
         ({"rough": 1.0, "high": 1.1, "fast": 1.0}, {"low": 1.0}),
         ({"rough": 1.0, "high": 9.0}, {}),
+        ({"rough": 30.0, "high": 90.0, "fast": 20.0}, {"low": 4000.0}),
     ],
-    ids=["it shows enough", "one run alone shows it", "there is no gap", "nothing is held"],
+    ids=["it shows enough", "one run alone shows it", "there is no gap", "nothing is held", "the others show enough"],
 )
 def test_validation_runs_stay(trials_of, training, validation):
     assert split_by_gap(gaps(training, validation), trials_of()) is None

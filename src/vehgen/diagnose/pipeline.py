@@ -8,7 +8,8 @@ from threadpoolctl import threadpool_limits
 
 from vehgen.diagnose.collecting import collect
 from vehgen.diagnose.decision import Decision
-from vehgen.diagnose.detect.detection import Detection, detect, kind_of_run, split_runs
+from vehgen.diagnose.detect.detection import Detection, detect
+from vehgen.diagnose.detect.splitting import kind_of_run, split_runs
 from vehgen.diagnose.localise.localisation import localise, shortlist
 from vehgen.diagnose.result import Decided, Diagnosis
 from vehgen.diagnose.select.search import DiagnosisProgress, search_round

@@ -15,8 +15,9 @@ from vehgen.diagnose.detect.noise_floor import NoiseFloor, find_noise_floor
 from vehgen.diagnose.detect.numerical_floor import numerical_floor
 from vehgen.diagnose.detect.rig_noise import rig_noises
 from vehgen.diagnose.detect.road_error import measured_profiles, road_noises
+from vehgen.diagnose.detect.splitting import hump_height, split_by_gap, split_runs
 from vehgen.diagnose.fits.model_fit import ModelFit, fit_base, mean_square_as_filed, narrow
-from vehgen.diagnose.thresholds import NOISE_FLOOR, WEAK
+from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.errors import InputError
 from vehgen.fit.band import DIAGNOSIS_BAND_HZ, compared_band
 from vehgen.fit.chain_estimate import slowest_rate
@@ -32,8 +33,6 @@ DETECTION_ROUNDS = 3
 """So often at most are the roads' part of the noise and an unknown recorder found, each from the fit with those before."""
 BELIEVED_SIGMAS = 2.5
 """Errors of so many standard deviations need no explanation."""
-UNSHOWN = 0.1
-"""Validation runs that show less than this share of the excess of the training runs show nothing, and the other way round."""
 BAND_EDGES_HZ = (0.0, 3.0, 8.0, 15.0, np.inf)
 """Bands of the table of gaps [Hz]: rigid-body motion, between, wheel hop, above."""
 
@@ -93,41 +92,6 @@ class BandGap:
     channel: str
     band: tuple[float, float]
     chi: float
-
-
-def split_runs(trials: Sequence[Trial]) -> tuple[list[Trial], list[Trial]]:
-    """Return training runs and validation runs: of three runs or more, every second one between the gentlest and the roughest."""
-    ordered = sorted(trials, key=kind_of_run)
-    held = ordered[1:-1:2]
-    apart = {id(trial) for trial in held}
-    return [trial for trial in ordered if id(trial) not in apart], held
-
-
-def split_by_gap(base: ModelFit, trials: Sequence[Trial]) -> tuple[list[Trial], list[Trial]] | None:
-    """Return other training and validation runs where those of a fit do not both show what is missing; None where they do, or none could.
-
-    One part shows nothing where its excess is less than UNSHOWN of the other's: a stop is met by the roughest run alone. Then every second
-    run by gap is a validation run, the clearest and the least clear ones aside.
-    """
-    before, shown = max(base.training - 1, 0.0), max(base.validation - 1, 0.0)
-    if base.validation_fit is None or max(base.training, base.validation) <= WEAK**2 or max(before, shown) * UNSHOWN <= min(before, shown):
-        return None
-    ordered = sorted(trials, key=lambda trial: base.mean_squares[trial.name])
-    held = ordered[-2:0:-2]
-    if np.mean([base.mean_squares[trial.name] for trial in held]) - 1 < UNSHOWN * before:
-        return None
-    apart = {trial.name for trial in held}
-    return [trial for trial in trials if trial.name not in apart], held
-
-
-def kind_of_run(trial: Trial) -> tuple[float, ...]:
-    """Return what a run is like, whatever it is called: its humps' height, its speed, what was measured."""
-    return (hump_height(trial), trial.scenario.top_speed, float(np.sort(trial.recording.values**2, axis=None).sum()))
-
-
-def hump_height(trial: Trial) -> float:
-    """Return the height of a run's highest hump [m], 0 without one."""
-    return max((entry.hump.height or 0.0 for entry in trial.run.file.road if entry.hump is not None), default=0.0)
 
 
 def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> Detection:
