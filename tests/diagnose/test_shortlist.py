@@ -1,8 +1,13 @@
 """Which candidates are worth fitting, by what the place test found."""
 
+import pytest
+from benchmarks.hidden_effects.generator import Effect
+
+from tests.diagnose.conftest import CUBIC
 from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.localise.localisation import shortlist
 from vehgen.diagnose.localise.unknown_force import Place, PlaceResult
+from vehgen.diagnose.select import search
 from vehgen.effects import EFFECTS
 
 
@@ -19,3 +24,17 @@ def test_a_channel_whose_absence_leaves_more_than_noise_excludes_nothing(detecti
     found = {item.label for item in left(1.05)}
     assert "sensor_gain at R_az" in found
     assert "dry_friction at rear" not in found
+
+
+@pytest.mark.parametrize(
+    ("hidden", "tries_all"), [(CUBIC, True), (Effect("sensor_gain", "F_az", {"error": 0.2}), False)], ids=["a spring", "a gain"]
+)
+def test_where_no_effect_of_a_channel_explains_what_channels_may_all_others_are_tried(detection_of, monkeypatch, hidden, tries_all):
+    detection = detection_of(hidden)
+    every = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS["cubic_stiffness"], EFFECTS["sensor_gain"]])
+    base = detection.base
+    silent = [PlaceResult(Place("channel", name, (), (name,)), 1.0, 1, base.least_squares.x) for name in ("F_az", "R_az")]
+    monkeypatch.setattr(search, "localise", lambda current: (silent, silent))
+    fits = search.search_round(detection, base, every).fits
+    assert any(fit.last.effect.name == "cubic_stiffness" for fit in fits) == tries_all
+    assert fits[0].last.effect.name == ("cubic_stiffness" if tries_all else "sensor_gain")

@@ -83,9 +83,18 @@ def search_round(
     alike = {item.effect.name for item in chosen if item.effect.tie_advice}  # no run tells where: all places are fitted
     chosen = [item for item in others if item in chosen or item.effect.name in alike]
     found, stopped = fit_candidates(detection, current, passed, chosen, say, everything, workers)
+    rest = [item for item in others if item not in chosen]
+    if rest and not stopped and not any(item.place.rows for item in passed) and _leave_most(found, current):
+        wider, stopped = fit_candidates(detection, current, passed, rest, say, everything, workers)
+        found = simplest_first(sorted([*found, *wider], key=merit), current)
     edge = () if current.effects else current.least_squares.on_bound
     fits, idle = (found, []) if stopped else split_idle(found, Fitter(detection, current, passed).fit_roughly, LEADING, edge)
     return SearchRound(current, tuple(places), tuple(passed), tuple(fits), tuple(idle), stopped)
+
+
+def _leave_most(fits: Sequence[ModelFit], current: ModelFit) -> bool:
+    """Return whether no fit closes half of a gap: what channels may explain, none of their effects does."""
+    return min((fit.training for fit in fits), default=np.inf) - 1 > (current.training - 1) / 2
 
 
 def fit_candidates(
