@@ -10,6 +10,8 @@ from vehgen.diagnose.localise.unknown_force import Place, PlaceResult
 from vehgen.diagnose.select import search
 from vehgen.effects import EFFECTS
 
+GAIN = Effect("sensor_gain", "F_az", {"error": 0.2})
+
 
 def test_a_channel_whose_absence_leaves_more_than_noise_excludes_nothing(detection_of):
     detection = detection_of()
