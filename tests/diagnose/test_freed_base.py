@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from benchmarks.hidden_effects.generator import Effect, nominal
 
+from tests.diagnose.conftest import CUBIC
 from vehgen.diagnose.fits.candidate import build_problem, carried, list_candidates
 from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, base_priors, narrow
 from vehgen.diagnose.pipeline import diagnose_trials
@@ -37,6 +38,12 @@ def test_a_damper_on_a_soft_mount_is_named_with_its_stiffness(trials_of):
     low, high = effect.parameters["k"].interval
     assert low < nominal("sedan2")["cf"] / 0.012 < high
     assert found.chosen[-1].training < 1.05
+
+
+def test_a_freed_damper_that_leaves_the_gap_is_not_to_blame(trials_of):
+    """No damper of any size imitates a spring: then neither do effects that free one, and nothing is said against the file."""
+    found = diagnose_trials(trials_of(CUBIC), [EFFECTS["damper_mount"]])
+    assert found.verdict.verdict == "not_in_library"
 
 
 @pytest.fixture(scope="module")

@@ -23,7 +23,7 @@ from vehgen.diagnose.localise.free_form import FreeForm, fit_free_form, recover,
 from vehgen.diagnose.localise.localisation import localise
 from vehgen.diagnose.naming import Naming
 from vehgen.diagnose.result import Decided, DiagnosisModels
-from vehgen.diagnose.select.criteria import excess, p_value_of, passes, unfinished
+from vehgen.diagnose.select.criteria import closes_training, excess, p_value_of, passes, unfinished
 from vehgen.diagnose.select.estimates import gain_interval
 from vehgen.diagnose.select.group_members import with_members
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
@@ -112,8 +112,9 @@ class Decision:
         first = self._search_round(self.base)
         if first.stopped:
             return self._stopped()
-        if first.idle and (not first.fits or merit(first.idle[0]) <= merit(first.fits[0])):
-            return self._out_of_range(first.idle[0])
+        freed = next((fit for fit in first.idle[:1] if closes_training(fit, self.base)), None)
+        if freed is not None and (not first.fits or merit(freed) <= merit(first.fits[0])):
+            return self._out_of_range(freed)
         for _ in range(LOOKS_AGAIN):
             first = self._again(first)
         weak = self._add(first) if first.fits else None
