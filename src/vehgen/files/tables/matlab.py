@@ -26,9 +26,10 @@ def read(path: Path, names: tuple[str, ...]) -> TableColumns:
     check_unpacked(path, MAX_TABLE_BYTES, 5 * MAX_TABLE_BYTES)
     with faults_of(path, MATLAB_KIND):
         known = [name for name, _, _ in scipy.io.whosmat(str(path))]
-        for name in names:
-            if name not in known:
-                raise InputError(f"no variable {shown(name)}; {did_you_mean(name, known)}", Position(path, 1, 1))
+    for name in names:
+        if name not in known:
+            raise InputError(f"no variable {shown(name)}; {did_you_mean(name, known)}", Position(path, 1, 1))
+    with faults_of(path, MATLAB_KIND):
         found = scipy.io.loadmat(str(path), variable_names=list(names))
     vectors = [np.squeeze(np.asarray(found[name])) for name in names]
     lengths = {name: vector.shape for name, vector in zip(names, vectors, strict=True)}

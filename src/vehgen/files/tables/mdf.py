@@ -8,7 +8,7 @@ from __future__ import annotations
 import logging
 import struct
 import zlib
-from contextlib import suppress
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import Any
 
@@ -51,7 +51,9 @@ def read(path: Path, names: tuple[str, ...]) -> TableColumns:
     asammdf = library("asammdf", "mdf", path)
     library("asammdf.blocks.mdf_v4", "mdf", path).MDF4.__del__ = _close
     logging.getLogger("asammdf").setLevel(logging.CRITICAL)
-    with faults_of(path, MDF_KIND), asammdf.MDF(str(path), process_bus_logging=False) as file:
+    with faults_of(path, MDF_KIND):
+        file = asammdf.MDF(str(path), process_bus_logging=False)
+    with closing(file):
         return _select(path, file, names)
 
 
@@ -91,14 +93,18 @@ def _select(path: Path, file: Any, names: tuple[str, ...]) -> TableColumns:
     wanted = [(home[0], masters[home[0]]) if place is None else place for place in places]
     signals = []
     for name, (group, index) in zip(names, wanted, strict=True):
-        check_size(path, int(file.groups[group].channel_group.cycles_nr), len(names))
-        for channel in (file.groups[group].channels[index], file.groups[group].channels[masters.get(group, index)]):
-            conversion = channel.conversion
-            if conversion is not None and conversion.conversion_type not in _PLAIN_OR_LINEAR:
-                raise InputError(
-                    f"the channel {shown(name)} is converted by a formula, table or text; export it as plain numbers", Position(path, 1, 1)
-                )
-        signals.append(file.get(group=group, index=index, ignore_invalidation_bits=False))
+        with faults_of(path, MDF_KIND):
+            own_group = file.groups[group]
+            conversions = [own_group.channels[place].conversion for place in (index, masters.get(group, index))]
+            kinds = [item.conversion_type for item in conversions if item is not None]
+            n_samples = int(own_group.channel_group.cycles_nr)
+        check_size(path, n_samples, len(names))
+        if not set(kinds) <= set(_PLAIN_OR_LINEAR):
+            raise InputError(
+                f"the channel {shown(name)} is converted by a formula, table or text; export it as plain numbers", Position(path, 1, 1)
+            )
+        with faults_of(path, MDF_KIND):
+            signals.append(file.get(group=group, index=index, ignore_invalidation_bits=False))
     clock = np.asarray(signals[0].timestamps)
     for name, signal in zip(names, signals, strict=True):
         own = np.asarray(signal.timestamps)
