@@ -70,7 +70,7 @@ def test_what_is_damaged_or_of_another_version_is_told(tmp_path: Path, data: byt
     assert said in str(caught.value)
 
 
-@pytest.mark.parametrize("name", ["parquet", "excel", "mdf", "uff", "comma"])
+@pytest.mark.parametrize("name", ["parquet", "excel", "mdf", "uff", "comma", "matlab", "packed matlab"])
 def test_damaged_files_are_refused_or_read_but_never_crash(tmp_path: Path, name: str):
     path = tmp_path / "run.xlsx"
     WRITERS[name](path)
@@ -197,7 +197,7 @@ def test_numbers_that_are_none_are_told_at_their_row(tmp_path: Path):
         read_columns(tmp_path / "run.mat", ("t", "az"))
     with pytest.raises(InputError, match=r"run\.mat:2:1: 1e\+13 in column 'az' is beyond 1e\+12"):
         read_columns(tmp_path / "run.mat", ("az",))
-    with pytest.raises(InputError, match="'z' holds complex128 of shape"):
+    with pytest.raises(InputError, match="'z' holds no real numbers"):
         read_columns(tmp_path / "run.mat", ("z",))
 
 

@@ -30,6 +30,11 @@ _PACKED = b"##DZ"
 _PACKED_HEADER = struct.Struct("<4s4xQQ2sBBIQQ")
 """Mark, length and links of a packed block; what it held, how it is packed, and its sizes, unpacked and packed."""
 _DEFLATE = (0, 1)
+_NUMBER_CHANNELS, _VIRTUAL_CHANNELS = (0, 2), (3, 6)
+"""Types of channel of MDF 4: those with a number in every record, the clock among them, and those that only count records."""
+_NUMBER_DATA = range(6)
+"""Types of data of MDF 4: integers and reals in both orders of bytes."""
+_VALIDITY_FLAGS = 3
 _PLAIN_OR_LINEAR = (0, 1)
 """Types of conversion of MDF 4: of the others one is a formula, and the rest are tables and texts."""
 
@@ -94,11 +99,13 @@ def _select(path: Path, file: Any, names: tuple[str, ...]) -> TableColumns:
     signals = []
     for name, (group, index) in zip(names, wanted, strict=True):
         with faults_of(path, MDF_KIND):
-            own_group = file.groups[group]
-            conversions = [own_group.channels[place].conversion for place in (index, masters.get(group, index))]
-            kinds = [item.conversion_type for item in conversions if item is not None]
-            n_samples = int(own_group.channel_group.cycles_nr)
+            channels = [file.groups[group].channels[place] for place in (index, masters.get(group, index))]
+            kinds = [channel.conversion.conversion_type for channel in channels if channel.conversion is not None]
+            fits = all(_fits(channel, file.groups[group].channel_group) for channel in channels)
+            n_samples = int(file.groups[group].channel_group.cycles_nr)
         check_size(path, n_samples, len(names))
+        if not fits:
+            raise InputError(f"the channel {shown(name)} is no plain number inside its records; export it as numbers", Position(path, 1, 1))
         if not set(kinds) <= set(_PLAIN_OR_LINEAR):
             raise InputError(
                 f"the channel {shown(name)} is converted by a formula, table or text; export it as plain numbers", Position(path, 1, 1)
@@ -116,6 +123,17 @@ def _select(path: Path, file: Any, names: tuple[str, ...]) -> TableColumns:
     clocks = set(masters.items())
     units = tuple("s" if place in clocks else signal.unit for place, signal in zip(wanted, signals, strict=True))
     return Sheet(path, names, units, lambda index: signals[index].samples, len(clock)).select(names)
+
+
+def _fits(channel: Any, group: Any) -> bool:
+    """Return whether a channel is a number that lies inside its group's records: asammdf reads wherever a damaged file says."""
+    if channel.channel_type in _VIRTUAL_CHANNELS:
+        return True
+    n_bits = channel.bit_offset + channel.bit_count
+    is_inside = channel.byte_offset + (n_bits + 7) // 8 <= group.samples_byte_nr
+    has_validity = not channel.flags & _VALIDITY_FLAGS or channel.pos_invalidation_bit < 8 * group.invalidation_bytes_nr
+    is_number = channel.channel_type in _NUMBER_CHANNELS and channel.data_type in _NUMBER_DATA and 0 < n_bits <= 64
+    return bool(is_number and is_inside and has_validity)
 
 
 def _place(path: Path, file: Any, masters: dict[int, int], name: str) -> tuple[int, int] | None:
