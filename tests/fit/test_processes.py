@@ -2,7 +2,9 @@
 
 import multiprocessing
 import os
+import re
 import signal
+import threading
 import time
 from contextlib import closing
 from pathlib import Path
@@ -42,6 +44,29 @@ def slow(number):
     if number < 0:
         raise InputError("below zero")
     return number, os.getpid()
+
+
+class OddError(Exception):
+    """An error whose arguments are not those of its class, as some libraries have."""
+
+    def __init__(self, code, text):
+        super().__init__(f"code {code}: {text}")
+
+
+class Unreadable:
+    """A value that can be packed, but not unpacked."""
+
+    def __reduce__(self):
+        return int, ("no number",)
+
+
+def begun_and(work):
+    """Leave a trace of being begun, and answer what was asked for."""
+    folder, asked = work
+    (Path(folder) / f"{asked}{len(list(Path(folder).iterdir()))}").touch()
+    if asked == "odd error":
+        raise OddError(7, "the library\nfailed")
+    return {"lock": threading.Lock(), "unreadable": Unreadable()}.get(asked, asked)
 
 
 def test_every_input_has_its_value_from_another_process():
@@ -105,3 +130,19 @@ def test_processes_end_with_the_iteration():
             assert len(multiprocessing.active_children()) == 2
         assert len(multiprocessing.active_children()) == 1  # the one that is free
     assert multiprocessing.active_children() == []
+
+
+@pytest.mark.parametrize(("asked", "told"), [("lock", "cannot be sent.*TypeError: .*lock"), ("unreadable", "cannot be read.*ValueError")])
+def test_a_value_that_cannot_travel_is_lost_at_once_and_costs_the_others_nothing(tmp_path, asked, told):
+    with ProcessRunner(1) as runner:
+        found = {work[1]: value for work, value in runner.as_completed(begun_and, [(str(tmp_path), asked), (str(tmp_path), "text")])}
+        assert isinstance(found[asked], Lost)
+        assert re.search(told, found[asked].reason)
+        assert found["text"] == "text"
+        assert len(list(tmp_path.iterdir())) == 2  # begun once each
+        assert len(multiprocessing.active_children()) == 1  # it lives
+
+
+def test_an_error_that_cannot_be_rebuilt_is_told_by_its_type_and_text(tmp_path):
+    with ProcessRunner(1) as runner, pytest.raises(RuntimeError, match=r"^OddError: code 7: the library failed$"):
+        list(runner.as_completed(begun_and, [(str(tmp_path), "odd error")]))

@@ -66,7 +66,25 @@ def test_other_code_and_other_versions_derive_anew(derived, monkeypatch):
     natural_modes(sedan)
     monkeypatch.setattr(remembered.metadata, "version", lambda name: "0.0")
     natural_modes(sedan)
-    assert derived == 3 * ["sedan2"]
+    monkeypatch.setattr(remembered.sys, "version", "another Python")
+    natural_modes(sedan)
+    assert derived == 4 * ["sedan2"]
+
+
+def test_code_is_known_by_what_it_says_not_by_its_size_or_time(tmp_path):
+    file = tmp_path / "mechanics" / "laws" / "spring.py"
+    file.parent.mkdir(parents=True)
+    file.write_text("SIGN = +1\n")
+    times = (file.stat().st_atime_ns, file.stat().st_mtime_ns)
+    first = remembered.code_hash(tmp_path)
+    file.write_text("SIGN = -1\n")
+    os.utime(file, ns=times)
+    second = remembered.code_hash(tmp_path)
+    assert second != first
+    os.utime(file, ns=(0, 0))
+    assert remembered.code_hash(tmp_path) == second
+    file.rename(file.with_name("damper.py"))
+    assert remembered.code_hash(tmp_path) != second
 
 
 @pytest.mark.skipif(os.name == "nt", reason="permissions are those of POSIX")

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from vehgen.assess.motion import Array, AssessedChannel, AssessedMotion, files_of, recorded_motion, simulated_motion
+from vehgen.assess.motion import Array, AssessedChannel, AssessedMotion, recorded_motion, simulated_motion
 from vehgen.assess.result import (
     Assessment,
     ChannelStatistics,
@@ -27,6 +27,7 @@ from vehgen.measure.ride_comfort import WEIGHTINGS, WeightedVibration, evaluate_
 from vehgen.measure.shock_response import USUAL_QUALITY, shock_response, spectrum_frequencies
 from vehgen.measure.tyre_loads import load_statistics
 from vehgen.simulate import RunLike, as_run
+from vehgen.simulate.run_file.files_read import files_read
 from vehgen.vehicle import VehicleLike
 
 VERTICAL_WEIGHTINGS = ("Wk", "Wb")
@@ -98,7 +99,7 @@ def assess(
         cycles=tuple(_cycles(item, motion.duration, slope) for item in _cycled(motion)),
         notes=(*motion.warnings, *_notes(motion, ride)),
         versions=versions(),
-        inputs=file_hashes(files_of(run, recorded)),
+        inputs=file_hashes(files_read([run], recordings=recorded, inputs=not recorded)),
     )
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -151,17 +150,3 @@ def _added(run: Run, asked: tuple[Output, ...]) -> list[Output]:
     travels += [(name, "link_travel") for name in vehicle.links]
     found += [ElementOutput(f"{name} travel", name, quantity) for name, quantity in travels if (name, quantity) not in known]
     return found
-
-
-def files_of(run: Run, recorded: bool) -> list[Path]:
-    """Return the files that a run's motion is made from: run and vehicle, then its recording, or its roads, speeds, forces and motions."""
-    file = run.file
-    position = run.document.position
-    named: list[str | None] = [file.recording] if recorded else []
-    if not recorded:
-        named += [getattr(item.hump or item.profile, "file", None) for item in file.road]
-        named += [getattr(file.speed, "file", None)]
-        named += [force.file for force in file.forces.values()]
-        named += [ground.file for ground in file.displacements.values()]
-    own = [Path(position.file)] if position is not None else []
-    return [*own, *run.vehicle.files, *(run.folder / name for name in named if name is not None)]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -38,6 +37,7 @@ from vehgen.files.provenance import file_hashes, versions
 from vehgen.fit.parallel import Runner
 from vehgen.fit.prior_data import PriorData
 from vehgen.fit.recorders import FoundRecorder
+from vehgen.simulate.run_file.files_read import files_read
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.writing import quantity
 
@@ -181,13 +181,9 @@ def _recorder(step: str, found: FoundRecorder) -> RecorderSummary:
 
 def provenance(calibration: Calibration) -> dict[str, Any]:
     """Return versions, inputs' hashes and settings: what it takes to make the result again."""
-    paths: list[Path] = []
-    for trial in calibration.problem.trials:
-        run = trial.run
-        named = run.document.position.file if run.document.position else None
-        paths += [path for path in (named, run.folder / (run.file.recording or ""), *run.vehicle.files) if isinstance(path, Path)]
+    files = files_read([trial.run for trial in calibration.problem.trials])
     settings = asdict(calibration.settings)
-    return {**versions(), "seed": calibration.settings.seed, "settings": settings, "inputs": file_hashes(paths)}
+    return {**versions(), "seed": calibration.settings.seed, "settings": settings, "inputs": file_hashes(files)}
 
 
 def _modes(uncertainty: Uncertainty) -> tuple[ModeSummary, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import platform
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from importlib import metadata
 from pathlib import Path
 
@@ -22,9 +22,9 @@ def versions(packages: Iterable[str] = PACKAGES) -> dict[str, str]:
     return {"vehgen": __version__, "python": platform.python_version(), **{name: metadata.version(name) for name in packages}}
 
 
-def file_hashes(paths: Iterable[Path]) -> dict[str, str]:
+def file_hashes(files: Mapping[str, Path]) -> dict[str, str]:
     """Return the SHA-256 of files by name; what is no file is left out."""
-    return {path.name: file_hash(path) for path in paths if path.is_file()}
+    return {name: file_hash(path) for name, path in files.items() if path.is_file()}
 
 
 def file_hash(path: Path) -> str:

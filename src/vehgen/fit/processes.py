@@ -14,6 +14,7 @@ from itertools import islice
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
+from multiprocessing.reduction import ForkingPickler
 from typing import Any, Self
 
 from vehgen.errors import InputError
@@ -99,7 +100,7 @@ class ProcessRunner(Runner):
                     assert isinstance(end, Connection)
                     job = jobs.pop(end)
                     try:
-                        answer = end.recv()
+                        data = end.recv_bytes()
                     except (EOFError, OSError):
                         end.close()
                         _end(job.process)
@@ -109,7 +110,7 @@ class ProcessRunner(Runner):
                             yield job, Lost(LOST_PROCESS.format(job.begun))
                         continue
                     self._idle.append((end, job.process))
-                    yield job, answer
+                    yield job, _unpacked(data)
         finally:
             for end, job in jobs.items():
                 end.close()
@@ -144,13 +145,40 @@ def _work(end: Connection) -> None:
     warnings.simplefilter("ignore")
     with suppress(EOFError):
         while True:
-            function, item = end.recv()
+            data = end.recv_bytes()
             answer: tuple[Any, Exception | None]
             try:
+                function, item = ForkingPickler.loads(data)
                 answer = function(item), None
             except Exception as error:  # raised again by the process that waits
                 answer = None, error
-            end.send(answer)
+            end.send_bytes(_packed(answer))
+
+
+def _packed(answer: tuple[Any, Exception | None]) -> memoryview:
+    """Return an answer as it travels; one that cannot travel is lost once, and an error that cannot is told by its type and text."""
+    error = answer[1]
+    try:
+        data = ForkingPickler.dumps(answer)
+        if error is not None:
+            ForkingPickler.loads(data)
+        return data
+    except Exception as fault:  # what a value's own way to be packed may raise is not known
+        if error is None:
+            return ForkingPickler.dumps(Lost(f"its value cannot be sent from its process: {_told(fault)}"))
+        return ForkingPickler.dumps((None, RuntimeError(_told(error))))
+
+
+def _unpacked(data: bytes) -> tuple[Any, Exception | None] | Lost:
+    try:
+        found: tuple[Any, Exception | None] | Lost = ForkingPickler.loads(data)
+    except Exception as fault:  # as above
+        return Lost(f"its value cannot be read from its process: {_told(fault)}")
+    return found
+
+
+def _told(error: Exception) -> str:
+    return f"{type(error).__name__}: {' '.join(str(error).split())}"
 
 
 def _value(answer: tuple[Any, Exception | None]) -> Any:

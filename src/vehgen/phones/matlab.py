@@ -5,16 +5,16 @@ MATLAB stores timetables in a way that scipy.io cannot read; the optional packag
 
 from __future__ import annotations
 
-import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.errors import InputError, shortened
+from vehgen.errors import InputError
 from vehgen.files.reading import open_regular
-from vehgen.files.tables.matlab import VERSION_5, check_unpacked
+from vehgen.files.tables.foreign import faults_of, library
+from vehgen.files.tables.matlab import MATLAB_KIND, VERSION_5, check_unpacked
 from vehgen.phones.archive import MAX_FILE, MAX_TOTAL
 from vehgen.phones.export import ROTATION_STREAM, SPEED_STREAM, EpochMap, PhoneExport, Stream, acceleration_kind
 
@@ -40,19 +40,9 @@ def read_matlab(path: Path) -> PhoneExport:
         Without mat-io, for a file that it cannot read, and for one without acceleration.
     """
     check_unpacked(path, MAX_FILE, MAX_TOTAL)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # what mat-io and pandas have to tell each other is not for the user
-        try:
-            from matio import load_from_mat
-        except ImportError as error:
-            raise InputError(f"reading {path} needs mat-io: pip install 'vehgen[matlab]'") from error
-        try:
-            found: dict[str, Any] = load_from_mat(str(path), variable_names=list(_TABLES))
-        except MemoryError:
-            raise
-        except Exception as error:  # a damaged file fails in mat-io, h5py or zlib in ways that none of them lists
-            message = shortened(" ".join(str(error).split())) or type(error).__name__
-            raise InputError(f"{path} cannot be read as a MATLAB file: {message}") from error
+    matio = library("matio", "matlab", path)
+    with faults_of(path, MATLAB_KIND):
+        found: dict[str, Any] = matio.load_from_mat(str(path), variable_names=list(_TABLES))
     tables = {name: found[name] for name in _TABLES if hasattr(found.get(name), "columns")}
     if "Acceleration" not in tables:
         raise InputError(f"{path} holds no timetable Acceleration; turn the sensor on in MATLAB Mobile and log again")

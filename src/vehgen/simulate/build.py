@@ -16,6 +16,7 @@ from vehgen.files.results import Result, Table
 from vehgen.mechanics import EquationsOfMotion, Place, PointOutput, StaticLoads
 from vehgen.simulate.modes import Mode, Modes
 from vehgen.vehicle import Vehicle, parse_vehicle
+from vehgen.vehicle.loading import vehicle_files
 from vehgen.vehicle.writing import plain_data
 
 PAGE_PACKAGES = ("sympy", "numpy", "numba", "matplotlib")
@@ -103,7 +104,8 @@ def summarise_build(
     free = {name: float(values[name]) for name in vehicle.free_parameters}
     everything, ranges, dimensions = vehicle.all_values(free), vehicle.ranges(), vehicle.dimensions
     known = versions(PAGE_PACKAGES)
-    hashes = file_hashes(vehicle.files)
+    files = vehicle_files(vehicle)
+    hashes = file_hashes(files)
     return Build(
         vehicle=plain_data(vehicle),
         values={name: float(value) for name, value in values.items()},
@@ -114,7 +116,7 @@ def summarise_build(
         warnings=tuple(warnings),
         operation_counts=model.operation_counts(),
         versions={**{name: text for name, text in known.items() if name != "python"}, "Python": known["python"]},
-        inputs={path.name: hashes.get(path.name, "") for path in vehicle.files},
+        inputs={name: hashes.get(name, "") for name in files},
         plots=plots,
         model=model,
     )

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import json
+import sys
 import warnings
+from functools import cache
 from importlib import metadata
 from pathlib import Path
 
@@ -45,14 +47,22 @@ def equations_as_data(vehicle: Vehicle) -> PlainEquations | None:
 
 def equations_name(vehicle: Vehicle) -> str:
     """Return what a vehicle's equations are called in the cache: a hash of its file's form and of all that derives them."""
-    parts = [json.dumps(file_form(vehicle), default=str), metadata.version("sympy"), _code()]
+    parts = [json.dumps(file_form(vehicle), default=str), metadata.version("sympy"), sys.version, _code()]
     digest = hashlib.sha256("\n".join(parts).encode()).hexdigest()
     return f"model_{digest[:20]}"
 
 
+@cache
 def _code() -> str:
-    """Return the version of the code that derives equations: the sizes and times of its files."""
-    root = Path(__file__).parents[1]
-    files = [path for room in DERIVING_ROOMS for path in sorted((root / room).rglob("*.py"))]
-    states = [(path.relative_to(root).as_posix(), path.stat()) for path in files]
-    return " ".join(f"{name} {state.st_size} {state.st_mtime_ns}" for name, state in states)
+    """Return the version of the code that derives equations: a hash of its files, whatever their times say."""
+    return code_hash(Path(__file__).parents[1])
+
+
+def code_hash(root: Path) -> str:
+    """Return a hash of the names and the content of the files of the deriving rooms under `root`."""
+    found = hashlib.sha256()
+    for path in (path for room in DERIVING_ROOMS for path in sorted((root / room).rglob("*.py"))):
+        data = path.read_bytes()
+        found.update(f"{path.relative_to(root).as_posix()} {len(data)}\n".encode())
+        found.update(data)
+    return found.hexdigest()

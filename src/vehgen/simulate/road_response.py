@@ -24,6 +24,7 @@ from vehgen.mechanics import ElementOutput, Output, Place, PointOutput, all_valu
 from vehgen.road.iso8608 import CLASSES, SPATIAL_BAND_CYCLES_PER_M, displacement_psd
 from vehgen.simulate.frequency_response import frequency_response
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
+from vehgen.vehicle.loading import vehicle_files
 
 Array = NDArray[np.float64]
 DEFAULT_SPEED_M_S, DEFAULT_CLASS = 20.0, "B"
@@ -202,5 +203,5 @@ def _result(
         psd=rounded(np.abs(responses) ** 2 * road[kept], 6),
         road_psd=rounded(road[kept], 6),
         versions=versions(),
-        inputs=file_hashes(vehicle.files),
+        inputs=file_hashes(vehicle_files(vehicle)),
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterable
 from importlib import resources
 from pathlib import Path
 
@@ -27,6 +29,31 @@ def models_folder() -> Path:
 def bundled_models() -> dict[str, Path]:
     """Return the bundled models' files by name."""
     return {path.stem: path for path in sorted(models_folder().glob("*.yaml"))}
+
+
+def is_bundled(path: Path) -> bool:
+    """Whether a file is a bundled model's."""
+    return path.resolve().parent == models_folder().resolve()
+
+
+def files_by_name(paths: Iterable[Path], folder: Path) -> dict[str, Path]:
+    """Return files by what a file in `folder` would call them, so that two of one name in different folders stay two.
+
+    That is their path from there with slashes; of a bundled model the name of its file, which says nothing of where vehgen is installed.
+    """
+    found: dict[str, Path] = {}
+    for path in sorted(paths, key=is_bundled):  # bundled models last: they leave a name that is taken
+        if is_bundled(path):
+            name = f"{path.name} (bundled)" if found.get(path.name, path) != path else path.name
+        else:
+            name = Path(os.path.relpath(path, folder)).as_posix()
+        found.setdefault(name, path)
+    return found
+
+
+def vehicle_files(vehicle: Vehicle) -> dict[str, Path]:
+    """Return the files that a vehicle was read from, by what its own file calls them."""
+    return files_by_name(vehicle.files, vehicle.files[0].parent) if vehicle.files else {}
 
 
 def find_vehicle_file(name: str | Path, beside: Path | None = None) -> Path:

@@ -9,7 +9,7 @@ from typing import Any
 
 from vehgen.files.units import FREQUENCY, NONE
 from vehgen.files.yaml_writer import Commented, even_text, yaml_document
-from vehgen.vehicle.loading import bundled_models
+from vehgen.vehicle.loading import is_bundled
 from vehgen.vehicle.model import Vehicle
 
 
@@ -25,7 +25,7 @@ def base_reference(vehicle: Vehicle, folder: Path) -> str:
     if not vehicle.files:
         return vehicle.name
     path = vehicle.files[0].resolve()
-    if any(path == model.resolve() for model in bundled_models().values()):
+    if is_bundled(path):
         return path.name
     return Path(os.path.relpath(path, folder.resolve())).as_posix()
 

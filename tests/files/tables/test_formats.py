@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -56,6 +57,11 @@ def excel(path: Path) -> None:
     WITH_UNITS.to_excel(path, index=False)
 
 
+def matlab(path: Path, packed: bool) -> None:
+    scipy.io.savemat(path.with_suffix(".mat"), {"t": T, "az": AZ, "other": "text"}, do_compression=packed)
+    path.with_suffix(".mat").rename(path)
+
+
 WRITERS: dict[str, Callable[[Path], object]] = {
     "comma": lambda path: WITH_UNITS.to_csv(path, float_format="%.17g", index=False),
     "semicolon and decimal comma": lambda path: WITH_UNITS.to_csv(path, float_format="%.17g", index=False, sep=";", decimal=","),
@@ -72,6 +78,8 @@ WRITERS: dict[str, Callable[[Path], object]] = {
     "excel": excel,
     "mdf": mdf,
     "uff": uff,
+    "matlab": lambda path: matlab(path, False),
+    "packed matlab": lambda path: matlab(path, True),
 }
 
 
@@ -82,10 +90,10 @@ def test_a_table_reads_as_it_was_written(tmp_path: Path, name: str):
         path = tmp_path / "table.xlsx"
     WRITERS[name](path)
     found = read_columns(path, ("t", "az"))
-    assert found.units == ("s", "m/s^2")
+    assert found.units == ((None, None) if "matlab" in name else ("s", "m/s^2"))
     np.testing.assert_allclose(found.values[0], T, rtol=1e-12, atol=1e-12)
     np.testing.assert_allclose(found.values[1], AZ, rtol=1e-12, atol=1e-12)
-    with pytest.raises(InputError, match=r"no (column|channel) 'azz'; did you mean 'az'"):
+    with pytest.raises(InputError, match=r"no (column|channel|variable) 'azz'; did you mean 'az'"):
         read_columns(path, ("t", "azz"))
 
 
@@ -95,12 +103,28 @@ def test_vectors_of_matlab(tmp_path: Path):
     found = read_columns(path, ("t", "az"))
     assert found.units == (None, None)
     np.testing.assert_array_equal(found.values[1], AZ)
+    numbers = {kind: np.array([1, 2, 100], kind) for kind in ("i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8", "i8", "u8")}
+    for packed in (False, True):
+        scipy.io.savemat(tmp_path / "kinds.mat", {f"v{kind}": values for kind, values in numbers.items()}, do_compression=packed)
+        assert np.array(read_columns(tmp_path / "kinds.mat", tuple(f"v{kind}" for kind in numbers)).values).tolist() == 10 * [[1, 2, 100]]
     with pytest.raises(InputError, match=r"vectors of one length were expected, found t \(200,\), short \(5,\)"):
         read_columns(path, ("t", "short"))
     with pytest.raises(InputError, match="no variable 'azz'; did you mean 'az'"):
         read_columns(path, ("t", "azz"))
     with pytest.raises(InputError, match="vectors of one length"):
         read_columns(path, ("t", "text"))
+
+
+def test_vectors_beside_an_object_of_matlab(tmp_path: Path):
+    """Tables and strings are stored without dimensions: flags, name, and what else MATLAB knows of them."""
+    scipy.io.savemat(tmp_path / "run.mat", {"t": T, "az": AZ})
+    parts = [(6, struct.pack("<II", 17, 0)), (1, b"log_data"), (1, b"MCOS\0\0\0\0"), (1, b"table\0\0\0")]
+    body = b"".join(struct.pack("<II", mark, len(content)) + content for mark, content in parts)
+    with (tmp_path / "run.mat").open("ab") as file:
+        file.write(struct.pack("<II", 14, len(body)) + body)
+    np.testing.assert_array_equal(read_columns(tmp_path / "run.mat", ("t", "az")).values, [T, AZ])
+    with pytest.raises(InputError, match=r"no variable 'log_dat'; did you mean 'log_data'"):
+        read_columns(tmp_path / "run.mat", ("log_dat",))
 
 
 def test_a_formula_of_an_mdf_channel_is_never_computed(tmp_path: Path):
@@ -115,6 +139,21 @@ def test_linear_conversions_of_mdf_count(tmp_path: Path):
     mdf(tmp_path / "run.mf4", np.arange(200, dtype=np.int16), "kN", conversion={"a": 0.5, "b": -3.0})
     found = read_columns(tmp_path / "run.mf4", ("time", "az")).in_si(1, "N", "force")
     np.testing.assert_allclose(found.values[1], 1e3 * (0.5 * np.arange(200) - 3.0), rtol=1e-12)
+
+
+def test_channels_outside_of_their_records_are_refused(tmp_path: Path):
+    """asammdf would read what lies behind them in memory."""
+    mdf(tmp_path / "run.mf4")
+    data = bytearray((tmp_path / "run.mf4").read_bytes())
+    at = data.find(b"##CN")
+    while at >= 0:
+        links = int.from_bytes(data[at + 16 : at + 24], "little")
+        offset = slice(at + 24 + 8 * links + 4, at + 24 + 8 * links + 8)
+        data[offset] = (int.from_bytes(data[offset], "little") + 9).to_bytes(4, "little")
+        at = data.find(b"##CN", at + 4)
+    (tmp_path / "run.mf4").write_bytes(data)
+    with pytest.raises(InputError, match="'az' is no plain number inside its records"):
+        read_columns(tmp_path / "run.mf4", ("az",))
 
 
 def test_packed_mdf_blocks_are_read_and_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

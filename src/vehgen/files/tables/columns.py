@@ -25,7 +25,8 @@ LARGEST_MEASURED = 1e12
 class TableColumns:
     """Columns of a table: `values`, one `shape (n_rows,)` each, the `units` that the file itself gives to them, and where they stand.
 
-    `cells` are the numbers of their cells in a row, `lines shape (n_rows,)` the file's lines or rows; both count from 1.
+    `cells` are the numbers of their cells in a row, `lines shape (n_rows,)` the file's lines or rows; both count from 1. `unit_lines` are
+    those in which the units stand (default: the headings' line). The units of `doubtful` columns may be words: they count where they fit.
     """
 
     path: Path
@@ -34,6 +35,8 @@ class TableColumns:
     cells: tuple[int, ...]
     lines: NDArray[np.int64]
     units: tuple[str | None, ...]
+    unit_lines: tuple[int, ...] = ()
+    doubtful: frozenset[int] = frozenset()
 
     def place(self, row: int, column: int = 0) -> Position:
         """Return the place of a number: `row` counts from 0, negative ones from the end; `column` is its index in `names`."""
@@ -42,6 +45,10 @@ class TableColumns:
     def heading(self, column: int) -> Position:
         """Return the place of a column's heading."""
         return Position(self.path, 1, self.cells[column])
+
+    def unit_place(self, column: int) -> Position:
+        """Return the place of a column's unit, or of its heading where it has none."""
+        return Position(self.path, self.unit_lines[column] if self.unit_lines else 1, self.cells[column])
 
     def in_si(self, column: int, usual: str, quantity: str, stated: str | None = None, place: Position | None = None) -> TableColumns:
         """Return the table with a column in SI units.
@@ -61,9 +68,11 @@ class TableColumns:
             For a unit that there is not, of another quantity, or two that contradict each other.
         """
         own = self.units[column]
-        factor = unit_factor(stated or own or usual, usual, quantity, place if stated else self.heading(column))
+        if own is not None and column in self.doubtful and factor_to_si(own, parse_unit(usual)[1]) is None:
+            own = None
+        factor = unit_factor(stated or own or usual, usual, quantity, place if stated else self.unit_place(column))
         if own is not None and stated is not None and _contradicts(own, usual, factor):
-            what = f"the column {shown(self.names[column])} is in {shown(own)} as its file says ({self.heading(column)})"
+            what = f"the column {shown(self.names[column])} is in {shown(own)} as its file says ({self.unit_place(column)})"
             raise InputError(f"{what}, and in {shown(stated)} as stated here; leave `unit` out, or correct one of them", place)
         return self if factor == 1 else self.scaled(column, factor)
 

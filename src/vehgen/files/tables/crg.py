@@ -35,20 +35,32 @@ def read(path: Path, names: tuple[str, ...]) -> TableColumns:
     pyopencrg = library("pyopencrg", "crg", path)
     with faults_of(path, CRG_KIND):
         road = pyopencrg.read(str(path))
-        end = _END.search(data)
-        if end is not None and abs(float(end.group(1)) - float(road.u_end)) > float(road.u_inc):
-            told = f"the header tells of a road to {float(end.group(1)):g} m, its data end at {float(road.u_end):g} m"
-            raise InputError(f"{told}: the file was cut", Position(path, 1, 1))
-        check_size(path, int(road.nu), len(names))
-        low, high = float(road.v_min), float(road.v_max)
-        for places in across:
-            for place in places or ():
-                if not low <= place <= high:
-                    raise InputError(f"{place:g} m lies beside the road, which reaches from {low:g} to {high:g} m", Position(path, 1, 1))
-                _check_gaps(path, road, place)
+        last, step, low, high = float(road.u_end), float(road.u_inc), float(road.v_min), float(road.v_max)
+        n_sections = int(road.nu)
+    _check_end(path, data, last, step)
+    check_size(path, n_sections, len(names))
+    for places in across:
+        for place in places or ():
+            if not low <= place <= high:
+                raise InputError(f"{place:g} m lies beside the road, which reaches from {low:g} to {high:g} m", Position(path, 1, 1))
+            _check_gaps(path, road, place)
+    with faults_of(path, CRG_KIND):
         road = road.apply_mods()
         columns = [_column(road, places) for places in across]
     return Sheet(path, names, ("m",) * len(names), columns.__getitem__, len(columns[0])).select(names)
+
+
+def _check_end(path: Path, data: bytes, last: float, step: float) -> None:
+    """Refuse a road that does not end where its header says [m]; raises InputError."""
+    found = _END.search(data)
+    if found is None:
+        return
+    try:
+        told = float(found.group(1))
+    except ValueError as error:
+        raise InputError(f"the end of the reference line is no number: {shown(found.group(1).decode())}", Position(path, 1, 1)) from error
+    if abs(told - last) > step:
+        raise InputError(f"the header tells of a road to {told:g} m, its data end at {last:g} m: the file was cut", Position(path, 1, 1))
 
 
 def _across(path: Path, name: str) -> tuple[float, ...] | None:

@@ -2,43 +2,31 @@
 
 from __future__ import annotations
 
-import re
-import zipfile
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 from vehgen.errors import InputError, Position
-from vehgen.files.tables.columns import MAX_TABLE_BYTES, TableColumns
+from vehgen.files.tables.columns import TableColumns
 from vehgen.files.tables.csv_rows import MOST_ROWS
-from vehgen.files.tables.foreign import faults_of, library
+from vehgen.files.tables.foreign import faults_of, items_of, library, without_warnings
 from vehgen.files.tables.rows import Cell, read_rows
-
-EXCEL_KIND = "an Excel workbook (.xlsx)"
-MAX_WORKBOOK_BYTES = 5 * MAX_TABLE_BYTES
-"""Sheets are XML, packed to a tenth [bytes]."""
-MOST_WORKBOOK_PARTS = 1000
-_WORKBOOK = "xl/workbook.xml"
-_ENTITIES = (b"<!DOCTYPE", b"<!ENTITY")
-_COMMENT, _ELEMENT = re.compile(rb"<!--.*?-->", re.DOTALL), re.compile(rb"<[A-Za-z_]")
-_ENCODING = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([^"']*)""")
-_OTHER_ENCODINGS = (b"\xff\xfe", b"\xfe\xff", b"<\x00", b"\x00<")
-HEAD_BYTES = 65536
-"""The first element of every part of a workbook begins within so many bytes: nothing can be declared after it."""
+from vehgen.files.tables.workbook_parts import EXCEL_KIND, check_parts
 
 
 def read(path: Path, names: tuple[str, ...]) -> TableColumns:
     """Read columns of the first sheet of a workbook; raises InputError for a damaged or hostile one, and as :func:`read_rows`."""
-    _check_parts(path)
+    check_parts(path)
     openpyxl = library("openpyxl", "tables", path)
     with faults_of(path, EXCEL_KIND):
         book = openpyxl.load_workbook(path, read_only=True, data_only=True, keep_links=False)
-        try:
-            rows = _rows(book.worksheets[0].iter_rows(values_only=True), path)
-            header = [str(cell).strip() for cell in next(rows, (1, []))[1]]
-            return read_rows(path, header, rows, names)
-        finally:
-            book.close()
+    with closing(book), without_warnings():
+        with faults_of(path, EXCEL_KIND):
+            sheet = book.worksheets[0].iter_rows(values_only=True)
+        rows = _rows(items_of(sheet, path, EXCEL_KIND), path)
+        header = [str(cell).strip() for cell in next(rows, (1, []))[1]]
+        return read_rows(path, header, rows, names)
 
 
 def _rows(rows: Iterator[tuple[Any, ...]], path: Path) -> Iterator[tuple[int, list[Cell]]]:
@@ -57,32 +45,3 @@ def _cell(value: object) -> Cell:
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return float(value)
     return "" if value is None else str(value)
-
-
-def _check_parts(path: Path) -> None:
-    """Refuse an archive that is no workbook, unpacks to too much, or whose XML declares entities, before anything reads it."""
-    with faults_of(path, EXCEL_KIND), zipfile.ZipFile(path) as archive:
-        parts = archive.infolist()
-        if _WORKBOOK not in archive.namelist():
-            raise InputError("a zip archive that is no Excel workbook; unpack the table first", Position(path, 1, 1))
-        if len(parts) > MOST_WORKBOOK_PARTS or sum(part.file_size for part in parts) > MAX_WORKBOOK_BYTES:
-            raise InputError(f"the workbook would unpack to more than {MAX_WORKBOOK_BYTES} bytes", Position(path, 1, 1))
-        for part in parts:
-            with archive.open(part) as stream:
-                if not _is_plain(stream.read(HEAD_BYTES)):
-                    raise InputError("the workbook declares entities, which no program writes", Position(path, 1, 1))
-
-
-def _is_plain(head: bytes) -> bool:
-    """Return whether a part is no XML, or XML in UTF-8 whose first element begins within its head with no declaration before it."""
-    start = head.removeprefix(b"\xef\xbb\xbf").lstrip()
-    if start[:2] in _OTHER_ENCODINGS:
-        return False
-    if not start.startswith(b"<"):
-        return True
-    encoding = _ENCODING.match(start)
-    if encoding is not None and encoding[1].lower() not in (b"utf-8", b"us-ascii"):
-        return False
-    before = _COMMENT.sub(b"", start)
-    element = _ELEMENT.search(before)
-    return element is not None and not any(mark in before[: element.start()] for mark in _ENTITIES)

@@ -23,6 +23,8 @@ _OTHER_SPELLINGS = {
     "lbs": "lb",
 }
 _NO_UNIT = ("", "-", "1")
+_UNITS_AND_WORDS = ("in", "min")
+"""Inches and minutes, or what came in and the least of something."""
 
 
 def spelled(text: str) -> str:
@@ -53,6 +55,12 @@ def name_and_unit(heading: str) -> tuple[str, str | None]:
     if found is None or (found.group(2) is None and not is_unit(found.group(3))):
         return heading.strip(), None
     return found.group(1), declared_unit(found.group(2) if found.group(2) is not None else found.group(3))
+
+
+def may_be_word(heading: str) -> bool:
+    """Whether what looks like a heading's unit may be a word of its name: `(in)`; in square brackets a unit stands, and nothing else."""
+    found = _BRACKETED.fullmatch(heading.strip())
+    return found is not None and found.group(2) is None and found.group(3).strip() in _UNITS_AND_WORDS
 
 
 def find_heading(path: Path, headings: Sequence[str], name: str, line: int = 1) -> int:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import logging
 import struct
 import zlib
-from contextlib import suppress
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +30,11 @@ _PACKED = b"##DZ"
 _PACKED_HEADER = struct.Struct("<4s4xQQ2sBBIQQ")
 """Mark, length and links of a packed block; what it held, how it is packed, and its sizes, unpacked and packed."""
 _DEFLATE = (0, 1)
+_NUMBER_CHANNELS, _VIRTUAL_CHANNELS = (0, 2), (3, 6)
+"""Types of channel of MDF 4: those with a number in every record, the clock among them, and those that only count records."""
+_NUMBER_DATA = range(6)
+"""Types of data of MDF 4: integers and reals in both orders of bytes."""
+_VALIDITY_FLAGS = 3
 _PLAIN_OR_LINEAR = (0, 1)
 """Types of conversion of MDF 4: of the others one is a formula, and the rest are tables and texts."""
 
@@ -51,7 +56,9 @@ def read(path: Path, names: tuple[str, ...]) -> TableColumns:
     asammdf = library("asammdf", "mdf", path)
     library("asammdf.blocks.mdf_v4", "mdf", path).MDF4.__del__ = _close
     logging.getLogger("asammdf").setLevel(logging.CRITICAL)
-    with faults_of(path, MDF_KIND), asammdf.MDF(str(path), process_bus_logging=False) as file:
+    with faults_of(path, MDF_KIND):
+        file = asammdf.MDF(str(path), process_bus_logging=False)
+    with closing(file):
         return _select(path, file, names)
 
 
@@ -91,14 +98,20 @@ def _select(path: Path, file: Any, names: tuple[str, ...]) -> TableColumns:
     wanted = [(home[0], masters[home[0]]) if place is None else place for place in places]
     signals = []
     for name, (group, index) in zip(names, wanted, strict=True):
-        check_size(path, int(file.groups[group].channel_group.cycles_nr), len(names))
-        for channel in (file.groups[group].channels[index], file.groups[group].channels[masters.get(group, index)]):
-            conversion = channel.conversion
-            if conversion is not None and conversion.conversion_type not in _PLAIN_OR_LINEAR:
-                raise InputError(
-                    f"the channel {shown(name)} is converted by a formula, table or text; export it as plain numbers", Position(path, 1, 1)
-                )
-        signals.append(file.get(group=group, index=index, ignore_invalidation_bits=False))
+        with faults_of(path, MDF_KIND):
+            channels = [file.groups[group].channels[place] for place in (index, masters.get(group, index))]
+            kinds = [channel.conversion.conversion_type for channel in channels if channel.conversion is not None]
+            fits = all(_fits(channel, file.groups[group].channel_group) for channel in channels)
+            n_samples = int(file.groups[group].channel_group.cycles_nr)
+        check_size(path, n_samples, len(names))
+        if not fits:
+            raise InputError(f"the channel {shown(name)} is no plain number inside its records; export it as numbers", Position(path, 1, 1))
+        if not set(kinds) <= set(_PLAIN_OR_LINEAR):
+            raise InputError(
+                f"the channel {shown(name)} is converted by a formula, table or text; export it as plain numbers", Position(path, 1, 1)
+            )
+        with faults_of(path, MDF_KIND):
+            signals.append(file.get(group=group, index=index, ignore_invalidation_bits=False))
     clock = np.asarray(signals[0].timestamps)
     for name, signal in zip(names, signals, strict=True):
         own = np.asarray(signal.timestamps)
@@ -110,6 +123,17 @@ def _select(path: Path, file: Any, names: tuple[str, ...]) -> TableColumns:
     clocks = set(masters.items())
     units = tuple("s" if place in clocks else signal.unit for place, signal in zip(wanted, signals, strict=True))
     return Sheet(path, names, units, lambda index: signals[index].samples, len(clock)).select(names)
+
+
+def _fits(channel: Any, group: Any) -> bool:
+    """Return whether a channel is a number that lies inside its group's records: asammdf reads wherever a damaged file says."""
+    if channel.channel_type in _VIRTUAL_CHANNELS:
+        return True
+    n_bits = channel.bit_offset + channel.bit_count
+    is_inside = channel.byte_offset + (n_bits + 7) // 8 <= group.samples_byte_nr
+    has_validity = not channel.flags & _VALIDITY_FLAGS or channel.pos_invalidation_bit < 8 * group.invalidation_bytes_nr
+    is_number = channel.channel_type in _NUMBER_CHANNELS and channel.data_type in _NUMBER_DATA and 0 < n_bits <= 64
+    return bool(is_number and is_inside and has_validity)
 
 
 def _place(path: Path, file: Any, masters: dict[int, int], name: str) -> tuple[int, int] | None:

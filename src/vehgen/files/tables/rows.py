@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from array import array
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from vehgen.errors import InputError, Position, shown
 from vehgen.files.tables.columns import LARGEST_MEASURED, MAX_TABLE_NUMBERS, TableColumns
-from vehgen.files.tables.headings import declared_unit, find_heading, is_unit, name_and_unit
+from vehgen.files.tables.headings import declared_unit, find_heading, is_unit, may_be_word, name_and_unit
 
 Cell = str | float
 Rows = Iterator[tuple[int, list[Cell]]]
@@ -39,13 +41,16 @@ def read_rows(path: Path, header: Sequence[str], rows: Rows, names: tuple[str, .
     lines = array("q")
     places: list[int] = []
     units: list[str | None] = []
+    below: list[str | None] | None = None
+    units_line, doubtful = 1, frozenset[int]()
     signs: set[str] = set()
     for line, row in rows:
         if not places:
             places = [find_heading(path, header, name) for name in names]
             units = [name_and_unit(header[place])[1] for place in places]
+            doubtful = frozenset(i for i, place in enumerate(places) if may_be_word(header[place]))
             if (below := _units_row(row, places)) is not None:
-                units = [own or other for own, other in zip(below, units, strict=True)]
+                units_line = line
                 continue
         if any(_text(cell) for cell in row[len(header) :]):
             raise InputError(f"{len(row)} cells below {len(header)} headings", Position(path, line, len(header) + 1))
@@ -68,7 +73,15 @@ def read_rows(path: Path, header: Sequence[str], rows: Rows, names: tuple[str, .
         raise InputError("a header line and at least one line of numbers were expected", Position(path, 1, 1))
     cells = tuple(place + 1 for place in places)
     values = tuple(np.array(column) for column in columns)
-    return TableColumns(path, names, values, cells, np.array(lines, dtype=np.int64), tuple(units))
+    found = TableColumns(path, names, values, cells, np.array(lines, dtype=np.int64), tuple(units), doubtful=doubtful)
+    return found if below is None else _with_units(found, below, units_line)
+
+
+def _with_units(table: TableColumns, below: list[str | None], line: int) -> TableColumns:
+    """Return a table with the units of a row of its own; where that has none, those of the headings stay."""
+    units = tuple(own or other for own, other in zip(below, table.units, strict=True))
+    unit_lines = tuple(line if own else 1 for own in below)
+    return replace(table, units=units, unit_lines=unit_lines, doubtful=frozenset(i for i in table.doubtful if not below[i]))
 
 
 def _text(cell: Cell) -> str:
@@ -76,15 +89,15 @@ def _text(cell: Cell) -> str:
 
 
 def _units_row(row: list[Cell], places: list[int]) -> list[str | None] | None:
-    """Return the units of columns where a row holds nothing but them; else None."""
+    """Return the units of columns where a row holds one at least and no number, what is no unit among them; else None."""
     texts = [_text(row[place]) if place < len(row) else "" for place in places]
-    if not any(texts) or not all(declared_unit(text) is None or is_unit(text) for text in texts):
+    if not any(declared_unit(text) is not None and is_unit(text) for text in texts) or any(_may_be_number(text) for text in texts):
         return None
-    return [declared_unit(text) for text in texts] if any(declared_unit(text) for text in texts) and not _any_number(texts) else None
+    return [declared_unit(text) for text in texts]
 
 
-def _any_number(texts: list[str]) -> bool:
-    return any(text[:1].isdigit() for text in texts)
+def _may_be_number(text: str) -> bool:
+    return text[:1].isdigit() or not math.isnan(_number(text, set())) or text.lower().lstrip("+-") == "nan"
 
 
 def _number(cell: Cell, signs: set[str] | None) -> float:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from vehgen.errors import InputError, Position, shown
 from vehgen.files.tables.columns import LARGEST_MEASURED, MAX_TABLE_NUMBERS, TableColumns
 from vehgen.files.tables.csv_rows import MOST_ROWS
-from vehgen.files.tables.headings import declared_unit, find_heading, name_and_unit
+from vehgen.files.tables.headings import declared_unit, find_heading, may_be_word, name_and_unit
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,10 @@ class Sheet:
         units = [declared_unit(self.units[cell]) or name_and_unit(self.headings[cell])[1] for cell in cells]
         lines = np.arange(1, self.n_rows + 1, dtype=np.int64) if self.lines is None else self.lines
         values = tuple(self._numbers(cell, name, lines) for cell, name in zip(cells, names, strict=True))
-        return TableColumns(self.path, names, values, tuple(cell + 1 for cell in cells), lines, tuple(units))
+        doubtful = frozenset(
+            i for i, cell in enumerate(cells) if declared_unit(self.units[cell]) is None and may_be_word(self.headings[cell])
+        )
+        return TableColumns(self.path, names, values, tuple(cell + 1 for cell in cells), lines, tuple(units), doubtful=doubtful)
 
     def _numbers(self, cell: int, name: str, lines: NDArray[np.int64]) -> NDArray[np.float64]:
         found = np.asarray(self.column(cell))

@@ -33,6 +33,7 @@ _DIRECTIONS = {
     -6: "-RZ",
 }
 _NO_NAME = ("", "NONE")
+_NEEDED = {"func_type", "rsp_node", "rsp_dir", "x", "data"}
 
 
 def read(path: Path, names: tuple[str, ...]) -> TableColumns:
@@ -40,10 +41,14 @@ def read(path: Path, names: tuple[str, ...]) -> TableColumns:
     pyuff = library("pyuff", "uff", path)
     with faults_of(path, UFF_KIND):
         file = pyuff.UFF(str(path))
-        numbers = [i for i, kind in enumerate(file.get_set_types()) if kind == 58]
-        if not 0 < len(numbers) <= MOST_DATASETS:
-            raise InputError(f"1 to {MOST_DATASETS} datasets 58 were expected, found {len(numbers)}", Position(path, 1, 1))
+        kinds = list(file.get_set_types())
+    numbers = [i for i, kind in enumerate(kinds) if kind == 58]
+    if not 0 < len(numbers) <= MOST_DATASETS:
+        raise InputError(f"1 to {MOST_DATASETS} datasets 58 were expected, found {len(numbers)}", Position(path, 1, 1))
+    with faults_of(path, UFF_KIND):
         sets: list[dict[str, Any]] = [file.read_sets(i) for i in numbers]
+    if not all(item.keys() >= _NEEDED for item in sets):
+        raise InputError("a dataset 58 lacks its abscissa or its data: the file is damaged", Position(path, 1, 1))
     sets = [item for item in sets if item["func_type"] == TIME_RESPONSE]
     if not sets:
         raise InputError("no dataset 58 is a time response", Position(path, 1, 1))
