@@ -58,11 +58,14 @@ def screen(
         begun = carried(current.unit, current.problem.space, problem.space)
         exact: Misfit | None = None
         best = 0.0
-        for combination in candidate.effect.starts(candidate.place, locator):
+        starts = [np.array(item[: len(candidate.parameters)]) for item in candidate.effect.starts(candidate.place, locator)]
+        for number, start in enumerate([*starts, _smaller(starts, problem.space.lower[len(current.unit) :])]):
             point = problem.space.start.copy()
-            point[len(current.unit) :] = combination[: len(candidate.parameters)]
+            point[len(current.unit) :] = start
             unit = np.concatenate([begun, problem.space.unit(point)[len(current.unit) :]])
             moved = motion.moved(problem, problem.space.values(unit)) if exact is None else None
+            if moved is not None and number == len(starts):
+                break  # it would be the same
             if moved is None:
                 exact = exact or Misfit(problem, misfit.noises, problem.space.start, NUISANCES, misfit.band, current.shared)
                 own = exact.whitened_spectrum(np.concatenate([unit, np.zeros(len(current.shared)), current.errors]))
@@ -72,6 +75,16 @@ def screen(
         gains.append((best, candidate))
     gains.sort(key=lambda item: -item[0])
     return chosen_with_holders(candidates, [*always, *(candidate for _, candidate in gains[:most])])
+
+
+def _smaller(starts: Sequence[Array], lower: Array) -> Array:
+    """Return a start whose first number, the size, is between its lower bound and the smallest start, on a logarithmic scale.
+
+    Friction that holds what truly slips moves the residual nowhere useful: where it is small, so is its first order.
+    """
+    smallest = min(starts, key=lambda item: item[:1].tolist()).copy()
+    smallest[:1] = np.where(lower[:1] > 0, np.sqrt(lower[:1] * smallest[:1]), smallest[:1])
+    return smallest
 
 
 def chosen_with_holders(candidates: Sequence[Candidate], chosen: Sequence[Candidate]) -> list[Candidate]:
