@@ -83,7 +83,7 @@ def _smaller(starts: Sequence[Array], lower: Array) -> Array:
     Friction that holds what truly slips moves the residual nowhere useful: where it is small, so is its first order.
     """
     smallest = min(starts, key=lambda item: item[:1].tolist()).copy()
-    smallest[:1] = np.where(lower[:1] > 0, np.sqrt(lower[:1] * smallest[:1]), smallest[:1])
+    smallest[:1] = np.where(lower[:1] > 0, np.sqrt(np.maximum(lower[:1], 0.0) * smallest[:1]), smallest[:1])
     return smallest
 
 
