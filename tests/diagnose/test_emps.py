@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from vehgen.commands import main
+from vehgen.diagnose.api import diagnose
 
 FOLDER = Path(__file__).parents[2] / "docs" / "examples" / "emps"
 DATA = "shared/data/emps/DATA_EMPS.mat"
@@ -39,3 +40,19 @@ def test_friction_of_a_real_carriage_is_named_from_its_raw_file(emps, tmp_path):
     share, constant = force_error.force_error(vehicle, path.with_name("DATA_EMPS_PULSES.mat"))
     assert share < 0.065
     assert constant == pytest.approx(3.2, abs=0.3)
+
+
+def halved(path):
+    """Cut a run's table to the first half of its time."""
+    header, *rows = path.read_text(encoding="utf-8").splitlines()
+    path.write_text("\n".join([header, *rows[: (len(rows) + 1) // 2]]) + "\n", encoding="utf-8")
+
+
+def test_half_periods_cannot_tell_friction_from_a_constant_force(emps, tmp_path):
+    runs = emps[0].write_runs(emps[2], tmp_path)
+    for run in runs:
+        for table in tmp_path.glob(f"{run.stem}*.csv"):
+            halved(table)
+    verdict = diagnose(FOLDER / "emps.yaml", runs).verdict
+    assert verdict.verdict == "insufficient_data"
+    assert "c of 0.4" in verdict.reason

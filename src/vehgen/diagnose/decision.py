@@ -25,10 +25,11 @@ from vehgen.diagnose.naming import Naming
 from vehgen.diagnose.result import Decided, DiagnosisModels
 from vehgen.diagnose.select.criteria import closes_training, excess, p_value_of, passes, unfinished
 from vehgen.diagnose.select.estimates import gain_interval
+from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.diagnose.select.group_members import with_members
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
-from vehgen.diagnose.select.search import DiagnosisProgress, Fitter, SearchRound, fit_leading_again, merit, search_round
+from vehgen.diagnose.select.search import LEADING, DiagnosisProgress, Fitter, SearchRound, fit_leading_again, merit, search_round
 from vehgen.diagnose.verdict import Gap, PlaceChi, Verdict, VerdictName
 from vehgen.effects import Effect
 from vehgen.errors import InputError
@@ -112,11 +113,12 @@ class Decision:
         first = self._search_round(self.base)
         if first.stopped:
             return self._stopped()
-        freed = next((fit for fit in first.idle[:1] if closes_training(fit, self.base)), None)
-        if freed is not None and (not first.fits or merit(freed) <= merit(first.fits[0])):
-            return self._out_of_range(freed)
         for _ in range(LOOKS_AGAIN):
+            if freed := self._freed(first):
+                return self._out_of_range(freed)
             first = self._again(first)
+        if freed := self._freed(first):
+            return self._out_of_range(freed)
         weak = self._add(first) if first.fits else None
         if self.interrupted:
             return self._name(self.chain) if self.chain else self._stopped()
@@ -136,9 +138,17 @@ class Decision:
             places, passed = localise(self.base)
             first = replace(first, places=tuple(places), passed=tuple(passed))
         fitter = Fitter(detection, self.base, first.passed)
-        fits = fit_leading_again(fitter, first.fits, self.base.training > MUCH_QUIETER * before)
-        self.rounds[:] = [replace(first, current=self.base, fits=fits)]
+        quieter = self.base.training > MUCH_QUIETER * before
+        fits, idle = list(fit_leading_again(fitter, first.fits, quieter)), list[ModelFit]()
+        if quieter:  # what loud noise hid, freed base parameters may do as well
+            fits, idle = split_idle(fits, fitter.fit_roughly, LEADING, self.base.least_squares.on_bound)
+        self.rounds[:] = [replace(first, current=self.base, fits=tuple(fits), idle=tuple(idle))]
         return self.rounds[-1]
+
+    def _freed(self, first: SearchRound) -> ModelFit | None:
+        """Return base parameters that close the gap, freed as an effect frees them, as well as any effect does; None where none do."""
+        freed = next((fit for fit in first.idle[:1] if closes_training(fit, self.base)), None)
+        return freed if freed is not None and (not first.fits or merit(freed) <= merit(first.fits[0])) else None
 
     def _add(self, first: SearchRound) -> Decided | None:
         """Add what passes to the chain; return the verdict where the best effect is too weak to be named."""
