@@ -132,6 +132,8 @@ def fit_candidates(
                 best = min(fits, key=merit, default=base)
                 progress("name", done, len(candidates), f"{best.label}, chi {np.sqrt(best.training):.3f}")
             if any(np.isfinite(fit.validation) and fit.training < limit.NAMED_LEFT**2 for fit in fits):
+                again = [fitter.fit(item, slow_first=False) for item in (_stuck(fits, base) if slow_first else ())]
+                fits += [fit for fit in again if fit is not None]
                 break
         fits = simplest_first(sorted(_best_of_each(fits), key=merit), base)
         for i, fit in enumerate(fits[:LEADING]):
@@ -141,6 +143,18 @@ def fit_candidates(
     except KeyboardInterrupt:
         return simplest_first(sorted(fits, key=merit), base), True
     return simplest_first(sorted(fits, key=merit), base), False
+
+
+def _stuck(fits: Sequence[ModelFit], base: ModelFit) -> list[Candidate]:
+    """Return candidates that were missed, not refuted: they left more than the model without them, at the place of a best fit at a bound.
+
+    A best fit that ends at a bound of the base parameters may stand in for another law there, as relaxation does for a damper's mount.
+    """
+    best = min(fits, key=merit)
+    if not best.least_squares.on_bound:
+        return []
+    missed = [fit.last for fit in fits if fit.training > base.training and fit.last.place == best.last.place]
+    return [item for item in missed if item.effect.shows_in_slow_motions]
 
 
 def _best_of_each(fits: Sequence[ModelFit]) -> list[ModelFit]:
