@@ -53,7 +53,7 @@ def fit(vehicle: Vehicle, runs: list[Path]) -> dict[str, float]:
         trials.append(replace(trial, run=replace(trial.run, file=trial.run.file.model_copy(update={"forces": forces}))))
     problem = make_problem(trials)
     noises = {trial.name: Noise(EVEN, np.array([3e-4 * DISPLACEMENT])) for trial in trials}
-    options = FitOptions(Nuisances(0.0, 0.0, 0.0), WHOLE_BAND)
+    options = FitOptions(Nuisances(0.0, 0.0, 0.0, force_offset=0.0), WHOLE_BAND)
     found = fit_least_squares(problem, problem.space.unit(problem.space.start), options, noises=noises)
     return problem.best_values(found.values)
 
