@@ -211,22 +211,22 @@ class Misfit:
         """Return the spectral lines of what trial `number`'s sensors read of motions `shape (..., n_samples, n_channels)`."""
         return self.read(number, self.unread(number, response, error), error)
 
-    def unread(self, number: int, response: Array, error: Array) -> Complex:
-        """Return the spectral lines of motions under the windows of late clocks, which :meth:`read` then turns."""
-        trial = self.problem.trials[number]
-        return transform(response, trial.recording.dt, self._weights[number].inside, self.errors[number].clocks(error), trial.window)
+    def unread(self, number: int, response: Array, error: Array, later: float = 0.0) -> Complex:
+        """Return the spectral lines of motions under the windows of late clocks, all `later` [s], which :meth:`read` then turns."""
+        trial, clocks = self.problem.trials[number], self.errors[number].clocks(error) + later
+        return transform(response, trial.recording.dt, self._weights[number].inside, clocks, trial.window)
 
     def read(self, number: int, lines: Complex, error: Array) -> Complex:
         """Return what trial `number`'s sensors make of spectral lines of motions `shape (..., n_lines, n_channels)`."""
         reading = self.errors[number].reading(self.frequency(number), error)
         return lines if reading is None else reading.apply(lines)
 
-    def read_slopes(self, number: int, lines: Complex, error: Array) -> dict[int, Complex]:
+    def read_slopes(self, number: int, lines: Complex, error: Array, later: Complex) -> dict[int, Complex]:
         """Return the derivatives of :meth:`read` of lines `shape (n_lines, n_channels)` by errors of readings alone, by their number.
 
-        Those of time are for windows that stand.
+        `later` are the derivatives of the lines by how late their windows are [1/s].
         """
-        return self.errors[number].read_slopes(self.frequency(number), error, lines)
+        return self.errors[number].read_slopes(self.frequency(number), error, lines, later)
 
     def read_at(self, number: int, lines: Complex, x: Array) -> Complex:
         """Return :meth:`read` of lines at all unknowns x."""

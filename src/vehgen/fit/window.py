@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -49,11 +50,26 @@ def transform(values: Array, dt: float, inside: NDArray[np.bool_], late: Array |
     channel under the window as it is.
     """
     window = taper(values.shape[-2], dt, seen.fade_in)
-    scale = np.sqrt(2 * dt / (window**2).sum())
     windows = window[:, None]
     if late is not None and late.any():
-        time = np.arange(-1, len(window)) * dt  # what came before the record counts nothing
-        windows = np.column_stack([np.interp(time[1:] + item, time, [0.0, *window], left=0.0, right=0.0) for item in late])
+        moved = {item: _moved(window, item / dt) for item in dict.fromkeys(late.tolist())}
+        windows = np.column_stack([moved[item] for item in late.tolist()])
     if seen.zeroed:
         values = values - (values * windows).sum(axis=-2, keepdims=True) / windows.sum(axis=0)
-    return np.asarray(np.fft.rfft(values * windows, axis=-2)[..., inside, :] * scale)
+    scaled = windows * np.sqrt(2 * dt / (window @ window))
+    return np.asarray(np.fft.rfft(values * scaled, axis=-2)[..., _stretch(inside), :])
+
+
+def _stretch(inside: NDArray[np.bool_]) -> NDArray[np.bool_] | slice:
+    """Return the lines inside a band as a slice, where they lie side by side: it is cut out without a copy."""
+    first, count = int(inside.argmax()), int(np.count_nonzero(inside))
+    return slice(first, first + count) if inside[first : first + count].all() else inside
+
+
+def _moved(window: Array, samples: float) -> Array:
+    """Return a window so many samples earlier, between its samples linear; what came before the record counts nothing."""
+    whole = math.floor(samples)
+    around = np.concatenate([[0.0], window, [0.0]])
+    here = np.clip(np.arange(1, len(window) + 1) + whole, 0, len(window) + 1)
+    after = np.minimum(here + 1, len(window) + 1)
+    return np.asarray(around[here] + (samples - whole) * (around[after] - around[here]))
