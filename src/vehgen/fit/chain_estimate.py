@@ -118,7 +118,7 @@ def fine_response(misfit: Misfit, x: Array, number: int) -> FineResponse:
     ratio = scenario.decimation // stride
     longer = extended(scenario, int(np.ceil(LOOK_AHEAD_S / (scenario.dt * scenario.decimation))))
     fine = replace(longer, decimation=stride, chains={}, skipped=0)
-    values = misfit.problem.respond(misfit.problem.space.values(unit)[None], trial, fine)[0][0]
+    values = np.array(misfit.problem.respond(misfit.problem.space.values(unit)[None], trial, fine)[0][0])
     return FineResponse(values, fine.dt * stride, ratio, len(trial.recording.time), scenario.skipped)
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from vehgen.codegen import Excitation, Kernel, KernelResult
 from vehgen.codegen.decimation import decimate
 from vehgen.measure.acquisition import AcquisitionChain
-from vehgen.simulate.excitation_cache import ExcitationCache
+from vehgen.simulate.last_used import LastUsed
 from vehgen.simulate.nearby import nearby_excitation
 from vehgen.simulate.scenario import Scenario
 
@@ -32,7 +32,7 @@ LEAST_RATE = 500.0
 """... and kept steps per second [Hz], where the internal step is as short."""
 DIRECT_PRODUCTS = 400_000
 """Products up to which a column is convolved directly: a hump is short."""
-_FILTERED = ExcitationCache()
+_FILTERED = LastUsed[Excitation](lambda item: item.nbytes)
 
 
 def assumed_chains(scenario: Scenario, channels: Sequence[str]) -> tuple[AcquisitionChain, ...]:

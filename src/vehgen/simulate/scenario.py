@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -20,7 +20,7 @@ from vehgen.road import (
     Wander,
     wheel_inputs,
 )
-from vehgen.simulate.excitation_cache import ExcitationCache
+from vehgen.simulate.last_used import LastUsed
 from vehgen.simulate.signals import Signal
 
 Array = NDArray[np.float64]
@@ -28,7 +28,7 @@ NULLS_TO = 30.0
 """Above it [Hz] no axle hops."""
 LOBES_SOUGHT = 2000.0
 """So many lobes of all humps' spectra together are searched for nulls: a second of work."""
-_EXCITATIONS = ExcitationCache()
+_EXCITATIONS = LastUsed[Excitation](lambda item: item.nbytes)
 
 
 @dataclass(frozen=True)
@@ -128,9 +128,24 @@ class Scenario:
 
         Neither they nor the arrays of the scenario are to be written to: the last excitations are remembered.
         """
-        road = (*self._road_key, self.track.scale, *self._speed_key, np.asarray(offsets, dtype=float).tobytes())
-        key = (*road, self.start, self.dt, len(self.time), id(self.ground), id(self.forces))
-        return _EXCITATIONS.find(key, (self.track, self.speed, self.ground, self.forces), lambda: self.new_excitation(offsets))
+        key = self._drive_key, np.asarray(offsets, dtype=float).tobytes()
+        return _EXCITATIONS.find(key, self.sources, lambda: self.new_excitation(offsets))
+
+    @property
+    def key(self) -> Hashable:
+        """What decides how a vehicle answers: scenarios of equal keys are equal, as long as their `sources` live."""
+        begun = None if self.initial is None else self.initial.tobytes()
+        return self._drive_key, self.decimation, self.skipped, begun, id(self.chains)
+
+    @property
+    def sources(self) -> tuple[object, ...]:
+        """The objects that :attr:`key` knows by their ids."""
+        return self.track, self.speed, self.ground, self.forces, self.chains
+
+    @property
+    def _drive_key(self) -> tuple[object, ...]:
+        road = (*self._road_key, self.track.scale, *self._speed_key)
+        return (*road, self.start, self.dt, len(self.time), id(self.ground), id(self.forces))
 
     @property
     def _road_key(self) -> tuple[object, ...]:
