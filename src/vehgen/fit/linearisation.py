@@ -60,9 +60,9 @@ class Linearisation:
         """
         information, gradient = np.zeros((self.n_unknowns, self.n_unknowns)), np.zeros(self.n_unknowns)
         for block, columns, line in zip(self.blocks, self.columns, lines, strict=True):
-            flat = flatten(block, first=1)
-            information[np.ix_(columns, columns)] += flat @ flat.T
-            gradient[columns] += flat @ flatten(line)
+            rows = np.ascontiguousarray(block).reshape(len(block), -1).view(np.float64)
+            information[np.ix_(columns, columns)] += 2 * rows @ rows.T
+            gradient[columns] += 2 * rows @ np.ascontiguousarray(line).ravel().view(np.float64)
         held = np.arange(self.n_unknowns - self.n_priors, self.n_unknowns)
         information[held, held] += 1.0
         gradient[held] += x[held]
@@ -112,15 +112,14 @@ class _Trial:
         wanted = [i for i, item in enumerate(items) if item.moves_vehicle and i - len(sensors) not in (known or {})]
         slopes: Slopes = {**(known or {}), **{i - len(sensors): own for i, own in self._by_errors(wanted).items()}}
         motions = np.concatenate(
-            [self.by_parameter, np.reshape(by_shared, (-1, *self.centre.shape)), *(own[None] for own in slopes.values())]
+            [self.centre[None], self.by_parameter, np.reshape(by_shared, (-1, *self.centre.shape)), *(own[None] for own in slopes.values())]
         )
-        lines = misfit.channel_lines(self.number, motions, self.error)
+        unread = misfit.unread(self.number, motions, self.error)
+        lines = misfit.read(self.number, unread[1:], self.error)
         n = len(self.by_parameter) + len(shared)
         by_error = dict(zip(slopes, lines[n:], strict=True))
-        unread, ahead, behind = (
-            misfit.unread(self.number, self.centre, self.error, later) for later in (0.0, WINDOW_SHIFT_S, -WINDOW_SHIFT_S)
-        )
-        read = misfit.read_slopes(self.number, unread, self.error, (ahead - behind) / (2 * WINDOW_SHIFT_S))
+        ahead, behind = (misfit.unread(self.number, self.centre, self.error, later) for later in (WINDOW_SHIFT_S, -WINDOW_SHIFT_S))
+        read = misfit.read_slopes(self.number, unread[0], self.error, (ahead - behind) / (2 * WINDOW_SHIFT_S))
         rows = [by_error[i - len(sensors)] if item.moves_vehicle else read[i] for i, item in enumerate(items)]
         return -misfit.whiten(self.number, np.concatenate([lines[:n], np.reshape(rows, (-1, *lines.shape[1:]))])), slopes
 

@@ -49,15 +49,21 @@ def transform(values: Array, dt: float, inside: NDArray[np.bool_], late: Array |
     `late shape (n_channels,)` [s] moves each channel's window so much earlier: lines turned by that delay are then those of the delayed
     channel under the window as it is.
     """
-    window = taper(values.shape[-2], dt, seen.fade_in)
-    windows = window[:, None]
-    if late is not None and late.any():
-        moved = {item: _moved(window, item / dt) for item in dict.fromkeys(late.tolist())}
-        windows = np.column_stack([moved[item] for item in late.tolist()])
+    windows, scale = _windows(values.shape[-2], dt, seen.fade_in, None if late is None else tuple(late.tolist()))
     if seen.zeroed:
         values = values - (values * windows).sum(axis=-2, keepdims=True) / windows.sum(axis=0)
-    scaled = windows * np.sqrt(2 * dt / (window @ window))
-    return np.asarray(np.fft.rfft(values * scaled, axis=-2)[..., _stretch(inside), :])
+    return np.asarray(np.fft.rfft(values * scale, axis=-2)[..., _stretch(inside), :])
+
+
+@lru_cache(maxsize=64)
+def _windows(n_samples: int, dt: float, fade_in: float, late: tuple[float, ...] | None) -> tuple[Array, Array]:
+    """Return the windows of channels, `shape (n_samples, n_channels)` or, without delays, (n_samples, 1); and these scaled."""
+    window = taper(n_samples, dt, fade_in)
+    windows = window[:, None]
+    if late is not None and any(late):
+        moved = {item: _moved(window, item / dt) for item in dict.fromkeys(late)}
+        windows = np.column_stack([moved[item] for item in late])
+    return windows, windows * np.sqrt(2 * dt / (window @ window))
 
 
 def _stretch(inside: NDArray[np.bool_]) -> NDArray[np.bool_] | slice:
