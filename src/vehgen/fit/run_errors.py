@@ -91,12 +91,12 @@ class RunErrors:
 
     def _forces(self, numbers: Array) -> list[tuple[float, float]]:
         """Return gain and offset [N] of every force; nothing where no input has errors."""
-        values = self._of_inputs(numbers)
+        values = self._of_inputs(numbers) if self.forces else {}
         return [(1 + values.get(("force_gain", name), 0.0), values.get(("force_offset", name), 0.0)) for name in self.forces if values]
 
     def _displacements(self, numbers: Array) -> list[float]:
         """Return the gain of every displacement of the ground; nothing where no input has errors."""
-        values = self._of_inputs(numbers)
+        values = self._of_inputs(numbers) if self.ground else {}
         return [1 + values.get(("displacement_gain", name), 0.0) for name in self.ground if values]
 
     def _of_inputs(self, numbers: Array) -> dict[tuple[str, str], float]:

@@ -74,8 +74,8 @@ def _stretch(inside: NDArray[np.bool_]) -> NDArray[np.bool_] | slice:
 
 def _moved(window: Array, samples: float) -> Array:
     """Return a window so many samples earlier, between its samples linear; what came before the record counts nothing."""
-    whole = math.floor(samples)
-    around = np.concatenate([[0.0], window, [0.0]])
-    here = np.clip(np.arange(1, len(window) + 1) + whole, 0, len(window) + 1)
-    after = np.minimum(here + 1, len(window) + 1)
-    return np.asarray(around[here] + (samples - whole) * (around[after] - around[here]))
+    whole = int(np.clip(math.floor(samples), -len(window), len(window)))
+    nothing = np.zeros(abs(whole) + 1)
+    around, first = np.concatenate([nothing, window, nothing]), len(nothing) + whole
+    here, after = (around[start : start + len(window)] for start in (first, first + 1))
+    return np.asarray(here + (samples - math.floor(samples)) * (after - here))
