@@ -60,7 +60,7 @@ class Linearisation:
         """
         information, gradient = np.zeros((self.n_unknowns, self.n_unknowns)), np.zeros(self.n_unknowns)
         for block, columns, line in zip(self.blocks, self.columns, lines, strict=True):
-            rows = np.ascontiguousarray(block).reshape(len(block), -1).view(np.float64)
+            rows = np.ascontiguousarray(block).view(np.float64).reshape(len(block), 2 * line.size)
             information[np.ix_(columns, columns)] += 2 * rows @ rows.T
             gradient[columns] += 2 * rows @ np.ascontiguousarray(line).ravel().view(np.float64)
         held = np.arange(self.n_unknowns - self.n_priors, self.n_unknowns)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,7 +55,7 @@ class Scenario:
 
     def __post_init__(self) -> None:
         steps = round(self.duration / (self.dt * self.decimation)) * self.decimation
-        object.__setattr__(self, "time", self.start + np.arange(steps + 1) * self.dt)
+        object.__setattr__(self, "time", _times(self.start, self.dt, steps))
 
     def chain(self, channel: str) -> AcquisitionChain:
         """Return what acquires a channel."""
@@ -179,6 +179,13 @@ class Scenario:
                 np.zeros_like(self.time) if signal is None else (signal.at(self.time + half) - signal.at(self.time - half)) / self.dt
             )
         forces = np.column_stack([signal.at(self.time) for signal in self.forces]) if self.forces else np.zeros((len(self.time), 0))
-        inputs = np.column_stack([wheels.heights, *ground])
-        rates = np.column_stack([wheels.rates, *ground_rates])
+        inputs, rates = (np.ascontiguousarray(np.column_stack(item)) for item in ([wheels.heights, *ground], [wheels.rates, *ground_rates]))
         return Excitation(self.dt, inputs, rates, forces)
+
+
+@lru_cache(maxsize=64)
+def _times(start: float, dt: float, steps: int) -> Array:
+    """Return the times of so many steps [s]: not to be written to."""
+    times = np.asarray(start + np.arange(steps + 1) * dt, dtype=np.float64)
+    times.setflags(write=False)
+    return times
