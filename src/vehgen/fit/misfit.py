@@ -286,7 +286,8 @@ class Misfit:
 
 
 def _apply(whitener: Complex, lines: Complex) -> Complex:
-    rows = lines.reshape(math.prod(lines.shape[:-2]), *lines.shape[-2:]).swapaxes(0, 1)  # line by line, many at once: matrices of their own would be slow
+    """Return whitened lines: one product of matrices a line for all spectra, as many small products would be slow."""
+    rows = lines.reshape(math.prod(lines.shape[:-2]), *lines.shape[-2:]).swapaxes(0, 1)
     return np.asarray((rows @ whitener.swapaxes(-1, -2)).swapaxes(0, 1).reshape(lines.shape))
 
 
