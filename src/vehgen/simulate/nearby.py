@@ -25,15 +25,18 @@ def nearby_excitation(scenario: Scenario, others: Sequence[Scenario], offsets: A
         Each axle's distance behind the first to arrive `shape (n_axles,)` [m].
     """
     centre, n_axles = scenario.excitation(offsets), len(offsets)
-    inputs, rates, forces = (np.repeat(item[None], 1 + len(others), axis=0) for item in (centre.inputs, centre.rates, centre.forces))
+    inputs, rates = (np.empty((1 + len(others), *centre.inputs.shape)) for _ in range(2))
+    forces = np.repeat(centre.forces[None], 1 + len(others), axis=0)
+    for own, item in ((inputs, centre.inputs), (rates, centre.rates)):
+        own[0], own[1:, :, n_axles:] = item, item[:, n_axles:]
     by_road, by_speed = [], []
     for i, other in enumerate(others, start=1):
         same = other.ground is scenario.ground and other.forces is scenario.forces
         if same and other.same_road(scenario):
             by_speed.append(i)
         elif same and other.same_speed(scenario) and other.same_road(scenario, but_height=True) and scenario.track.scale != 0:
-            for item in (inputs, rates):
-                item[i, :, :n_axles] *= other.track.scale / scenario.track.scale
+            factor = other.track.scale / scenario.track.scale
+            inputs[i, :, :n_axles], rates[i, :, :n_axles] = factor * centre.inputs[:, :n_axles], factor * centre.rates[:, :n_axles]
         elif same and other.same_speed(scenario):
             by_road.append(i)
         else:
