@@ -74,7 +74,7 @@ def _stretch(inside: NDArray[np.bool_]) -> NDArray[np.bool_] | slice:
 
 def _moved(window: Array, samples: float) -> Array:
     """Return a window so many samples earlier, between its samples linear; what came before the record counts nothing."""
-    whole = int(np.clip(math.floor(samples), -len(window), len(window)))
+    whole = min(max(math.floor(samples), -len(window)), len(window))
     nothing = np.zeros(abs(whole) + 1)
     around, first = np.concatenate([nothing, window, nothing]), len(nothing) + whole
     here, after = (around[start : start + len(window)] for start in (first, first + 1))

@@ -39,11 +39,11 @@ class Hump:
 
     def height(self, s: Array) -> Array:
         """Return the height at positions s along the road [m]; zero outside the hump."""
-        local = np.asarray(s, dtype=np.float64) - self.at
-        inside = np.nonzero((local > 0) & (local < self.length))
-        heights = np.zeros(local.shape)
+        local = (np.asarray(s, dtype=np.float64) - self.at).ravel()
+        inside = np.flatnonzero((local > 0) & (local < self.length))
+        heights = np.zeros(len(local))
         heights[inside] = self.shape(local[inside])
-        return heights
+        return heights.reshape(np.shape(s))
 
     @classmethod
     def from_shape(cls, name: str, at: float, length: float, height: float, **extra: float) -> Hump:

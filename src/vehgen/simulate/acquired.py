@@ -31,7 +31,7 @@ LEAST_RATIO = 5
 """Kept steps per sample, at least, of what a FIR filter decimates ..."""
 LEAST_RATE = 500.0
 """... and kept steps per second [Hz], where the internal step is as short."""
-DIRECT_PRODUCTS = 400_000
+DIRECT_PRODUCTS = 1_000_000
 """Products up to which a column is convolved directly: a hump is short."""
 _FILTERED = LastUsed[Excitation](lambda item: item.nbytes)
 
@@ -161,13 +161,18 @@ def _convolved(signal: Array, taps: Array, start: int, count: int) -> Array:
     else:
         n = len(signal) + len(taps) - 1
         size = scipy.fft.next_fast_len(n, real=True)
-        lines = scipy.fft.rfft(signal, size, axis=0) * scipy.fft.rfft(taps, size)[:, None]
+        lines = scipy.fft.rfft(signal, size, axis=0) * _spectrum(taps.tobytes(), size)[:, None]
         parts, columns = [(0, column) for column in scipy.fft.irfft(lines, size, axis=0)[:n].T], list(range(signal.shape[1]))
     for k, (begin, part) in zip(columns, parts, strict=True):
         low, high = max(begin, start), min(begin + len(part), start + count)
         if low < high:
             found[low - start : high - start, k] = part[low - begin : high - begin]
     return found
+
+
+@lru_cache(maxsize=16)
+def _spectrum(taps: bytes, size: int) -> Complex:
+    return np.asarray(scipy.fft.rfft(np.frombuffer(taps), size), dtype=np.complex128)
 
 
 def kept_stride(scenario: Scenario) -> int:

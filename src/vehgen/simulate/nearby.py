@@ -40,8 +40,8 @@ def nearby_excitation(scenario: Scenario, others: Sequence[Scenario], offsets: A
         elif same and other.same_speed(scenario):
             by_road.append(i)
         else:
-            own = other.new_excitation(offsets)
-            inputs[i], rates[i], forces[i] = own.inputs, own.rates, own.forces
+            found = other.new_excitation(offsets)
+            inputs[i], rates[i], forces[i] = found.inputs, found.rates, found.forces
     tracks, speeds = [others[i - 1].track for i in by_road], [others[i - 1].speed for i in by_speed]
     near = nearby_inputs(scenario.track, scenario.speed, tracks, speeds, offsets, scenario.time)
     for i, wheels in zip((*by_road, *by_speed), near, strict=True):

@@ -171,15 +171,14 @@ class Scenario:
     def new_excitation(self, offsets: Array) -> Excitation:
         """Return what :meth:`excitation` does, neither looked up nor remembered."""
         wheels = wheel_inputs(self.track, self.speed, offsets, self.time)
-        half = self.dt / 2
-        ground, ground_rates = [], []
-        for signal in self.ground:
-            ground.append(np.zeros_like(self.time) if signal is None else signal.at(self.time))
-            ground_rates.append(
-                np.zeros_like(self.time) if signal is None else (signal.at(self.time + half) - signal.at(self.time - half)) / self.dt
-            )
+        n_axles, half = wheels.heights.shape[1], self.dt / 2
+        inputs, rates = (np.zeros((len(self.time), n_axles + len(self.ground))) for _ in range(2))
+        inputs[:, :n_axles], rates[:, :n_axles] = wheels.heights, wheels.rates
+        for i, signal in enumerate(self.ground, start=n_axles):
+            if signal is not None:
+                inputs[:, i] = signal.at(self.time)
+                rates[:, i] = (signal.at(self.time + half) - signal.at(self.time - half)) / self.dt
         forces = np.column_stack([signal.at(self.time) for signal in self.forces]) if self.forces else np.zeros((len(self.time), 0))
-        inputs, rates = (np.ascontiguousarray(np.column_stack(item)) for item in ([wheels.heights, *ground], [wheels.rates, *ground_rates]))
         return Excitation(self.dt, inputs, rates, forces)
 
 
