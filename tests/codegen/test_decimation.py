@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vehgen.codegen.decimation import decimate
+from vehgen.codegen.decimation import Phases, decimate
 
 
 @pytest.mark.parametrize("ratio", [1, 2, 5])
@@ -13,7 +13,7 @@ def test_samples_are_those_of_a_whole_convolution(ratio, firsts):
     fine = random.standard_normal((3, 230, 2))
     filters = [(first, random.standard_normal(size)) for first, size in zip(firsts, (13, 38), strict=True)]
     count = 200 // ratio
-    found = decimate(fine, filters, ratio, count)
+    found = decimate(fine, Phases.of(filters, ratio), count)
     for channel, (first, taps) in enumerate(filters):
         for individual in range(3):
             whole = np.concatenate([np.zeros(300), np.convolve(fine[individual, :, channel], taps), np.zeros(300)])
@@ -25,7 +25,9 @@ def test_an_individual_is_filtered_as_it_is_alone_and_a_failed_one_spoils_no_oth
     fine = np.random.default_rng(1).standard_normal((4, 300, 3))
     fine[2, 50:] = np.nan
     filters = [(-3, np.ones(20) / 20)] * 3
-    together = decimate(fine, filters, 5, 55)
+    together = decimate(fine, Phases.of(filters, 5), 55)
     assert np.isnan(together[2]).any()
     for individual in (0, 1, 3):
-        np.testing.assert_array_equal(decimate(fine[individual : individual + 1], filters, 5, 55, threads=1)[0], together[individual])
+        np.testing.assert_array_equal(
+            decimate(fine[individual : individual + 1], Phases.of(filters, 5), 55, threads=1)[0], together[individual]
+        )

@@ -52,7 +52,8 @@ class PsdObjective:
         parts = []
         for trial, (inside, density) in zip(self.problem.trials, self._measured, strict=True):
             responses, failed = self.problem.respond(values, trial)
-            responses[failed] = 0.0
+            if failed.any():
+                responses = np.where(failed[:, None, None], 0.0, responses)
             parts.append(_terms(responses, trial.recording.dt, inside, density))
             parts[-1][failed] = np.inf
         return np.concatenate(parts, axis=1)

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import inspect
 import os
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from functools import cache
 from types import ModuleType
 
@@ -65,17 +67,41 @@ def _module() -> ModuleType:
     return import_kernel(_HEAD + inspect.getsource(filter_phases))
 
 
-def decimate(fine: Array, filters: list[tuple[int, Array]], ratio: int, count: int, threads: int | None = None) -> Array:
-    """Return every `ratio`-th number of filtered signals that rest before their beginning, and after their end.
+@dataclass(frozen=True)
+class Phases:
+    """Filters split into the phases of what they decimate, as :func:`filter_phases` reads them.
+
+    `weights shape (n_channels, ratio, n_shifts)`; `last` is the number of the last shift.
+    """
+
+    weights: Array
+    last: int
+
+    @classmethod
+    def of(cls, filters: Sequence[tuple[int, Array]], ratio: int) -> Phases:
+        """Return the phases of filters, each the number of its first tap (below 0: it looks ahead) and its taps.
+
+        `ratio` is how many of the signals' numbers there are a sample.
+        """
+        lowest = min(first // ratio for first, _ in filters)
+        last = max((first + len(taps) - 1) // ratio for first, taps in filters)
+        n_shifts = -(-(last - lowest + 1) // TAPS_AT_ONCE) * TAPS_AT_ONCE
+        weights = np.zeros((len(filters), ratio, n_shifts))
+        for channel, (first, taps) in enumerate(filters):
+            shift, phase = np.divmod(first + np.arange(len(taps)), ratio)
+            weights[channel, phase, last - shift] = taps
+        return cls(weights, last)
+
+
+def decimate(fine: Array, phases: Phases, count: int, threads: int | None = None) -> Array:
+    """Return filtered and decimated signals that rest before their beginning, and after their end.
 
     Parameters
     ----------
     fine
         `shape (n, n_fine, n_channels)`.
-    filters
-        Number of the first tap (below 0: it looks ahead) and taps of every channel.
-    ratio
-        How many of the signals' numbers there are a sample.
+    phases
+        Every channel's filter.
     count
         How many samples are wanted.
     threads
@@ -85,22 +111,15 @@ def decimate(fine: Array, filters: list[tuple[int, Array]], ratio: int, count: i
     -------
     `shape (n, count, n_channels)`.
     """
-    lowest = min(first // ratio for first, _ in filters)
-    last = max((first + len(taps) - 1) // ratio for first, taps in filters)
-    n_shifts = -(-(last - lowest + 1) // TAPS_AT_ONCE) * TAPS_AT_ONCE
-    weights = np.zeros((len(filters), ratio, n_shifts))
-    for channel, (first, taps) in enumerate(filters):
-        shift, phase = np.divmod(first + np.arange(len(taps)), ratio)
-        weights[channel, phase, last - shift] = taps
     fine = np.ascontiguousarray(fine)
-    found = np.empty((len(fine), count, len(filters)))
+    found = np.empty((len(fine), count, len(phases.weights)))
     workers = min(threads or os.cpu_count() or 1, len(fine)) if fine.size > MANY_NUMBERS and len(fine) > 1 else 1
     bounds = np.linspace(0, len(fine), workers + 1).astype(int).tolist()
     run = _module().filter_phases
 
     def part(number: int) -> None:
         piece = slice(bounds[number], bounds[number + 1])
-        run(fine[piece], weights, last, found[piece])
+        run(fine[piece], phases.weights, phases.last, found[piece])
 
     if workers > 1:
         with ThreadPoolExecutor(workers) as pool:

@@ -50,6 +50,11 @@ class Excitation:
         """Times of the inputs [s]."""
         return np.arange(self.n_steps + 1, dtype=np.float64) * self.dt
 
+    @property
+    def nbytes(self) -> int:
+        """Size of its arrays [bytes]."""
+        return int(self.inputs.nbytes + self.rates.nbytes + self.forces.nbytes)
+
 
 @dataclass(frozen=True)
 class KernelResult:

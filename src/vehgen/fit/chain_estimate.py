@@ -15,7 +15,7 @@ import scipy.optimize
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from vehgen.codegen.decimation import decimate
+from vehgen.codegen.decimation import Phases, decimate
 from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
@@ -76,8 +76,8 @@ class FineResponse:
 
     def acquired(self, chains: Sequence[AcquisitionChain]) -> Array:
         """Return the samples that chains, one a channel, make of it, `shape (count, n_channels)`."""
-        filters = [chain.taps(self.dt) for chain in chains]
-        return np.asarray(decimate(self.values[None], filters, self.ratio, self.skipped + self.count, threads=1)[0][self.skipped :])
+        phases = Phases.of([chain.taps(self.dt) for chain in chains], self.ratio)
+        return np.asarray(decimate(self.values[None], phases, self.skipped + self.count, threads=1)[0][self.skipped :])
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ def fine_response(misfit: Misfit, x: Array, number: int) -> FineResponse:
     ratio = scenario.decimation // stride
     longer = extended(scenario, int(np.ceil(LOOK_AHEAD_S / (scenario.dt * scenario.decimation))))
     fine = replace(longer, decimation=stride, chains={}, skipped=0)
-    values = misfit.problem.respond(misfit.problem.space.values(unit)[None], trial, fine)[0][0]
+    values = np.array(misfit.problem.respond(misfit.problem.space.values(unit)[None], trial, fine)[0][0])
     return FineResponse(values, fine.dt * stride, ratio, len(trial.recording.time), scenario.skipped)
 
 

@@ -12,13 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.fit.misfit import Array, Complex, Misfit, flatten
-from vehgen.fit.nuisances import OF_TIME
 
 UNIT_DIFFERENCE = 1e-6
 """Step of the differences to each side, in the unit cube and in units of an error's uncertainty: so short that jumps of a response
 seldom cross a sample."""
-READING_DIFFERENCE = 1e-3
-"""The same for what only changes when a channel is read."""
+WINDOW_SHIFT_S = 1e-5
+"""The same for the windows of channels that are late [s]."""
 Slopes = dict[int, Array]
 """Derivatives of a run's motions `shape (n_samples, n_channels)` by its own errors, by their number."""
 
@@ -61,9 +60,9 @@ class Linearisation:
         """
         information, gradient = np.zeros((self.n_unknowns, self.n_unknowns)), np.zeros(self.n_unknowns)
         for block, columns, line in zip(self.blocks, self.columns, lines, strict=True):
-            flat = flatten(block, first=1)
-            information[np.ix_(columns, columns)] += flat @ flat.T
-            gradient[columns] += flat @ flatten(line)
+            rows = np.ascontiguousarray(block).view(np.float64).reshape(len(block), 2 * line.size)
+            information[np.ix_(columns, columns)] += 2 * rows @ rows.T
+            gradient[columns] += 2 * rows @ np.ascontiguousarray(line).ravel().view(np.float64)
         held = np.arange(self.n_unknowns - self.n_priors, self.n_unknowns)
         information[held, held] += 1.0
         gradient[held] += x[held]
@@ -113,15 +112,14 @@ class _Trial:
         wanted = [i for i, item in enumerate(items) if item.moves_vehicle and i - len(sensors) not in (known or {})]
         slopes: Slopes = {**(known or {}), **{i - len(sensors): own for i, own in self._by_errors(wanted).items()}}
         motions = np.concatenate(
-            [self.by_parameter, np.reshape(by_shared, (-1, *self.centre.shape)), *(own[None] for own in slopes.values())]
+            [self.centre[None], self.by_parameter, np.reshape(by_shared, (-1, *self.centre.shape)), *(own[None] for own in slopes.values())]
         )
-        lines = misfit.channel_lines(self.number, motions, self.error)
+        unread = misfit.unread(self.number, motions, self.error)
+        lines = misfit.read(self.number, unread[1:], self.error)
         n = len(self.by_parameter) + len(shared)
         by_error = dict(zip(slopes, lines[n:], strict=True))
-        read = misfit.read_slopes(self.number, misfit.unread(self.number, self.centre, self.error), self.error)
-        for i in read:
-            if items[i].name in OF_TIME:
-                read[i] = self._late(i)
+        ahead, behind = (misfit.unread(self.number, self.centre, self.error, later) for later in (WINDOW_SHIFT_S, -WINDOW_SHIFT_S))
+        read = misfit.read_slopes(self.number, unread[0], self.error, (ahead - behind) / (2 * WINDOW_SHIFT_S))
         rows = [by_error[i - len(sensors)] if item.moves_vehicle else read[i] for i, item in enumerate(items)]
         return -misfit.whiten(self.number, np.concatenate([lines[:n], np.reshape(rows, (-1, *lines.shape[1:]))])), slopes
 
@@ -143,15 +141,6 @@ class _Trial:
         if self.one_sided:
             return dict(zip(wanted, (responses[1:] - responses[0]) / UNIT_DIFFERENCE, strict=True))
         return dict(zip(wanted, (responses[1 : n + 1] - responses[n + 1 :]) / (2 * UNIT_DIFFERENCE), strict=True))
-
-    def _late(self, i: int) -> Complex:
-        """Return the derivative of the lines by an error of time.
-
-        A late clock moves the window, too: along the valley in which clocks and a sensor's delay make up for each other even that counts.
-        """
-        step = READING_DIFFERENCE * np.eye(len(self.error))[i]
-        late, early = (self.misfit.channel_lines(self.number, self.centre, self.error + own) for own in (step, -step))
-        return np.asarray((late - early) / (2 * READING_DIFFERENCE))
 
 
 class Lineariser:

@@ -211,22 +211,22 @@ class Misfit:
         """Return the spectral lines of what trial `number`'s sensors read of motions `shape (..., n_samples, n_channels)`."""
         return self.read(number, self.unread(number, response, error), error)
 
-    def unread(self, number: int, response: Array, error: Array) -> Complex:
-        """Return the spectral lines of motions under the windows of late clocks, which :meth:`read` then turns."""
-        trial = self.problem.trials[number]
-        return transform(response, trial.recording.dt, self._weights[number].inside, self.errors[number].clocks(error), trial.window)
+    def unread(self, number: int, response: Array, error: Array, later: float = 0.0) -> Complex:
+        """Return the spectral lines of motions under the windows of late clocks, all `later` [s], which :meth:`read` then turns."""
+        trial, clocks = self.problem.trials[number], self.errors[number].clocks(error) + later
+        return transform(response, trial.recording.dt, self._weights[number].inside, clocks, trial.window)
 
     def read(self, number: int, lines: Complex, error: Array) -> Complex:
         """Return what trial `number`'s sensors make of spectral lines of motions `shape (..., n_lines, n_channels)`."""
         reading = self.errors[number].reading(self.frequency(number), error)
         return lines if reading is None else reading.apply(lines)
 
-    def read_slopes(self, number: int, lines: Complex, error: Array) -> dict[int, Complex]:
+    def read_slopes(self, number: int, lines: Complex, error: Array, later: Complex) -> dict[int, Complex]:
         """Return the derivatives of :meth:`read` of lines `shape (n_lines, n_channels)` by errors of readings alone, by their number.
 
-        Those of time are for windows that stand.
+        `later` are the derivatives of the lines by how late their windows are [1/s].
         """
-        return self.errors[number].read_slopes(self.frequency(number), error, lines)
+        return self.errors[number].read_slopes(self.frequency(number), error, lines, later)
 
     def read_at(self, number: int, lines: Complex, x: Array) -> Complex:
         """Return :meth:`read` of lines at all unknowns x."""
@@ -286,7 +286,9 @@ class Misfit:
 
 
 def _apply(whitener: Complex, lines: Complex) -> Complex:
-    return np.asarray((whitener @ lines[..., None])[..., 0])
+    """Return whitened lines: one product of matrices a line for all spectra, as many small products would be slow."""
+    rows = lines.reshape(math.prod(lines.shape[:-2]), *lines.shape[-2:]).swapaxes(0, 1)
+    return np.asarray((rows @ whitener.swapaxes(-1, -2)).swapaxes(0, 1).reshape(lines.shape))
 
 
 def flatten(white: Complex, first: int = 0) -> Array:

@@ -13,8 +13,14 @@ from vehgen.errors import InputError, ModelWarning
 from vehgen.fit.space import SearchSpace, search_space
 from vehgen.fit.trial import Trial
 from vehgen.simulate import Scenario, SimulatorPool
+from vehgen.simulate.last_used import LastUsed
 
 Array = NDArray[np.float64]
+Responses = tuple[Array, NDArray[np.bool_]]
+"""Responses `shape (n, n_samples, n_channels)`, and which of them failed `shape (n,)`."""
+REMEMBERED_UP_TO = 32
+"""Populations of a search come but once; a fit asks again for the few individuals of its points."""
+_RESPONSES = LastUsed[Responses](lambda item: item[0].nbytes)
 
 
 @dataclass(frozen=True)
@@ -34,7 +40,7 @@ class Problem:
                 found[:, names.index(name)] = values[:, column]
         return found
 
-    def respond(self, values: Array, trial: Trial, scenario: Scenario | None = None) -> tuple[Array, NDArray[np.bool_]]:
+    def respond(self, values: Array, trial: Trial, scenario: Scenario | None = None) -> Responses:
         """Simulate searched values over a trial.
 
         Parameters
@@ -48,14 +54,14 @@ class Problem:
 
         Returns
         -------
-        responses `shape (n, n_samples, n_channels)`, and which of them failed `shape (n,)`.
+        responses `shape (n, n_samples, n_channels)`, and which of them failed `shape (n,)`; neither is to be written to: the last ones of
+        a few individuals are remembered.
         """
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ModelWarning)
-            result = trial.simulator.run(self.population(values, trial), scenario or trial.scenario)
-        failed = np.zeros(len(values), dtype=bool)
-        failed[list(result.failures)] = True
-        return result.responses, failed
+        population, scenario = self.population(values, trial), scenario or trial.scenario
+        if len(values) > REMEMBERED_UP_TO:
+            return _simulated(trial, population, scenario)
+        key = id(trial.simulator), scenario.key, population.tobytes()
+        return _RESPONSES.find(key, (trial.simulator, scenario.sources), lambda: _simulated(trial, population, scenario))
 
     def respond_nearby(self, values: Array, trial: Trial, scenario: Scenario, others: Sequence[Scenario]) -> Array:
         """Simulate searched values `shape (space.size,)` [SI] over a scenario of a trial and others that hardly differ from it.
@@ -87,6 +93,16 @@ class Problem:
     def best_values(self, values: Array) -> dict[str, float]:
         """Return searched values `shape (space.size,)` by name [SI]."""
         return {name: float(value) for name, value in zip(self.space.names, values, strict=True)}
+
+
+def _simulated(trial: Trial, population: Array, scenario: Scenario) -> Responses:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        result = trial.simulator.run(population, scenario)
+    failed = np.zeros(len(population), dtype=bool)
+    failed[list(result.failures)] = True
+    result.responses.setflags(write=False)
+    return result.responses, failed
 
 
 def make_problem(trials: Sequence[Trial], names: Sequence[str] | None = None) -> Problem:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,11 +52,12 @@ class Reading:
         """Return what channels read whose clocks are `late shape (n_channels,)` [s]."""
         omega, x = 2 * np.pi * frequency, 2 * frequency / rate
         square = x * x
-        turned = np.empty((len(frequency), len(channels)), dtype=np.complex128)
+        turned = np.ones((len(frequency), len(channels)), dtype=np.complex128)
         for i, (name, sensor, _) in enumerate(channels):
-            phase = late[i] * omega + values.get(("dispersion", sensor), 0.0) * square * x
-            lost = values.get(("roll_off", sensor), 0.0) * square
-            turned[:, i] = np.exp(-lost - 1j * phase) * (1 + values.get(("gain", name), 0.0))
+            dispersion, roll_off = (values.get((error, sensor), 0.0) for error in ("dispersion", "roll_off"))
+            if late[i] or dispersion or roll_off:
+                turned[:, i] = np.exp(-roll_off * square - 1j * (late[i] * omega + dispersion * square * x))
+            turned[:, i] *= 1 + values.get(("gain", name), 0.0)
         columns = {sensor: i for i, (_, sensor, quantity) in enumerate(channels) if quantity == "pitch_rate"}
         beside = {
             i: columns[sensor] for i, (_, sensor, quantity) in enumerate(channels) if quantity == "acceleration" and sensor in columns
@@ -67,11 +69,9 @@ class Reading:
         found = self.turned * lines
         for i, column in self.beside.items():
             tilt, shift = self._mounting(self.channels[i][1])
-            found[..., i] *= math.cos(tilt)
             if tilt or shift:
-                found[..., i] += (
-                    self.turned[:, i] * 1j * (GRAVITY * math.sin(tilt) * self._pitch - shift * self._omega) * lines[..., column]
-                )
+                along = self.turned[:, i] * 1j * (GRAVITY * math.sin(tilt) * self._pitch - shift * self._omega)
+                found[..., i] = math.cos(tilt) * found[..., i] + along * lines[..., column]
         return np.asarray(found)
 
     def slope(self, name: str, place: str, lines: Complex, read: Complex) -> Complex:
@@ -106,11 +106,11 @@ class Reading:
     def _mounting(self, sensor: str) -> tuple[float, float]:
         return self.values.get(("tilt", sensor), 0.0), self.values.get(("position", sensor), 0.0)
 
-    @property
+    @cached_property
     def _omega(self) -> Array:
         return np.asarray(2 * np.pi * self.frequency)
 
-    @property
+    @cached_property
     def _pitch(self) -> Array:
         """A pitch over its rate, but for the phase; that at rest is taken off."""
         omega = self._omega

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.fit.nuisances import OF_INPUTS, READING, Nuisance
+from vehgen.fit.nuisances import OF_INPUTS, OF_TIME, READING, Nuisance
 from vehgen.fit.reading import Reading
 from vehgen.fit.trial import Trial
 from vehgen.road import Wander
@@ -91,12 +91,12 @@ class RunErrors:
 
     def _forces(self, numbers: Array) -> list[tuple[float, float]]:
         """Return gain and offset [N] of every force; nothing where no input has errors."""
-        values = self._of_inputs(numbers)
+        values = self._of_inputs(numbers) if self.forces else {}
         return [(1 + values.get(("force_gain", name), 0.0), values.get(("force_offset", name), 0.0)) for name in self.forces if values]
 
     def _displacements(self, numbers: Array) -> list[float]:
         """Return the gain of every displacement of the ground; nothing where no input has errors."""
-        values = self._of_inputs(numbers)
+        values = self._of_inputs(numbers) if self.ground else {}
         return [1 + values.get(("displacement_gain", name), 0.0) for name in self.ground if values]
 
     def _of_inputs(self, numbers: Array) -> dict[tuple[str, str], float]:
@@ -130,13 +130,19 @@ class RunErrors:
             return None
         return Reading.of(frequency, self.rate, self.channels, values, self._late(values))
 
-    def read_slopes(self, frequency: Array, numbers: Array, lines: Complex) -> dict[int, Complex]:
+    def read_slopes(self, frequency: Array, numbers: Array, lines: Complex, later: Complex) -> dict[int, Complex]:
         """Return the derivatives of what is read by the errors that change readings alone, by their number, `shape (n_lines, n_channels)`.
 
-        Of lines of motions `shape (n_lines, n_channels)`, under windows that stand.
+        Of lines of motions `shape (n_lines, n_channels)`, whose derivatives by how late each channel's window is [1/s] are `later`: a late
+        clock moves the window, too, and along the valley in which clocks and a sensor's delay make up for each other even that counts.
         """
         values = self._values(numbers)
         reading = Reading.of(frequency, self.rate, self.channels, values, self._late(values))
         read = reading.apply(lines)
-        named = ((i, item) for i, item in enumerate(self.items) if item.name in READING)
-        return {i: item.sigma * reading.slope(item.name, item.place, lines, read) for i, item in named}
+        found = {}
+        for i, item in enumerate(self.items):
+            if item.name in READING:
+                found[i] = item.sigma * reading.slope(item.name, item.place, lines, read)
+            if item.name in OF_TIME:
+                found[i] += reading.apply(later * self._late({(item.name, item.place): item.sigma}))
+        return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -48,12 +49,33 @@ def transform(values: Array, dt: float, inside: NDArray[np.bool_], late: Array |
     `late shape (n_channels,)` [s] moves each channel's window so much earlier: lines turned by that delay are then those of the delayed
     channel under the window as it is.
     """
-    window = taper(values.shape[-2], dt, seen.fade_in)
-    scale = np.sqrt(2 * dt / (window**2).sum())
-    windows = window[:, None]
-    if late is not None and late.any():
-        time = np.arange(-1, len(window)) * dt  # what came before the record counts nothing
-        windows = np.column_stack([np.interp(time[1:] + item, time, [0.0, *window], left=0.0, right=0.0) for item in late])
+    windows, scale = _windows(values.shape[-2], dt, seen.fade_in, None if late is None else tuple(late.tolist()))
     if seen.zeroed:
         values = values - (values * windows).sum(axis=-2, keepdims=True) / windows.sum(axis=0)
-    return np.asarray(np.fft.rfft(values * windows, axis=-2)[..., inside, :] * scale)
+    return np.asarray(np.fft.rfft(values * scale, axis=-2)[..., _stretch(inside), :])
+
+
+@lru_cache(maxsize=64)
+def _windows(n_samples: int, dt: float, fade_in: float, late: tuple[float, ...] | None) -> tuple[Array, Array]:
+    """Return the windows of channels, `shape (n_samples, n_channels)` or, without delays, (n_samples, 1); and these scaled."""
+    window = taper(n_samples, dt, fade_in)
+    windows = window[:, None]
+    if late is not None and any(late):
+        moved = {item: _moved(window, item / dt) for item in dict.fromkeys(late)}
+        windows = np.column_stack([moved[item] for item in late])
+    return windows, windows * np.sqrt(2 * dt / (window @ window))
+
+
+def _stretch(inside: NDArray[np.bool_]) -> NDArray[np.bool_] | slice:
+    """Return the lines inside a band as a slice, where they lie side by side: it is cut out without a copy."""
+    first, count = int(inside.argmax()), int(np.count_nonzero(inside))
+    return slice(first, first + count) if inside[first : first + count].all() else inside
+
+
+def _moved(window: Array, samples: float) -> Array:
+    """Return a window so many samples earlier, between its samples linear; what came before the record counts nothing."""
+    whole = min(max(math.floor(samples), -len(window)), len(window))
+    nothing = np.zeros(abs(whole) + 1)
+    around, first = np.concatenate([nothing, window, nothing]), len(nothing) + whole
+    here, after = (around[start : start + len(window)] for start in (first, first + 1))
+    return np.asarray(here + (samples - math.floor(samples)) * (after - here))

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
-import scipy.ndimage
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError, did_you_mean, shown
@@ -40,11 +39,11 @@ class Hump:
 
     def height(self, s: Array) -> Array:
         """Return the height at positions s along the road [m]; zero outside the hump."""
-        local = np.asarray(s, dtype=np.float64) - self.at
-        inside = (local > 0) & (local < self.length)
-        heights = np.zeros_like(local)
+        local = (np.asarray(s, dtype=np.float64) - self.at).ravel()
+        inside = np.flatnonzero((local > 0) & (local < self.length))
+        heights = np.zeros(len(local))
         heights[inside] = self.shape(local[inside])
-        return heights
+        return heights.reshape(np.shape(s))
 
     @classmethod
     def from_shape(cls, name: str, at: float, length: float, height: float, **extra: float) -> Hump:
@@ -98,7 +97,7 @@ class Hump:
         heights = np.zeros_like(distance)
         inside = (distance > 0) & (distance < length * self.length)
         heights[inside] = shape(distance[inside])
-        mean = scipy.ndimage.gaussian_filter1d(heights, _ROUNDED_BY_M / _ROUNDED_STEP_M, truncate=_ROUNDED_REACH_M / _ROUNDED_BY_M)
+        mean = np.convolve(heights, _rounding_weights(), mode="same")
         return Hump.from_points(self.at + distance[0], distance, heights + rounding / _ROUNDED_BY_M**2 * (mean - heights))
 
     def spectral_nulls(self, speed: float, f_max: float) -> Array:
@@ -176,9 +175,23 @@ def _deformed(s: Array, shape: Shape, whole: float, change: tuple[float, float, 
     share = s / (whole * length)
     heights = shape(whole * share)
     if form != 1.0:
-        highest = float(np.abs(shape(np.linspace(0.0, whole, 201))).max())
+        highest = _highest(shape, whole)
         heights = np.copysign(highest * (np.abs(heights) / highest) ** form, heights)
     return np.asarray(heights * (1 + skew * (2 * share - 1)))
+
+
+@lru_cache(maxsize=1)
+def _rounding_weights() -> Array:
+    """Return the weights of a Gaussian mean about the middle one."""
+    reach = round(_ROUNDED_REACH_M / _ROUNDED_STEP_M)
+    weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) * _ROUNDED_STEP_M / _ROUNDED_BY_M) ** 2)
+    return np.asarray(weights / weights.sum())
+
+
+@lru_cache(maxsize=64)
+def _highest(shape: Shape, whole: float) -> float:
+    """Return the largest height of a hump's shape, or depth."""
+    return float(np.abs(shape(np.linspace(0.0, whole, 201))).max())
 
 
 def _points(s: Array, distance: Array, height: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,7 +23,7 @@ _SLOPE_STEP_M = 1e-6
 
 @dataclass(frozen=True)
 class WheelInputs:
-    """Road `heights` [m] and their `rates` [m/s] under every axle, both `shape (..., n_steps + 1, n_axles)`."""
+    """Road `heights` [m] and their `rates` [m/s] under every axle, both `shape (n_steps + 1, n_axles)`."""
 
     heights: Array
     rates: Array
@@ -50,30 +50,35 @@ def wheel_inputs(track: Track, speed: SpeedLaw, offsets: Array, time: Array) -> 
     return _inputs(track.height(_under(speed.distance(_moments(time)), offsets)), _step(time))
 
 
-def nearby_inputs(track: Track, speed: SpeedLaw, others: Sequence[SpeedLaw], offsets: Array, time: Array) -> WheelInputs:
-    """Return the road under every axle at speeds that hardly differ from another one.
+def nearby_inputs(
+    track: Track, speed: SpeedLaw, tracks: Sequence[Track], speeds: Sequence[SpeedLaw], offsets: Array, time: Array
+) -> Iterator[WheelInputs]:
+    """Return the road under every axle in drives that hardly differ from another one.
 
-    Heights change as the road slopes where the wheels are: exact to the first order in how far the ways differ, which derivatives by
-    differences need, at the price of two looks at the road for all of them.
+    Over other tracks the ways are the same. At other speeds heights change as the road slopes where the wheels are: exact to the first
+    order in how far the ways differ, which derivatives by differences need, at the price of two looks at the road for all of them.
 
     Parameters
     ----------
     track, speed, offsets, time
         As in :func:`wheel_inputs`.
-    others
-        Speeds that hardly differ from `speed`.
+    tracks, speeds
+        Other tracks at this speed, and speeds that hardly differ over this track.
 
     Returns
     -------
-    Heights and rates, both `shape (len(others), n_steps + 1, n_axles)`.
+    Heights and rates over the tracks, then at the speeds, each in turn.
     """
     moments = _moments(time)
-    way = speed.distance(moments)
+    way, step = speed.distance(moments), _step(time)
     under = _under(way, offsets)
-    heights = track.height(under)
-    slopes = (track.height(under + _SLOPE_STEP_M) - heights) / _SLOPE_STEP_M
-    farther = np.stack([other.distance(moments) - way for other in others])
-    return _inputs(heights + slopes * farther[:, None, :], _step(time))
+    for other in tracks:
+        yield _inputs(other.height(under), step)
+    if speeds:
+        heights = track.height(under)
+        slopes = (track.height(under + _SLOPE_STEP_M) - heights) / _SLOPE_STEP_M
+        for law in speeds:
+            yield _inputs(heights + slopes * (law.distance(moments) - way), step)
 
 
 def _moments(time: Array) -> Array:
@@ -94,9 +99,8 @@ def _under(way: Array, offsets: Array) -> Array:
 
 
 def _inputs(heights: Array, step: float) -> WheelInputs:
-    """Return what heights `shape (..., n_axles, n_moments)` at the moments of a run make."""
-    rates = (heights[..., 2::2] - heights[..., :-2:2]) / step
-    return WheelInputs(np.swapaxes(heights[..., 1::2], -1, -2), np.swapaxes(rates, -1, -2))
+    """Return what heights `shape (n_axles, n_moments)` at the moments of a run make."""
+    return WheelInputs(heights[:, 1::2].T, ((heights[:, 2::2] - heights[:, :-2:2]) / step).T)
 
 
 def pass_time(track: Track, speed: SpeedLaw, offsets: Array) -> float:

@@ -10,15 +10,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
 from vehgen.codegen import Excitation, Kernel, KernelResult
-from vehgen.codegen.decimation import decimate
+from vehgen.codegen.decimation import Phases, decimate
 from vehgen.measure.acquisition import AcquisitionChain
-from vehgen.simulate.excitation_cache import ExcitationCache
+from vehgen.simulate.last_used import LastUsed
 from vehgen.simulate.nearby import nearby_excitation
 from vehgen.simulate.scenario import Scenario
 
@@ -30,27 +31,42 @@ LEAST_RATIO = 5
 """Kept steps per sample, at least, of what a FIR filter decimates ..."""
 LEAST_RATE = 500.0
 """... and kept steps per second [Hz], where the internal step is as short."""
-DIRECT_PRODUCTS = 400_000
+DIRECT_PRODUCTS = 1_000_000
 """Products up to which a column is convolved directly: a hump is short."""
-_FILTERED = ExcitationCache()
+_FILTERED = LastUsed[Excitation](lambda item: item.nbytes)
 
 
 def assumed_chains(scenario: Scenario, channels: Sequence[str]) -> tuple[AcquisitionChain, ...]:
     """Return the chain of each channel by name at the scenario's sampling rate, an unknown one as it is assumed to be."""
     rate = 1 / (scenario.dt * scenario.decimation)
-    return tuple(scenario.chain(name).assumed(rate) for name in channels)
+    return tuple(_assumed(scenario.chain(name), rate) for name in channels)
+
+
+@lru_cache(maxsize=64)
+def _assumed(chain: AcquisitionChain, rate: float) -> AcquisitionChain:
+    return chain.assumed(rate)
+
+
+@lru_cache(maxsize=64)
+def _filtering(chain: AcquisitionChain) -> AcquisitionChain:
+    return chain.filtering()
+
+
+def _filters(scenario: Scenario, channels: Sequence[str]) -> tuple[AcquisitionChain, ...]:
+    """Return what filters each channel by name: chains that compare equal do the same."""
+    return tuple(_filtering(chain) for chain in assumed_chains(scenario, channels))
 
 
 def channel_factors(scenario: Scenario, channels: Sequence[str], frequency: Array) -> Complex:
     """Return what the chains make of spectral lines: complex factors `shape (n, n_channels)` at frequencies `shape (n,)` [Hz]."""
-    chains = assumed_chains(scenario, channels)
-    known = {chain: chain.response(frequency) for chain in dict.fromkeys(item.filtering() for item in chains)}
-    return np.column_stack([known[chain.filtering()] for chain in chains]) if chains else np.ones((len(frequency), 0), dtype=np.complex128)
+    chains = _filters(scenario, channels)
+    known = {chain: chain.response(frequency) for chain in dict.fromkeys(chains)}
+    return np.column_stack([known[chain] for chain in chains]) if chains else np.ones((len(frequency), 0), dtype=np.complex128)
 
 
 def kept_samples(scenario: Scenario, channels: Sequence[str], nonlinear: bool) -> int:
     """Return how many samples of every channel a run holds in memory."""
-    chains = {chain.filtering() for chain in assumed_chains(scenario, channels)}
+    chains = set(_filters(scenario, channels))
     fine = any(not chain.is_point_sample for chain in chains) and (nonlinear or len(chains) > 1)
     return len(scenario.time) // (kept_stride(scenario) if fine else scenario.decimation) + 1
 
@@ -87,7 +103,7 @@ def acquire(
 def _acquired(
     kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, threads: int | None, nearby: Sequence[Scenario]
 ) -> KernelResult:
-    chains = [chain.filtering() for chain in assumed_chains(scenario, [channel.name for channel in kernel.model.channels])]
+    chains = _filters(scenario, [channel.name for channel in kernel.model.channels])
     distinct, begin = set(chains), initial_states(scenario, len(parameters), nearby)
 
     def excitation(ahead: int) -> Excitation:
@@ -145,13 +161,18 @@ def _convolved(signal: Array, taps: Array, start: int, count: int) -> Array:
     else:
         n = len(signal) + len(taps) - 1
         size = scipy.fft.next_fast_len(n, real=True)
-        lines = scipy.fft.rfft(signal, size, axis=0) * scipy.fft.rfft(taps, size)[:, None]
+        lines = scipy.fft.rfft(signal, size, axis=0) * _spectrum(taps.tobytes(), size)[:, None]
         parts, columns = [(0, column) for column in scipy.fft.irfft(lines, size, axis=0)[:n].T], list(range(signal.shape[1]))
     for k, (begin, part) in zip(columns, parts, strict=True):
         low, high = max(begin, start), min(begin + len(part), start + count)
         if low < high:
             found[low - start : high - start, k] = part[low - begin : high - begin]
     return found
+
+
+@lru_cache(maxsize=16)
+def _spectrum(taps: bytes, size: int) -> Complex:
+    return np.asarray(scipy.fft.rfft(np.frombuffer(taps), size), dtype=np.complex128)
 
 
 def kept_stride(scenario: Scenario) -> int:
@@ -172,9 +193,14 @@ def _filtered_output(
 ) -> KernelResult:
     """Run with kept steps between the samples and decimate every channel by its own chain."""
     stride = kept_stride(scenario)
-    ratio = scenario.decimation // stride
-    filters = {chain: chain.taps(scenario.dt * stride) for chain in dict.fromkeys(chains)}
-    ahead = math.ceil(max(0, *(-first for first, _ in filters.values())) / ratio)
+    phases, ahead = _phases(tuple(chains), scenario.dt * stride, scenario.decimation // stride)
     result = kernel.run(parameters, excitation(ahead), stride, begin, threads)
     count = (len(scenario.time) - 1) // scenario.decimation + 1
-    return replace(result, responses=decimate(result.responses, [filters[chain] for chain in chains], ratio, count, threads))
+    return replace(result, responses=decimate(result.responses, phases, count, threads))
+
+
+@lru_cache(maxsize=64)
+def _phases(chains: tuple[AcquisitionChain, ...], spacing: float, ratio: int) -> tuple[Phases, int]:
+    """Return the channels' filters of signals `spacing` [s] apart, and how many samples they look ahead."""
+    filters = [chain.taps(spacing) for chain in chains]
+    return Phases.of(filters, ratio), math.ceil(max(0, *(-first for first, _ in filters)) / ratio)

@@ -15,7 +15,7 @@ def nearby_excitation(scenario: Scenario, others: Sequence[Scenario], offsets: A
     """Return the excitation of a scenario and of others nearby, in this order, each individual's own.
 
     Those that differ in speed alone are found to the first order, all at once (see :func:`vehgen.road.nearby_inputs`); those that differ in
-    the road's height alone are multiples.
+    the road alone share the way, and those that differ in its height alone are multiples.
 
     Parameters
     ----------
@@ -24,34 +24,26 @@ def nearby_excitation(scenario: Scenario, others: Sequence[Scenario], offsets: A
     offsets
         Each axle's distance behind the first to arrive `shape (n_axles,)` [m].
     """
-    centre = scenario.excitation(offsets)
-    found = [centre] * len(others)
-    same = [other.ground is scenario.ground and other.forces is scenario.forces for other in others]
-    by_speed = [i for i, other in enumerate(others) if same[i] and other.same_road(scenario)]
-    for i, other in enumerate(others):
-        if not (same[i] and other.same_road(scenario)):
-            higher = same[i] and other.same_speed(scenario) and other.same_road(scenario, but_height=True) and scenario.track.scale != 0
-            found[i] = _higher(centre, other, scenario, len(offsets)) if higher else other.new_excitation(offsets)
-    if by_speed:
-        wheels = nearby_inputs(scenario.track, scenario.speed, [others[i].speed for i in by_speed], offsets, scenario.time)
-        for i, heights, rates in zip(by_speed, wheels.heights, wheels.rates, strict=True):
-            found[i] = _with_wheels(centre, heights, rates)
-    all_of_them = [centre, *found]
-    return Excitation(
-        centre.dt,
-        np.stack([item.inputs for item in all_of_them]),
-        np.stack([item.rates for item in all_of_them]),
-        np.stack([item.forces for item in all_of_them]),
-    )
-
-
-def _higher(centre: Excitation, other: Scenario, scenario: Scenario, n_axles: int) -> Excitation:
-    factor = other.track.scale / scenario.track.scale
-    return _with_wheels(centre, factor * centre.inputs[:, :n_axles], factor * centre.rates[:, :n_axles])
-
-
-def _with_wheels(centre: Excitation, heights: Array, rates: Array) -> Excitation:
-    """Return an excitation with another road under its wheels, whose inputs come first."""
-    width = heights.shape[1]
-    inputs, moved = (np.hstack([own, old[:, width:]]) for own, old in ((heights, centre.inputs), (rates, centre.rates)))
-    return Excitation(centre.dt, inputs, moved, centre.forces)
+    centre, n_axles = scenario.excitation(offsets), len(offsets)
+    inputs, rates = (np.empty((1 + len(others), *centre.inputs.shape)) for _ in range(2))
+    forces = np.repeat(centre.forces[None], 1 + len(others), axis=0)
+    for own, item in ((inputs, centre.inputs), (rates, centre.rates)):
+        own[0], own[1:, :, n_axles:] = item, item[:, n_axles:]
+    by_road, by_speed = [], []
+    for i, other in enumerate(others, start=1):
+        same = other.ground is scenario.ground and other.forces is scenario.forces
+        if same and other.same_road(scenario):
+            by_speed.append(i)
+        elif same and other.same_speed(scenario) and other.same_road(scenario, but_height=True) and scenario.track.scale != 0:
+            factor = other.track.scale / scenario.track.scale
+            inputs[i, :, :n_axles], rates[i, :, :n_axles] = factor * centre.inputs[:, :n_axles], factor * centre.rates[:, :n_axles]
+        elif same and other.same_speed(scenario):
+            by_road.append(i)
+        else:
+            found = other.new_excitation(offsets)
+            inputs[i], rates[i], forces[i] = found.inputs, found.rates, found.forces
+    tracks, speeds = [others[i - 1].track for i in by_road], [others[i - 1].speed for i in by_speed]
+    near = nearby_inputs(scenario.track, scenario.speed, tracks, speeds, offsets, scenario.time)
+    for i, wheels in zip((*by_road, *by_speed), near, strict=True):
+        inputs[i, :, :n_axles], rates[i, :, :n_axles] = wheels.heights, wheels.rates
+    return Excitation(centre.dt, inputs, rates, forces)

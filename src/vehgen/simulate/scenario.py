@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ from vehgen.road import (
     Wander,
     wheel_inputs,
 )
-from vehgen.simulate.excitation_cache import ExcitationCache
+from vehgen.simulate.last_used import LastUsed
 from vehgen.simulate.signals import Signal
 
 Array = NDArray[np.float64]
@@ -28,7 +28,7 @@ NULLS_TO = 30.0
 """Above it [Hz] no axle hops."""
 LOBES_SOUGHT = 2000.0
 """So many lobes of all humps' spectra together are searched for nulls: a second of work."""
-_EXCITATIONS = ExcitationCache()
+_EXCITATIONS = LastUsed[Excitation](lambda item: item.nbytes)
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Scenario:
 
     def __post_init__(self) -> None:
         steps = round(self.duration / (self.dt * self.decimation)) * self.decimation
-        object.__setattr__(self, "time", self.start + np.arange(steps + 1) * self.dt)
+        object.__setattr__(self, "time", _times(self.start, self.dt, steps))
 
     def chain(self, channel: str) -> AcquisitionChain:
         """Return what acquires a channel."""
@@ -128,9 +128,24 @@ class Scenario:
 
         Neither they nor the arrays of the scenario are to be written to: the last excitations are remembered.
         """
-        road = (*self._road_key, self.track.scale, *self._speed_key, np.asarray(offsets, dtype=float).tobytes())
-        key = (*road, self.start, self.dt, len(self.time), id(self.ground), id(self.forces))
-        return _EXCITATIONS.find(key, (self.track, self.speed, self.ground, self.forces), lambda: self.new_excitation(offsets))
+        key = self._drive_key, np.asarray(offsets, dtype=float).tobytes()
+        return _EXCITATIONS.find(key, self.sources, lambda: self.new_excitation(offsets))
+
+    @property
+    def key(self) -> Hashable:
+        """What decides how a vehicle answers: scenarios of equal keys are equal, as long as their `sources` live."""
+        begun = None if self.initial is None else self.initial.tobytes()
+        return self._drive_key, self.decimation, self.skipped, begun, id(self.chains)
+
+    @property
+    def sources(self) -> tuple[object, ...]:
+        """The objects that :attr:`key` knows by their ids."""
+        return self.track, self.speed, self.ground, self.forces, self.chains
+
+    @property
+    def _drive_key(self) -> tuple[object, ...]:
+        road = (*self._road_key, self.track.scale, *self._speed_key)
+        return (*road, self.start, self.dt, len(self.time), id(self.ground), id(self.forces))
 
     @property
     def _road_key(self) -> tuple[object, ...]:
@@ -156,14 +171,20 @@ class Scenario:
     def new_excitation(self, offsets: Array) -> Excitation:
         """Return what :meth:`excitation` does, neither looked up nor remembered."""
         wheels = wheel_inputs(self.track, self.speed, offsets, self.time)
-        half = self.dt / 2
-        ground, ground_rates = [], []
-        for signal in self.ground:
-            ground.append(np.zeros_like(self.time) if signal is None else signal.at(self.time))
-            ground_rates.append(
-                np.zeros_like(self.time) if signal is None else (signal.at(self.time + half) - signal.at(self.time - half)) / self.dt
-            )
+        n_axles, half = wheels.heights.shape[1], self.dt / 2
+        inputs, rates = (np.zeros((len(self.time), n_axles + len(self.ground))) for _ in range(2))
+        inputs[:, :n_axles], rates[:, :n_axles] = wheels.heights, wheels.rates
+        for i, signal in enumerate(self.ground, start=n_axles):
+            if signal is not None:
+                inputs[:, i] = signal.at(self.time)
+                rates[:, i] = (signal.at(self.time + half) - signal.at(self.time - half)) / self.dt
         forces = np.column_stack([signal.at(self.time) for signal in self.forces]) if self.forces else np.zeros((len(self.time), 0))
-        inputs = np.column_stack([wheels.heights, *ground])
-        rates = np.column_stack([wheels.rates, *ground_rates])
         return Excitation(self.dt, inputs, rates, forces)
+
+
+@lru_cache(maxsize=64)
+def _times(start: float, dt: float, steps: int) -> Array:
+    """Return the times of so many steps [s]: not to be written to."""
+    times = np.asarray(start + np.arange(steps + 1) * dt, dtype=np.float64)
+    times.setflags(write=False)
+    return times
