@@ -35,7 +35,8 @@ def screen(
 ) -> list[Candidate]:
     """Return the candidates worth fitting: all that leave the vehicle alone, of the others those with the largest first-order gain.
 
-    What holds another candidate as a special case is kept with it, and takes no place of its own.
+    A first order scales what it moves: it says nothing of candidates without a number of their own, which are kept. What holds another
+    candidate as a special case is kept with it, and takes no place of its own.
 
     Parameters
     ----------
@@ -44,8 +45,8 @@ def screen(
     locator, simulators
         As for :func:`vehgen.diagnose.fits.candidate.pose`.
     """
-    always = [item for item in candidates if not item.effect.changes_vehicle]
-    forces = [item for item in candidates if item.effect.changes_vehicle and not any(map(item.holds, candidates))]
+    always = [item for item in candidates if not _is_scaled(item)]
+    forces = [item for item in candidates if _is_scaled(item) and not any(map(item.holds, candidates))]
     most = MAX_BESIDE if base.effects else MAX_CANDIDATES
     if len(forces) <= most:
         return list(candidates)
@@ -75,6 +76,10 @@ def screen(
         gains.append((best, candidate))
     gains.sort(key=lambda item: -item[0])
     return chosen_with_holders(candidates, [*always, *(candidate for _, candidate in gains[:most])])
+
+
+def _is_scaled(candidate: Candidate) -> bool:
+    return candidate.effect.changes_vehicle and bool(candidate.parameters)
 
 
 def _smaller(starts: Sequence[Array], lower: Array) -> Array:
