@@ -32,13 +32,23 @@ name: shaker
 bodies: {table: {mass: 100 kg, motions: [heave]}}
 links: {spring: {ground: {x: 0 m}, table: {x: 0 m}, k: 4 MN/m, c: 20 kN s/m}}
 """
+PINNED = """\
+name: shaker
+bodies: {table: {mass: 60 kg, pitch_inertia: 20 kg m^2}, rider: {mass: 40 kg, pitch_inertia: 8 kg m^2}}
+hinges: {pin: {table: {x: 0 m}, rider: {x: 0 m}, k: 20 kN m/rad}}
+links:
+  left: {ground: {x: 1 m}, table: {x: 1 m}, k: 2 MN/m, c: 10 kN s/m}
+  right: {ground: {x: -1 m}, table: {x: -1 m}, k: 2 MN/m, c: 10 kN s/m}
+"""
 SHAKEN = """\
 vehicle: shaker.yaml
 duration: 60 s
 step: 0.5 ms
 displacements: {spring: {harmonic: {amplitude: 5 mm, frequency: 4 Hz}}}
-sensors: {T: {body: table, channels: {acceleration: az}}}
+sensors:
+  T: {body: table, channels: {acceleration: az}}
 """
+BOTH = SHAKEN.replace("{spring: {", "{left: &motion {").replace("4 Hz}}}", "4 Hz}}, right: *motion}")
 
 
 @pytest.fixture(scope="module")
@@ -79,6 +89,33 @@ def test_a_shaken_table_has_the_numbers_of_algebra(tmp_path):
     assert cycles.equivalent == pytest.approx(2 * travel * 4 ** (1 / 5), rel=0.01)
     assert found.rate == pytest.approx(1000.0)
     assert found.tyres == ()
+
+
+def test_a_pin_has_the_cycles_of_the_mass_that_it_carries(tmp_path):
+    (tmp_path / "shaker.yaml").write_text(PINNED)
+    (tmp_path / "run.yaml").write_text(BOTH)
+    found = assess(tmp_path / "run.yaml", start=10.0)
+    s = 2j * np.pi * 4.0
+    spring = 4e6 + 2e4 * s
+    force = 40 * abs(spring / (100 * s**2 + spring) * s**2 * 5e-3)
+    cycles, channel = of(found.cycles, "hinge pin"), of(found.channels, "hinge pin")
+    assert (cycles.unit, channel.unit) == ("N", "N")
+    assert cycles.largest == pytest.approx(2 * force, rel=0.01)
+    assert cycles.cycles == pytest.approx(50 * 4, abs=1)
+    assert cycles.equivalent == pytest.approx(2 * force * 4 ** (1 / 5), rel=0.01)
+    assert channel.rms == pytest.approx(force / np.sqrt(2), rel=3e-3)
+    assert (channel.peak, channel.crest) == (pytest.approx(force, rel=3e-3), pytest.approx(np.sqrt(2), rel=3e-3))
+
+
+def test_the_cycles_of_a_pin_are_counted_once_with_or_without_its_weight(tmp_path):
+    (tmp_path / "shaker.yaml").write_text(PINNED)
+    (tmp_path / "plain.yaml").write_text(BOTH)
+    (tmp_path / "cell.yaml").write_text(BOTH + "  cell: {hinge: pin, channels: {hinge_load: load}}\n")
+    plain, cell = assess(tmp_path / "plain.yaml", start=10.0), assess(tmp_path / "cell.yaml", start=10.0)
+    (loaded,) = [item for item in cell.cycles if item.quantity.startswith("hinge")]
+    assert loaded.name == "load"
+    assert loaded.largest == pytest.approx(of(plain.cycles, "hinge pin").largest, rel=1e-9)
+    assert [item.name for item in cell.channels] == ["az", "load"]
 
 
 def test_a_rough_road_gives_what_the_linear_response_expects(assessed):

@@ -1,6 +1,8 @@
 """Fleets: a row for every vehicle, what is kept, and the same numbers wherever they are computed."""
 
+import csv
 import json
+import os
 import shutil
 import time
 from contextlib import nullcontext
@@ -155,6 +157,46 @@ def test_a_fault_or_a_lost_worker_is_a_row(fleet, monkeypatch):
     assert found["second"].error == "its worker is gone"
 
 
+def test_a_fault_while_one_vehicle_is_read_is_its_row(fleet, here, monkeypatch):
+    def breaking(folder):
+        if folder.name == "first":
+            raise RecursionError("too deep,\nfar too deep")
+        return load_fleet_vehicle(folder)
+
+    monkeypatch.setattr(diagnosing, "load_fleet_vehicle", breaking)
+    found = rows(diagnosed(fleet))
+    assert found["first"].status == "failed"
+    assert found["first"].error == "internal fault: RecursionError: too deep, far too deep (please report it)"
+    assert found["second"].status == "finished"
+
+
+def test_names_that_are_not_utf_8_fail_alone(fleet, here):
+    for vehicle, name in ((b"caf\xe9", b"hump.yaml"), (b"named", b"h\xfcmp.yaml")):
+        folder = os.path.join(os.fsencode(fleet), vehicle)
+        try:
+            os.mkdir(folder)
+        except OSError:
+            pytest.skip("this file system has no such names")
+        with open(os.path.join(folder, name), "wb") as file:
+            file.write((fleet / "first" / "hump.yaml").read_bytes())
+    found = rows(diagnosed(fleet))
+    assert found["caf\\udce9"].status == found["named"].status == "failed"
+    assert found["caf\\udce9"].error == "the name 'caf\\udce9' is not UTF-8, and no result can tell it; rename it"
+    assert "'h\\udcfcmp.yaml' is not UTF-8" in found["named"].error
+    assert found["first"].status == found["second"].status == "finished"
+    assert "caf\\udce9" in (fleet.parent / "out" / "fleet.csv").read_text(encoding="utf-8")
+
+
+def test_names_that_a_spreadsheet_would_run_are_text(fleet, here):
+    for name in ("=1+1", "@SUM(1)", "-2", "+3"):
+        (fleet / name).mkdir()
+    found = diagnosed(fleet)
+    with (fleet.parent / "out" / "fleet.csv").open(newline="", encoding="utf-8") as table:
+        names = {row["vehicle"] for row in csv.DictReader(table)}
+    assert names == {"'=1+1", "'@SUM(1)", "'-2", "'+3", "first", "second", *BROKEN}
+    assert "=1+1" in rows(found)
+
+
 @pytest.mark.filterwarnings("ignore")
 def test_a_cluster_that_loses_a_worker_finds_the_same(fleet, apart):
     distributed = pytest.importorskip("distributed")
@@ -210,6 +252,6 @@ def test_the_page_is_drawn_again_and_quotes_what_strangers_wrote(apart, tmp_path
     assert main(["report", str(tmp_path / "fleet.json"), "--out", str(tmp_path / "again")]) == 0
     page = (tmp_path / "again" / "index.html").read_text(encoding="utf-8")
     assert 'href="first/report.html"' in page
-    assert "<script>" not in page
+    assert page.count("<script") == 1
     assert "<b>" not in page
     assert page.count("<tr>") == len(apart.rows) + 2

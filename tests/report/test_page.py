@@ -5,19 +5,26 @@ import hashlib
 import html
 import re
 from html.parser import HTMLParser
+from importlib.resources import files
+from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
 from tests.report.vehicles import EVERY, HOSTILE, model
+from vehgen.assess import assess
 from vehgen.codegen import write_kernel
+from vehgen.diagnose.fleet import Fleet, FleetRow
+from vehgen.diagnose.verdict import Gap, RunChi, Verdict
 from vehgen.errors import InputError
 from vehgen.files.number_text import grouped, kilonewtons
 from vehgen.mechanics import derive, static_loads
 from vehgen.report import plot_response, save_figure, write_build_folder
 from vehgen.report.figure_files import inline_svg
+from vehgen.report.pages.assessment_page import write_assessment
 from vehgen.report.pages.assets import template_text
+from vehgen.report.pages.fleet_page import write_fleet_page
 from vehgen.simulate import natural_modes
 from vehgen.simulate.mode_groups import alike_modes, group_name
 from vehgen.vehicle import load_vehicle
@@ -132,19 +139,47 @@ def test_the_page_names_everything(name, pages):
     assert "def advance(" in text
 
 
-@pytest.mark.parametrize("name", EVERY)
-def test_the_page_fetches_nothing_and_runs_one_script_of_its_own(name, pages):
-    page = Page(pages(name))
+def check_that_nothing_is_fetched(source, links=()):
+    """Check that a page's only script is the one of all pages, that its policy allows no other, and that it refers to nothing else."""
+    page = Page(source)
     assert not (FETCHES - {"script"}) & set(page.tags)
     assert page.tags.count("script") == 1
-    (script,) = re.findall(r"<script>(.*?)</script>", pages(name), re.DOTALL)
+    (script,) = re.findall(r"<script>(.*?)</script>", source, re.DOTALL)
     assert script == template_text("page.js")
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     policy = f"default-src &#39;none&#39;; style-src &#39;unsafe-inline&#39;; script-src &#39;sha256-{digest}&#39;"
-    assert f'<meta http-equiv="Content-Security-Policy" content="{policy}">' in pages(name)
+    assert f'<meta http-equiv="Content-Security-Policy" content="{policy}">' in source
     assert not re.search(r"fetch\(|XMLHttpRequest|import\b|eval|innerHTML|https?:", script)
-    assert all(reference.startswith("#") for reference in page.references)
-    assert not re.search(r"@import|url\((?!#)", pages(name))
+    assert all(reference.startswith("#") or reference in links for reference in page.references)
+    assert not re.search(r"@import|url\((?!#)", source)
+    assert template_text("page.css") in source
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_the_page_fetches_nothing_and_runs_one_script_of_its_own(name, pages):
+    check_that_nothing_is_fetched(pages(name))
+
+
+def test_the_pages_of_fleets_and_assessments_are_held_to_the_same(tmp_path):
+    hostile = "<script>alert(1)</script>"
+    gap = Gap(3.0, 1.0, 1.0, (RunChi("hump", False, 3.0, 1.0),))
+    verdict = Verdict(verdict="no_missing_effect", reason=hostile, effects=(), gap=gap)
+    rows = (FleetRow("good one", "finished", ("hump",), verdict), FleetRow(hostile, "failed", error=hostile), FleetRow("left"))
+    source = write_fleet_page(Fleet(hostile, rows, {"vehgen": "1"}), tmp_path).read_text(encoding="utf-8")
+    check_that_nothing_is_fetched(source, links=("good%20one/report.html",))
+    assert Page(source).text.count(hostile) == 5
+    (tmp_path / "run.yaml").write_text("vehicle: sedan2\nspeed: 10 m/s\nduration: 1 s\nroad: [{iso8608: {class: A}}]\n")
+    page, *_ = write_assessment(assess(tmp_path / "run.yaml"), tmp_path)
+    check_that_nothing_is_fetched(page.read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("path", sorted(Path(str(files("vehgen.report"))).glob("templates/*.html.j2")), ids=lambda path: path.name)
+def test_every_template_has_the_policy_the_style_and_the_script_of_all_pages(path):
+    text = path.read_text(encoding="utf-8")
+    for part in ('http-equiv="Content-Security-Policy" content="{{ policy }}"', "{{ style }}", "<script>{{ script }}</script>"):
+        assert text.count(part) == 1
+    assert "#fff" not in text
+    assert "color-scheme" not in text
 
 
 @pytest.mark.parametrize("name", EVERY)

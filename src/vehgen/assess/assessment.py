@@ -32,8 +32,10 @@ from vehgen.vehicle import VehicleLike
 
 VERTICAL_WEIGHTINGS = ("Wk", "Wb")
 FORE_AFT_WEIGHTING = "Wd"
-CYCLED = ("suspension_travel", "link_travel", "suspension_force", "link_force", "tyre_force", "tyre_load")
+CYCLED = ("suspension_travel", "link_travel", "suspension_force", "link_force", "tyre_force", "tyre_load", "hinge_force", "hinge_load")
 """Quantities whose cycles are counted."""
+ALWAYS_TOLD = ("hinge_force",)
+"""Quantities whose RMS, peak and crest factor are told, beside those of vertical accelerations, though the run does not ask for them."""
 TRANSPORT_BAND_HZ = (1.0, 200.0)
 """Where the truck levels of ASTM D4169 are defined."""
 EXCEEDANCE_LEVELS = 40
@@ -91,7 +93,7 @@ def assess(
         start=float(start),
         duration=motion.duration,
         rate=1 / motion.dt,
-        channels=tuple(_statistics(item) for item in motion.channels if item.is_asked or item in vertical),
+        channels=tuple(_statistics(item) for item in motion.channels if item.is_asked or item in vertical or item.quantity in ALWAYS_TOLD),
         ride=ride,
         tyres=tuple(_tyres(motion)),
         transport=tuple(_transport(item, motion.dt) for item in vertical),
@@ -149,10 +151,10 @@ def _shock(item: AssessedChannel, dt: float) -> ShockSpectrum:
 
 
 def _cycled(motion: AssessedMotion) -> Iterator[AssessedChannel]:
-    """Yield the channels whose cycles are counted; a tyre's force and load are one and the same."""
+    """Yield the channels whose cycles are counted; the force and the load of a tyre or a hinge are one and the same."""
     known: set[tuple[str, str]] = set()
     for item in motion.channels:
-        key = item.owner, item.quantity.replace("tyre_load", "tyre_force")
+        key = item.owner, item.quantity.replace("_load", "_force")
         if item.quantity in CYCLED and key not in known:
             known.add(key)
             yield item

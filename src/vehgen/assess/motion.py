@@ -69,7 +69,7 @@ def simulated_motion(run: Run) -> AssessedMotion:
     """Simulate a run: its channels as the vehicle moves, whatever recorders would make of them.
 
     Beside the channels that the run asks for there are the acceleration at every sensor on a body (without one, of every body's COG), the
-    force of every tyre, and the travel of every suspension and link.
+    forces of every tyre and hinge, and the travel of every suspension and link.
 
     Raises
     ------
@@ -145,8 +145,9 @@ def _added(run: Run, asked: tuple[Output, ...]) -> list[Output]:
             replace(item, name=f"{item.place.body} acceleration") for item in body_channels(vehicle) if item.quantity == "acceleration"
         ]
     found += [ElementOutput(f"{name} tyre", name, "tyre_force") for name in vehicle.axles]
-    known = {(item.owner, item.quantity) for item in asked if isinstance(item, ElementOutput)}
+    known = {(item.owner, item.quantity.replace("hinge_load", "hinge_force")) for item in asked if isinstance(item, ElementOutput)}
     travels = [(name, "suspension_travel") for name, axle in vehicle.axles.items() if axle.suspension is not None]
     travels += [(name, "link_travel") for name in vehicle.links]
     found += [ElementOutput(f"{name} travel", name, quantity) for name, quantity in travels if (name, quantity) not in known]
+    found += [ElementOutput(f"hinge {name}", name, "hinge_force") for name in vehicle.hinges if (name, "hinge_force") not in known]
     return found

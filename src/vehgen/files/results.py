@@ -27,6 +27,8 @@ MAX_RESULT_BYTES = 50_000_000
 """A larger result file is refused."""
 MAX_TABLE_ROWS = 30
 """So many rows a notebook shows at most."""
+FORMULA_SIGNS = ("=", "+", "-", "@", "\t", "\r", "\n")
+"""A spreadsheet may run a cell that begins so as a formula."""
 Cell = str | float | int | bool | None
 Table = tuple[tuple[str, ...], list[tuple[Cell, ...]]]
 """Names of columns, and rows."""
@@ -174,14 +176,24 @@ def json_text(result: Result) -> str:
     return _pretty(result.to_dict(), "")
 
 
-def csv_text(table: Table) -> str:
-    """Return a table as the text of a CSV file, numbers with nine digits."""
+def csv_text(table: Table, names: Sequence[str] = ()) -> str:
+    """Return a table as the text of a CSV file, numbers with nine digits.
+
+    What stands in the columns `names` is a stranger's text: an apostrophe goes before what a spreadsheet would run as a formula.
+    """
     columns, rows = table
+    harmless = [column in names for column in columns]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(columns)
-    writer.writerows([f"{cell:.9g}" if isinstance(cell, float) else cell for cell in row] for row in rows)
+    writer.writerows([_csv_cell(*pair) for pair in zip(row, harmless, strict=True)] for row in rows)
     return text.getvalue()
+
+
+def _csv_cell(cell: Cell, harmless: bool) -> Cell:
+    if isinstance(cell, float):
+        return f"{cell:.9g}"
+    return f"'{cell}" if harmless and isinstance(cell, str) and cell.startswith(FORMULA_SIGNS) else cell
 
 
 def _pretty(data: Any, indent: str) -> str:

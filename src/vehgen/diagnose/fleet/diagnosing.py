@@ -10,9 +10,9 @@ from contextlib import closing, contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from vehgen.diagnose.fleet.layout import LoadedVehicle, load_fleet_vehicle, vehicle_folders
-from vehgen.diagnose.fleet.result import Fleet, FleetRow
-from vehgen.diagnose.fleet.work import FilesOf, FleetAnswer, FleetSettings, FleetWork, diagnose_work
+from vehgen.diagnose.fleet.layout import LoadedVehicle, load_fleet_vehicle, vehicle_folders, writable
+from vehgen.diagnose.fleet.result import NAMED_COLUMNS, Fleet, FleetRow
+from vehgen.diagnose.fleet.work import FilesOf, FleetAnswer, FleetSettings, FleetWork, diagnose_work, internal_fault
 from vehgen.diagnose.select.search import DiagnosisProgress
 from vehgen.diagnose.writing import files_named_so
 from vehgen.effects import effects_named
@@ -79,8 +79,9 @@ def diagnose_fleet(
     texts = tuple(read_text(path, MAX_DOCUMENT_BYTES) for path in paths)
     settings = FleetSettings(chosen, texts, everywhere, files_of)
     folders = vehicle_folders(folder)
+    names = [writable(path.name) for path in folders]
     check_results([target / FLEET_FILE, target / FLEET_TABLE])
-    state = _State(folder.resolve().name, target, settings, progress, {path.name: FleetRow(path.name) for path in folders})
+    state = _State(writable(folder.resolve().name), target, settings, progress, {name: FleetRow(name) for name in names})
     try:
         with _runner(scheduler, processes) as runner, closing(runner.as_completed(diagnose_work, state.works(folders))) as answers:
             for work, answer in answers:
@@ -116,34 +117,45 @@ class _State:
         self.kept = _kept(self.target / FLEET_FILE)
         for folder in folders:
             try:
-                loaded = load_fleet_vehicle(folder)
-                own = self.target / folder.name
-                check_results([own / "diagnosis.json", own / "report.html", *files_named_so(loaded.vehicle.name, own)])
+                work = self.work(folder)
             except InputError as error:
-                self.note(FleetRow(folder.name, "failed", error=str(error)))
+                self.fail(writable(folder.name), str(error))
                 continue
-            extends = base_reference(loaded.vehicle, own)
-            fingerprint = self.fingerprint(loaded, extends)
-            former = self.kept.get(folder.name)
-            if former is not None and former.fingerprint == fingerprint and (own / "diagnosis.json").is_file():
+            except Exception as error:  # a fault of one vehicle must not take the others' results with it
+                self.fail(writable(folder.name), internal_fault(error))
+                continue
+            former = self.kept.get(work.name)
+            if former is not None and former.fingerprint == work.fingerprint and (work.folder / "diagnosis.json").is_file():
                 self.note(former)
                 continue
-            yield FleetWork(folder.name, loaded.trials, own, extends, fingerprint, loaded.inputs, self.settings)
+            yield work
+
+    def work(self, folder: Path) -> FleetWork:
+        """Read a vehicle; raises InputError where that, or writing its results, is not possible."""
+        loaded = load_fleet_vehicle(folder)
+        own = self.target / folder.name
+        check_results([own / "diagnosis.json", own / "report.html", *files_named_so(loaded.vehicle.name, own)])
+        extends = base_reference(loaded.vehicle, own)
+        return FleetWork(folder.name, loaded.trials, own, extends, self.fingerprint(loaded, extends), loaded.inputs, self.settings)
 
     def take(self, work: FleetWork, answer: FleetAnswer | Lost) -> None:
         """Write what a worker sent, and note its row."""
         runs = tuple(trial.name for trial in work.trials)
         if isinstance(answer, Lost) or answer.verdict is None:
             told = answer.reason if isinstance(answer, Lost) else answer.error
-            self.note(FleetRow(work.name, "failed", runs, error=told))
+            self.fail(work.name, told or "", runs)
             return
         try:
             for name, text in answer.files:
                 write_text(work.folder / name, text)
         except InputError as error:
-            self.note(FleetRow(work.name, "failed", runs, error=str(error)))
+            self.fail(work.name, str(error), runs)
             return
         self.note(FleetRow(work.name, "finished", runs, answer.verdict, None, work.fingerprint, work.inputs))
+
+    def fail(self, name: str, error: str, runs: tuple[str, ...] = ()) -> None:
+        """Note what went wrong with a vehicle."""
+        self.note(FleetRow(name, "failed", runs, error=writable(error)))
 
     def note(self, row: FleetRow) -> None:
         """Note a vehicle's row, and keep it for the next start."""
@@ -158,7 +170,7 @@ class _State:
         found = Fleet(self.fleet, tuple(self.rows.values()), versions(), stopped)
         rows = [self.kept.get(row.name, row) if row.status == "waiting" else row for row in found.rows]
         write_text(self.target / FLEET_FILE, json_text(Fleet(found.fleet, tuple(rows), found.made_by, stopped)))
-        write_text(self.target / FLEET_TABLE, csv_text(found.table()))
+        write_text(self.target / FLEET_TABLE, csv_text(found.table(), NAMED_COLUMNS))
         return found
 
     def fingerprint(self, loaded: LoadedVehicle, extends: str) -> str:

@@ -58,10 +58,14 @@ def load_fleet_vehicle(folder: Path) -> LoadedVehicle:
     Raises
     ------
     InputError
-        For a folder without runs, runs of different vehicles, and every file that cannot be used, with its place.
+        For a folder without runs, runs of different vehicles, names that are not UTF-8, and every file that cannot be used, with its place.
     """
+    files = [path for path in _listed(folder) if path.suffix in YAML_ENDINGS]
+    for path in (folder, *files):
+        if writable(path.name) != path.name:
+            raise InputError(f"the name {shown(path.name)} is not UTF-8, and no result can tell it; rename it")
     with collecting_reads() as read:
-        documents = {path: read_document(path) for path in _listed(folder) if path.suffix in YAML_ENDINGS}
+        documents = {path: read_document(path) for path in files}
         runs = {path: entry for path, document in documents.items() if path.name != OWN_VEHICLE and (entry := document.child("vehicle"))}
         if not runs:
             raise InputError(f"{folder} holds no run file: a YAML file with the entry `vehicle` was expected")
@@ -69,6 +73,11 @@ def load_fleet_vehicle(folder: Path) -> LoadedVehicle:
         trials = tuple(load_trials(list(runs), vehicle))
     inputs = sorted((_label(Path(path), folder.parent), file_hash(Path(path))) for path in read if os.path.isfile(path))
     return LoadedVehicle(vehicle, trials, tuple(inputs))
+
+
+def writable(text: str) -> str:
+    """Return a text as UTF-8 can hold it: bytes of a file name that are not UTF-8 are written out in hexadecimal."""
+    return text.encode(errors="backslashreplace").decode()
 
 
 def _named(runs: dict[Path, Located], folder: Path) -> Path:

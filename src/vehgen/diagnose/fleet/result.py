@@ -12,6 +12,8 @@ from vehgen.files.results import Cell, Result, Table
 FLEET_COLUMNS = (
     "vehicle", "runs", "verdict", "effect", "place", "parameter", "value", "unit", "low", "high", "chi_before", "chi_after", "error",
 )  # fmt: skip
+NAMED_COLUMNS = ("vehicle", "error")
+"""Those with the names of folders and files."""
 
 
 @dataclass(frozen=True)

@@ -68,8 +68,13 @@ def diagnose_work(work: FleetWork) -> FleetAnswer:
     except InputError as error:
         return FleetAnswer(error=str(error))
     except Exception as error:  # a fault of one vehicle must not take the others' results with it
-        return FleetAnswer(error=f"internal fault: {type(error).__name__}: {' '.join(str(error).split())} (please report it)")
+        return FleetAnswer(error=internal_fault(error))
     return FleetAnswer(found.verdict, tuple(files.items()))
+
+
+def internal_fault(error: Exception) -> str:
+    """Return what a row tells of an error that is no fault of the user, in one line."""
+    return f"internal fault: {type(error).__name__}: {' '.join(str(error).split())} (please report it)"
 
 
 def _diagnose(work: FleetWork) -> Diagnosis:

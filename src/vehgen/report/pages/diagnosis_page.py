@@ -15,8 +15,8 @@ from vehgen.effects import EFFECTS
 from vehgen.errors import InputError
 from vehgen.files import write_text
 from vehgen.files.document import MAX_DOCUMENT_BYTES
+from vehgen.report.curve_values import inline_figure
 from vehgen.report.drawing.vehicle import draw_vehicle
-from vehgen.report.figure_files import figure_svg, inline_svg
 from vehgen.report.pages.assets import page_environment, template_text
 from vehgen.report.plots.comparison import QUANTITY_UNITS, plot_histories, plot_psds
 from vehgen.report.plots.diagnosis_plots import plot_places, plot_waterfall
@@ -162,4 +162,4 @@ def _figures(diagnosis: Diagnosis) -> dict[str, Markup]:
         labels = ("residual before", "residual after")
         found["psd"] = plot_psds(evidence.psds, evidence.band, labels=labels)
         found["histories"] = plot_histories(evidence.histories, labels)
-    return {name: Markup("" if figure is None else inline_svg(figure_svg(figure), name, name)) for name, figure in found.items()}
+    return {name: Markup() if figure is None else inline_figure(figure, name, name) for name, figure in found.items()}

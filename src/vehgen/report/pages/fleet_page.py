@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from importlib import resources
 from pathlib import Path
 from urllib.parse import quote
 
-from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
 from vehgen.diagnose.fleet import Fleet, FleetRow
 from vehgen.diagnose.verdict import NamedParameter
 from vehgen.files import write_text
 from vehgen.report.figure_files import figure_svg, inline_svg
+from vehgen.report.pages.assets import page_environment, template_text
 from vehgen.report.plots.fleet_plot import plot_fleet
 
 FLEET_PAGE = "index.html"
@@ -20,16 +19,18 @@ FLEET_PAGE = "index.html"
 
 def write_fleet_page(fleet: Fleet, folder: Path) -> Path:
     """Write the page of a fleet into the folder of its results; return the page's path."""
-    text = resources.files("vehgen.report").joinpath("templates/fleet.html.j2").read_text(encoding="utf-8")
-    environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
     drawn = any(row.verdict is not None for row in fleet.rows)
-    page = environment.from_string(text).render(
-        fleet=fleet.fleet,
-        stopped=fleet.stopped,
-        counts=fleet.counts(),
-        rows=[_shown_row(row) for row in fleet.rows],
-        figure=Markup(inline_svg(figure_svg(plot_fleet(fleet)), "fleet", "chi of every vehicle")) if drawn else "",
-        version=fleet.made_by.get("vehgen", ""),
+    page = (
+        page_environment()
+        .from_string(template_text("fleet.html.j2"))
+        .render(
+            fleet=fleet.fleet,
+            stopped=fleet.stopped,
+            counts=fleet.counts(),
+            rows=[_shown_row(row) for row in fleet.rows],
+            figure=Markup(inline_svg(figure_svg(plot_fleet(fleet)), "fleet", "chi of every vehicle")) if drawn else "",
+            version=fleet.made_by.get("vehgen", ""),
+        )
     )
     write_text(folder / FLEET_PAGE, page)
     return folder / FLEET_PAGE

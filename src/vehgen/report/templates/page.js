@@ -1,5 +1,5 @@
 "use strict";
-// Copy buttons, zoom and moving pictures of a page; it reads nothing but the page.
+// Copy buttons, zoom, values of curves and moving pictures of a page; it reads nothing but the page.
 const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 function button(text, name, act) {
@@ -34,6 +34,43 @@ for (const figure of document.querySelectorAll("figure.zoom")) {
   figure.after(button("Zoom in", "copy", (own) => {
     own.textContent = figure.classList.toggle("near") ? "Fit to the page" : "Zoom in";
   }));
+}
+
+const NEAREST = 16;
+
+function along(axis, value) {
+  const size = axis.log ? Math.log : Number, [low, high] = axis.limits.map(size), [from, to] = axis.ends;
+  return from + (to - from) * (size(value) - low) / (high - low);
+}
+
+function placed(panels) {
+  return panels.flatMap(({ x, y, curves }) => curves.flatMap(({ name, x: across, y: up }) => across.map((value, i) => ({
+    left: along(x, value), top: along(y, up[i]),
+    text: name + "\n" + (x.label || "x") + ": " + value.toPrecision(4) + "\n" + (y.label || "y") + ": " + up[i].toPrecision(4),
+  }))));
+}
+
+for (const svg of document.querySelectorAll("svg[data-curves]")) {
+  const points = placed(JSON.parse(svg.dataset.curves)), told = document.createElement("div");
+  const mark = document.createElementNS(svg.namespaceURI, "circle"), title = svg.querySelector("title");
+  svg.setAttribute("aria-label", title.textContent); title.remove();
+  told.className = "told"; told.hidden = true; mark.setAttribute("class", "mark"); mark.setAttribute("r", 0);
+  document.body.append(told); svg.append(mark);
+  const leave = () => { told.hidden = true; mark.setAttribute("r", 0); };
+  svg.addEventListener("pointerleave", leave);
+  svg.addEventListener("pointermove", (event) => {
+    const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
+    let best = null, least = NEAREST;
+    for (const point of points) {
+      const away = Math.hypot(point.left - at.x, point.top - at.y);
+      if (away < least) { best = point; least = away; }
+    }
+    if (!best) return leave();
+    told.textContent = best.text; told.hidden = false;
+    told.style.left = Math.min(event.pageX + 14, scrollX + document.documentElement.clientWidth - told.offsetWidth - 4) + "px";
+    told.style.top = event.pageY + 14 + "px";
+    mark.setAttribute("cx", best.left); mark.setAttribute("cy", best.top); mark.setAttribute("r", 3.5);
+  });
 }
 
 const pairs = (text) => text.split(" ").map((pair) => pair.split(",").map(Number));
