@@ -33,7 +33,7 @@ def truck_problem(folder: Path, sensors: str = "both", vehicle: str = "tractor5.
     problem = make_problem(load_trials([folder / "run.yaml"]))
     trial = problem.trials[0]
     values = problem.respond(problem.space.start[None], trial)[0][0]
-    values += noise * np.sqrt(np.mean(values**2, axis=0)) * random[:, : values.shape[1]]
+    values = values + noise * np.sqrt(np.mean(values**2, axis=0)) * random[:, : values.shape[1]]
     return problem.with_trials([replace(trial, recording=replace(trial.recording, values=values))])
 
 
