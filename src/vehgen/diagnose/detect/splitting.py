@@ -12,7 +12,7 @@ from vehgen.fit.trial import Trial
 
 UNSHOWN = 0.1
 """Validation runs that show less than this share of the excess of the training runs show nothing, nor do training runs then, below ..."""
-CLEAR = 2.0
+SHOWN_CLEARLY = 2.0
 """... this chi."""
 
 
@@ -28,10 +28,10 @@ def split_by_gap(base: ModelFit, trials: Sequence[Trial]) -> tuple[list[Trial], 
     """Return other training and validation runs where those of a fit do not both show what is missing; None where they do, or none could.
 
     A part shows too little where its excess is less than UNSHOWN of the other's: a stop is met by the roughest run alone. Training runs
-    with a chi of CLEAR show enough. Then every second run by gap is a validation run, the clearest and the least clear ones aside.
+    with a chi of SHOWN_CLEARLY show enough. Then every second run by gap is a validation run, the clearest and the least clear ones aside.
     """
     before, shown = max(base.training - 1, 0.0), max(base.validation - 1, 0.0)
-    telling = shown >= UNSHOWN * before and (before >= UNSHOWN * shown or base.training >= CLEAR**2)
+    telling = shown >= UNSHOWN * before and (before >= UNSHOWN * shown or base.training >= SHOWN_CLEARLY**2)
     if base.validation_fit is None or max(base.training, base.validation) <= WEAK**2 or telling:
         return None
     ordered = sorted(trials, key=lambda trial: base.mean_squares[trial.name])
