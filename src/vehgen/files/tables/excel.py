@@ -1,10 +1,11 @@
-"""Excel workbooks (.xlsx): the first sheet, headings in its first row, a row of units below them if there is one."""
+"""Excel workbooks (.xlsx): a table is the first sheet, headings in its first row, a row of units below them if there is one."""
 
 from __future__ import annotations
 
 import re
 import zipfile
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -12,13 +13,14 @@ from vehgen.errors import InputError, Position
 from vehgen.files.tables.columns import MAX_TABLE_BYTES, TableColumns
 from vehgen.files.tables.csv_rows import MOST_ROWS
 from vehgen.files.tables.foreign import faults_of, library
-from vehgen.files.tables.rows import Cell, read_rows
+from vehgen.files.tables.rows import Cell, Rows, read_rows
 
 EXCEL_KIND = "an Excel workbook (.xlsx)"
 MAX_WORKBOOK_BYTES = 5 * MAX_TABLE_BYTES
 """Sheets are XML, packed to a tenth [bytes]."""
 MOST_WORKBOOK_PARTS = 1000
-_WORKBOOK = "xl/workbook.xml"
+WORKBOOK_PART = "xl/workbook.xml"
+"""The part by which an archive is a workbook."""
 _ENTITIES = (b"<!DOCTYPE", b"<!ENTITY")
 _COMMENT, _ELEMENT = re.compile(rb"<!--.*?-->", re.DOTALL), re.compile(rb"<[A-Za-z_]")
 _ENCODING = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([^"']*)""")
@@ -29,14 +31,27 @@ HEAD_BYTES = 65536
 
 def read(path: Path, names: tuple[str, ...]) -> TableColumns:
     """Read columns of the first sheet of a workbook; raises InputError for a damaged or hostile one, and as :func:`read_rows`."""
+    with open_sheets(path) as sheets:
+        rows = next(iter(sheets.values()))
+        header = [str(cell).strip() for cell in next(rows, (1, []))[1]]
+        return read_rows(path, header, rows, names)
+
+
+@contextmanager
+def open_sheets(path: Path) -> Iterator[dict[str, Rows]]:
+    """Yield the sheets of a workbook by name: of every row that is not blank its number, from 1 on, and its cells.
+
+    Raises
+    ------
+    InputError
+        For a damaged or hostile workbook, one with too many rows, and where the library that reads it lacks.
+    """
     _check_parts(path)
     openpyxl = library("openpyxl", "tables", path)
     with faults_of(path, EXCEL_KIND):
         book = openpyxl.load_workbook(path, read_only=True, data_only=True, keep_links=False)
         try:
-            rows = _rows(book.worksheets[0].iter_rows(values_only=True), path)
-            header = [str(cell).strip() for cell in next(rows, (1, []))[1]]
-            return read_rows(path, header, rows, names)
+            yield {sheet.title: _rows(sheet.iter_rows(values_only=True), path) for sheet in book.worksheets}
         finally:
             book.close()
 
@@ -63,7 +78,7 @@ def _check_parts(path: Path) -> None:
     """Refuse an archive that is no workbook, unpacks to too much, or whose XML declares entities, before anything reads it."""
     with faults_of(path, EXCEL_KIND), zipfile.ZipFile(path) as archive:
         parts = archive.infolist()
-        if _WORKBOOK not in archive.namelist():
+        if WORKBOOK_PART not in archive.namelist():
             raise InputError("a zip archive that is no Excel workbook; unpack the table first", Position(path, 1, 1))
         if len(parts) > MOST_WORKBOOK_PARTS or sum(part.file_size for part in parts) > MAX_WORKBOOK_BYTES:
             raise InputError(f"the workbook would unpack to more than {MAX_WORKBOOK_BYTES} bytes", Position(path, 1, 1))
