@@ -88,6 +88,7 @@ class _Search:
 
     @classmethod
     def of(cls, runs: Sequence[_Left], noises: Noises, quiet: Noises) -> list[_Search]:
+        """Return the searches to try: errors of forces as a share of each run's, and, of several runs, as one size in all of them."""
         free = [i for i, channel in enumerate(runs[0].trial.recording.channels) if channel.noise is None]
         loudest = np.min([quiet[run.trial.name].sigma for run in runs], axis=0)
         sizes = {run.trial.name: _unstated(run.trial) for run in runs}
@@ -101,10 +102,12 @@ class _Search:
 
     @property
     def size(self) -> int:
+        """Number of the numbers sought."""
         return self.has_force + len(self.free)
 
     @property
     def has_force(self) -> bool:
+        """Whether an error of forces is sought."""
         return any(len(item) for item in self.forces.values())
 
     def noise(self, run: _Left, x: Array) -> Noise:
