@@ -190,6 +190,13 @@ def test_tables_show_the_numbers(capsys: pytest.CaptureFixture[str]):
     assert all(name in table for name in bundled_models())
 
 
+def test_static_of_a_vehicle_without_springs_has_no_empty_table(work: Path, capsys: pytest.CaptureFixture[str]):
+    (work / "bar.yaml").write_text("name: bar\ngravity: false\nbodies: {bar: {mass: 10 kg, pitch_inertia: 2 kg m^2}}\n")
+    assert main(["static", "bar.yaml"]) == 0
+    assert capsys.readouterr().out == "bar: no axle, hinge or spring carries anything\n"
+    assert run_json(capsys, "static", "bar.yaml")["springs"] == []
+
+
 def test_a_title_is_no_markup(work: Path, capsys: pytest.CaptureFixture[str]):
     (work / "a.yaml").write_text("extends: quarter_car\nname: a\ntitle: '[/x] [bold]half[laden] car'\n")
     for command in ("modes", "static"):

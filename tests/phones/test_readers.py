@@ -110,13 +110,13 @@ def test_plain_csv_errors(tmp_path, text, columns, message):
     assert message in str(caught.value)
 
 
-def test_excel_is_refused_with_what_to_do(tmp_path):
+def test_excel_of_the_old_form_or_among_other_files_is_refused_with_what_to_do(tmp_path):
     (tmp_path / "a.xls").write_bytes(bytes.fromhex("d0cf11e0a1b11ae1") + bytes(600))
-    with pytest.raises(InputError, match="is an Excel file; export again as CSV"):
+    with pytest.raises(InputError, match=r"is an Excel file of the old form \(.xls\); save it as .xlsx, or export again as CSV"):
         read_export(tmp_path / "a.xls")
-    write_zip(tmp_path / "a.xlsx", {"[Content_Types].xml": "<x/>"})
-    with pytest.raises(InputError, match="is an Excel file; export again as CSV"):
-        read_export(tmp_path / "a.xlsx")
+    write_zip(tmp_path / "a.zip", {**phyphox(*still()), "more/b.xlsx": "x"})
+    with pytest.raises(InputError, match=r"holds 'more/b\.xlsx', which is an Excel file among others; give a workbook"):
+        read_export(tmp_path / "a.zip")
 
 
 @pytest.mark.parametrize("name", ["../evil.csv", "/etc/evil.csv", "a/../../evil.csv", "..\\evil.csv", "C:/evil.csv"])

@@ -21,7 +21,10 @@ def add_fleet(parser: argparse.ArgumentParser, *instead_of: argparse.Action) -> 
     """Add --fleet and --scheduler; with a fleet the arguments `instead_of` are not asked for."""
 
     class FleetAction(argparse.Action):
+        """Take the folder of a fleet, whose run files stand in it: the arguments of one vehicle are then not required."""
+
         def __call__(self, parser: argparse.ArgumentParser, options: argparse.Namespace, values: Any, option: str | None = None) -> None:
+            """Keep the folder, and require the other arguments no more."""
             setattr(options, self.dest, values)
             for action in instead_of:
                 action.required = False

@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from vehgen.commands.terminal import add_vehicle, force_text, load, print_json, print_table, warn
+from vehgen.commands.terminal import add_vehicle, force_text, load, print_json, print_table, say, warn
 from vehgen.files.number_text import millimetres, on_terminal
 
 if TYPE_CHECKING:
@@ -51,9 +51,12 @@ def _show(vehicle: Vehicle, loads: StaticLoads, springs: Sequence[tuple[str, str
     if loads.hinges:
         hinge_rows = [(name, force_text(force), _who(vehicle.hinges[name].points)) for name, force in loads.hinges.items()]
         print_table("Hinge forces", ("hinge", "force, kN", ""), hinge_rows, right=(1,))
-    cells = [(kind, name, force_text(force), on_terminal(millimetres(travel))) for kind, name, force, travel in springs]
-    heading = "Springs at rest" if loads.axles else f"{title}: springs at rest"
-    print_table(f"{heading}, compression positive", ("", "spring", "force, kN", "deflection, mm"), cells, right=(2, 3))
+    if springs:
+        cells = [(kind, name, force_text(force), on_terminal(millimetres(travel))) for kind, name, force, travel in springs]
+        heading = "Springs at rest" if loads.axles else f"{title}: springs at rest"
+        print_table(f"{heading}, compression positive", ("", "spring", "force, kN", "deflection, mm"), cells, right=(2, 3))
+    if not (loads.axles or loads.hinges or springs):
+        say("no axle, hinge or spring carries anything", heading=f"{title}: ")
 
 
 def _who(points: Mapping[str, object]) -> str:

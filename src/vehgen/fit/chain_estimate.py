@@ -202,6 +202,7 @@ class _Search:
 
     @classmethod
     def of(cls, misfit: Misfit, x: Array, channels: tuple[str, ...], prior_sigma: float) -> _Search:
+        """Return what the trials of chains share at the unknowns `x shape (n_unknowns,)`; `prior_sigma` is that of a parameter."""
         n, shared = misfit.n_parameters, len(misfit.shared)
         held = np.array([item.name in LOW_PASS for item in misfit.conditions(x)], dtype=bool)
         x = misfit.without(x, LOW_PASS)  # what stood for other chains than the one that the fit was made through

@@ -1,4 +1,4 @@
-"""The files of an export, from a zip, a folder or a single file, read into memory and never unpacked to disk."""
+"""The files of an export, from a zip, a folder, a workbook or a single file, read into memory and never unpacked to disk."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from typing import IO
 
 from vehgen.errors import InputError, shortened, shown
 from vehgen.files.reading import bounded, open_regular, read_bytes, short_path
+from vehgen.phones.workbook import is_workbook, read_sheets
 
 MAX_FILE = 64 * 2**20
 """Largest file of an export [bytes]: two hours of three axes at 200 Hz."""
@@ -26,18 +27,20 @@ MAX_DIRECTORY = 2**20
 _END_SEARCHED = 2**16 + 22
 OLE = bytes.fromhex("d0cf11e0a1b11ae1")
 """The first bytes of a legacy Excel file."""
-EXPECTED = "a phone's export as zip, folder or CSV file"
+EXPECTED = "a phone's export as zip, folder, CSV file or Excel workbook (.xlsx)"
 TEXT_SUFFIXES = (".csv", ".txt", ".tsv")
-EXCEL = "is an Excel file; export again as CSV (in phyphox: Export data, then CSV with a decimal point; in Sensor Logger: Zipped CSV)"
+CSV_AGAIN = "export again as CSV (in phyphox: Export data, then CSV with a decimal point; in Sensor Logger: Zipped CSV)"
+OLD_EXCEL = f"is an Excel file of the old form (.xls); save it as .xlsx, or {CSV_AGAIN}"
+EXCEL_INSIDE = f"is an Excel file among others; give a workbook (.xlsx) by itself, or {CSV_AGAIN}"
 
 
 def read_members(path: Path) -> dict[str, bytes]:
-    """Return the text files of an export by their names inside it.
+    """Return the text files of an export by their names inside it; of a workbook its sheets as text.
 
     Raises
     ------
     InputError
-        For a missing, damaged, encrypted, oversized or hostile archive, an Excel file, and an export without a CSV file.
+        For a missing, damaged, encrypted, oversized or hostile archive, an old Excel file, and an export without a CSV file.
     """
     name = short_path(path)
     try:
@@ -55,7 +58,7 @@ def _file(path: Path) -> dict[str, bytes]:
     with open_regular(path, MAX_TOTAL, EXPECTED) as stream:
         start = stream.read(8)
         if start == OLE:
-            raise InputError(f"{path} {EXCEL}")
+            raise InputError(f"{path} {OLD_EXCEL}")
         stream.seek(0)
         if start.startswith(b"PK"):
             return _zip(path, stream)
@@ -69,7 +72,7 @@ def _folder(path: Path) -> dict[str, bytes]:
         if count >= MAX_FILES:
             raise InputError(f"{path} holds more than {MAX_FILES} files; the folder of one export was expected")
         if file.suffix.lower() in (".xls", ".xlsx"):
-            raise InputError(f"{file} {EXCEL}")
+            raise InputError(f"{file} {EXCEL_INSIDE}")
         if file.suffix.lower() in TEXT_SUFFIXES:
             data = read_bytes(file, MAX_FILE, "the CSV file of a phone's export")
             total += len(data)
@@ -95,6 +98,8 @@ def _zip(path: Path, stream: IO[bytes]) -> dict[str, bytes]:
     try:
         _check_directory(path, stream)
         with zipfile.ZipFile(stream) as archive:
+            if is_workbook(archive):
+                return read_sheets(path, MAX_TOTAL)
             entries = archive.infolist()
             _check_entries(path, entries)
             for entry in entries:
@@ -132,8 +137,8 @@ def _check_entries(path: Path, entries: list[zipfile.ZipInfo]) -> None:
         name = entry.filename
         if name.startswith(("/", "\\")) or ".." in PurePosixPath(name.replace("\\", "/")).parts or ":" in name.partition("/")[0]:
             raise InputError(f"{path} holds the name {shown(name)}, which leads out of the archive")
-        if name == "[Content_Types].xml" or name.lower().endswith((".xls", ".xlsx")):
-            raise InputError(f"{path} {'' if name == '[Content_Types].xml' else f'holds {shown(name)}, which '}{EXCEL}")
+        if name.lower().endswith((".xls", ".xlsx")):
+            raise InputError(f"{path} holds {shown(name)}, which {EXCEL_INSIDE}")
         if entry.flag_bits & 1:
             raise InputError(f"{path} is encrypted; export without a password")
         if entry.file_size > MAX_FILE or entry.file_size > 2**20 + MAX_RATIO * max(entry.compress_size, 1):

@@ -14,14 +14,14 @@ from vehgen.phones.sensor_logger import is_sensor_logger, read_sensor_logger
 
 
 def read_export(path: str | Path, columns: ColumnMap | None = None) -> PhoneExport:
-    """Read what a phone exported: a zip, a folder, a CSV file or a MATLAB file.
+    """Read what a phone exported: a zip, a folder, a CSV file, an Excel workbook or a MATLAB file.
 
     Parameters
     ----------
     path
         The export.
     columns
-        Which columns are which, for a plain CSV file of no known app.
+        Which columns are which, for a plain table of no known app.
 
     Raises
     ------
@@ -45,5 +45,5 @@ def read_export(path: str | Path, columns: ColumnMap | None = None) -> PhoneExpo
     if any(is_phyphox(table) for table in tables):
         return read_phyphox([table for table in tables if is_phyphox(table)])
     if len(tables) > 1 and columns is not None:
-        raise ArgumentError(f"{path} holds {len(tables)} tables; with `columns`, give the one CSV file", "columns")
+        raise ArgumentError(f"{path} holds {len(tables)} tables; with `columns`, give the one table", "columns")
     return read_plain(tables[0], columns)

@@ -1,4 +1,4 @@
-"""Exports of phyphox (phyphox.org): zip or folder, one experiment's `Raw Data.csv` or a file a sensor.
+"""Exports of phyphox (phyphox.org): zip, folder or workbook, one experiment's `Raw Data.csv` or a file or sheet a sensor.
 
 The app translates its headers, so columns are recognised by their units: `Time (s)`, then `... x (m/s^2)`, `... x (rad/s)`, `... (m/s)`.
 On iOS, too, phyphox writes accelerations as Android does: flat and face up, z reads +9.8 m/s^2.

@@ -1,9 +1,9 @@
-"""Excel workbooks (.xlsx): the first sheet, headings in its first row, a row of units below them if there is one."""
+"""Excel workbooks (.xlsx): a table is the first sheet, headings in its first row, a row of units below them if there is one."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import closing
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -11,22 +11,37 @@ from vehgen.errors import InputError, Position
 from vehgen.files.tables.columns import TableColumns
 from vehgen.files.tables.csv_rows import MOST_ROWS
 from vehgen.files.tables.foreign import faults_of, items_of, library, without_warnings
-from vehgen.files.tables.rows import Cell, read_rows
+from vehgen.files.tables.rows import Cell, Rows, read_rows
 from vehgen.files.tables.workbook_parts import EXCEL_KIND, check_parts
 
 
 def read(path: Path, names: tuple[str, ...]) -> TableColumns:
     """Read columns of the first sheet of a workbook; raises InputError for a damaged or hostile one, and as :func:`read_rows`."""
+    with open_sheets(path) as sheets:
+        rows = next(iter(sheets.values()))
+        header = [str(cell).strip() for cell in next(rows, (1, []))[1]]
+        return read_rows(path, header, rows, names)
+
+
+@contextmanager
+def open_sheets(path: Path) -> Iterator[dict[str, Rows]]:
+    """Yield the sheets of a workbook by name: of every row that is not blank its number, from 1 on, and its cells.
+
+    Raises
+    ------
+    InputError
+        For a damaged or hostile workbook, one with too many rows, and where the library that reads it lacks.
+    """
     check_parts(path)
     openpyxl = library("openpyxl", "tables", path)
     with faults_of(path, EXCEL_KIND):
         book = openpyxl.load_workbook(path, read_only=True, data_only=True, keep_links=False)
     with closing(book), without_warnings():
         with faults_of(path, EXCEL_KIND):
-            sheet = book.worksheets[0].iter_rows(values_only=True)
-        rows = _rows(items_of(sheet, path, EXCEL_KIND), path)
-        header = [str(cell).strip() for cell in next(rows, (1, []))[1]]
-        return read_rows(path, header, rows, names)
+            sheets = {sheet.title: sheet.iter_rows(values_only=True) for sheet in book.worksheets}
+            if not sheets:
+                raise InputError("the workbook has no sheet; one with a table was expected", Position(path, 1, 1))
+        yield {name: _rows(items_of(rows, path, EXCEL_KIND), path) for name, rows in sheets.items()}
 
 
 def _rows(rows: Iterator[tuple[Any, ...]], path: Path) -> Iterator[tuple[int, list[Cell]]]:

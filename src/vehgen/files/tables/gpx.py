@@ -35,12 +35,15 @@ class _Points:
         self.inside = False
 
     def fault(self, message: str) -> InputError:
+        """Return an error at the place that the parser has reached."""
         return InputError(message, Position(self.path, self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1))
 
     def doctype(self, *_: object) -> None:
+        """Refuse a DOCTYPE; raises InputError."""
         raise self.fault("a GPX file has no DOCTYPE; one with entities is refused")
 
     def begin(self, tag: str, attributes: dict[str, str]) -> None:
+        """Begin an element: a point is noted, the text of its time or speed kept; raises InputError for bad places and for too much."""
         self.depth += 1
         if self.depth > DEEPEST_ELEMENT or len(self.lines) > MOST_ROWS:
             raise self.fault(f"deeper than {DEEPEST_ELEMENT} elements, or more than {MOST_ROWS} points")
@@ -54,6 +57,7 @@ class _Points:
         self.text = [] if self.inside and name in ("time", "speed") else None
 
     def number(self, text: str, most: float) -> float:
+        """Return a number of at most `most` in size; raises InputError for anything else."""
         try:
             found = float(text)
         except ValueError:
@@ -63,10 +67,12 @@ class _Points:
         return found
 
     def read(self, text: str) -> None:
+        """Keep a piece of the text of a time or speed."""
         if self.text is not None:
             self.text.append(text)
 
     def end(self, tag: str) -> None:
+        """End an element: the time [s since 1970] or speed [m/s] of a point is read; raises InputError for a point without a time."""
         self.depth -= 1
         name = tag.rpartition(":")[2]
         if self.text is not None and name == "time":
@@ -80,6 +86,7 @@ class _Points:
         self.text = None
 
     def clock(self, text: str) -> float:
+        """Return a moment [s since 1970], in UTC where it names no zone; raises InputError for what is none."""
         try:
             found = datetime.fromisoformat(text)
             return (found if found.tzinfo else found.replace(tzinfo=UTC)).timestamp()

@@ -25,7 +25,9 @@ MAX_SHEET_ROW_BYTES = 4 * 2**20
 MOST_WORKBOOK_PARTS = 1000
 HEAD_BYTES = 65536
 """The first element of every part of a workbook begins within so many bytes: nothing can be declared after it."""
-_WORKBOOK, _CONTENT_TYPES, _RELATIONS = "xl/workbook.xml", "[Content_Types].xml", ".rels"
+WORKBOOK_PART = "xl/workbook.xml"
+"""The part by which an archive is a workbook."""
+_CONTENT_TYPES, _RELATIONS = "[Content_Types].xml", ".rels"
 _SHEET_PART = re.compile(r"xl/worksheets/[^/]+\.xml")
 _SHEET_ROLES = {
     "application/vnd.openxmlformats-officedocument.spreadsheetml.worksheet+xml",
@@ -44,7 +46,7 @@ def check_parts(path: Path) -> None:
         archive = zipfile.ZipFile(path)
     with archive:
         parts = archive.infolist()
-        if _WORKBOOK not in archive.namelist():
+        if WORKBOOK_PART not in archive.namelist():
             raise InputError("a zip archive that is no Excel workbook; unpack the table first", Position(path, 1, 1))
         if len(parts) > MOST_WORKBOOK_PARTS or sum(part.file_size for part in parts) > MAX_WORKBOOK_BYTES:
             raise InputError(f"the workbook would unpack to more than {MAX_WORKBOOK_BYTES} bytes", Position(path, 1, 1))
