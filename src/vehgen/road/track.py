@@ -102,8 +102,10 @@ class Track:
         return np.asarray((np.interp(s + half, grid, integral) - np.interp(s - half, grid, integral)) / self.footprint)
 
     def _raw(self, s: Array) -> Array:
-        found = [self._part(part).height(s) for part in self.parts]
-        return self.scale * sum(found[1:], found[0]) if found else np.zeros_like(s)
+        total = np.zeros_like(s)
+        for part in self.parts:
+            total += self._part(part).height(s)
+        return self.scale * total
 
     def _part(self, part: Profile) -> Profile:
         return part.deformed(*self.deformation) if isinstance(part, Hump) and self.deformation != UNDEFORMED else part
