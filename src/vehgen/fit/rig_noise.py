@@ -6,7 +6,7 @@ the same channels (ripple) or the same in newtons (a load cell's noise), whichev
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -116,11 +116,18 @@ def likeliest_noises(runs: Sequence[RunResidual]) -> Noises:
     power = np.mean([np.mean(np.abs(run.lines) ** 2, axis=0) / (2 * run.answer.dt) for run in runs], axis=0)
     stated = np.array([channel.noise or np.nan for channel in runs[0].trial.recording.channels])
     whole = {run.trial.name: Noise(EVEN, np.where(np.isnan(stated), np.sqrt(power), stated)) for run in runs}
-    searches = RigNoiseSearch.of(runs, whole, whole)
+    return whole | likelier_noises(runs, whole, whole, lambda search: search.likeliest(runs))
+
+
+def likelier_noises(runs: Sequence[RunResidual], noises: Noises, quiet: Noises, answer: Callable[[RigNoiseSearch], Array]) -> Noises:
+    """Return the noise of runs with the same channels by the likelier of the searches, each with the numbers of its `answer`.
+
+    Empty where nothing is sought: see :class:`RigNoiseSearch` for `noises` and `quiet`.
+    """
+    searches = RigNoiseSearch.of(runs, noises, quiet)
     if not searches[0].size:
-        return whole
-    answers = [item.likeliest(runs) for item in searches]
-    search, x = min(zip(searches, answers, strict=True), key=lambda pair: pair[0].loss(pair[1], runs))
+        return {}
+    search, x = min(((item, answer(item)) for item in searches), key=lambda pair: pair[0].loss(pair[1], runs))
     return {run.trial.name: search.noise(run, x) for run in runs}
 
 

@@ -8,6 +8,7 @@ counts. So noise that was overrated, by harmonics above the band, comes down onc
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import scipy.optimize
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.fit.misfit import Noises
-from vehgen.fit.rig_noise import SHARES, RigNoiseSearch, RunResidual
+from vehgen.fit.rig_noise import SHARES, RigNoiseSearch, RunResidual, likelier_noises
 
 Array = NDArray[np.float64]
 LESS_LIKELY = 4.0
@@ -35,15 +36,11 @@ def rig_noises(fit: ModelFit, noises: Noises, quiet: Noises) -> Noises:
     found = dict(noises)
     for runs in groups.values():
         upper = [run.within(run.answer.frequency >= fit.parts[0].misfit.band[1] / 2) for run in runs]
-        searches = RigNoiseSearch.of(runs, noises, quiet)
-        if searches[0].size:
-            answers = [_numbers(item, runs, upper) for item in searches]
-            search, x = min(zip(searches, answers, strict=True), key=lambda pair: pair[0].loss(pair[1], runs))
-            found |= {run.trial.name: search.noise(run, x) for run in runs}
+        found |= likelier_noises(runs, noises, quiet, partial(_numbers, runs=runs, upper=upper))
     return found
 
 
-def _numbers(search: RigNoiseSearch, runs: Sequence[RunResidual], upper: Sequence[RunResidual]) -> Array:
+def _numbers(search: RigNoiseSearch, *, runs: Sequence[RunResidual], upper: Sequence[RunResidual]) -> Array:
     """Return the numbers that stand: the largest error of forces that both answers allow, and the sensors' quieter noise beside it."""
     error = min(_largest_error(search, upper), search.likeliest(runs)[0]) if search.has_force else None
     return np.asarray(np.min([search.likeliest(part, error) for part in (upper, runs)], axis=0))
