@@ -104,8 +104,6 @@ class Track:
     def _raw(self, s: Array) -> Array:
         total = np.zeros_like(s)
         for part in self.parts:
-            total += self._part(part).height(s)
+            shaped = part.deformed(*self.deformation) if isinstance(part, Hump) and self.deformation != UNDEFORMED else part
+            total += shaped.height(s)
         return self.scale * total
-
-    def _part(self, part: Profile) -> Profile:
-        return part.deformed(*self.deformation) if isinstance(part, Hump) and self.deformation != UNDEFORMED else part
