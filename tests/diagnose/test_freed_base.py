@@ -1,15 +1,19 @@
 """Dampers far from the file's value, and dampers on soft mounts: told apart, not taken for one another."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from benchmarks.hidden_effects.generator import Effect, nominal
 
 from tests.diagnose.conftest import CUBIC
-from vehgen.diagnose.fits.candidate import build_problem, carried, list_candidates
+from vehgen.diagnose.decision import Decision
+from vehgen.diagnose.fits.candidate import Candidate, build_problem, carried, list_candidates
 from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, base_priors, narrow
 from vehgen.diagnose.pipeline import diagnose_trials
+from vehgen.diagnose.select.freed_base import FREED_BASE
+from vehgen.diagnose.select.search import SearchRound
 from vehgen.effects import EFFECTS, EffectLocator
 from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
 from vehgen.fit.problem import make_problem
@@ -44,6 +48,19 @@ def test_a_freed_damper_that_leaves_the_gap_is_not_to_blame(trials_of):
     """No damper of any size imitates a spring: then neither do effects that free one, and nothing is said against the file."""
     found = diagnose_trials(trials_of(CUBIC), [EFFECTS["damper_mount"]])
     assert found.verdict.verdict == "not_in_library"
+
+
+@pytest.mark.parametrize(("left", "verdict"), [(1.07, "too_weak"), (1.00, "insufficient_data")])
+def test_a_freed_parameter_is_blamed_only_for_the_gap_that_it_closes(detection_of, monkeypatch, left, verdict):
+    """A gap of chi 1.08, beside which every effect does no more than a freed parameter alone."""
+    detection = detection_of()
+    base = replace(detection.base, training=1.08**2, mean_squares=dict.fromkeys(detection.base.mean_squares, 1.08**2))
+    detection = replace(detection, base=base)
+    freed = replace(base, effects=(Candidate(FREED_BASE, "cf", (), (), ("cf",)),), training=left**2)
+    monkeypatch.setattr(Decision, "_search_round", lambda self, current: SearchRound(current, (), (), (), (freed,)))
+    found = Decision(detection, SERIES, False, lambda *_: None, 1)._explain_gap().verdict
+    assert found.verdict == verdict
+    assert ("times the file's value" in found.reason) == (verdict == "insufficient_data")
 
 
 @pytest.fixture(scope="module")

@@ -119,7 +119,7 @@ class Decision:
             first = self._again(first)
         if freed := self._freed(first):
             return self._out_of_range(freed)
-        weak = self._add(first) if first.fits else None
+        weak = self._add(first) if first.fits else self._all_idle()
         if self.interrupted:
             return self._name(self.chain) if self.chain else self._stopped()
         return self._other_mistakes(first) or weak or (self._name(self.chain) if self.chain else self._unknown(first))
@@ -162,6 +162,11 @@ class Decision:
         elif weak is None:
             self._combine(first)
         return weak
+
+    def _all_idle(self) -> Decided | None:
+        """Return the verdict where a gap is small, and no effect does more for it than base parameters do."""
+        chi = self.detection.chi
+        return self._end("too_weak", wording.small_gap(chi)) if chi <= limit.WEAK else None
 
     def _other_mistakes(self, first: SearchRound) -> Decided | None:
         """Return the verdict where a mistake that looks like an effect explains the runs, and no effect of the vehicle does.

@@ -21,13 +21,13 @@ def excess(mean_square: float) -> float:
 
 def passes(fit: ModelFit, base: ModelFit) -> bool:
     """Return whether a fit closes the gap of the base, on the training runs and on validation runs, however small the gap is."""
-    checked = _closes(excess(fit.validation), excess(base.validation))
-    return excess(fit.training) <= limit.AT_LEAST * excess(base.training) and closes_training(fit, base) and checked
+    return closes_training(fit, base) and _closes(excess(fit.validation), excess(base.validation))
 
 
 def closes_training(fit: ModelFit, base: ModelFit) -> bool:
-    """Return whether a fit closes the gap of the base on the training runs."""
-    return _closes(excess(fit.training), excess(base.training))
+    """Return whether a fit closes the gap of the base on the training runs, and AT_LEAST a share of it where that is small."""
+    after, before = excess(fit.training), excess(base.training)
+    return after <= limit.AT_LEAST * before and _closes(after, before)
 
 
 def _closes(after: float, before: float) -> bool:
