@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 import scipy.signal
 
 from vehgen.diagnose.detect.noise_floor import find_noise_floor
@@ -50,3 +51,16 @@ def test_harmonics_of_loud_runs_leave_a_quiet_run_its_noise(trials_of):
         runs.append(replace(rough, name=f"run{number}", recording=replace(rough.recording, values=values)))
     noises = find_noise_floor(runs).noises
     assert all(np.all(noise.sigma > 0.04) for noise in noises.values())
+
+
+def test_noise_that_a_recorder_filters_is_not_taken_for_less(trials_of):
+    """A low-pass at 43 Hz takes nineteen twentieths of the power off the top of the band, and hardly any of what is compared below."""
+    trials = humps_of(trials_of())
+    sections = scipy.signal.butter(8, 43.0, fs=1 / trials[0].recording.dt, output="sos")
+    filtered = [
+        replace(trial, recording=replace(trial.recording, values=scipy.signal.sosfilt(sections, trial.recording.values, axis=0)))
+        for trial in trials
+    ]
+    plain, found = find_noise_floor(trials).noises, find_noise_floor(filtered).noises
+    for trial in trials:
+        assert found[trial.name].sigma == pytest.approx(plain[trial.name].sigma, rel=0.3)

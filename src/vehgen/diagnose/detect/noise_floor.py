@@ -1,9 +1,10 @@
 """How loud is nothing? The noise of every channel, from the quiet lead-in of hump runs and from the top of the band.
 
 The lead-in is what a run recorded before its first wheel met the hump. Where its noise is more than DIFFERENT times that of the top of the
-band, something shakes the vehicle that is no noise (an engine's line, say), and the top of the band is believed. A recording of what the
-vehicle does over a rough road has no quiet stretch; it takes the noise of the others, or that of the top of its band. Noise
-that the run files state is believed before any of this.
+band, something shakes the vehicle that is no noise (an engine's line, say), and the top of the band is believed. Sensors' noise passes a
+recorder's low-pass, too: what that takes off the top of the band is put back first. A recording of what the vehicle does over a rough road
+has no quiet stretch; it takes the noise of the others, or that of the top of its band. Noise that the run files state is believed before
+any of this.
 """
 
 from __future__ import annotations
@@ -40,6 +41,10 @@ LEAD_IN_MARGIN_S = 0.1
 """How long before the hump the lead-in ends [s]."""
 TOP_BAND_RATIO = (1.025, 1.175)
 """The top of the band lies just above what is compared: so many times its highest frequency (41 to 47 Hz above 40 Hz)."""
+END_OF_BAND = 0.75
+"""The end of the band, beside its top, begins at this share of its highest frequency."""
+CLEARLY_LESS = 2.0
+"""A recorder's low-pass takes noise off the top of the band where that has less than the end by so many standard deviations."""
 DIFFERENT = 1.3
 SLOPES = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5)
 """Slopes of coloured noise that are tried."""
@@ -88,7 +93,7 @@ def find_noise_floor(trials: Sequence[Trial], band: tuple[float, float] = CALIBR
         quiet = [part for trial in group if (part := lead_in(trial)) is not None]
         rough = np.sqrt(np.mean([top_of_band(part, band) ** 2 for part in (quiet or group)], axis=0))
         shared = _coloured(quiet, rough, band) if quiet else Noise(EVEN, rough)
-        colour = (sum(TOP_BAND_RATIO) / 2 * band[1] / COLOUR_AT) ** (shared.slope / 2)
+        colour = (sum(TOP_BAND_RATIO) / 2 * band[1] / COLOUR_AT) ** (shared.slope / 2) / np.sqrt(_kept_at_top(quiet, shared, band))
         variance, weight = np.zeros((len(group), len(channels))), np.zeros((len(group), len(channels)))
         for i, trial in enumerate(group):
             high = colour * top_of_band(trial, band)
@@ -124,6 +129,34 @@ def find_noise_floor(trials: Sequence[Trial], band: tuple[float, float] = CALIBR
     return NoiseFloor(noises, lead, top, tuple(corrected), noises)
 
 
+def _kept_at_top(quiet: Sequence[Trial], noise: Noise, band: tuple[float, float]) -> float:
+    """Return the share of the noise's power that a recorder's low-pass leaves at the top of a band; 1 where it clearly takes nothing off.
+
+    The lead-ins tell it: their power at the top over that at the end of the band below, both over what their noise has there.
+    """
+    found: list[tuple[Array, Array]] = []
+    for part in quiet:
+        lines, answer = lead_in_lines(part, (END_OF_BAND * band[1], TOP_BAND_RATIO[1] * band[1]))
+        power = _power_over_noise(lines, answer, noise)
+        found.append((power[answer.frequency >= TOP_BAND_RATIO[0] * band[1]], power[answer.frequency <= band[1]]))
+    top, end = (np.concatenate([np.zeros(0), *(item[i].ravel() for item in found)]) for i in range(2))
+    if not len(top) or not len(end):
+        return 1.0
+    kept = float(_usual(top) / _usual(end))
+    error = kept * float(np.sqrt(1 / len(top) + 1 / len(end)))
+    return kept if kept + CLEARLY_LESS * error < 1 else 1.0
+
+
+def _power_over_noise(lines: Complex, answer: RoadAnswer, noise: Noise) -> Array:
+    """Return the power of lines over what noise has of it, `shape (n, n_channels)`."""
+    return np.asarray(np.abs(lines) ** 2 / np.diagonal(noise.density(answer), axis1=1, axis2=2).real)
+
+
+def _usual(power: Array) -> Array:
+    """Return the mean power of lines, `shape (n, ...)`, without those that stand out: an engine's line is no noise."""
+    return np.asarray(np.mean(power, axis=0, where=power <= LINE_STANDS_OUT * np.median(power, axis=0)))
+
+
 def _louder(quiet: Sequence[tuple[Trial, Noise]], band: tuple[float, float]) -> Array | None:
     """Return how much louder lead-ins are than their noise has them, `shape (len(LOUDER_HZ), n_channels)`; None where they are not.
 
@@ -133,14 +166,13 @@ def _louder(quiet: Sequence[tuple[Trial, Noise]], band: tuple[float, float]) -> 
     for part, noise in quiet:
         lines, answer = lead_in_lines(part, band)
         frequency.append(answer.frequency)
-        power.append(np.abs(lines) ** 2 / np.diagonal(noise.density(answer), axis1=1, axis2=2).real)
+        power.append(_power_over_noise(lines, answer, noise))
     number, powers = np.searchsorted(LOUDER_HZ, np.concatenate(frequency), side="right") - 1, np.concatenate(power)
     found = np.ones((len(LOUDER_HZ), powers.shape[1]))
     for i in range(len(LOUDER_HZ)):
         inside = powers[number == i]
         if len(inside):
-            ordinary = inside <= LINE_STANDS_OUT * np.median(inside, axis=0)  # an engine's line is no noise
-            usual = np.mean(inside, axis=0, where=ordinary)
+            usual = _usual(inside)
             found[i] = np.where(usual > 1 + CLEARLY_LOUDER / np.sqrt(len(inside)), usual, 1.0)
     return found if found.max() > 1 else None
 
