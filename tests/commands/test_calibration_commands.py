@@ -1,4 +1,5 @@
 import json
+import os
 from importlib import import_module
 from pathlib import Path
 
@@ -24,12 +25,14 @@ def run(tmp_path_factory):
 
 
 def test_calibrate_writes_vehicle_result_and_figures(run, tmp_path, capsys):
-    out = tmp_path / "out"
-    assert main(["calibrate", "sedan2.yaml", run, "--out", str(out), "--json", *SMALL]) == 0
+    out, facts = tmp_path / "out", tmp_path / "known.yaml"
+    facts.write_text("kerb_mass: {value: 1500 kg, uncertainty: 300 kg}\n")
+    assert main(["calibrate", "sedan2.yaml", run, "--facts", str(facts), "--out", str(out), "--json", *SMALL]) == 0
     data = json.loads(capsys.readouterr().out)
     assert data["rank"] == data["searched"] == 10
     assert data["provenance"]["seed"] == 1
-    assert set(data["provenance"]["inputs"]) == {"hump.yaml", "hump.csv", "sedan2.yaml"}
+    known = os.path.relpath(facts, Path(run).parent).replace(os.sep, "/")
+    assert set(data["provenance"]["inputs"]) == {"hump.yaml", "hump.csv", "sedan2.yaml", known}
     low, high = data["parameters"]["kf"]["interval"]
     assert low < data["parameters"]["kf"]["value"] < high
     names = {path.name for path in out.iterdir()}

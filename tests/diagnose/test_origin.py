@@ -34,7 +34,9 @@ def test_every_table_that_drove_a_run_is_among_the_inputs_by_a_name_of_its_own(t
         (folder / "tables" / "force.csv").write_text(f"t,force\n0,0\n1,{len(files)}\n9,0\n")
         files += [f"runs/{name}/{file}" for file in ("run.yaml", "tables/speed.csv", "tables/force.csv")]
     trials = load_trials([tmp_path / "runs" / name / "run.yaml" for name in ("one", "two")])
-    found = origin_of(trials).inputs
+    (tmp_path / "own.yaml").write_text("effects: {}\n")
+    files.append("own.yaml")
+    found = origin_of(trials, [str(tmp_path / "own.yaml")]).inputs
     assert len(found) == len(files)
     for name, digest in found.items():
         file = (tmp_path / "runs" / "one" / name).resolve().relative_to(tmp_path).as_posix()

@@ -72,6 +72,7 @@ def check(fits, known, names):
 def test_a_file_may_add_effects_of_every_kind(detection, known, tmp_path):
     (tmp_path / "own.yaml").write_text(FILE, encoding="utf-8")
     effects = load_effects(tmp_path / "own.yaml")
+    assert {effect.file for effect in effects.values()} == {str(tmp_path / "own.yaml")}
     names = dict(zip(effects, TWINS, strict=True))
     listed = [item for item in candidates(detection, list(effects.values())) if TWINS[names[item.effect.name]] == item.place]
     check(fit_candidates(detection, detection.base, [], listed, quiet)[0], known, names)

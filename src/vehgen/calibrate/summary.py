@@ -104,7 +104,7 @@ def summarise(
         band=calibration.settings.band,
         psds=psds,
         histories=histories,
-        provenance=provenance(calibration),
+        provenance=provenance(calibration, prior_data),
         calibration=calibration,
         conditions=conditions,
         run_chi2=run_chi2(last.fits[0]) if last.fits else {},
@@ -179,9 +179,10 @@ def _recorder(step: str, found: FoundRecorder) -> RecorderSummary:
     return RecorderSummary(step, found.channels, chain.filter, chain.order, chain.cut_off, clear, top, found.describe())
 
 
-def provenance(calibration: Calibration) -> dict[str, Any]:
+def provenance(calibration: Calibration, prior_data: PriorData | None) -> dict[str, Any]:
     """Return versions, inputs' hashes and settings: what it takes to make the result again."""
-    files = files_read([trial.run for trial in calibration.problem.trials])
+    also = () if prior_data is None or prior_data.file is None else (prior_data.file,)
+    files = files_read([trial.run for trial in calibration.problem.trials], also=also)
     settings = asdict(calibration.settings)
     return {**versions(), "seed": calibration.settings.seed, "settings": settings, "inputs": file_hashes(files)}
 

@@ -248,7 +248,8 @@ class Decision:
         return self._decided(found, ())
 
     def _decided(self, verdict: Verdict, chain: Sequence[ModelFit], law: FreeForm | None = None) -> Decided:
-        return Decided(DiagnosisModels(self.detection, tuple(self.rounds), tuple(chain), law), verdict, self.interrupted)
+        libraries = tuple(dict.fromkeys(effect.file for effect in self.effects if effect.file))
+        return Decided(DiagnosisModels(self.detection, tuple(self.rounds), tuple(chain), law, libraries), verdict, self.interrupted)
 
     def _stopped(self) -> Decided:
         self.interrupted = True

@@ -23,13 +23,14 @@ class DiagnosisModels:
     """The fitted models of a diagnosis, kept in memory only.
 
     `rounds` are the looks for one effect each, the first on the base; `chosen` the fits that were added, each on top of the one before.
-    `law` describes an unknown force that no effect of the library explains.
+    `law` describes an unknown force that no effect of the library explains. `libraries` are the files that effects were read from.
     """
 
     detection: Detection
     rounds: tuple[SearchRound, ...]
     chosen: tuple[ModelFit, ...]
     law: FreeForm | None = None
+    libraries: tuple[str, ...] = ()
 
     @property
     def last(self) -> ModelFit:

@@ -104,6 +104,8 @@ class Effect(ABC):
     special_case
         The effect, by name, that it is at some value of a parameter: at the same place it is fitted where that one is worth fitting, and
         that one is named where it does as well. Empty where there is none.
+    file
+        The file of effects that it was read from; empty for those that come with vehgen or were made in Python.
     """
 
     name: str
@@ -119,6 +121,7 @@ class Effect(ABC):
     frees: tuple[Size, ...] = ()
     tie_advice: str = ""
     special_case: str = ""
+    file: str = ""
 
     @property
     def shows_in_slow_motions(self) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -81,5 +82,5 @@ def load_effects(path: str | os.PathLike[str], taken: Mapping[str, Effect] | Non
     for name, entry in file.effects.items():
         if name in known:
             raise InputError(f"an effect is named {shown(name)} already; choose another name", document.find(("effects", name), key=True))
-        found[name] = EntryReader(document, name, entry).effect()
+        found[name] = replace(EntryReader(document, name, entry).effect(), file=os.fspath(path))
     return found

@@ -83,10 +83,11 @@ class Fact:
 
 @dataclass(frozen=True)
 class PriorData:
-    """Facts about the vehicle of a problem, as residuals."""
+    """Facts about the vehicle of a problem, as residuals; `file` is where they were read."""
 
     problem: Problem
     facts: tuple[Fact, ...]
+    file: Path | None = None
 
     def residuals(self, values: Array) -> Array:
         """Return (model - value)/uncertainty at searched values `shape (n_parameters,)` [SI]."""
@@ -129,7 +130,7 @@ def load_prior_data(path: str | Path, problem: Problem) -> PriorData:
             facts.append(Fact(f"load of {axle}{suffix}", axle_load(model, axle), weight.value, weight.uncertainty))
     if not facts:
         raise InputError("no fact was found: parameters, kerb_mass, axle_weights or uncoupled were expected", document.position)
-    return PriorData(problem, tuple(facts))
+    return PriorData(problem, tuple(facts), Path(path))
 
 
 def _parameter_fact(vehicle: Vehicle, name: str, known: Known, document: Located) -> Fact:

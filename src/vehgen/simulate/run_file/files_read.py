@@ -9,7 +9,7 @@ from vehgen.simulate.run_file.loading import Run
 from vehgen.vehicle.loading import files_by_name
 
 
-def files_read(runs: Sequence[Run], *, recordings: bool = True, inputs: bool = True) -> dict[str, Path]:
+def files_read(runs: Sequence[Run], *, recordings: bool = True, inputs: bool = True, also: Sequence[Path] = ()) -> dict[str, Path]:
     """Return the files that runs are made from, by what a file in the first run's folder would call them.
 
     Parameters
@@ -18,8 +18,10 @@ def files_read(runs: Sequence[Run], *, recordings: bool = True, inputs: bool = T
         At least one; one made in Python has no file of its own.
     recordings, inputs
         With what was recorded; with the tables of roads, speeds, forces and displacements. Run and vehicle files are always among them.
+    also
+        Further files that a result was made from.
     """
-    found: list[Path] = []
+    found = list(also)
     for run in runs:
         if run.document.position is not None:
             found.append(Path(run.document.position.file))
