@@ -41,7 +41,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     made |= {path: text for path, (_, text) in api_pages().items()}
     made |= {"commands.md": commands_page(), "schemas.md": schemas_page(), "examples.md": examples_page(DOCS / "examples")}
     made |= schema_files()
-    made |= {"extra.css": (DOCS / "site" / "extra.css").read_text(encoding="utf-8")}
+    made |= {name: (DOCS / "site" / name).read_text(encoding="utf-8") for name in ("extra.css", "iframe-worker.js")}
     made |= notebook_files(config.extra["execute_notebooks"])
     for path, content in made.items():
         files.append(File.generated(config, path, content=content))

@@ -143,3 +143,12 @@ def test_what_a_page_loads_from_another_host_is_seen(site_module):
         assert found.findall(tag) == [tag]
     for tag in ('<a href="https://x.org">', '<script src="assets/a.js">', '<img src="images/a.svg" alt="https://x.org">'):
         assert found.findall(tag) == []
+
+
+def test_the_search_works_from_a_folder_without_another_host():
+    text = (DOCS / "site" / "mkdocs.yml").read_text(encoding="utf-8")
+    assert re.search(r"^  - offline\b", text, re.MULTILINE)
+    (polyfills,) = re.findall(r"^  polyfills: \[(.*?)\]", text, re.MULTILINE)
+    assert polyfills == "iframe-worker.js"
+    script = (DOCS / "site" / polyfills).read_text(encoding="utf-8")
+    assert not re.search(r"https?:|fetch\(|XMLHttpRequest|eval", script)

@@ -16,7 +16,7 @@ from vehgen.export import export
 from vehgen.simulate import natural_modes
 from vehgen.vehicle import bundled_models
 
-OCTAVE = shutil.which("octave")
+OCTAVE = shutil.which("octave-cli") or shutil.which("octave")
 STATEMENT = re.compile(
     r"  model\.(\w+) = (?:\[\n((?:    [-+0-9.e, ]+\n)+)  \];|zeros\((\d+), (\d+)\);|\{\n((?:    '(?:[^'\n]|'')*'\n)+)  \};"
     r"|(cell\(0, 1\));|('(?:[^'\n]|'')*');)\n"

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from tests.report.vehicles import EVERY, HOSTILE, model
+from tests.report.vehicles import EVERY, HOSTILE, build, model
 from vehgen.assess import assess
 from vehgen.codegen import write_kernel
 from vehgen.diagnose.fleet import Fleet, FleetRow
@@ -68,25 +68,6 @@ class Page(HTMLParser):
     @property
     def text(self):
         return "".join(self.words)
-
-
-def build(folder, name, warnings=(), plots=True):
-    m = model(name)
-    return write_build_folder(folder, m, m.values(), natural_modes(m), static_loads(m), write_kernel(m), warnings, plots=plots)
-
-
-@pytest.fixture(scope="module")
-def pages(tmp_path_factory):
-    kept = {}
-
-    def page(name):
-        if name not in kept:
-            folder = tmp_path_factory.mktemp(name)
-            build(folder, name, ["a warning of <b>2 & 3</b>"])
-            kept[name] = (folder / "index.html").read_text(encoding="utf-8")
-        return kept[name]
-
-    return page
 
 
 def test_the_folder_holds_what_it_should(tmp_path):

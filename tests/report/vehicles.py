@@ -1,11 +1,16 @@
 """Vehicles that the tests of the report draw and write down."""
 
+from collections.abc import Sequence
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 
 from tests.oracles.layouts import random_layout, to_yaml
-from vehgen.mechanics import EquationsOfMotion, Place, PointOutput, derive
+from vehgen.codegen import write_kernel
+from vehgen.mechanics import EquationsOfMotion, Place, PointOutput, derive, static_loads
+from vehgen.report import write_build_folder
+from vehgen.simulate import natural_modes
 from vehgen.vehicle import bundled_models, load_vehicle, parse_vehicle
 
 HOSTILE = r'</script><script>alert("1")</script> & $\frac$ 50 % {x}_y^2 #~'
@@ -48,3 +53,9 @@ def model(name: str) -> EquationsOfMotion:
 def random_model(seed: int) -> EquationsOfMotion:
     """Return a random vehicle of hinged bodies, axles of both kinds, links, modules, cabs, rigid loads."""
     return derive(parse_vehicle(to_yaml(random_layout(np.random.default_rng(seed)))))
+
+
+def build(folder: Path, name: str, warnings: Sequence[str] = (), plots: bool = True) -> list[Path]:
+    """Write the build folder of one of them."""
+    m = model(name)
+    return write_build_folder(folder, m, m.values(), natural_modes(m), static_loads(m), write_kernel(m), warnings, plots=plots)

@@ -25,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     add_vehicle(parser)
     add_out(parser, "DIR", "where to write (default: build/NAME)")
-    parser.add_argument("--no-plots", action="store_true", help="leave out drawing and mode shapes (faster)")
+    parser.add_argument("--no-plots", action="store_true", help="leave out drawing, mode shapes and the response to a road (faster)")
 
 
 def run(options: argparse.Namespace) -> None:

@@ -13,12 +13,14 @@ from vehgen.errors import ArgumentError
 from vehgen.files.limits import FREQUENCY_LIMIT, SPEED_LIMIT
 from vehgen.files.result_fields import Array1D, Array3D
 from vehgen.files.results import Cell, Result, Table
-from vehgen.mechanics import EquationsOfMotion, ModelLike, Output, Place, all_values
+from vehgen.mechanics import EquationsOfMotion, ModelLike, NumericModel, Output, Place, all_values
 from vehgen.simulate.frequency import transfer_functions
 from vehgen.simulate.state_space import linear_model
 
 DEFAULT_FREQUENCY_HZ = (0.1, 30.0, 0.05)
 """Where responses are computed unless told: first, last, step [Hz]."""
+DEFAULT_SPEED_M_S = 20.0
+"""Of a vehicle over a road whose responses are told, unless another is given."""
 ROAD = "road"
 """The one input of all axles that follow each other over a road."""
 
@@ -105,9 +107,9 @@ def frequency_response(
     displaced, pushed = transfer_functions(found.numeric(known), f)
     inputs = found.inputs
     if speed is not None:
-        delay = _delays(found, known, speed)
-        n_axles = len(delay)
-        road = displaced[:, :, :n_axles] @ np.exp(-2j * np.pi * f[:, None] * delay)[:, :, None]
+        delays = axle_delays(found, known, speed)
+        n_axles = len(delays)
+        road = _one_road(displaced, f, delays)[:, :, None]
         displaced, inputs = np.concatenate([road, displaced[:, :, n_axles:]], axis=2), (ROAD, *inputs[n_axles:])
     response = np.concatenate([displaced, pushed], axis=2)
     return FrequencyResponse(
@@ -121,8 +123,38 @@ def frequency_response(
     )
 
 
-def _delays(model: EquationsOfMotion, values: Mapping[str, float], speed: float) -> NDArray[np.float64]:
-    """Return how much later than the first each axle meets the road [s], `shape (n_axles,)`."""
+def over_one_road(numeric: NumericModel, frequency: NDArray[np.float64], delays: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """Return the channels per metre of one road that all axles meet, force laws left out.
+
+    Parameters
+    ----------
+    numeric
+        The model's matrices.
+    frequency
+        `shape (n,)` [Hz].
+    delays
+        How much later than the first each axle meets the road [s], `shape (n_axles,)`.
+
+    Returns
+    -------
+    `shape (n, n_channels)`, complex.
+    """
+    return _one_road(transfer_functions(numeric, frequency)[0], frequency, delays)
+
+
+def _one_road(displaced: NDArray[np.complex128], f: NDArray[np.float64], delays: NDArray[np.float64]) -> NDArray[np.complex128]:
+    turned = np.exp(-2j * np.pi * f[:, None] * delays)
+    return np.asarray((displaced[:, :, : len(delays)] @ turned[:, :, None])[:, :, 0])
+
+
+def axle_delays(model: EquationsOfMotion, values: Mapping[str, float], speed: float) -> NDArray[np.float64]:
+    """Return how much later than the first each axle meets the road [s], `shape (n_axles,)`.
+
+    Raises
+    ------
+    InputError
+        For a vehicle without axles, and a speed [m/s] that cannot be.
+    """
     if not model.vehicle.axles:
         raise ArgumentError(f"`speed`: {model.vehicle.name} has no axles", "speed")
     if not speed > 0:

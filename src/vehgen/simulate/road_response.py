@@ -22,12 +22,12 @@ from vehgen.files.results import Cell, Result, Table
 from vehgen.measure.ride_comfort import WEIGHTINGS
 from vehgen.mechanics import ElementOutput, Output, Place, PointOutput, all_values, derive
 from vehgen.road.iso8608 import CLASSES, SPATIAL_BAND_CYCLES_PER_M, displacement_psd
-from vehgen.simulate.frequency_response import frequency_response
+from vehgen.simulate.frequency_response import DEFAULT_SPEED_M_S, frequency_response
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 from vehgen.vehicle.loading import vehicle_files
 
 Array = NDArray[np.float64]
-DEFAULT_SPEED_M_S, DEFAULT_CLASS = 20.0, "B"
+DEFAULT_CLASS = "B"
 LEAST_LINES, WIDEST_STEP_HZ = 4000, 0.02
 """Lines over the standard's frequencies, by which RMS values are integrated: at least so many, at most so far apart."""
 LINES_KEPT = 1200

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -107,6 +108,7 @@ def _page(build: Build, model: EquationsOfMotion, texts: Mapping[str, str]) -> s
         modes=[(group_name(group), group[0]) for group in alike_modes(build.modes)],
         moving=_moving(build, model),
         drive=_drive(build, model),
+        road=_road(build, model),
         hump=f"A half sine of {1e3 * DRIVE_HUMP_HEIGHT:g} mm over {DRIVE_HUMP_LENGTH:g} m, at {DRIVE_SPEED:g} m/s.",
         axles=_axles(model, build.loads),
         hinges=[(name, model.vehicle.hinges[name].title, force) for name, force in build.loads.hinges.items()],
@@ -187,6 +189,32 @@ def _drive(build: Build, model: EquationsOfMotion) -> Markup | None:
     from vehgen.report.drawing.animation import drive_picture
 
     return drive_picture(model, build.values, hump_drive(model, build.values))
+
+
+def _road(build: Build, model: EquationsOfMotion) -> dict[str, object] | None:
+    """Return what one road does to the vehicle: speed, band, file, peaks and figure; without figure for a rig, None without drawings."""
+    if not build.plots:
+        return None
+    if not model.vehicle.axles:
+        return {"figure": None}
+    from vehgen.report.curve_values import inline_figure
+    from vehgen.report.plots.road_amplitude_plot import plot_road_amplitudes, shown_amplitude
+    from vehgen.simulate.road_amplitudes import AMPLITUDE_BAND_HZ, road_amplitudes
+
+    found = road_amplitudes(model.vehicle, {name: build.values[name] for name in model.vehicle.free_parameters})
+    peaks = []
+    for item in found.curves:
+        factor, unit = shown_amplitude(item)
+        peak = [f"{value:#.3g}".rstrip(".") for value in (item.peak[0], factor * item.peak[1])] if item.peak else ["none", ""]
+        peaks.append((item.group, item.name, *peak, unit))
+    title = f"Heave, axle hop and tyre load of {model.vehicle.title or model.vehicle.name} per metre of road, over frequency"
+    return {
+        "speed": f"{found.speed:g}",
+        "band": AMPLITUDE_BAND_HZ,
+        "file": shlex.quote(next(iter(build.inputs), model.vehicle.name)),
+        "peaks": peaks,
+        "figure": inline_figure(plot_road_amplitudes(found), "road", title),
+    }
 
 
 def _figures(build: Build, model: EquationsOfMotion, texts: Mapping[str, str]) -> dict[str, Markup]:

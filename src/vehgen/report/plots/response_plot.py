@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -23,6 +24,24 @@ def curve_style(number: int) -> dict[str, Any]:
         "linestyle": STYLES[number % len(STYLES)],
         "lw": 1.1 + 0.9 * (number // len(STYLES) % 3),
     }
+
+
+def legend_beside(axes: Axes, rows: int) -> None:
+    """Put the legend of named curves to the right of their axes, in columns of at most so many rows; names are plain text."""
+    count = len(axes.get_legend_handles_labels()[1])
+    legend = axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8.5, ncols=-(-count // rows))
+    for text in legend.get_texts():
+        text.set_parse_math(False)
+
+
+def set_frequency_axes(figure: Figure) -> None:
+    """Give all panels a logarithmic axis of frequencies and a faint grid."""
+    for axes in figure.axes:
+        axes.set_xscale("log")
+        axes.grid(color="#e3e7ea", lw=0.6)
+        axes.set_axisbelow(True)
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.margins(x=0)
 
 
 def plot_response(
@@ -50,9 +69,7 @@ def plot_response(
         axes.set_ylabel(f"{quantity.replace('_', ' ')}\n[{unit}]", color=INK, parse_math=False)
         axes.grid(color="#e3e7ea", lw=0.6)
         axes.spines[["top", "right"]].set_visible(False)
-        legend = axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8.5, ncols=-(-len(members) // 10))
-        for text in legend.get_texts():
-            text.set_parse_math(False)
+        legend_beside(axes, rows=10)
         axes.margins(x=0)
     panels[-1].set_xlabel("time [s]", color=INK)
     figure.align_ylabels()

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from vehgen.report.drawing.canvas import INK
 from vehgen.report.figure_files import save_figure
-from vehgen.report.plots.response_plot import curve_style
+from vehgen.report.plots.response_plot import curve_style, legend_beside, set_frequency_axes
 from vehgen.simulate.road_response import RoadResponse
 
 DECADES_SHOWN = 5
@@ -41,12 +41,7 @@ def plot_road_response(found: RoadResponse) -> Figure:
         _plot_group(row.tolist(), found, group)
     for axes in panels[-1]:
         axes.set_xlabel("frequency [Hz]", color=INK)
-    for axes in figure.axes:
-        axes.set_xscale("log")
-        axes.grid(color="#e3e7ea", lw=0.6)
-        axes.set_axisbelow(True)
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.margins(x=0)
+    set_frequency_axes(figure)
     title = f"{found.title}: one road of class {found.roughness} (ISO 8608) under all wheels at {found.speed:g} m/s"
     figure.suptitle(title, x=0.01, ha="left", fontsize=11, color=INK, parse_math=False)
     return figure
@@ -70,6 +65,4 @@ def _plot_group(row: list[Axes], found: RoadResponse, group: str) -> None:
     largest = float(found.psd[members].max())
     if largest > 0:
         psd.set_ylim(largest * 10.0**-DECADES_SHOWN, largest * 2.0)
-    legend = psd.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8.5, ncols=-(-len(members) // 12))
-    for text in legend.get_texts():
-        text.set_parse_math(False)
+    legend_beside(psd, rows=12)
