@@ -23,6 +23,7 @@ STAGES = {"calibrate/genetic": "search", "calibrate/polish": "polish", "calibrat
 """What a calibration does, by the file or folder that does it."""
 FORMER = {"identify": "calibrate"}
 """Rooms that had another name in older code."""
+KERNELS = ("codegen/kernel", "codegen/population_run")
 COMPILERS = ("numba", "llvmlite")
 
 
@@ -40,7 +41,7 @@ def place(files: Iterable[str]) -> tuple[str, str]:
             first, _, rest = own.partition("/")
             below.append("/".join(filter(None, (FORMER.get(first, first), rest))))
             room = room or below[-1].partition("/")[0]
-            room = "codegen: kernels" if room == "codegen" and below[0] == "codegen/kernel" else room
+            room = "codegen: kernels" if room == "codegen" and below[0] in KERNELS else room
         elif "importlib._bootstrap" in file:
             room = room or "imports"
         elif not room and any(f"/{name}/" in file for name in COMPILERS):
