@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import scipy.fft
@@ -27,6 +28,8 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Driven = Callable[[int], Excitation]
 """What drives a population, so many samples longer than its scenario."""
+Reduction = Callable[[NDArray[Any]], Array]
+"""What is kept of responses `shape (n, n_samples, n_channels)`, in the kernel's precision."""
 LEAST_RATIO = 5
 """Kept steps per sample, at least, of what a FIR filter decimates ..."""
 LEAST_RATE = 500.0
@@ -114,7 +117,9 @@ def _acquired(
     if all(chain.is_point_sample for chain in distinct):
         return kernel.run(parameters, excitation(0), scenario.decimation, begin, threads)
     if len(distinct) == 1 and not kernel.source.nonlinear and begin is None and not nearby:
-        return _filtered_input(kernel, parameters, scenario, excitation, chains[0], threads)
+        filtered, ahead = _filtered_input(scenario, excitation, chains[0])
+        result = kernel.run(parameters, filtered, scenario.decimation, threads=threads)
+        return replace(result, responses=result.responses[:, ahead:]) if ahead else result
     return _filtered_output(kernel, parameters, scenario, excitation, chains, begin, threads)
 
 
@@ -132,16 +137,31 @@ def extended(scenario: Scenario, samples: int) -> Scenario:
     return replace(scenario, duration=scenario.duration + samples * scenario.decimation * scenario.dt) if samples else scenario
 
 
-def _filtered_input(
-    kernel: Kernel, parameters: Array, scenario: Scenario, excitation: Driven, chain: AcquisitionChain, threads: int | None
-) -> KernelResult:
-    """Run over the filtered excitation, from as many samples before the run as the chain looks ahead."""
+def reduce_acquired(
+    kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, reduction: Reduction, threads: int | None = None
+) -> tuple[Array, dict[int, str]]:
+    """Do as :func:`acquire`, from rest, and keep what a reduction makes of the responses; see :func:`is_reducible`."""
+    chain = _filters(scenario, [kernel.model.channels[0].name])[0]
+    if chain.is_point_sample:
+        excitation, ahead = scenario.excitation(offsets), 0
+    else:
+        excitation, ahead = _filtered_input(scenario, lambda samples: extended(scenario, samples).excitation(offsets), chain)
+    first = ahead + scenario.skipped
+    return kernel.reduce(parameters, excitation, lambda found: reduction(found[:, first:]), scenario.decimation, threads)
+
+
+def is_reducible(kernel: Kernel, scenario: Scenario) -> bool:
+    """Whether the samples that a linear kernel keeps, from rest, are those of the recorders: all channels pass one chain."""
+    chains = set(_filters(scenario, [channel.name for channel in kernel.model.channels]))
+    return len(chains) == 1 and not kernel.source.nonlinear and scenario.initial is None
+
+
+def _filtered_input(scenario: Scenario, excitation: Driven, chain: AcquisitionChain) -> tuple[Excitation, int]:
+    """Return the filtered excitation, and from how many samples before the run: as many as the chain looks ahead."""
     ahead = math.ceil(max(-chain.taps(scenario.dt)[0], 0) / scenario.decimation)
     raw = excitation(ahead)
     lead, last = ahead * scenario.decimation, len(scenario.time)
-    filtered = _FILTERED.find((id(raw), chain, lead, last), raw, lambda: _filtered(raw, chain, lead, last))
-    result = kernel.run(parameters, filtered, scenario.decimation, threads=threads)
-    return replace(result, responses=result.responses[:, ahead:]) if ahead else result
+    return _FILTERED.find((id(raw), chain, lead, last), raw, lambda: _filtered(raw, chain, lead, last)), ahead
 
 
 def _filtered(raw: Excitation, chain: AcquisitionChain, lead: int, last: int) -> Excitation:
