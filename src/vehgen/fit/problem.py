@@ -13,8 +13,8 @@ from vehgen.errors import InputError, ModelWarning
 from vehgen.fit.space import SearchSpace, search_space
 from vehgen.fit.trial import Trial
 from vehgen.simulate import Scenario, SimulatorPool
-from vehgen.simulate.acquired import Reduction
 from vehgen.simulate.last_used import LastUsed
+from vehgen.simulate.ranking import Reduction, rank_population
 
 Array = NDArray[np.float64]
 Responses = tuple[Array, NDArray[np.bool_]]
@@ -69,11 +69,11 @@ class Problem:
 
         Returns
         -------
-        What a reduction makes of the responses, and which individuals failed (see :meth:`Simulator.rank`).
+        What a reduction makes of the responses, and which individuals failed (see :mod:`vehgen.simulate.ranking`).
         """
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ModelWarning)
-            return trial.simulator.rank(self.population(values, trial), trial.scenario, reduction)
+            return rank_population(trial.simulator, self.population(values, trial), trial.scenario, reduction)
 
     def respond_nearby(self, values: Array, trial: Trial, scenario: Scenario, others: Sequence[Scenario]) -> Array:
         """Simulate searched values `shape (space.size,)` [SI] over a scenario of a trial and others that hardly differ from it.

@@ -11,7 +11,6 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 import scipy.fft
@@ -28,8 +27,6 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Driven = Callable[[int], Excitation]
 """What drives a population, so many samples longer than its scenario."""
-Reduction = Callable[[NDArray[Any]], Array]
-"""What is kept of responses `shape (n, n_samples, n_channels)`, in the kernel's precision."""
 LEAST_RATIO = 5
 """Kept steps per sample, at least, of what a FIR filter decimates ..."""
 LEAST_RATE = 500.0
@@ -137,23 +134,19 @@ def extended(scenario: Scenario, samples: int) -> Scenario:
     return replace(scenario, duration=scenario.duration + samples * scenario.decimation * scenario.dt) if samples else scenario
 
 
-def reduce_acquired(
-    kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, reduction: Reduction, threads: int | None = None
-) -> tuple[Array, dict[int, str]]:
-    """Do as :func:`acquire`, from rest, and keep what a reduction makes of the responses; see :func:`is_reducible`."""
-    chain = _filters(scenario, [kernel.model.channels[0].name])[0]
-    if chain.is_point_sample:
-        excitation, ahead = scenario.excitation(offsets), 0
-    else:
-        excitation, ahead = _filtered_input(scenario, lambda samples: extended(scenario, samples).excitation(offsets), chain)
-    first = ahead + scenario.skipped
-    return kernel.reduce(parameters, excitation, lambda found: reduction(found[:, first:]), scenario.decimation, threads)
-
-
-def is_reducible(kernel: Kernel, scenario: Scenario) -> bool:
+def keeps_what_recorders_keep(kernel: Kernel, scenario: Scenario) -> bool:
     """Whether the samples that a linear kernel keeps, from rest, are those of the recorders: all channels pass one chain."""
     chains = set(_filters(scenario, [channel.name for channel in kernel.model.channels]))
     return len(chains) == 1 and not kernel.source.nonlinear and scenario.initial is None
+
+
+def acquired_excitation(kernel: Kernel, scenario: Scenario, offsets: Array) -> tuple[Excitation, int]:
+    """Return what drives such a kernel, and its first sample that the recorders keep (see :func:`keeps_what_recorders_keep`)."""
+    chain = _filters(scenario, [kernel.model.channels[0].name])[0]
+    if chain.is_point_sample:
+        return scenario.excitation(offsets), scenario.skipped
+    filtered, ahead = _filtered_input(scenario, lambda samples: extended(scenario, samples).excitation(offsets), chain)
+    return filtered, ahead + scenario.skipped
 
 
 def _filtered_input(scenario: Scenario, excitation: Driven, chain: AcquisitionChain) -> tuple[Excitation, int]:

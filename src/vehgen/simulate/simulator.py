@@ -14,7 +14,7 @@ from vehgen.codegen import Kernel, KernelResult
 from vehgen.errors import InputError, ModelWarning, did_you_mean, shown
 from vehgen.mechanics import ElementOutput, EquationsOfMotion, Output, Place, derive, static_loads
 from vehgen.mechanics.quantities import WITH_STATIC
-from vehgen.simulate.acquired import Reduction, acquire, is_reducible, kept_samples, reduce_acquired
+from vehgen.simulate.acquired import acquire, kept_samples
 from vehgen.simulate.budgets import check_population
 from vehgen.simulate.profile_warnings import doubtful_profiles
 from vehgen.simulate.response import Response, ResponseChannel
@@ -25,8 +25,6 @@ from vehgen.simulate.warnings import lift_off, spectral_nulls, step_too_coarse
 from vehgen.vehicle import VehicleLike
 
 Array = NDArray[np.float64]
-LEAST_RANKED = 16
-"""Fewer individuals for a layout of axles fill less than half of the lanes of a kernel in single precision."""
 REMEMBERED = 1000
 """So many layouts of axles are remembered."""
 
@@ -80,7 +78,7 @@ class Simulator:
         """
         names = [channel.name for channel in self.model.channels]
         check_population(len(parameters), kept_samples(scenario, names, self.kernel.source.nonlinear), len(names))
-        distinct, group = self._layouts(parameters)
+        distinct, group = self.layouts(parameters)
         responses: Array | None = None
         failures: dict[int, str] = {}
         residuals = np.zeros(len(parameters))
@@ -100,50 +98,12 @@ class Simulator:
         _warn_of(failures, len(parameters))
         return KernelResult(self._add_static(parameters, responses, failures), failures, residuals)
 
-    def rank(self, parameters: Array, scenario: Scenario, reduction: Reduction) -> tuple[Array, NDArray[np.bool_]]:
-        """Simulate a population for a search, which only has to tell better individuals from worse ones.
-
-        That is done in single precision where it is safe (errors of some 1e-5): by linear kernels in residual form, from rest, for
-        recorders that are alike, and where many individuals share their wheel inputs. Otherwise it is :meth:`run`.
-
-        Parameters
-        ----------
-        parameters, scenario
-            As in :meth:`run`.
-        reduction
-            Maps responses `shape (n, n_samples, n_channels)`, in single or double precision, to what is kept, the first axis n long. It is
-            called with parts of the population, by several threads.
-
-        Returns
-        -------
-        What is kept of all individuals, and which of them failed `shape (n_individuals,)`.
-        """
-        failed = np.zeros(len(parameters), dtype=bool)
-        distinct, group = self._layouts(parameters)
-        if len(distinct) * LEAST_RANKED > len(parameters) or not self._may_be_single(scenario):
-            result = self.run(parameters, scenario)
-            failed[list(result.failures)] = True
-            return reduction(result.responses), failed
-        parts = []
-        for index, layout in enumerate(distinct):
-            members = np.flatnonzero(group == index)
-            part, failures = reduce_acquired(self._single_kernel, parameters[members], scenario, layout, reduction)
-            parts.append(part)
-            failed[members[list(failures)]] = True
-        order = np.argsort(group, kind="stable")
-        found = np.empty((len(parameters), *parts[0].shape[1:]))
-        found[order] = np.concatenate(parts)
-        return found, failed
-
-    def _may_be_single(self, scenario: Scenario) -> bool:
-        static = any(channel.quantity in WITH_STATIC for channel in self.model.channels)
-        return self.kernel.source.from_rest and not static and is_reducible(self.kernel, scenario)
-
     @cached_property
-    def _single_kernel(self) -> Kernel:
+    def single_kernel(self) -> Kernel:
+        """The kernel in single precision; see :mod:`vehgen.simulate.ranking` for where it serves."""
         return Kernel(self.model, precision="single")
 
-    def _layouts(self, parameters: Array) -> tuple[Array, NDArray[np.intp]]:
+    def layouts(self, parameters: Array) -> tuple[Array, NDArray[np.intp]]:
         """Return the distinct layouts of axles in a population `shape (n_layouts, n_axles)` [m], and the number of each individual's."""
         return _distinct_rows(np.round(self.wheel_offsets(parameters), 12))
 
