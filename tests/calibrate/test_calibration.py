@@ -66,7 +66,7 @@ def test_what_a_calibration_tells_is_of_double_precision(problem):
     assert state.elite_objective == objective(state.elite[None])[0] != objective.quick(np.repeat(state.elite[None], 40, axis=0))[0]
     residuals = fit.misfit.residuals(fit.x)
     assert residuals.dtype == np.float64
-    assert fit.loss == pytest.approx(np.mean(residuals**2), rel=1e-12)
+    assert fit.chi2 == pytest.approx(np.mean(residuals**2), rel=1e-12)
     assert state.history == again.steps[0].state.history
     assert found.values == again.values
 
