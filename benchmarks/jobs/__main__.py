@@ -1,7 +1,8 @@
 """Time whole jobs: `python -m benchmarks.jobs [--against SRC] [NAMES]`.
 
 Each job is a command in a process of its own, with one thread, over recordings that are made anew from a seed. With `--against`, the folder
-`src` of another checkout, both take turns; the round of least CPU time counts. The first round fills each checkout's own cache of kernels.
+`src` of another checkout, both take turns; the round of least CPU time counts. The first round fills each checkout's own cache of kernels, which
+may be kept for further calls.
 """
 
 from __future__ import annotations
@@ -50,8 +51,8 @@ def take(name: str, source: Path, folder: Path, cache: Path) -> Taken:
     return Taken(**json.loads(told.read_text(encoding="utf-8")))
 
 
-def measure(names: list[str], sources: list[Path], rounds: int) -> dict[str, list[Taken]]:
-    """Return what each job took by each checkout, in turns."""
+def measure(names: list[str], sources: list[Path], rounds: int, caches: Path | None = None) -> dict[str, list[Taken]]:
+    """Return what each job took by each checkout, in turns; their kernels are kept in a folder `caches` of their own."""
     found: dict[str, list[Taken]] = {}
     with tempfile.TemporaryDirectory() as temporary:
         home = Path(temporary)
@@ -63,7 +64,7 @@ def measure(names: list[str], sources: list[Path], rounds: int) -> dict[str, lis
                 for number, source in enumerate(sources):
                     place = home / f"{name}_{number}_{round_}"
                     shutil.copytree(home / JOBS[name][0], place)
-                    taken[number].append(take(name, source, place, home / f"cache_{number}"))
+                    taken[number].append(take(name, source, place, (caches or home) / f"cache_{number}"))
                     print(f"{name}, {source}: {taken[number][-1].cpu:.1f} s", file=sys.stderr, flush=True)
             found[name] = [shortest(items) for items in taken]
     return found
@@ -75,12 +76,15 @@ def main() -> None:
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"jobs, of {', '.join(JOBS)} (default: all)")
     parser.add_argument("--against", type=Path, metavar="SRC", help="the folder src of another checkout")
     parser.add_argument("--rounds", type=int, default=2, help="how often each runs (default 2)")
+    parser.add_argument(
+        "--caches", type=Path, metavar="DIR", help="where the checkouts' kernels are kept, for further calls (default: nowhere)"
+    )
     options = parser.parse_args()
     names = options.names or list(JOBS)
     if unknown := [name for name in names if name not in JOBS]:
         parser.error(f"no job {unknown[0]}; there are {', '.join(JOBS)}")
     against = [options.against.resolve()] if options.against else []
-    found = measure(names, [*against, ROOT / "src"], options.rounds)
+    found = measure(names, [*against, ROOT / "src"], options.rounds, options.caches and options.caches.resolve())
     for lines in (totals(found), split(found, "stages"), split(found, "rooms")):
         print("\n".join(lines), end="\n\n")
 
