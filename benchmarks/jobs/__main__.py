@@ -1,8 +1,8 @@
 """Time whole jobs: `python -m benchmarks.jobs [--against SRC] [NAMES]`.
 
 Each job is a command in a process of its own, with one thread, over recordings that are made anew from a seed. With `--against`, the folder
-`src` of another checkout, both take turns; the round of least CPU time counts. The first round fills each checkout's own cache of kernels, which
-may be kept for further calls.
+`src` of another checkout, both take turns; the round of least CPU time counts. The first round fills each checkout's own cache of
+kernels, which may be kept for further calls.
 """
 
 from __future__ import annotations
@@ -76,9 +76,7 @@ def main() -> None:
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"jobs, of {', '.join(JOBS)} (default: all)")
     parser.add_argument("--against", type=Path, metavar="SRC", help="the folder src of another checkout")
     parser.add_argument("--rounds", type=int, default=2, help="how often each runs (default 2)")
-    parser.add_argument(
-        "--caches", type=Path, metavar="DIR", help="where the checkouts' kernels are kept, for further calls (default: nowhere)"
-    )
+    parser.add_argument("--caches", type=Path, metavar="DIR", help="where kernels are kept for further calls (default: nowhere)")
     options = parser.parse_args()
     names = options.names or list(JOBS)
     if unknown := [name for name in names if name not in JOBS]:
