@@ -21,6 +21,7 @@ from pathlib import Path
 from benchmarks.jobs.inputs import ROOT, import_phones, write_recordings
 from benchmarks.jobs.tables import Taken, shortest, split, totals
 
+HERE = ROOT / "src"
 SAMPLER = Path(__file__).with_name("sampler.py")
 ONE_THREAD = {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL", "NUMBA")}
 INPUTS = {
@@ -64,7 +65,7 @@ def measure(names: list[str], sources: list[Path], rounds: int, caches: Path | N
                 for number, source in enumerate(sources):
                     place = home / f"{name}_{number}_{round_}"
                     shutil.copytree(home / JOBS[name][0], place)
-                    taken[number].append(take(name, source, place, (caches or home) / f"cache_{number}"))
+                    taken[number].append(take(name, source, place, (caches or home) / ("here" if source == HERE else "against")))
                     print(f"{name}, {source}: {taken[number][-1].cpu:.1f} s", file=sys.stderr, flush=True)
             found[name] = [shortest(items) for items in taken]
     return found
@@ -82,7 +83,7 @@ def main() -> None:
     if unknown := [name for name in names if name not in JOBS]:
         parser.error(f"no job {unknown[0]}; there are {', '.join(JOBS)}")
     against = [options.against.resolve()] if options.against else []
-    found = measure(names, [*against, ROOT / "src"], options.rounds, options.caches and options.caches.resolve())
+    found = measure(names, [*against, HERE], options.rounds, options.caches and options.caches.resolve())
     for lines in (totals(found), split(found, "stages"), split(found, "rooms")):
         print("\n".join(lines), end="\n\n")
 
