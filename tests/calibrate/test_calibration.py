@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scipy.stats
 
 from tests.fit.recordings import sedan_truth, write_run
 from vehgen.calibrate.calibration import Settings, calibrate_problem
@@ -46,12 +47,39 @@ def test_the_objective_is_equation_5(problem):
     assert (terms < 0.02).all()
 
 
+@pytest.mark.parametrize("band", [(0.3, 40.0), (0.0, 50.0)])
+def test_a_search_ranks_by_equation_5_in_single_precision(problem, band):
+    objective = PsdObjective(problem, band)
+    unit = np.random.default_rng(5).random((200, problem.space.size))
+    exact, quick = objective(unit), objective.quick(unit)
+    np.testing.assert_allclose(quick, exact, rtol=2e-5)
+    assert (quick != exact).any()
+    best = np.argsort(exact)[:100]
+    assert scipy.stats.spearmanr(exact[best], quick[best]).statistic > 0.9999
+
+
+def test_what_a_calibration_tells_is_of_double_precision(problem):
+    found = calibrate_problem(problem, small())
+    again = calibrate_problem(problem, small())
+    (step,) = found.steps
+    objective, state, fit = PsdObjective(problem), step.state, step.fits[0]
+    assert state.elite_objective == objective(state.elite[None])[0] != objective.quick(np.repeat(state.elite[None], 40, axis=0))[0]
+    residuals = fit.misfit.residuals(fit.x)
+    assert residuals.dtype == np.float64
+    assert fit.chi2 == pytest.approx(np.mean(residuals**2), rel=1e-12)
+    assert state.history == again.steps[0].state.history
+    assert found.values == again.values
+
+
 def test_an_individual_that_cannot_be_simulated_has_an_infinite_objective(problem):
     values = np.vstack([truth_of(problem)] * 2)
     values[0, 0] = np.nan
     found = PsdObjective(problem).terms(values).sum(axis=1)
     assert np.isinf(found[0])
     assert np.isfinite(found[1])
+    points = np.full((40, problem.space.size), 0.5)
+    points[7, 0] = np.nan
+    assert np.flatnonzero(np.isinf(PsdObjective(problem).quick(points))).tolist() == [7]
 
 
 def test_a_joint_fit_finds_the_truth_within_its_intervals(problem):

@@ -223,7 +223,7 @@ def test_a_reduction_keeps_memory_small_and_answers_alike(tractor):
     parameters = np.repeat([list(model.values().values())], 200, axis=0)
     parameters[:, 0] *= np.linspace(0.9, 1.1, 200)
     parameters[150, 0] = np.nan
-    peaks, failures = kernel.reduce(parameters, excitation, lambda responses: np.abs(responses).max(axis=1), block=64)
+    peaks, failures = kernel.reduce(parameters, excitation, lambda responses: np.abs(responses).max(axis=1))
     whole = kernel.run(parameters, excitation)
     np.testing.assert_array_equal(peaks, np.abs(whole.responses).max(axis=1))
     assert list(failures) == [150]
@@ -244,7 +244,7 @@ def test_a_hundred_thousand_individuals_need_the_memory_of_one_block():
         return np.abs(responses).max(axis=(1, 2))
 
     tracemalloc.start()
-    peaks, failures = kernel.reduce(parameters, excitation, peak, decimation=2, block=block)
+    peaks, failures = kernel.reduce(parameters, excitation, peak, decimation=2)
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     responses = 8 * 101

@@ -1,5 +1,6 @@
 """What is known besides the recordings: it enters a fit, must belong to the vehicle, and weighs axles as a lever does."""
 
+import numpy as np
 import pytest
 
 from tests.fit.recordings import sedan_truth, write_run
@@ -50,6 +51,29 @@ def test_axle_weights_are_those_of_a_lever(problem, tmp_path):
     start = dict(zip(problem.space.names, problem.space.start, strict=True))
     load = 9.81 * (1500.0 * (2.8 - start["Lf"]) / 2.8 + start["mf"])
     assert residual == pytest.approx(load / 1000 - 1, rel=1e-9)
+
+
+def test_derivatives_of_facts_are_those_of_a_lever_and_of_the_numbers_themselves(problem, tmp_path):
+    path = tmp_path / "facts.yaml"
+    facts = ["kerb_mass: {value: 1.5 t, uncertainty: 10 kg}", "axle_weights: {front: {value: 1 kN, uncertainty: 1 kN}}"]
+    path.write_text("\n".join([*facts, "parameters: {kf: {value: 60 kN/m, uncertainty: 2 kN/m}}"]), encoding="utf-8")
+    found = load_prior_data(path, problem).jacobian(problem.space.start)
+    names = problem.space.names
+    expected = np.zeros((3, len(names)))
+    expected[0, names.index("kf")] = 1 / 2000
+    expected[1, [names.index("mf"), names.index("mr")]] = 1 / 10
+    expected[2, names.index("mf")] = 9.81 / 1000
+    expected[2, names.index("Lf")] = -9.81 * 1500 / 2.8 / 1000
+    np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-9)
+
+
+def test_what_does_not_stand_by_itself_is_told(problem, tmp_path):
+    path = tmp_path / "facts.yaml"
+    path.write_text("axle_weights: {front: {value: 1 kN, uncertainty: 1 kN}}", encoding="utf-8")
+    loose = problem.space.start.copy()
+    loose[problem.space.names.index("ktf")] = 0.0
+    with pytest.raises(InputError, match="singular stiffness"):
+        load_prior_data(path, problem).residuals(loose)
 
 
 def test_the_kerb_mass_is_that_of_bodies_and_axles(problem, tmp_path):

@@ -9,8 +9,9 @@ from vehgen.codegen import Excitation, Kernel
 from vehgen.errors import InputError, ModelWarning
 from vehgen.mechanics import ElementOutput, Place, PointOutput, derive, static_loads
 from vehgen.mechanics.equilibrium import _Balance, equilibria
+from vehgen.mechanics.static_loads import axle_loads
 from vehgen.simulate import Simulator, load_run, make_scenario
-from vehgen.vehicle import parse_vehicle
+from vehgen.vehicle import load_vehicle, parse_vehicle
 
 G = 9.81
 BUMP = "{bump_stop: {k: 2 MN/m, clearance: 60 mm, from: unloaded}}"
@@ -198,3 +199,22 @@ def test_bad_origins_have_their_place(laws, message):
 def test_static_is_the_default():
     texts = [Kernel(derive(quarter(f"{{bump_stop: {{k: 1 MN/m, clearance: 6 cm{text}}}}}"))).source.text for text in ("", ", from: static")]
     assert texts[0] == texts[1]
+
+
+@pytest.mark.parametrize("name", ["sedan2", "tractor5", "road_train"])
+def test_axle_loads_of_a_population_carry_its_weights(name):
+    model = derive(load_vehicle(name))
+    parameters = np.repeat([list(model.values().values())], 5, axis=0) * np.linspace(0.9, 1.1, 5)[:, None]
+    loads = axle_loads(model, parameters)
+    assert list(loads) == list(model.vehicle.axles)
+    for i, row in enumerate(parameters):
+        alone = static_loads(model, dict(zip(model.parameters, row, strict=True)))
+        assert {key: load[i] for key, load in loads.items()} == pytest.approx(alone.axles, rel=1e-9)
+        mass = model.total_mass(dict(zip(model.parameters, row, strict=True)))
+        assert sum(load[i] for load in loads.values()) == pytest.approx(9.81 * mass, rel=1e-6)
+
+
+def test_axles_without_gravity_press_on_nothing():
+    model = derive(parse_vehicle("extends: sedan2\ngravity: false\n"))
+    loads = axle_loads(model, np.array([list(model.values().values())] * 3))
+    assert [load.tolist() for load in loads.values()] == [[0.0] * 3] * 2

@@ -163,10 +163,10 @@ def calibrate_problem(
 def _search(objective: PsdObjective, settings: Settings, number: int, state: SearchState | None) -> Iterator[SearchState]:
     search = settings.search
     if state is None:
-        state = search.start(objective, objective.problem.space.size, settings.seed + number)
+        state = search.start(objective, objective.problem.space.size, settings.seed + number, quick=objective.quick)
     yield state
     while state.generation < search.generations:
-        state = search.advance(state, objective)
+        state = search.advance(state, objective, objective.quick)
         yield state
 
 

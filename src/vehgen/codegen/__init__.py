@@ -9,7 +9,8 @@ from vehgen.late_imports import import_late
 
 if TYPE_CHECKING:
     from vehgen.codegen.cache import cache_folder
-    from vehgen.codegen.kernel import Excitation, Kernel, KernelResult
+    from vehgen.codegen.excitation import Excitation
+    from vehgen.codegen.kernel import Kernel, KernelResult
     from vehgen.codegen.kernel_source import KernelSource, write_kernel
     from vehgen.codegen.parallel import compile_all
 
@@ -19,8 +20,8 @@ import_late(
     __name__,
     {
         "vehgen.codegen.cache": ("cache_folder",),
+        "vehgen.codegen.excitation": ("Excitation",),
         "vehgen.codegen.kernel": (
-            "Excitation",
             "Kernel",
             "KernelResult",
         ),

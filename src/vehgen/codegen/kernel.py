@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -15,45 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.codegen.cache import cache_folder, import_kernel, is_compiled, kernel_name
+from vehgen.codegen.excitation import Excitation
 from vehgen.codegen.kernel_source import KernelSource, Precision, write_kernel
+from vehgen.codegen.population_run import PopulationRun
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
 
 Array = NDArray[np.float64]
-WORTH_THREADS = 1_000_000
-"""Blocks times steps times degrees of freedom below which one core is as quick as several."""
 UNCONVERGED = 0.01
 """Residual of the force laws over the vehicle's weight above which an individual counts as failed."""
-
-
-@dataclass(frozen=True)
-class Excitation:
-    """What moves a vehicle, at the ends of every step of `dt` [s].
-
-    `inputs`, `rates` `shape (n_steps + 1, n_inputs)`: displacement inputs [m] and their rates [m/s]; `forces` `shape (n_steps + 1,
-    n_forces)` [N]. All three may have an axis more ahead, of individuals each with inputs of its own.
-    """
-
-    dt: float
-    inputs: Array
-    rates: Array
-    forces: Array
-
-    @property
-    def n_steps(self) -> int:
-        """Number of time steps."""
-        return int(self.inputs.shape[-2]) - 1
-
-    @property
-    def time(self) -> Array:
-        """Times of the inputs [s]."""
-        return np.arange(self.n_steps + 1, dtype=np.float64) * self.dt
-
-    @property
-    def nbytes(self) -> int:
-        """Size of its arrays [bytes]."""
-        return int(self.inputs.nbytes + self.rates.nbytes + self.forces.nbytes)
 
 
 @dataclass(frozen=True)
@@ -69,24 +38,16 @@ class KernelResult:
     residuals: Array
 
 
-def find_failures(names: tuple[str, ...], parameters: Array, responses: Array) -> dict[int, str]:
-    """Say of each individual without a finite response why it has none."""
+def find_failures(names: tuple[str, ...], parameters: Array, responses: NDArray[Any]) -> dict[int, str]:
+    """Say of each individual without a finite response why it has none; further columns of `parameters` have no name."""
     failures: dict[int, str] = {}
     for individual in np.flatnonzero(~np.isfinite(responses).all(axis=(1, 2))):
-        bad = [name for name, value in zip(names, parameters[individual], strict=True) if not np.isfinite(value)]
+        bad = [name for name, value in zip(names, parameters[individual], strict=False) if not np.isfinite(value)]
         if bad:
             failures[int(individual)] = f"its parameter {bad[0]} is not a finite number"
         else:
             failures[int(individual)] = "it diverges: its matrices are not positive definite, or the step is too coarse for it"
     return failures
-
-
-def aligned(size: int, number: type[np.floating[Any]] = np.float64) -> NDArray[Any]:
-    """Return zeros that start on a cache line (64 bytes): vector loads that straddle two lines take twice as long."""
-    width = np.dtype(number).itemsize
-    raw = np.zeros(size + 64 // width, dtype=number)
-    start = (-raw.ctypes.data // width) % (64 // width)
-    return raw[start : start + size]
 
 
 class Kernel:
@@ -114,7 +75,6 @@ class Kernel:
         self.model = model
         self.source: KernelSource = write_kernel(model, sweeps=sweeps, precision=precision)
         self._options: tuple[int | None, Precision] = sweeps, precision
-        self._number = np.float32 if precision == "single" else np.float64
         self._folder = folder
 
     @property
@@ -157,9 +117,8 @@ class Kernel:
         self,
         parameters: Array,
         excitation: Excitation,
-        reduction: Callable[[Array], Array],
+        reduction: Callable[[NDArray[Any]], Array],
         decimation: int = 10,
-        block: int = 1024,
         threads: int | None = None,
     ) -> tuple[Array, dict[int, str]]:
         """Simulate a population of any size and keep only what a reduction makes of each individual's response.
@@ -169,21 +128,24 @@ class Kernel:
         parameters, excitation, decimation, threads
             As in :meth:`run`.
         reduction
-            Maps responses `shape (n, n_samples, n_channels)` to an array whose first axis is n.
-        block
-            Individuals whose responses are in memory at a time.
+            Maps responses `shape (n, n_samples, n_channels)`, in the kernel's precision, to an array whose first axis is n. It is called
+            with the individuals that advance together, by several threads, and may not keep what it is given.
 
         Returns
         -------
         The reductions of all individuals, and the failures as in :class:`KernelResult`.
         """
-        parts: list[Array] = []
+        columns, unheld = self._columns(parameters, excitation, decimation)
+        parts: dict[int, Array] = {}
         failures: dict[int, str] = {}
-        for first in range(0, len(parameters), block):
-            result = self.run(parameters[first : first + block], excitation, decimation, threads=threads)
-            failures.update({first + i: reason for i, reason in result.failures.items()})
-            parts.append(np.asarray(reduction(result.responses)))
-        return np.concatenate(parts), failures
+
+        def consume(own: slice, responses: NDArray[Any], residuals: Array) -> None:
+            parts[own.start] = np.asarray(reduction(responses))
+            found = self._failures(columns[own], responses, residuals)
+            failures.update({own.start + i: reason for i, reason in found.items()})
+
+        self._population(columns, excitation, decimation).advance(consume, threads)
+        return np.concatenate([parts[first] for first in sorted(parts)]), {**failures, **unheld}
 
     def run(
         self, parameters: Array, excitation: Excitation, decimation: int = 10, initial: Array | None = None, threads: int | None = None
@@ -210,57 +172,34 @@ class Kernel:
         Where laws count their travel from the unloaded position, static equilibrium is solved first, and an individual that has none
         fails.
         """
+        columns, unheld = self._columns(parameters, excitation, decimation)
+        shape = (len(columns), excitation.n_steps // decimation + 1, len(self.model.channels))
+        found, left = np.empty(shape, dtype=self.source.number), np.zeros(len(columns))
+
+        def consume(own: slice, responses: NDArray[Any], residuals: Array) -> None:
+            if responses.base is not found:
+                found[own] = responses
+            left[own] = residuals
+
+        self._population(columns, excitation, decimation, initial).advance(consume, threads, found)
+        responses = found.astype(np.float64, copy=False)
+        return KernelResult(responses, {**self._failures(columns, responses, left), **unheld}, left)
+
+    def _columns(self, parameters: Array, excitation: Excitation, decimation: int) -> tuple[Array, dict[int, str]]:
+        """Return a checked population with the travels at rest that the kernel asks for as further columns, and who cannot rest."""
         parameters = np.ascontiguousarray(np.atleast_2d(parameters), dtype=np.float64)
         self._check(parameters, excitation, decimation)
-        columns, unheld = parameters, {}
-        if self.source.static_travels:
-            rest = equilibria(self.model, parameters)
-            columns, unheld = np.hstack([parameters, rest.travels[:, self.source.static_travels]]), rest.failures
-        responses, residuals = self._advance(columns, excitation, decimation, initial, threads)
-        return KernelResult(responses, {**self._failures(parameters, responses, residuals), **unheld}, residuals)
+        if not self.source.static_travels:
+            return parameters, {}
+        rest = equilibria(self.model, parameters)
+        return np.hstack([parameters, rest.travels[:, self.source.static_travels]]), rest.failures
 
-    def _advance(
-        self, columns: Array, excitation: Excitation, decimation: int, initial: Array | None, threads: int | None
-    ) -> tuple[Array, Array]:
-        """Return the responses and residuals of individuals with these columns, blocks of lanes shared among threads."""
+    def _population(self, columns: Array, excitation: Excitation, decimation: int, initial: Array | None = None) -> PopulationRun:
         source, module = (self.source, self._module) if initial is None else self._moving
-        n_individuals, lanes, n_dof, number = len(columns), source.lanes, self.model.n_dof, self._number
-        n_samples, n_channels = excitation.n_steps // decimation + 1, len(self.model.channels)
-        responses = np.empty((n_individuals, n_samples, n_channels))
-        residuals = np.zeros(n_individuals)
-        arrays = [np.ascontiguousarray(item, dtype=number) for item in (excitation.inputs, excitation.rates, excitation.forces)]
-        own = excitation.inputs.ndim == 3
+        return PopulationRun(source, module, columns, excitation, decimation, initial)
 
-        def block(first: int) -> None:
-            last = min(first + lanes, n_individuals)
-            rows = np.minimum(np.arange(first, first + lanes), last - 1)
-            work = aligned(module.WORK, number)
-            work[: columns.shape[1] * lanes] = np.ascontiguousarray(columns[rows].T).ravel()
-            state = work[module.STATE : module.DRIVES]
-            if initial is not None:
-                state[: 2 * n_dof * lanes] = np.ascontiguousarray(initial[rows].T).ravel()
-            direct = last - first == lanes and number is np.float64
-            target = responses[first:last] if direct else np.empty((lanes, n_samples, n_channels), dtype=number)
-            drives = (item[first:last] if own else item[None] for item in arrays)
-            module.advance(work, *drives, excitation.dt, decimation, target)
-            if not direct:
-                responses[first:last] = target[: last - first]
-            if source.nonlinear:
-                residuals[first:last] = state[-lanes:][: last - first]
-
-        starts = range(0, n_individuals, lanes)
-        many = len(starts) > 1 and len(starts) * excitation.n_steps * n_dof > WORTH_THREADS
-        workers = min(threads or os.cpu_count() or 1, len(starts)) if many else 1
-        if workers > 1:
-            with ThreadPoolExecutor(workers) as pool:
-                list(pool.map(block, starts))
-        else:
-            for first in starts:
-                block(first)
-        return responses, residuals
-
-    def _failures(self, parameters: Array, responses: Array, residuals: Array) -> dict[int, str]:
-        failures = find_failures(self.model.parameters, parameters, responses)
+    def _failures(self, columns: Array, responses: NDArray[Any], residuals: Array) -> dict[int, str]:
+        failures = find_failures(self.model.parameters, columns, responses)
         if self.source.nonlinear:
             limit = UNCONVERGED * self._force_scale
             for individual in np.flatnonzero(residuals > limit):

@@ -10,7 +10,9 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
+
+import numpy as np
 
 from vehgen.codegen.drive_reads import LATER_MEANS, MEANS, SUMS, VALUES, neighbours, read_drives
 from vehgen.codegen.lane_loops import split_loop
@@ -25,6 +27,8 @@ from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 Precision = Literal["double", "single"]
 LANES = 16
 """Individuals that advance side by side in the innermost loop."""
+SINGLE_LANES = 32
+"""The same in single precision: two vectors of 16 numbers, one of which computes while the other one waits."""
 NONLINEAR_LANES = 16
 """The same with force laws, whose many constants would not stay in the first cache otherwise."""
 MOST_REWRITTEN = 2500
@@ -39,7 +43,7 @@ class KernelSource:
 
     `legend` says to people what the numbered names in the text stand for; it is never imported. `static_travels` are the elements
     whose travel from the unloaded position to static equilibrium [m] follows the parameters as further columns. `from_rest` says that its
-    states are no displacements and velocities, so that it can only start from rest.
+    states are no displacements and velocities, so that it can only start from rest; `single` that its loops are in single precision.
     """
 
     text: str
@@ -50,7 +54,15 @@ class KernelSource:
     n_states: int
     nonlinear: bool
     from_rest: bool
+    single: bool
+    n_dof: int
+    n_channels: int
     static_travels: tuple[int, ...] = ()
+
+    @property
+    def number(self) -> type[np.floating[Any]]:
+        """The type of the numbers in its arrays."""
+        return np.float32 if self.single else np.float64
 
 
 def write_kernel(
@@ -67,7 +79,7 @@ def write_kernel(
     model
         A derived model.
     lanes
-        Individuals side by side (default: LANES, with force laws NONLINEAR_LANES).
+        Individuals side by side (default: LANES, in single precision SINGLE_LANES, with force laws NONLINEAR_LANES).
     sweeps
         How often a step solves for the forces of the laws (default: 2 or 3, as the laws need).
     precision
@@ -78,7 +90,7 @@ def write_kernel(
     """
     nonlinear = any(element.laws for element in model.elements)
     step = _cheapest_step(model) if from_rest and not nonlinear else write_step(model, sweeps)
-    lanes = lanes or (NONLINEAR_LANES if nonlinear else LANES)
+    lanes = lanes or (NONLINEAR_LANES if nonlinear else SINGLE_LANES if precision == "single" else LANES)
     printer = PythonPrinter(
         step.program, {STEP_PHASE: [node for _, node in step.states], SAMPLE_PHASE: step.channels}, step.time_step, precision == "single"
     )
@@ -93,6 +105,9 @@ def write_kernel(
         len(step.states),
         nonlinear,
         bool(step.sample_means),
+        printer.single,
+        model.n_dof,
+        len(step.channels),
         tuple(step.static_travels),
     )
 

@@ -29,7 +29,8 @@ from vehgen.files.expressions import Expression
 from vehgen.files.names import Name
 from vehgen.files.quantities import Force, Mass
 from vehgen.fit.problem import Problem
-from vehgen.mechanics import GRAVITY, EquationsOfMotion, derive, static_loads
+from vehgen.mechanics import GRAVITY, EquationsOfMotion, derive
+from vehgen.mechanics.static_loads import axle_loads
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.parts import GROUND
 
@@ -37,8 +38,8 @@ Array = NDArray[np.float64]
 _JACOBIAN_STEP = 1e-6
 KERB_MASS = "kerb mass"
 """What the fact of the whole vehicle's mass is called."""
-FactModel = Callable[[Mapping[str, float]], float]
-"""Computes what a fact tells of from all free parameters [SI]."""
+FactModel = Callable[[Mapping[str, Array]], Array]
+"""Computes what a fact tells of vehicles `shape (n,)` from all their free parameters [SI], `shape (n,)` each."""
 
 
 class Weight(FileModel):
@@ -91,18 +92,20 @@ class PriorData:
 
     def residuals(self, values: Array) -> Array:
         """Return (model - value)/uncertainty at searched values `shape (n_parameters,)` [SI]."""
-        known = self.problem.trials[0].values | self.problem.best_values(values)
-        return np.array([(fact.model(known) - fact.value) / fact.uncertainty for fact in self.facts])
+        return np.asarray(self._residuals(values[None])[0])
 
     def jacobian(self, values: Array) -> Array:
         """Return the residuals' derivatives per SI unit, `shape (n_facts, n_parameters)`."""
         space = self.problem.space
         steps = _JACOBIAN_STEP * (space.upper - space.lower)
-        columns = [
-            (self.residuals(values + step * row) - self.residuals(values - step * row)) / (2 * step)
-            for step, row in zip(steps, np.eye(space.size), strict=True)
-        ]
-        return np.column_stack(columns)
+        above, below = np.split(self._residuals(np.concatenate([values + np.diag(steps), values - np.diag(steps)])), 2)
+        return np.asarray((above - below).T / (2 * steps))
+
+    def _residuals(self, points: Array) -> Array:
+        """Return the residuals at searched values `shape (n, n_parameters)`: `shape (n, n_facts)`."""
+        fixed = {name: np.full(len(points), value) for name, value in self.problem.trials[0].values.items()}
+        known = fixed | dict(zip(self.problem.space.names, points.T, strict=True))
+        return np.column_stack([(fact.model(known) - fact.value) / fact.uncertainty for fact in self.facts])
 
 
 def load_prior_data(path: str | Path, problem: Problem) -> PriorData:
@@ -165,7 +168,12 @@ def uncouple(vehicle: Vehicle, body: str) -> Vehicle:
 
 def parameter_value(vehicle: Vehicle, name: str) -> FactModel:
     """Return how a parameter's value follows from the free ones [SI]."""
-    return lambda values: vehicle.all_values({key: values[key] for key in vehicle.free_parameters})[name]
+
+    def of_population(values: Mapping[str, Array]) -> Array:
+        rows = zip(*(values[key] for key in vehicle.free_parameters), strict=True)
+        return np.array([vehicle.all_values(dict(zip(vehicle.free_parameters, map(float, row), strict=True)))[name] for row in rows])
+
+    return of_population
 
 
 def axle_load(model: EquationsOfMotion, axle: str) -> FactModel:
@@ -175,8 +183,8 @@ def axle_load(model: EquationsOfMotion, axle: str) -> FactModel:
 
 def kerb_mass(model: EquationsOfMotion) -> FactModel:
     """Return how the mass that all axles carry together [kg] follows from the parameters."""
-    return lambda values: sum(_axle_loads(model, values).values()) / GRAVITY
+    return lambda values: np.asarray(sum(_axle_loads(model, values).values()) / GRAVITY)
 
 
-def _axle_loads(model: EquationsOfMotion, values: Mapping[str, float]) -> dict[str, float]:
-    return static_loads(model, {name: values[name] for name in model.parameters}).axles
+def _axle_loads(model: EquationsOfMotion, values: Mapping[str, Array]) -> dict[str, Array]:
+    return axle_loads(model, np.column_stack([values[name] for name in model.parameters]))

@@ -14,6 +14,7 @@ from vehgen.fit.space import SearchSpace, search_space
 from vehgen.fit.trial import Trial
 from vehgen.simulate import Scenario, SimulatorPool
 from vehgen.simulate.last_used import LastUsed
+from vehgen.simulate.ranking import Reduction, rank_population
 
 Array = NDArray[np.float64]
 Responses = tuple[Array, NDArray[np.bool_]]
@@ -62,6 +63,17 @@ class Problem:
             return _simulated(trial, population, scenario)
         key = id(trial.simulator), scenario.key, population.tobytes()
         return _RESPONSES.find(key, (trial.simulator, scenario.sources), lambda: _simulated(trial, population, scenario))
+
+    def rank(self, values: Array, trial: Trial, reduction: Reduction) -> tuple[Array, NDArray[np.bool_]]:
+        """Simulate searched values `shape (n, space.size)` [SI] over a trial for a search, perhaps in single precision.
+
+        Returns
+        -------
+        What a reduction makes of the responses, and which individuals failed (see :mod:`vehgen.simulate.ranking`).
+        """
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ModelWarning)
+            return rank_population(trial.simulator, self.population(values, trial), trial.scenario, reduction)
 
     def respond_nearby(self, values: Array, trial: Trial, scenario: Scenario, others: Sequence[Scenario]) -> Array:
         """Simulate searched values `shape (space.size,)` [SI] over a scenario of a trial and others that hardly differ from it.

@@ -87,6 +87,30 @@ def static_loads(model: ModelLike, values: Mapping[str, float] | None = None, *,
     return StaticLoads(axles, hinges, elements, displacement)
 
 
+def axle_loads(model: EquationsOfMotion, parameters: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    """Return what each wheel of a population presses on the road [N], `shape (n_individuals,)` by axle; zero without gravity.
+
+    Parameters
+    ----------
+    parameters
+        `shape (n_individuals, n_parameters)` [SI].
+
+    Raises
+    ------
+    InputError
+        As :func:`static_loads`, of the first individual that has no equilibrium.
+    """
+    if not model.vehicle.gravity:
+        return dict.fromkeys(model.vehicle.axles, np.zeros(len(parameters)))
+    found = equilibria(model, parameters)
+    places = {element.name: i for i, element in enumerate(model.elements) if element.kind == "tyre"}
+    loads = {name: found.forces[:, places[name]] for name in model.vehicle.axles}
+    for individual in found.failures:  # alone it is found, or told why not
+        for name, load in static_loads(model, dict(zip(model.parameters, parameters[individual], strict=True))).axles.items():
+            loads[name][individual] = load
+    return loads
+
+
 def element_rows(model: EquationsOfMotion, values: Mapping[str, float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the travel rows `shape (n_elements, n_dof)` and stiffnesses `shape (n_elements,)` of all springs."""
     entries = {(i, j): value for i, element in enumerate(model.elements) for j, value in element.row.items()}

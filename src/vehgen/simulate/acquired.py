@@ -114,7 +114,9 @@ def _acquired(
     if all(chain.is_point_sample for chain in distinct):
         return kernel.run(parameters, excitation(0), scenario.decimation, begin, threads)
     if len(distinct) == 1 and not kernel.source.nonlinear and begin is None and not nearby:
-        return _filtered_input(kernel, parameters, scenario, excitation, chains[0], threads)
+        filtered, ahead = _filtered_input(scenario, excitation, chains[0])
+        result = kernel.run(parameters, filtered, scenario.decimation, threads=threads)
+        return replace(result, responses=result.responses[:, ahead:]) if ahead else result
     return _filtered_output(kernel, parameters, scenario, excitation, chains, begin, threads)
 
 
@@ -132,16 +134,27 @@ def extended(scenario: Scenario, samples: int) -> Scenario:
     return replace(scenario, duration=scenario.duration + samples * scenario.decimation * scenario.dt) if samples else scenario
 
 
-def _filtered_input(
-    kernel: Kernel, parameters: Array, scenario: Scenario, excitation: Driven, chain: AcquisitionChain, threads: int | None
-) -> KernelResult:
-    """Run over the filtered excitation, from as many samples before the run as the chain looks ahead."""
+def keeps_what_recorders_keep(kernel: Kernel, scenario: Scenario) -> bool:
+    """Whether the samples that a linear kernel keeps, from rest, are those of the recorders: all channels pass one chain."""
+    chains = set(_filters(scenario, [channel.name for channel in kernel.model.channels]))
+    return len(chains) == 1 and not kernel.source.nonlinear and scenario.initial is None
+
+
+def acquired_excitation(kernel: Kernel, scenario: Scenario, offsets: Array) -> tuple[Excitation, int]:
+    """Return what drives such a kernel, and its first sample that the recorders keep (see :func:`keeps_what_recorders_keep`)."""
+    chain = _filters(scenario, [kernel.model.channels[0].name])[0]
+    if chain.is_point_sample:
+        return scenario.excitation(offsets), scenario.skipped
+    filtered, ahead = _filtered_input(scenario, lambda samples: extended(scenario, samples).excitation(offsets), chain)
+    return filtered, ahead + scenario.skipped
+
+
+def _filtered_input(scenario: Scenario, excitation: Driven, chain: AcquisitionChain) -> tuple[Excitation, int]:
+    """Return the filtered excitation, and from how many samples before the run: as many as the chain looks ahead."""
     ahead = math.ceil(max(-chain.taps(scenario.dt)[0], 0) / scenario.decimation)
     raw = excitation(ahead)
     lead, last = ahead * scenario.decimation, len(scenario.time)
-    filtered = _FILTERED.find((id(raw), chain, lead, last), raw, lambda: _filtered(raw, chain, lead, last))
-    result = kernel.run(parameters, filtered, scenario.decimation, threads=threads)
-    return replace(result, responses=result.responses[:, ahead:]) if ahead else result
+    return _FILTERED.find((id(raw), chain, lead, last), raw, lambda: _filtered(raw, chain, lead, last)), ahead
 
 
 def _filtered(raw: Excitation, chain: AcquisitionChain, lead: int, last: int) -> Excitation:

@@ -14,7 +14,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from vehgen.codegen.kernel import Excitation
+from vehgen.codegen import Excitation
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.numeric_model import NumericModel
 

@@ -78,8 +78,7 @@ class Simulator:
         """
         names = [channel.name for channel in self.model.channels]
         check_population(len(parameters), kept_samples(scenario, names, self.kernel.source.nonlinear), len(names))
-        offsets = np.round(self.wheel_offsets(parameters), 12)
-        distinct, group = _distinct_rows(offsets)
+        distinct, group = self.layouts(parameters)
         responses: Array | None = None
         failures: dict[int, str] = {}
         residuals = np.zeros(len(parameters))
@@ -98,6 +97,15 @@ class Simulator:
         assert responses is not None
         _warn_of(failures, len(parameters))
         return KernelResult(self._add_static(parameters, responses, failures), failures, residuals)
+
+    @cached_property
+    def single_kernel(self) -> Kernel:
+        """The kernel in single precision; see :mod:`vehgen.simulate.ranking` for where it serves."""
+        return Kernel(self.model, precision="single")
+
+    def layouts(self, parameters: Array) -> tuple[Array, NDArray[np.intp]]:
+        """Return the distinct layouts of axles in a population `shape (n_layouts, n_axles)` [m], and the number of each individual's."""
+        return _distinct_rows(np.round(self.wheel_offsets(parameters), 12))
 
     def run_nearby(self, individual: Array, scenario: Scenario, others: Sequence[Scenario]) -> Array:
         """Simulate one individual over a scenario and others that hardly differ from it: right to the first order, for derivatives.

@@ -94,7 +94,9 @@ class GeneticSearch:
         """How many individuals are evaluated in all."""
         return self.populations * self.size * (self.generations + 1)
 
-    def start(self, objective: Objective, n_genes: int, seed: int, first: Array | None = None) -> SearchState:
+    def start(
+        self, objective: Objective, n_genes: int, seed: int, first: Array | None = None, quick: Objective | None = None
+    ) -> SearchState:
         """Return the first generation, uniform over the unit cube.
 
         Parameters
@@ -107,13 +109,15 @@ class GeneticSearch:
             Of the random numbers.
         first
             `shape (n_genes,)`: a point that takes the place of the first individual of each population.
+        quick
+            In place of the objective, less exact: it ranks the individuals, and each population's best has its value by the objective.
         """
         random = np.random.Generator(np.random.PCG64(seed))
         genes = random.random((self.populations, self.size, n_genes))
         if first is not None:
             genes[:, 0] = first
         rates = np.column_stack([random.uniform(*CROSSOVER_RATES, self.populations), random.uniform(*MUTATION_RATES, self.populations)])
-        values = self._evaluate(objective, genes)
+        values = self._evaluate(objective, genes, quick)
         if not np.isfinite(values).any():
             raise InputError("no individual of the first generation has a finite objective: look at the ranges")
         best = int(values.argmin())
@@ -121,8 +125,8 @@ class GeneticSearch:
         value = float(values.ravel()[best])
         return SearchState(0, genes, values, elite, value, rates, (value,), _state(random))
 
-    def advance(self, state: SearchState, objective: Objective) -> SearchState:
-        """Return the next generation: selection, crossover, mutation, evaluation, elite, migration."""
+    def advance(self, state: SearchState, objective: Objective, quick: Objective | None = None) -> SearchState:
+        """Return the next generation: selection, crossover, mutation, evaluation (as :meth:`start` does it), elite, migration."""
         random = _generator(state.random)
         n_genes = state.genes.shape[2]
         children = np.empty_like(state.genes)
@@ -130,7 +134,7 @@ class GeneticSearch:
             parents = sample_parents(rank_fitness(state.objective[i]), self.size, random)
             crossed = recombine(state.genes[i][parents], state.rates[i, 0], random)
             children[i] = mutate(crossed, state.rates[i, 1], random)
-        values = self._evaluate(objective, children)
+        values = self._evaluate(objective, children, quick, state.objective.min(axis=1))
         for i in range(self.populations):  # each population keeps its best over the generations
             best, worst = state.objective[i].argmin(), values[i].argmax()
             if state.objective[i, best] < values[i].min():
@@ -151,9 +155,27 @@ class GeneticSearch:
             random=_state(random),
         )
 
-    def _evaluate(self, objective: Objective, genes: Array) -> Array:
-        values = objective(genes.reshape(-1, genes.shape[2])).reshape(genes.shape[:2])
-        return np.where(np.isnan(values), np.inf, values)
+    def _evaluate(self, objective: Objective, genes: Array, quick: Objective | None, below: Array | None = None) -> Array:
+        """Return the values of all individuals; where `quick` ranks them, each population's best by `objective`.
+
+        A best that is not `below` that of the generation before `shape (n_populations,)` will not be carried on, and may stay as it is.
+        """
+        flat = genes.reshape(-1, genes.shape[2])
+        values = _finite_or_inf((quick or objective)(flat)).reshape(genes.shape[:2])
+        exact = np.full(values.shape, quick is None)
+        while True:
+            best = values.argmin(axis=1)
+            least = np.take_along_axis(values, best[:, None], axis=1)[:, 0]
+            told = np.take_along_axis(exact, best[:, None], axis=1)[:, 0]
+            asked = np.flatnonzero(~told & np.isfinite(least) & (below is None or least <= below))
+            if not len(asked):
+                return values
+            values[asked, best[asked]] = _finite_or_inf(objective(genes[asked, best[asked]]))
+            exact[asked, best[asked]] = True
+
+
+def _finite_or_inf(values: Array) -> Array:
+    return np.where(np.isnan(values), np.inf, values)
 
 
 def _generator(state: Any) -> np.random.Generator:

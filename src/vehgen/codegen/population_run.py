@@ -1,0 +1,94 @@
+"""A population through a compiled kernel: blocks of lanes, shared among threads."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.codegen.excitation import Excitation
+from vehgen.codegen.kernel_source import KernelSource
+
+Array = NDArray[np.float64]
+Consume = Callable[[slice, NDArray[Any], Array], None]
+"""Given which individuals a block holds, their responses, and their residuals; several threads call it."""
+WORTH_THREADS = 1_000_000
+"""Blocks times steps times coordinates below which one core is as quick as several."""
+
+
+def aligned(size: int, number: type[np.floating[Any]] = np.float64) -> NDArray[Any]:
+    """Return zeros that start on a cache line (64 bytes): vector loads that straddle two lines take twice as long."""
+    width = np.dtype(number).itemsize
+    raw = np.zeros(size + 64 // width, dtype=number)
+    start = (-raw.ctypes.data // width) % (64 // width)
+    return raw[start : start + size]
+
+
+@dataclass(frozen=True)
+class PopulationRun:
+    """A population that is to run: `columns shape (n_individuals, n_parameters and travels at rest)`; the rest as in :meth:`Kernel.run`."""
+
+    source: KernelSource
+    module: ModuleType
+    columns: Array
+    excitation: Excitation
+    decimation: int
+    initial: Array | None = None
+
+    def advance(self, consume: Consume, threads: int | None, into: NDArray[Any] | None = None) -> None:
+        """Advance all individuals, and hand over what each block answers.
+
+        Parameters
+        ----------
+        consume
+            Gets the blocks, in any order.
+        threads
+            How many cores to use at most (default: all).
+        into
+            `shape (n_individuals, n_samples, n_channels)`, in the kernel's precision: where whole blocks write their responses.
+        """
+        drives = self._drives()
+        starts = range(0, len(self.columns), self.source.lanes)
+        many = len(starts) > 1 and len(starts) * self.excitation.n_steps * self.source.n_dof > WORTH_THREADS
+        workers = min(threads or os.cpu_count() or 1, len(starts)) if many else 1
+        left = iter(starts)
+
+        def work_off(_worker: int) -> None:
+            for first in left:
+                self._advance_block(first, drives, consume, into)
+
+        if workers > 1:
+            with ThreadPoolExecutor(workers) as pool:
+                list(pool.map(work_off, range(workers)))
+        else:
+            work_off(0)
+
+    def _drives(self) -> list[NDArray[Any]]:
+        """Return inputs, rates and forces in the kernel's precision, `shape (sets, n_steps + 1, width)`: one set, or one an individual."""
+        items = (self.excitation.inputs, self.excitation.rates, self.excitation.forces)
+        arrays = [np.ascontiguousarray(item, dtype=self.source.number) for item in items]
+        return [item if item.ndim == 3 else item[None] for item in arrays]
+
+    def _advance_block(self, first: int, drives: list[NDArray[Any]], consume: Consume, into: NDArray[Any] | None) -> None:
+        source, module, lanes = self.source, self.module, self.source.lanes
+        last = min(first + lanes, len(self.columns))
+        rows = np.minimum(np.arange(first, first + lanes), last - 1)
+        work = aligned(module.WORK, source.number)
+        work[: self.columns.shape[1] * lanes] = np.ascontiguousarray(self.columns[rows].T).ravel()
+        state = work[module.STATE : module.DRIVES]
+        if self.initial is not None:
+            state[: self.initial.shape[1] * lanes] = np.ascontiguousarray(self.initial[rows].T).ravel()
+        if into is None or last - first < lanes:
+            target = np.empty((lanes, self.excitation.n_steps // self.decimation + 1, source.n_channels), dtype=source.number)
+        else:
+            target = into[first:last]
+        own = (item if len(item) == 1 else item[first:last] for item in drives)
+        module.advance(work, *own, self.excitation.dt, self.decimation, target)
+        residuals = state[-lanes:] if source.nonlinear else np.zeros(lanes)
+        consume(slice(first, last), target[: last - first], residuals[: last - first])
