@@ -98,56 +98,77 @@ def score_locations(misfit: Misfit, x: Array, places: Sequence[Place], derive: L
     """
     found = []
     derive = derive or Lineariser(misfit)
-    lines, derivatives = misfit.whitened_spectrum(x), derive(x).spectra
+    begin = _Point.at(misfit, x, derive)
     for place in places:
-        result = _test(misfit, x, place, lines, derivatives, derive)
+        result = _test(misfit, begin, place, derive)
         if result is not None:
             found.append(result)
     return found
 
 
-def _test(
-    misfit: Misfit, x: Array, place: Place, lines: list[Complex], derivatives: Sequence[Complex], derive: Lineariser
-) -> PlaceResult | None:
-    best, best_chi = x, np.inf
+@dataclass(frozen=True, eq=False)
+class _Point:
+    """Unknowns `x shape (n_unknowns,)`, the whitened lines there, their derivatives, and W'W of all their lines."""
+
+    x: Array
+    lines: Sequence[Complex]
+    derivatives: Sequence[Complex]
+    squares: Array
+
+    @classmethod
+    def at(cls, misfit: Misfit, x: Array, derive: Lineariser) -> _Point:
+        """Simulate and linearise a misfit at unknowns."""
+        derivatives = derive(x).spectra
+        whole = np.vstack([flatten(item, first=1).T for item in derivatives])
+        return cls(x, misfit.whitened_spectrum(x), derivatives, whole.T @ whole)
+
+
+def _test(misfit: Misfit, begin: _Point, place: Place, derive: Lineariser) -> PlaceResult | None:
+    """Fit the unknowns to what a hypothesis cannot explain; None where it explains everything.
+
+    Steps come from the normal equations, which the prior keeps well conditioned: the Jacobian is tall.
+    """
+    point, new, best, best_chi = begin, begin.x, begin.x, np.inf
     unknowns = 0
     for turn in range(GAUSS_NEWTON_STEPS):
         if turn:
-            lines, derivatives = misfit.whitened_spectrum(x), derive(x).spectra
+            point = _Point.at(misfit, new, derive)
+        x = point.x
         parts, slopes, count = [], [], 0
-        for t in range(len(misfit.problem.trials)):
+        for t, lines in enumerate(point.lines):
             basis = _basis(misfit, x, place, t)
-            if basis is not None and basis.shape[2] >= lines[t].shape[1]:
+            if basis is not None and basis.shape[2] >= lines.shape[1]:
                 return None
             unknowns = max(unknowns, 0 if basis is None else basis.shape[2])
-            parts.append(flatten(_project(lines[t], basis)))
-            slopes.append(flatten(_project(derivatives[t], basis), first=1).T)
-            count += 2 * lines[t].shape[0] * (lines[t].shape[1] - (0 if basis is None else basis.shape[2]))
+            parts.append(flatten(_project(lines, basis)))
+            slopes.append(flatten(_project(point.derivatives[t], basis), first=1).T)
+            count += 2 * lines.shape[0] * (lines.shape[1] - (0 if basis is None else basis.shape[2]))
         residual, jacobian = np.concatenate(parts), np.vstack(slopes)
         rows, offset = _prior(misfit, x)
-        jacobian = _shown(jacobian, np.vstack([flatten(item, first=1).T for item in derivatives]), rows)
         effective = min(misfit.n_unknowns, count - 1)
         chi = float(np.sqrt((residual @ residual) / (count - effective)))
         if chi < best_chi:
             best, best_chi = x, chi
-        step = np.linalg.lstsq(np.vstack([jacobian, rows]), -np.concatenate([residual, offset]), rcond=None)[0]
-        new = np.clip(x + step, *unknown_bounds(misfit))
+        squares, prior = jacobian.T @ jacobian, rows.T @ rows
+        shown = _shown(squares, point.squares + prior)
+        slope = shown.T @ (jacobian.T @ residual) + rows.T @ offset
+        new = np.clip(x - np.linalg.solve(shown.T @ squares @ shown + prior, slope), *unknown_bounds(misfit))
         if np.abs(new - x).max() < 1e-4:
             break
-        x = new
     return PlaceResult(place, best_chi, unknowns, best)
 
 
-def _shown(jacobian: Array, whole: Array, prior: Array) -> Array:
-    """Return a hypothesis's Jacobian without the directions that it hides: of what they move in the `whole` one it leaves too little.
+def _shown(squares: Array, whole: Array) -> Array:
+    """Return what takes the directions that a hypothesis hides out of its Jacobian J, times it from the right, `shape (n_unknowns,) * 2`.
 
-    They are the eigenvectors of J'J v = share (W'W + P'P) v with a share below HIDDEN.
+    Hidden is that of which the hypothesis leaves too little: the eigenvectors of J'J v = share `whole` v with a share below HIDDEN, where
+    `squares` is J'J and `whole` that of all lines and the prior, W'W + P'P.
     """
-    factor = np.linalg.cholesky(whole.T @ whole + prior.T @ prior)
+    factor = np.linalg.cholesky(whole)
     inverse = np.linalg.inv(factor)
-    shares, directions = np.linalg.eigh(inverse @ (jacobian.T @ jacobian) @ inverse.T)
+    shares, directions = np.linalg.eigh(inverse @ squares @ inverse.T)
     hidden = directions[:, shares < HIDDEN]
-    return np.asarray(jacobian - jacobian @ inverse.T @ hidden @ hidden.T @ factor.T)
+    return np.asarray(np.eye(len(whole)) - inverse.T @ hidden @ hidden.T @ factor.T)
 
 
 def posterior(misfit: Misfit, result: PlaceResult) -> Array:
@@ -157,10 +178,11 @@ def posterior(misfit: Misfit, result: PlaceResult) -> Array:
     """
     derivatives = linearise(misfit, result.x).spectra
     slopes = [flatten(_project(item, _basis(misfit, result.x, result.place, t)), first=1).T for t, item in enumerate(derivatives)]
+    jacobian, whole = np.vstack(slopes), np.vstack([flatten(item, first=1).T for item in derivatives])
     rows, _ = _prior(misfit, result.x)
-    shown = _shown(np.vstack(slopes), np.vstack([flatten(item, first=1).T for item in derivatives]), rows)
-    stacked = np.vstack([shown / max(result.chi, 1.0), rows])
-    return np.asarray(np.linalg.inv(stacked.T @ stacked))
+    squares, prior = jacobian.T @ jacobian, rows.T @ rows
+    shown = _shown(squares, whole.T @ whole + prior)
+    return np.asarray(np.linalg.inv(shown.T @ squares @ shown / max(result.chi, 1.0) ** 2 + prior))
 
 
 def _prior(misfit: Misfit, x: Array) -> tuple[Array, Array]:
