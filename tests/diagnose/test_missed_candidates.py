@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from vehgen.diagnose.select.search import _stuck
+from vehgen.diagnose.select.search import _missed_special_cases, _stuck
 
 
 def fit(name, training, place="front", on_bound=(), slow=True):
@@ -24,3 +24,12 @@ def test_what_left_more_than_the_base_is_fitted_again_beside_a_best_fit_at_a_bou
         fit("sensor", 300.0, slow=False),
     ]
     assert [item.name for item in _stuck(fits, SimpleNamespace(training=25.0))] == expected
+
+
+@pytest.mark.parametrize(("training", "expected"), [(9.3, ["dry"]), (0.9, [])])
+def test_a_special_case_that_does_worse_than_what_holds_it_is_fitted_again(training, expected):
+    fits = [fit("asymmetric", 0.8), fit("dry", training), fit("hysteresis", 2.0)]
+    for item in fits:
+        item.last.holds = lambda other, own=item.last.name: (own, other.name) == ("asymmetric", "dry")
+    assert [item.name for item in _missed_special_cases(fits, SimpleNamespace(training=11.5))] == expected
+    assert _missed_special_cases([], SimpleNamespace(training=11.5)) == []

@@ -8,10 +8,11 @@ from benchmarks.hidden_effects.generator import Effect, laws
 from benchmarks.hidden_effects.generator.effects import EffectKind, Value
 from benchmarks.hidden_effects.generator.effects.kind import suspensions
 
-from vehgen.diagnose.fits.candidate import Candidate
+from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.screening import chosen_with_holders
 from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.select.criteria import same, tied
+from vehgen.diagnose.select.search import Fitter
 from vehgen.diagnose.select.special_cases import holding, simplest_first
 from vehgen.effects import EFFECTS
 
@@ -79,6 +80,21 @@ def test_in_a_car_that_begins_at_rest_friction_is_named_as_it_is(trials_of, lops
     found = verdict.effects[0].parameters
     assert found["force"].value == pytest.approx(450.0, rel=0.1)
     assert "ratio" not in found or found["ratio"].value == pytest.approx(ratio, rel=0.1)
+
+
+def test_a_special_case_is_found_from_where_the_law_that_holds_it_ended(detection_of, lopsided):
+    detection = detection_of(lopsided(1.0))
+    fitter = Fitter(detection, detection.base, [])
+    vehicle = detection.trials[0].run.vehicle
+    general, plain = (
+        next(item for item in list_candidates(vehicle, detection.trials, [EFFECTS[name]]) if item.place == "rear")
+        for name in ("asymmetric_friction", "dry_friction")
+    )
+    ended = fitter.fit(general)
+    found = fitter.fit_within(plain, ended)
+    assert found.last is plain
+    assert found.training <= ended.training + 0.02
+    assert found.least_squares.values[-1] == pytest.approx(450.0, rel=0.1)
 
 
 def test_an_effect_of_a_group_is_the_same_at_an_axle_of_it_and_another_at_a_link_or_a_pair_that_shares_one():

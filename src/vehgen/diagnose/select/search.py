@@ -21,7 +21,7 @@ from vehgen.diagnose.fits.screening import screen
 from vehgen.diagnose.localise.localisation import localise, one_force, shortlist
 from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.diagnose.select.freed_base import split_idle
-from vehgen.diagnose.select.special_cases import simplest_first
+from vehgen.diagnose.select.special_cases import does_as_well, simplest_first
 from vehgen.effects import EffectLocator
 from vehgen.effects.evidence import Origins, Residual, StartingPoint
 from vehgen.fit.alignment import align
@@ -135,6 +135,8 @@ def fit_candidates(
                 again = [fitter.fit(item, slow_first=False) for item in (_stuck(fits, base) if slow_first else ())]
                 fits += [fit for fit in again if fit is not None]
                 break
+        nested = [fitter.fit_within(item, min(fits, key=merit)) for item in _missed_special_cases(fits, base)]
+        fits += [fit for fit in nested if fit is not None]
         fits = simplest_first(sorted(_best_of_each(fits), key=merit), base)
         for i, fit in enumerate(fits[:LEADING]):
             near = fit.training <= MAY_STILL_WIN * fits[0].training and not fit.last.holds(fits[0].last)
@@ -155,6 +157,15 @@ def _stuck(fits: Sequence[ModelFit], base: ModelFit) -> list[Candidate]:
         return []
     missed = [fit.last for fit in fits if fit.training > base.training and fit.last.place == best.last.place]
     return [item for item in missed if item.effect.shows_in_slow_motions]
+
+
+def _missed_special_cases(fits: Sequence[ModelFit], base: ModelFit) -> list[Candidate]:
+    """Return special cases of the best fit's effect whose own fits do worse: perhaps in another minimum, of which friction makes many."""
+    if not fits:
+        return []
+    best, before = min(fits, key=merit), max(base.training - 1, 0.0)
+    others = [fit for fit in fits if best.last.holds(fit.last)]
+    return [fit.last for fit in others if not does_as_well(fit.training, best.training, before)]
 
 
 def _best_of_each(fits: Sequence[ModelFit]) -> list[ModelFit]:
@@ -186,17 +197,39 @@ class Fitter:
         Unless `slow_first`, all motions are fitted at once, from where the base's fit and the place test ended.
         """
         starts = [*begin, *candidate.effect.starts(candidate.place, self.locator, self.residual)]
+        laid = self.laid if slow_first and candidate.effect.shows_in_slow_motions else None
+        return self._fit(candidate, candidate.effect.origins(self.origins), starts, checked, laid, slow_first)
+
+    def fit_within(self, candidate: Candidate, general: ModelFit) -> ModelFit | None:
+        """Fit a special case of the last effect of a fit, all motions at once, from where that fit ended."""
+        found, space = general.least_squares, self.current.problem.space
+        known = dict(zip((item.name for item in general.last.effect.parameters), found.values[space.size :], strict=True))
+        usual = candidate.effect.starts(candidate.place, self.locator, self.residual)[0]
+        numbers = tuple(float(known.get(item.name, first)) for item, first in zip(candidate.effect.parameters, usual, strict=True))
+        begin = space.unit(found.values[: space.size]), found.misfit.split(found.x)[1]
+        return self._fit(candidate, [begin], [numbers], True, None, False)
+
+    def _fit(
+        self,
+        candidate: Candidate,
+        origins: Sequence[StartingPoint],
+        starts: Sequence[tuple[float, ...]],
+        checked: bool,
+        laid: Array | None,
+        slow_first: bool,
+    ) -> ModelFit | None:
+        runs, noises = self.detection.validation_runs if checked else (), self.detection.floor.noises
         return fit_candidate(
             candidate,
             self.current,
-            self.detection.validation_runs if checked else (),
-            self.detection.floor.noises,
+            runs,
+            noises,
             self.detection.band,
             self.locator,
             self.simulators,
-            candidate.effect.origins(self.origins),
+            origins,
             starts,
-            self.laid if slow_first and candidate.effect.shows_in_slow_motions else None,
+            laid,
             slow_first,
         )
 
