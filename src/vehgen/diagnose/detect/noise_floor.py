@@ -43,7 +43,7 @@ TOP_BAND_RATIO = (1.025, 1.175)
 """The top of the band lies just above what is compared: so many times its highest frequency (41 to 47 Hz above 40 Hz)."""
 END_OF_BAND = 0.75
 """The end of the band, beside its top, begins at this share of its highest frequency."""
-CLEARLY_LESS = 2.0
+CLEARLY_CUT = 2.0
 """A recorder's low-pass takes noise off the top of the band where that has less than the end by so many standard deviations."""
 DIFFERENT = 1.3
 SLOPES = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5)
@@ -144,7 +144,7 @@ def _kept_at_top(quiet: Sequence[Trial], noise: Noise, band: tuple[float, float]
         return 1.0
     kept = float(_usual(top) / _usual(end))
     error = kept * float(np.sqrt(1 / len(top) + 1 / len(end)))
-    return kept if kept + CLEARLY_LESS * error < 1 else 1.0
+    return kept if kept + CLEARLY_CUT * error < 1 else 1.0
 
 
 def _power_over_noise(lines: Complex, answer: RoadAnswer, noise: Noise) -> Array:
