@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -65,6 +66,11 @@ class RoadAnswer:
     dt: float
     forced: Complex | None = None
     unstated: Complex | None = None
+
+    @cached_property
+    def weights(self) -> Array:
+        """:func:`knot_weights` of the lines, which a search of the likeliest noise asks for hundreds of times."""
+        return knot_weights(self.wavenumber)
 
 
 @dataclass(frozen=True)
@@ -151,7 +157,7 @@ class Noise:
         rest = inverse - weighted[:, :, None] * weighted[:, None, :].conj()
         by_sigma = 4 * np.diagonal(rest, axis1=1, axis2=2).real.sum(axis=0)
         by_level = 2 * (b.conj() * (rest @ b)).real[:, :, : answer.gain.shape[2]].sum(axis=(1, 2))
-        return float(loss), knot_weights(answer.wavenumber).T @ by_level, by_sigma
+        return float(loss), answer.weights.T @ by_level, by_sigma
 
     def _scaled(self, answer: RoadAnswer) -> tuple[Array, Complex]:
         """Return d `shape (n, n_channels)` and b with S = diag(d) (1 + b b*) diag(d), which is well conditioned however small sigma is."""
@@ -169,7 +175,8 @@ class Noise:
 
     def _part(self, answer: RoadAnswer) -> Complex:
         """Return P with S = P P* + the sensors' own density, `shape (n, n_channels, n_axles + n_forces)`."""
-        road = np.sqrt(self.level(answer.wavenumber))[:, None, None] * answer.gain
+        level = np.exp(answer.weights @ np.log(self.levels))
+        road = np.sqrt(level)[:, None, None] * answer.gain
         return np.concatenate([road, *self._forced(answer)], axis=2)
 
     def _forced(self, answer: RoadAnswer) -> list[Complex]:

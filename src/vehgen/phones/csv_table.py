@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import io
 import itertools
+import math
 import re
 from array import array
 from collections.abc import Iterator
@@ -49,7 +50,11 @@ class Table:
         yield from itertools.islice(_rows(self.data, self.encoding, self.delimiter, self.name), 1, None)
 
     def column(self, index: int) -> Array:
-        """Return a column as numbers `shape (n,)`; missing ones are NaN.
+        """Return a column as numbers `shape (n,)`; missing ones are NaN. Raises InputError as :meth:`columns`."""
+        return self.columns(index)[:, 0]
+
+    def columns(self, *indices: int) -> Array:
+        """Return columns as numbers `shape (n, n_columns)`, from one passage through the rows; missing ones are NaN.
 
         Raises
         ------
@@ -58,21 +63,25 @@ class Table:
         """
         found = array("d")
         for line, row in self.rows():
-            text = row[index].strip() if index < len(row) else ""
-            if self.decimal_comma:
-                text = text.replace(",", ".")
-            number = float(text) if _NUMBER_CELL.fullmatch(text) else np.nan
-            if np.isfinite(number) and abs(number) > LARGEST_EXPORTED:
-                raise InputError(
-                    f"{shown(text)} in column {shown(self.header[index])} is beyond {LARGEST_EXPORTED:g}, which nothing measures",
-                    Position(self.name, line, index + 1),
-                )
-            if np.isnan(number) and text.lower() not in _MISSING:
-                raise InputError(
-                    f"expected a number in column {shown(self.header[index])}, found {shown(text)}", Position(self.name, line, index + 1)
-                )
-            found.append(number if np.isfinite(number) else np.nan)
-        return np.array(found)
+            for index in indices:
+                found.append(self._number(row, index, line))
+        return np.array(found).reshape(-1, len(indices))
+
+    def _number(self, row: list[str], index: int, line: int) -> float:
+        text = row[index].strip() if index < len(row) else ""
+        if self.decimal_comma:
+            text = text.replace(",", ".")
+        number = float(text) if _NUMBER_CELL.fullmatch(text) else math.nan
+        if math.isfinite(number) and abs(number) > LARGEST_EXPORTED:
+            raise InputError(
+                f"{shown(text)} in column {shown(self.header[index])} is beyond {LARGEST_EXPORTED:g}, which nothing measures",
+                Position(self.name, line, index + 1),
+            )
+        if math.isnan(number) and text.lower() not in _MISSING:
+            raise InputError(
+                f"expected a number in column {shown(self.header[index])}, found {shown(text)}", Position(self.name, line, index + 1)
+            )
+        return number if math.isfinite(number) else math.nan
 
     def text(self, index: int) -> list[str]:
         """Return a column as text."""

@@ -80,7 +80,7 @@ def _is_device(table: Table) -> bool:
 
 
 def _read_clock(table: Table, notes: list[str]) -> EpochMap | None:
-    events, moments, epochs = table.text(0), table.column(1), table.column(2)
+    events, (moments, epochs) = table.text(0), table.columns(1, 2).T
     starts = [i for i, event in enumerate(events) if event.upper() == "START" and np.isfinite([moments[i], epochs[i]]).all()]
     if not starts or (np.diff(moments[starts]) < 0).any():
         notes.append(f"{table.name} has no usable START row; the clock of this phone is unknown")
@@ -101,13 +101,14 @@ def _read_sensors(table: Table) -> list[tuple[str, Stream]]:
             if axis:
                 axes.setdefault(axis[1].lower(), i)
         if len(axes) == 3:
-            values = np.column_stack([table.column(axes[axis]) for axis in "xyz"])
+            numbers = table.columns(0, *(axes[axis] for axis in "xyz"))
+            values = numbers[:, 1:]
             try:
                 name = acceleration_kind(values) if unit == "m/s^2" else ROTATION_STREAM
             except InputError as error:
                 raise InputError(f"{table.name}: {error.message}") from error
-            found.append((name, Stream(table.column(0), values, ("x", "y", "z"), unit)))
+            found.append((name, Stream(numbers[:, 0], values, ("x", "y", "z"), unit)))
     if "m/s" in units and units.count("deg") >= 2:
-        values = table.column(units.index("m/s"))[:, None]
-        found.append((SPEED_STREAM, Stream(table.column(0), values, ("speed",), "m/s")))
+        numbers = table.columns(0, units.index("m/s"))
+        found.append((SPEED_STREAM, Stream(numbers[:, 0], numbers[:, 1:], ("speed",), "m/s")))
     return found

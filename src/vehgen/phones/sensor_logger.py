@@ -58,7 +58,7 @@ def read_sensor_logger(tables: list[Table]) -> PhoneExport:
         elapsed = table.column(table.find("seconds_elapsed"))
         if stem in _SENSORS and {"x", "y", "z"} <= set(table.header):
             name, unit = _SENSORS[stem]
-            values = np.column_stack([table.column(table.find(axis)) for axis in "xyz"])
+            values = table.columns(*(table.find(axis) for axis in "xyz"))
             streams[name] = Stream(elapsed, values, ("x", "y", "z"), unit)
             epoch = epoch or _epoch(table, elapsed)
         elif "speed" in table.header:

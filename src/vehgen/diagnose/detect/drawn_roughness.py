@@ -20,7 +20,7 @@ from vehgen.diagnose.detect.road_error import under_hump
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.misfit import Misfit, Noises
-from vehgen.fit.noise import EVEN, KNOT_WAVENUMBERS, LARGEST_LEVEL, SMALLEST_LEVEL, DrawnDensity, Noise, RoadAnswer, knot_weights
+from vehgen.fit.noise import EVEN, KNOT_WAVENUMBERS, LARGEST_LEVEL, SMALLEST_LEVEL, DrawnDensity, Noise, RoadAnswer
 from vehgen.fit.trial import Trial
 from vehgen.road import MeasuredProfile
 from vehgen.road.iso8608 import REFERENCE_CYCLES_PER_M
@@ -85,7 +85,7 @@ def _asked(run: DrawnRun, levels: Array, lead: tuple[Complex, RoadAnswer] | None
     drawn = replace(run.lead, louder=None, drawn=run.density(levels, ROADS_TRIED, hump=False))
     total = _own_densities(drawn, answer)
     share = (total - _own_densities(replace(drawn, drawn=None, levels=EVEN), answer)) / total
-    weights = knot_weights(answer.wavenumber).T
+    weights = answer.weights.T
     return np.stack([weights @ (share * np.abs(lines) ** 2 / total).sum(axis=1), weights @ share.sum(axis=1)])
 
 
