@@ -4,6 +4,7 @@ import ast
 import importlib.util
 import re
 from collections import defaultdict
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -31,15 +32,15 @@ def load():
     return module
 
 
+@cache
 def sources():
-    """Yield every file of the package: its place, its text, its syntax tree."""
-    for path in sorted(SOURCE.rglob("*.py")):
-        text = path.read_text(encoding="utf-8")
-        yield path.relative_to(SOURCE).as_posix(), text, ast.parse(text)
+    """Return of every file of the package its place, its text, and the nodes of its syntax tree, the module first."""
+    found = [(path.relative_to(SOURCE).as_posix(), path.read_text(encoding="utf-8")) for path in sorted(SOURCE.rglob("*.py"))]
+    return [(place, text, list(ast.walk(ast.parse(text)))) for place, text in found]
 
 
-def functions(tree):
-    return [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)]
+def functions(nodes):
+    return [node for node in nodes if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)]
 
 
 def lines_of(function):
@@ -94,15 +95,15 @@ def test_no_file_is_longer_than_one_reads_at_once():
 
 def test_no_function_is_longer_than_a_screen():
     long = set()
-    for place, _, tree in sources():
-        long |= {(place, node.name) for node in functions(tree) if lines_of(node) > MAX_FUNCTION_LINES}
+    for place, _, nodes in sources():
+        long |= {(place, node.name) for node in functions(nodes) if lines_of(node) > MAX_FUNCTION_LINES}
     assert long == set()
 
 
 def test_a_constant_name_means_one_thing_in_the_whole_house():
     owners = defaultdict(list)
-    for place, _, tree in sources():
-        for name in set(constants(tree)):
+    for place, _, nodes in sources():
+        for name in set(constants(nodes[0])):
             if not (place.startswith("commands/") and name in COMMAND_CONSTANTS):
                 owners[name].append(place)
     assert {name: places for name, places in owners.items() if len(places) > 1} == {}
@@ -110,18 +111,16 @@ def test_a_constant_name_means_one_thing_in_the_whole_house():
 
 @pytest.mark.parametrize(("value", "owner"), [(9.81, "mechanics/equations_of_motion.py"), (9.80665, "files/units.py")])
 def test_gravity_and_the_unit_g_have_one_owner_each(value, owner):
-    found = {
-        place for place, _, tree in sources() for node in ast.walk(tree) if isinstance(node, ast.Constant) and node.value in (value, -value)
-    }
+    found = {place for place, _, nodes in sources() for node in nodes if isinstance(node, ast.Constant) and node.value in (value, -value)}
     assert found == {owner}
 
 
 def test_only_commands_speak_of_options_of_the_command_line():
     found = set()
-    for place, _, tree in sources():
+    for place, _, nodes in sources():
         documented = (ast.Module, ast.ClassDef, ast.FunctionDef)
-        told = {id(node.body[0].value) for node in ast.walk(tree) if isinstance(node, documented) and ast.get_docstring(node)}
-        texts = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in told]
+        told = {id(node.body[0].value) for node in nodes if isinstance(node, documented) and ast.get_docstring(node)}
+        texts = [node for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in told]
         if any(re.search(r"(?<![\w-])--[a-z]", node.value) for node in texts):
             found.add(place)
     assert {place for place in found if not place.startswith("commands/")} <= WAITING_FLAGS
@@ -129,7 +128,7 @@ def test_only_commands_speak_of_options_of_the_command_line():
 
 def test_no_former_name_comes_back():
     found = [(place, Path(place).stem) for place, _, _ in sources() if Path(place).stem in FORMER_NAMES]
-    for place, _, tree in sources():
-        found += [(place, node.name) for node in ast.walk(tree) if isinstance(node, ast.ClassDef) and node.name in FORMER_NAMES]
-        found += [(place, node.name) for node in functions(tree) if node.name in FORMER_NAMES]
+    for place, _, nodes in sources():
+        found += [(place, node.name) for node in nodes if isinstance(node, ast.ClassDef) and node.name in FORMER_NAMES]
+        found += [(place, node.name) for node in functions(nodes) if node.name in FORMER_NAMES]
     assert found == []

@@ -3,7 +3,7 @@
 import pytest
 from benchmarks.hidden_effects.generator import Effect
 
-from tests.diagnose.conftest import CUBIC
+from tests.diagnose.conftest import CUBIC, HUMPS
 from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.effects import EFFECTS
 
@@ -13,7 +13,7 @@ TRIED = [EFFECTS[name] for name in ("cubic_stiffness", "sensor_delay", "quadrati
 
 @pytest.fixture(scope="module")
 def found(trials_of):
-    return diagnose_trials(trials_of(CUBIC, LATE), TRIED)
+    return diagnose_trials(trials_of(CUBIC, LATE, runs=HUMPS), TRIED)
 
 
 def test_a_late_phone_beside_another_effect_is_tied_with_the_other_phone_being_early(found):

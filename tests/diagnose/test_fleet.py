@@ -14,6 +14,7 @@ from vehgen.commands import main
 from vehgen.diagnose import diagnose
 from vehgen.diagnose.fleet import Fleet, FleetRow, diagnose_fleet, diagnosing, work
 from vehgen.diagnose.fleet.layout import load_fleet_vehicle
+from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.errors import InputError
 from vehgen.files.results import json_text, read_json
 from vehgen.fit.parallel import Lost, Runner
@@ -50,10 +51,25 @@ def fleet(made, tmp_path):
     return shutil.copytree(made, tmp_path / "fleet")
 
 
+@pytest.fixture(scope="module")
+def once_each():
+    """Diagnose a vehicle once: fleets of the same vehicles differ in what becomes of the verdict, not in the verdict."""
+    made = {}
+
+    def diagnose_once(trials, effects, everywhere):
+        key = (trials[0].run.vehicle.name, *trials[0].values.items(), *(effect.name for effect in effects))
+        if key not in made:
+            made[key] = diagnose_trials(trials, effects, everywhere)
+        return made[key]
+
+    return diagnose_once
+
+
 @pytest.fixture
-def here(monkeypatch):
+def here(monkeypatch, once_each):
     """Compute in this process; returns the names of what was computed."""
     done = []
+    monkeypatch.setattr(work, "diagnose_trials", once_each)
 
     class Here(Runner):
         def as_completed(self, function, inputs):

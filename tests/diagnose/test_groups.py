@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from benchmarks.hidden_effects.generator import Effect
 
+from tests.diagnose.conftest import HUMPS
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.pipeline import diagnose_trials
@@ -18,7 +19,7 @@ BOTH = (Effect("cubic_stiffness", "front", {"k3": 1.5e8}), Effect("cubic_stiffne
 
 
 def test_a_law_that_all_suspensions_have_alike_is_named_once(trials_of):
-    verdict = diagnose_trials(trials_of(*BOTH), FEW).verdict
+    verdict = diagnose_trials(trials_of(*BOTH, runs=HUMPS), FEW).verdict
     assert (verdict.verdict, [(item.name, item.place) for item in verdict.effects]) == ("named", [("cubic_stiffness", "all suspensions")])
     assert verdict.effects[0].parameters["k3"].value == pytest.approx(1.5e8, rel=0.05)
     assert verdict.gap.after < 1.1
@@ -27,7 +28,7 @@ def test_a_law_that_all_suspensions_have_alike_is_named_once(trials_of):
 def test_a_stiffness_that_the_file_has_far_too_small_is_no_effect(trials_of):
     vehicle = load_vehicle("sedan2")
     true = vehicle.all_values(vehicle.values())
-    verdict = diagnose_trials(trials_of(parameters=true | {"ktr": 2.5 * true["ktr"]}), FEW).verdict
+    verdict = diagnose_trials(trials_of(parameters=true | {"ktr": 2.5 * true["ktr"]}, runs=HUMPS), FEW).verdict
     assert verdict.effects == ()
     assert "ktr" in verdict.reason
     assert verdict.verdict in ("insufficient_data", "measurement_fault")
@@ -45,7 +46,7 @@ def test_a_law_that_two_suspensions_have_in_different_strength_is_named_at_each(
 
 
 def test_a_group_is_taken_apart_at_its_axles_the_simplest_law_first(detection_of):
-    base = detection_of(*BOTH).base
+    base = detection_of(*BOTH, runs=HUMPS).base
 
     def fit(name, place, training, *axles):
         return replace(base, effects=(Candidate(EFFECTS[name], place, (), members=axles or (place,)),), training=training)

@@ -12,8 +12,10 @@ from tests.measure.rough_half_car import PLACES, SEDAN, drive
 from tests.phones.rough_phones import write_phone
 from vehgen.commands import main
 from vehgen.errors import InputError
+from vehgen.fit import rough_drives
 from vehgen.fit.transmissibility_result import Transmissibility
 from vehgen.phones import PhoneSensor
+from vehgen.phones.rough_road import read_drive
 
 SHARED = Path(__file__).parents[2] / "shared" / "data" / "phone-roads"
 SENSORS = tuple(PhoneSensor(name, "body", x=x) for name, x in PLACES.items())
@@ -35,6 +37,21 @@ def write_exports(folder, seed, parameters=SEDAN, speed=15.0, told=1.0, rattle=0
         more = {"speed": gps} if i == 0 else {"shift": 1.3, "drift": 5e-5, **options}
         exports.append(write_phone(folder / f"{name}.zip", time, upward, values[:, 2], seed=10 * seed + i, **more))
     return exports
+
+
+@pytest.fixture(scope="module", autouse=True)
+def read_once():
+    """Exports are read once: what is made of a drive is what these tests watch, and reading takes longest."""
+    made = {}
+
+    def read(*arguments):
+        if repr(arguments) not in made:
+            made[repr(arguments)] = read_drive(*arguments)
+        return made[repr(arguments)]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(rough_drives, "read_drive", read)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -67,8 +84,9 @@ def test_the_right_model_lies_within(right):
         assert band.lower < band.ratio < band.upper
 
 
-@pytest.mark.parametrize("seed", [2, 3])
+@pytest.mark.parametrize("seed", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_nor_is_it_apart_with_pitch_rates_at_a_changing_speed_wrongly_told_and_with_a_phone_that_rattles(tmp_path, seed):
+    """One drive shows it; the second is another road."""
     paths = write_exports(tmp_path, seed, speed=wandering, told=1.012, rattle=0.5)
     found = vehgen.transmissibility(paths, vehicle="sedan2", sensors=SENSORS, forward="y", reference="R")
     assert found.channels == ("R_az", "F_az", "F_q", "R_q")

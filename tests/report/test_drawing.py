@@ -1,6 +1,7 @@
 """The drawing is to scale, says the right numbers, and can be read."""
 
 import itertools
+from functools import cache
 
 import numpy as np
 import pytest
@@ -21,6 +22,12 @@ def artists(figure):
     return {item.get_gid(): item for item in figure.axes[0].get_children() if item.get_gid()}
 
 
+@cache
+def drawn(name):
+    """Return the drawing of a vehicle, to look at only."""
+    return draw_vehicle(model(name))
+
+
 def texts(figure):
     return [text.get_text() for text in figure.axes[0].texts if text.get_text()]
 
@@ -34,8 +41,7 @@ def positions(m, owner):
 @pytest.mark.parametrize("name", EVERY)
 def test_everything_is_drawn_at_its_place(name):
     m = model(name)
-    figure = draw_vehicle(m)
-    found = artists(figure)
+    found = artists(drawn(name))
     for axle, x in positions(m, "axles").items():
         wheel = found[f"wheel-{axle}"]
         assert isinstance(wheel, Circle)
@@ -52,7 +58,7 @@ def test_everything_is_drawn_at_its_place(name):
 
 @pytest.mark.parametrize("name", EVERY)
 def test_a_metre_is_as_long_in_every_direction(name):
-    axes = draw_vehicle(model(name)).axes[0]
+    axes = drawn(name).axes[0]
     width, height = axes.figure.get_size_inches()
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     assert width / (right - left) == pytest.approx(height / (high - low))
@@ -60,7 +66,7 @@ def test_a_metre_is_as_long_in_every_direction(name):
 
 
 def test_the_dimensions_of_the_five_axle_truck():
-    shown = texts(draw_vehicle(model("tractor5")))
+    shown = texts(drawn("tractor5"))
     for length in ("3.46", "1.34", "7.45", "1.23", "4.14", "2.43", "1.32", "0.97", "0.82"):
         assert length in shown
 
@@ -68,7 +74,7 @@ def test_the_dimensions_of_the_five_axle_truck():
 @pytest.mark.parametrize("name", EVERY)
 def test_dimensions_are_the_distances_between_axles(name):
     m = model(name)
-    shown = texts(draw_vehicle(m))
+    shown = texts(drawn(name))
     places = sorted(positions(m, "axles").values())
     wanted = [length_text(right - left) for left, right in itertools.pairwise(places)]
     for length in set(wanted):
@@ -78,7 +84,7 @@ def test_dimensions_are_the_distances_between_axles(name):
 @pytest.mark.parametrize("name", EVERY)
 def test_heights_of_pins_over_cogs_are_true(name):
     m = model(name)
-    found = artists(draw_vehicle(m))
+    found = artists(drawn(name))
     everything = m.vehicle.all_values(m.vehicle.values())
     for hinge_name, hinge in m.vehicle.hinges.items():
         pin = found[f"hinge-{hinge_name}"].center
@@ -102,7 +108,7 @@ def test_no_body_lies_in_the_wheels_and_all_is_above_the_road(name):
 @pytest.mark.parametrize("name", EVERY)
 def test_names_are_all_there_and_do_not_hide_each_other(name):
     m = model(name)
-    figure = draw_vehicle(m)
+    figure = drawn(name)
     shown = texts(figure)
     for group in (m.vehicle.bodies, m.vehicle.axles, m.vehicle.hinges, m.vehicle.links):
         for key, item in group.items():
@@ -122,12 +128,12 @@ def test_names_are_all_there_and_do_not_hide_each_other(name):
 
 
 def test_a_title_is_never_read_as_mathematics():
-    shown = " ".join(texts(draw_vehicle(model("with_laws"))))
+    shown = " ".join(texts(drawn("with_laws")))
     assert HOSTILE in shown
 
 
 def test_the_figure_grows_with_the_vehicle_and_stays_legible():
-    short, long = (draw_vehicle(model(name)) for name in ("sedan2", "road_train"))
+    short, long = (drawn(name) for name in ("sedan2", "road_train"))
     assert long.get_size_inches()[0] > 2.5 * short.get_size_inches()[0]
     assert min(text.get_fontsize() for text in long.axes[0].texts if text.get_text()) >= 6.0
 

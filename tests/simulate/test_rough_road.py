@@ -1,5 +1,7 @@
 """Spectra of a model on a rough road against those that drives of scipy's half-car average to."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -25,14 +27,20 @@ def model():
     return derive("sedan2", outputs())
 
 
+@cache
+def driven(speed, seed):
+    """Return the averaged lines of a drive of 120 s."""
+    _, values = drive(SEDAN, 120.0, speed, seed)
+    return segment_transforms(values[:, :2], 0.01, SEGMENT).between(0.75, 8.0)
+
+
 @pytest.mark.parametrize("speeds", [(4.0,), (4.0, 6.0, 9.0)])
 def test_averaged_drives_approach_the_blurred_spectra(model, speeds):
     """Of 10 drives of 120 s a speed: ratios to a percent or so, and the coherence that the axles' delay and the speeds leave."""
     found = []
     for seed in range(10):
         for speed in speeds:
-            _, values = drive(SEDAN, 120.0, speed, seed)
-            lines = segment_transforms(values[:, :2], 0.01, SEGMENT).between(0.75, 8.0)
+            lines = driven(speed, seed)
             found.append(lines.spectra())
     measured = np.mean(found, axis=0)
     blurred = rough_road_spectra(model, lines.frequency, speeds=np.array(speeds), segment=SEGMENT)
