@@ -6,8 +6,6 @@ import ast
 from collections.abc import Iterator
 from pathlib import Path
 
-from tests.conftest import UNTRACED
-
 TESTS = Path(__file__).parent
 TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in sorted(TESTS.rglob("*.py"))}
 CHECKS = {"raises", "warns", "fail"}
@@ -72,7 +70,3 @@ def test_no_test_hides_another_of_its_name():
 
 def test_no_file_is_too_long_to_be_one_story():
     assert [path.name for path in TREES if path.read_text(encoding="utf-8").count("\n") > MAX_LINES] == []
-
-
-def test_what_coverage_passes_over_exists():
-    assert [name for name in UNTRACED if not (TESTS / name).exists()] == []

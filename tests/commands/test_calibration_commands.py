@@ -87,11 +87,11 @@ def test_a_search_stopped_by_hand_leaves_its_best_and_goes_on(run, tmp_path, cap
 
     advance, calls = GeneticSearch.advance, []
 
-    def stop(self, state, objective):
+    def stop(self, state, *objectives):
         calls.append(1)
         if len(calls) == 3:
             raise KeyboardInterrupt
-        return advance(self, state, objective)
+        return advance(self, state, *objectives)
 
     out = tmp_path / "out"
     arguments = ["calibrate", "sedan2.yaml", run, "--out", str(out), "--json", *SMALL]
