@@ -11,7 +11,7 @@ from vehgen.effects.base import Change, Effect, EffectParameter, Symbols
 from vehgen.effects.entry_model import SIZES, EffectEntry, LawPlace, LineEntry, ParameterEntry, RunQuantity
 from vehgen.effects.kinds import LineEffect, RunEffect, VehicleEffect
 from vehgen.effects.library.engine_harmonic import ENGINE_HARMONIC_EFFECT
-from vehgen.effects.library.law_effect import law_edit
+from vehgen.effects.library.law_effect import LawEdit
 from vehgen.effects.library.sensor_delay import SENSOR_DELAY_EFFECT
 from vehgen.effects.library.sensor_gain import SENSOR_GAIN_EFFECT
 from vehgen.effects.library.sensor_position import SENSOR_POSITION_EFFECT
@@ -89,7 +89,7 @@ class EntryReader:
             places=tyres if is_global and entry.attaches == "tyre" else PLACES[entry.attaches],
             parameters=parameters,
             is_global=is_global,
-            edit=law_edit(entry.attaches, law, write),
+            edit=LawEdit(entry.attaches, law, write),
         )
 
     def run_effect(self, known: RunEffect) -> RunEffect:

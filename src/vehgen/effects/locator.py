@@ -55,6 +55,11 @@ class EffectSite:
         return min(max(0.1 * self.load / self.k, 0.002), 0.02) if self.k > 0 else 0.005
 
     @property
+    def span(self) -> float:
+        """The distance between its body's outermost supports, at least 1 m [m]."""
+        return max(self.length, 1.0)
+
+    @property
     def kind(self) -> str:
         """What holds a spring and damper there: `link`, `hinge` or `suspension`."""
         return "link" if self.place in self.vehicle.links else "hinge" if self.place in self.vehicle.hinges else "suspension"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
+
 from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.library.law_effect import on_spring
@@ -30,7 +32,7 @@ ADDED_STIFFNESS_EFFECT = VehicleEffect(
             low=0.003,
             high=10.0,
             starts=(0.03, 0.3),
-            scale=lambda site: site.k,
+            scale=attrgetter("k"),
             of="the largest force that occurs over the largest travel",
         ),
     ),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
+
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 
@@ -19,7 +21,7 @@ ASYMMETRIC_FRICTION_EFFECT = suspension_law(
             low=0.002,
             high=0.4,
             starts=(0.03, 0.12),
-            scale=lambda site: site.load,
+            scale=attrgetter("load"),
             of="the static load",
         ),
         EffectParameter("ratio", "", "force in compression over that in extension", low=0.1, high=10.0, starts=(0.6, 1.6)),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
+
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 
@@ -17,7 +19,7 @@ BUMP_STOP_EFFECT = suspension_law(
             low=0.5,
             high=30.0,
             starts=(6.0,),
-            scale=lambda site: site.k,
+            scale=attrgetter("k"),
             of="the stiffness there",
         ),
         EffectParameter(
@@ -27,7 +29,7 @@ BUMP_STOP_EFFECT = suspension_law(
             low=0.05,
             high=4.0,
             starts=(0.5, 1.2, 2.0),
-            scale=lambda site: site.travel,
+            scale=attrgetter("travel"),
             of="a typical travel",
         ),
         EffectParameter(
@@ -37,7 +39,7 @@ BUMP_STOP_EFFECT = suspension_law(
             low=0.05,
             high=6.0,
             starts=(1.5,),
-            scale=lambda site: site.travel,
+            scale=attrgetter("travel"),
             of="a typical travel",
         ),
     ),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from vehgen.effects.kinds import VehicleEffect
-from vehgen.effects.library.mounted_mass import mass_edit, mass_parameters
+from vehgen.effects.library.mounted_mass import MassEdit, mass_parameters
 from vehgen.effects.places import loading_bodies
 
 CARGO_MODULE_EFFECT = VehicleEffect(
@@ -17,5 +17,5 @@ CARGO_MODULE_EFFECT = VehicleEffect(
     places=loading_bodies,
     parameters=mass_parameters((3.0, 6.0), (0.15,)),
     is_global=True,
-    edit=mass_edit("module"),
+    edit=MassEdit("module"),
 )

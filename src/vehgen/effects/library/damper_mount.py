@@ -12,6 +12,10 @@ from vehgen.effects.places import dampers
 from vehgen.files.expressions import Expression
 
 
+def _size(site: EffectSite) -> float:
+    return 2 * math.pi * site.c
+
+
 def _edit(site: EffectSite, symbols: Symbols) -> Change:
     """Return the dashpot moved into a Maxwell branch of the same c: nothing stands beside it."""
     k, c = symbols["k"], site.spring.c
@@ -39,7 +43,7 @@ DAMPER_MOUNT_EFFECT = VehicleEffect(
             low=0.5,
             high=60.0,
             starts=(25.0, 8.0, 2.5),
-            scale=lambda site: 2 * math.pi * site.c,
+            scale=_size,
             of="2 pi 1/s times the damping there",
         ),
     ),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
+
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 
@@ -20,7 +22,7 @@ DRY_FRICTION_EFFECT = suspension_law(
             low=0.002,
             high=0.4,
             starts=(0.02, 0.06, 0.15),
-            scale=lambda site: site.load,
+            scale=attrgetter("load"),
             of="the static load",
         ),
     ),

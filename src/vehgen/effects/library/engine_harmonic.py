@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
+
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.kinds import LineEffect
 from vehgen.effects.places import pitching_bodies
@@ -25,7 +27,7 @@ ENGINE_HARMONIC_EFFECT = LineEffect(
             low=0.0,
             high=0.1,
             starts=(0.02,),
-            scale=lambda site: site.load,
+            scale=attrgetter("load"),
             of="the static load",
         ),
     ),

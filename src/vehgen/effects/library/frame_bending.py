@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
+
 from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.locator import EffectSite
@@ -37,7 +39,7 @@ FRAME_BENDING_EFFECT = VehicleEffect(
             low=0.8,
             high=2.5,
             starts=(1.2,),
-            scale=lambda site: max(site.length, 1.0),
+            scale=attrgetter("span"),
             of="the distance of the body's outermost supports, at least 1 m",
         ),
     ),

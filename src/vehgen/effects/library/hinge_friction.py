@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
+
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import hinge_law
 
@@ -19,7 +21,7 @@ HINGE_FRICTION_EFFECT = hinge_law(
             low=0.002,
             high=0.4,
             starts=(0.02, 0.1),
-            scale=lambda site: site.load,
+            scale=attrgetter("load"),
             of="the hinge's static load times 1 m",
         ),
     ),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
+
 from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.locator import EffectSite
@@ -29,7 +31,7 @@ HINGE_STIFFNESS_EFFECT = VehicleEffect(
             low=0.02,
             high=100.0,
             starts=(1.0, 10.0),
-            scale=lambda site: site.load,
+            scale=attrgetter("load"),
             of="the hinge's static load times 1 m",
         ),
     ),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
+
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 
@@ -18,7 +20,7 @@ HYSTERESIS_EFFECT = suspension_law(
             low=0.002,
             high=0.4,
             starts=(0.03, 0.12),
-            scale=lambda site: site.load,
+            scale=attrgetter("load"),
             of="the static load",
         ),
         EffectParameter(
@@ -28,7 +30,7 @@ HYSTERESIS_EFFECT = suspension_law(
             low=0.05,
             high=3.0,
             starts=(0.3, 1.0),
-            scale=lambda site: site.travel,
+            scale=attrgetter("travel"),
             of="a typical travel",
         ),
         EffectParameter("beta", "", "share of the loss that follows |v|", low=0.3, high=1.0, starts=(0.55,)),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.kinds import VehicleEffect
@@ -11,10 +12,11 @@ from vehgen.effects.places import EVERY_TYRE, hinges, suspensions
 from vehgen.mechanics.laws import LAWS
 
 
-def law_edit(kind: str, law: str, write: Callable[[EffectSite, Symbols], Change] | None = None) -> Callable[[EffectSite, Symbols], Change]:
-    """Return the edit that adds a law to a suspension (or a link in its place), tyre or hinge.
+@dataclass(frozen=True)
+class LawEdit:
+    """The edit that adds a law to a suspension (or a link in its place), tyre or hinge.
 
-    Parameters
+    Attributes
     ----------
     kind
         `suspension`, `tyre` or `hinge`.
@@ -24,16 +26,19 @@ def law_edit(kind: str, law: str, write: Callable[[EffectSite, Symbols], Change]
         Returns the law's entry from the symbols (default: each of its parameters is the symbol of that name).
     """
 
-    def edit(site: EffectSite, symbols: Symbols) -> Change:
-        entry = {law: write(site, symbols) if write else dict(symbols)}
-        if kind == "hinge":
-            return {"hinges": {site.place: {"laws": [*site.laws(kind, site.place), entry]}}}
-        if kind == "suspension":
+    kind: str
+    law: str
+    write: Callable[[EffectSite, Symbols], Change] | None = None
+
+    def __call__(self, site: EffectSite, symbols: Symbols) -> Change:
+        """Return the change of the vehicle at a site."""
+        entry = {self.law: self.write(site, symbols) if self.write else dict(symbols)}
+        if self.kind == "hinge":
+            return {"hinges": {site.place: {"laws": [*site.laws(self.kind, site.place), entry]}}}
+        if self.kind == "suspension":
             return on_spring(site, {"laws": [*site.laws(site.kind, site.place), entry]})
         names = list(site.vehicle.axles) if site.place in EVERY_TYRE else [site.place]
-        return {"axles": {name: {kind: {"laws": [*site.laws(kind, name), entry]}} for name in names}}
-
-    return edit
+        return {"axles": {name: {self.kind: {"laws": [*site.laws(self.kind, name), entry]}} for name in names}}
 
 
 def on_spring(site: EffectSite, change: Change) -> Change:
@@ -64,7 +69,7 @@ def suspension_law(
         parameters=parameters,
         frees=frees,
         special_case=special_case,
-        edit=law_edit("suspension", law),
+        edit=LawEdit("suspension", law),
     )
 
 
@@ -81,5 +86,5 @@ def hinge_law(*, name: str, law: str, title: str, meaning: str, signature: str, 
         attaches="hinge",
         places=hinges,
         parameters=parameters,
-        edit=law_edit("hinge", law),
+        edit=LawEdit("hinge", law),
     )

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from dataclasses import dataclass
+from operator import attrgetter
 
 from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.locator import EffectSite
 from vehgen.files.names import joined_name
 
 
-def mass_edit(name: str) -> Callable[[EffectSite, Symbols], Change]:
-    """Return the edit that cuts a heave-only mass out of a body and mounts it on a link."""
+@dataclass(frozen=True)
+class MassEdit:
+    """The edit that cuts a heave-only mass, called `name`, out of a body and mounts it on a link."""
 
-    def edit(site: EffectSite, symbols: Symbols) -> Change:
-        body, new = site.place, joined_name(name, site.place)
+    name: str
+
+    def __call__(self, site: EffectSite, symbols: Symbols) -> Change:
+        """Return the change of the vehicle at a site."""
+        body, new = site.place, joined_name(self.name, site.place)
         mass, f, zeta, x = (symbols[key] for key in ("mass", "frequency", "damping_ratio", "x"))
         omega = 2 * math.pi * f
         return {
@@ -27,8 +32,6 @@ def mass_edit(name: str) -> Callable[[EffectSite, Symbols], Change]:
             },
         }
 
-    return edit
-
 
 def mass_parameters(frequencies: tuple[float, ...], share: tuple[float, ...]) -> tuple[EffectParameter, ...]:
     """Return mass, natural frequency, damping ratio and place of a mounted mass."""
@@ -40,7 +43,7 @@ def mass_parameters(frequencies: tuple[float, ...], share: tuple[float, ...]) ->
             low=0.01,
             high=0.6,
             starts=share,
-            scale=lambda site: site.mass,
+            scale=attrgetter("mass"),
             of="the body's mass",
         ),
         EffectParameter("frequency", "Hz", "natural frequency on its mounts", low=0.8, high=12.0, starts=frequencies),
@@ -52,7 +55,7 @@ def mass_parameters(frequencies: tuple[float, ...], share: tuple[float, ...]) ->
             low=-0.7,
             high=0.7,
             starts=(0.0,),
-            scale=lambda site: max(site.length, 1.0),
+            scale=attrgetter("span"),
             of="the distance of the body's outermost supports, at least 1 m",
         ),
     )

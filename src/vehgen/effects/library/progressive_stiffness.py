@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
+
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 
@@ -18,7 +20,7 @@ PROGRESSIVE_STIFFNESS_EFFECT = suspension_law(
             low=0.05,
             high=5.0,
             starts=(0.5, 2.0),
-            scale=lambda site: site.k,
+            scale=attrgetter("k"),
             of="the stiffness there",
         ),
         EffectParameter(
@@ -28,7 +30,7 @@ PROGRESSIVE_STIFFNESS_EFFECT = suspension_law(
             low=0.02,
             high=3.0,
             starts=(0.3, 1.0),
-            scale=lambda site: site.travel,
+            scale=attrgetter("travel"),
             of="a typical travel",
         ),
     ),

@@ -4,6 +4,12 @@ from __future__ import annotations
 
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
+from vehgen.effects.locator import EffectSite
+
+
+def _size(site: EffectSite) -> float:
+    return site.c / 0.2
+
 
 QUADRATIC_DAMPING_EFFECT = suspension_law(
     name="quadratic_damping",
@@ -18,7 +24,7 @@ QUADRATIC_DAMPING_EFFECT = suspension_law(
             low=0.02,
             high=30.0,
             starts=(0.5, 4.0),
-            scale=lambda site: site.c / 0.2,
+            scale=_size,
             of="the damping there over 0.2 m/s",
         ),
     ),

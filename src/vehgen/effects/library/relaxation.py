@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
+
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 
@@ -18,7 +20,7 @@ RELAXATION_EFFECT = suspension_law(
             low=0.05,
             high=10.0,
             starts=(0.5, 2.0),
-            scale=lambda site: site.k,
+            scale=attrgetter("k"),
             of="the stiffness there",
         ),
         EffectParameter("time", "s", "relaxation time, dashpot over spring", low=0.002, high=1.0, starts=(0.02, 0.1)),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from vehgen.effects.kinds import VehicleEffect
-from vehgen.effects.library.mounted_mass import mass_edit, mass_parameters
+from vehgen.effects.library.mounted_mass import MassEdit, mass_parameters
 from vehgen.effects.places import front_body
 
 SUSPENDED_CAB_EFFECT = VehicleEffect(
@@ -17,5 +17,5 @@ SUSPENDED_CAB_EFFECT = VehicleEffect(
     places=front_body,
     parameters=mass_parameters((2.5, 4.5), (0.1,)),
     is_global=True,
-    edit=mass_edit("cab"),
+    edit=MassEdit("cab"),
 )

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from vehgen.effects.base import Change, Symbols
 from vehgen.effects.kinds import VehicleEffect
-from vehgen.effects.library.law_effect import law_edit
+from vehgen.effects.library.law_effect import LawEdit
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import tyres
 from vehgen.files.expressions import Expression
 from vehgen.mechanics.laws import LAWS
 
-_ADD = law_edit("tyre", "tyre_liftoff")
+_ADD = LawEdit("tyre", "tyre_liftoff")
 
 
 def _edit(site: EffectSite, symbols: Symbols) -> Change:
