@@ -22,7 +22,7 @@ def verdict_of(monkeypatch, detection, believed, effects, faults_of_believed=())
     monkeypatch.setattr(decision, "supposed_mistakes", lambda item: (FAULT,) if item is quiet else faults_of_believed)
     monkeypatch.setattr(decision, "believable", lambda item: believed)
     chosen = [EFFECTS[name] for name in effects]
-    return Decision(quiet, chosen, False, lambda stage, done, total, best: None, 1).decide().verdict
+    return Decision(quiet, chosen, False, lambda stage, done, total, best: None).decide().verdict
 
 
 def test_where_believable_errors_do_as_well_nothing_is_wrong(monkeypatch, detection_of):

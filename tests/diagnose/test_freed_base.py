@@ -62,7 +62,7 @@ def test_a_freed_parameter_is_blamed_only_for_the_gap_that_it_closes(detection_o
     detection = replace(detection, base=base)
     freed = replace(base, effects=(Candidate(FREED_BASE, "cf", (), (), ("cf",)),), training=left**2)
     monkeypatch.setattr(Decision, "_search_round", lambda self, current: SearchRound(current, (), (), (), (freed,)))
-    found = Decision(detection, SERIES, False, lambda *_: None, 1)._explain_gap().verdict
+    found = Decision(detection, SERIES, False, lambda *_: None)._explain_gap().verdict
     assert found.verdict == verdict
     assert ("times the file's value" in found.reason) == (verdict == "insufficient_data")
 

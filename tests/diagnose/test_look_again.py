@@ -77,7 +77,7 @@ def test_a_second_look_may_check_the_effect_by_another_run(monkeypatch, detectio
     second = [replace(first, problem=problem, validation_runs=tuple(held), base=base)]
     assert [trial.name for trial in first.validation_runs] != ["high"]
     monkeypatch.setattr(decision, "look_again", lambda detection, fit: second.pop() if second else None)
-    decided = Decision(first, [EFFECTS["cubic_stiffness"]], False, lambda stage, done, total, best: None, 1).decide()
+    decided = Decision(first, [EFFECTS["cubic_stiffness"]], False, lambda stage, done, total, best: None).decide()
     found = with_evidence(decided, lambda stage, done, total, best: None)
     assert not second
     assert [(item.name, item.place) for item in found.verdict.effects] == [("cubic_stiffness", "rear")]

@@ -11,7 +11,6 @@ from vehgen.commands.fleet import add_fleet, run_fleet
 from vehgen.commands.option_strings import split_list
 from vehgen.commands.results import add_out, folder_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table, say
-from vehgen.errors import InputError
 from vehgen.files import check_results, write_text
 
 if TYPE_CHECKING:
@@ -38,8 +37,6 @@ def run(options: argparse.Namespace) -> int | None:
     """Diagnose, write the report and the vehicle file, and print the verdict; returns an exit code where Ctrl-C ended it early."""
     if options.fleet is not None:
         return run_fleet(options)
-    if options.scheduler is not None:
-        raise InputError("--scheduler is for many vehicles, named by --fleet; one is diagnosed on this machine")
     import os
     from dataclasses import replace
 
@@ -58,7 +55,15 @@ def run(options: argparse.Namespace) -> int | None:
     folder = folder_named(options.out, f"{Path(options.vehicle).stem}_diagnosis")
     check_results([folder / "diagnosis.json", folder / DIAGNOSIS_PAGE, *files_named_so(vehicle.name, folder)])
     with Bars(quiet=options.json) as bars:
-        found = diagnose(vehicle, trials, effects=chosen, everywhere=options.everywhere, workers=os.cpu_count() or 1, progress=bars.tell)
+        found = diagnose(
+            vehicle,
+            trials,
+            effects=chosen,
+            everywhere=options.everywhere,
+            workers=os.cpu_count() or 1,
+            scheduler=options.scheduler,
+            progress=bars.tell,
+        )
     if found.evidence.origin is not None:
         origin = replace(found.evidence.origin, command=options.command_line)
         found = replace(found, evidence=replace(found.evidence, origin=origin))

@@ -31,7 +31,8 @@ def add_fleet(parser: argparse.ArgumentParser, *instead_of: argparse.Action) -> 
 
     told = "diagnose many vehicles: a folder with one subfolder for each, with its run files"
     parser.add_argument("--fleet", metavar="FOLDER", action=FleetAction, help=told)
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="diagnose the vehicles of a fleet on the Dask cluster at this address")
+    told = "let the Dask cluster at this address diagnose the vehicles of a fleet, or test places and fit candidates of one"
+    parser.add_argument("--scheduler", metavar="ADDRESS", help=told)
 
 
 def run_fleet(options: argparse.Namespace) -> int | None:

@@ -10,6 +10,7 @@ from vehgen.diagnose.result import Diagnosis
 from vehgen.diagnose.select.search import DiagnosisProgress
 from vehgen.effects import Effect, effects_named
 from vehgen.errors import ArgumentError
+from vehgen.fit.parallel import can_be_sent, runner_at
 from vehgen.fit.trial import TrialLike, load_trials
 from vehgen.vehicle import VehicleLike, as_vehicle
 
@@ -23,6 +24,7 @@ def diagnose(
     everywhere: bool = False,
     band: tuple[float, float] | None = None,
     workers: int = 1,
+    scheduler: str | None = None,
     progress: DiagnosisProgress | None = None,
 ) -> Diagnosis:
     """Find what a vehicle's model lacks.
@@ -43,7 +45,11 @@ def diagnose(
     band
         Frequencies compared [Hz] (default: what the run files ask for).
     workers
-        So many processes compile the candidates' kernels. More than one needs `if __name__ == "__main__":` around a script's work.
+        So many processes of this machine test places and fit candidates, where that takes long. More than one needs
+        `if __name__ == "__main__":` around a script's work. Effects of your own that are made of lambdas cannot be sent to other processes:
+        all is done by this one then.
+    scheduler
+        Address of a Dask cluster that does so in their place.
     progress
         Called with the stage, what is done, how many of how many, and the best so far.
 
@@ -59,4 +65,6 @@ def diagnose(
     if band is not None and (len(band) != 2 or not 0 <= band[0] < band[1]):
         raise ArgumentError(f"`band`: two frequencies in Hz were expected, the lower first; found {tuple(band)}", "band")
     chosen = effects_named(effects, library)
-    return diagnose_trials(load_trials(runs, as_vehicle(vehicle)), chosen, everywhere, progress, band, workers)
+    trials = load_trials(runs, as_vehicle(vehicle))
+    with runner_at(scheduler, workers if workers > 1 and can_be_sent(chosen) else 1) as runner:
+        return diagnose_trials(trials, chosen, everywhere, progress, band, runner)

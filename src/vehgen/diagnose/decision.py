@@ -25,14 +25,16 @@ from vehgen.diagnose.naming import Naming
 from vehgen.diagnose.result import Decided, DiagnosisModels
 from vehgen.diagnose.select.criteria import closes_training, excess, p_value_of, passes, unfinished
 from vehgen.diagnose.select.estimates import gain_interval
+from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.diagnose.select.group_members import with_members
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
-from vehgen.diagnose.select.search import LEADING, DiagnosisProgress, Fitter, SearchRound, fit_leading_again, merit, search_round
+from vehgen.diagnose.select.search import LEADING, DiagnosisProgress, SearchRound, fit_leading_again, merit, search_round
 from vehgen.diagnose.verdict import Gap, PlaceChi, Verdict, VerdictName
 from vehgen.effects import Effect
 from vehgen.errors import InputError
+from vehgen.fit.parallel import HERE, Runner
 
 LOOK_AGAIN_SHARE = 0.5
 """Where the best candidate leaves no more than this share of the excess, recorder and profiles are judged by it."""
@@ -47,13 +49,13 @@ class Decision:
     """One diagnosis on its way: what was detected, the library, and the rounds so far."""
 
     def __init__(
-        self, detection: Detection, effects: Sequence[Effect], everything: bool, progress: DiagnosisProgress, workers: int
+        self, detection: Detection, effects: Sequence[Effect], everything: bool, progress: DiagnosisProgress, runner: Runner = HERE
     ) -> None:
         self.detection = detection
         self.base = detection.base
         self.everything = everything
         self.progress = progress
-        self.workers = workers
+        self.runner = runner
         self.effects = effects
         self.rounds: list[SearchRound] = []
         self.chain: list[ModelFit] = []
@@ -94,7 +96,7 @@ class Decision:
         if believed.is_quiet:
             left = supposed_mistakes(believed)
             return self._mistaken(left) if left else self._end("no_missing_effect", wording.no_missing_effect(believed.chi))
-        other = Decision(believed, self.effects, self.everything, self.progress, self.workers)
+        other = Decision(believed, self.effects, self.everything, self.progress, self.runner)
         other.notes += self.notes
         found = other._explain_gap()
         self.interrupted = found.stopped
@@ -135,11 +137,11 @@ class Decision:
         held, before = self.validation_runs, self.base.training
         self.detection, self.base = detection, detection.base
         if self.validation_runs != held:  # what places leave is told of the runs that are fitted
-            places, passed = localise(self.base)
+            places, passed = localise(self.base, self.runner)
             first = replace(first, places=tuple(places), passed=tuple(passed))
         fitter = Fitter(detection, self.base, first.passed)
         quieter = self.base.training > MUCH_QUIETER * before
-        fits, idle = list(fit_leading_again(fitter, first.fits, quieter)), list[ModelFit]()
+        fits, idle = list(fit_leading_again(fitter, first.fits, quieter, self.runner)), list[ModelFit]()
         if quieter:  # what loud noise hid, freed base parameters may do as well
             fits, idle = split_idle(fits, fitter.fit_roughly, LEADING, self.base.least_squares.on_bound)
         self.rounds[:] = [replace(first, current=self.base, fits=tuple(fits), idle=tuple(idle))]
@@ -215,7 +217,7 @@ class Decision:
         return list_candidates(vehicle, self.detection.trials, self.effects, self.detection.floor.noises)
 
     def _search_round(self, current: ModelFit) -> SearchRound:
-        found = search_round(self.detection, current, self._candidates(current), self.everything, self.progress, self.workers)
+        found = search_round(self.detection, current, self._candidates(current), self.everything, self.progress, self.runner)
         self.rounds.append(found)
         self.interrupted = self.interrupted or found.stopped
         return found

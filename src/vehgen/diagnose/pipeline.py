@@ -14,6 +14,7 @@ from vehgen.diagnose.localise.localisation import localise, shortlist
 from vehgen.diagnose.result import Decided, Diagnosis
 from vehgen.diagnose.select.search import DiagnosisProgress, search_round
 from vehgen.effects import Effect, library
+from vehgen.fit.parallel import HERE, Runner
 from vehgen.fit.trial import Trial
 
 
@@ -23,7 +24,7 @@ def diagnose_trials(
     everywhere: bool = False,
     progress: DiagnosisProgress | None = None,
     band: tuple[float, float] | None = None,
-    workers: int = 1,
+    runner: Runner = HERE,
 ) -> Diagnosis:
     """Find what a vehicle's model lacks.
 
@@ -39,8 +40,8 @@ def diagnose_trials(
         Told of progress.
     band
         Frequencies compared [Hz] (default: what the run files ask for).
-    workers
-        So many processes compile the candidates' kernels. More than one needs `if __name__ == "__main__":` around a script's work.
+    runner
+        Where places are tested and candidates are fitted (default: here, one after the other).
 
     Returns
     -------
@@ -56,7 +57,7 @@ def diagnose_trials(
         say("detect", 0, 1, "")
         detection = detect(sorted(trials, key=kind_of_run), band)  # whatever order they came in
         say("detect", 1, 1, f"chi {detection.chi:.3f}")
-        found = Decision(detection, list(effects if effects is not None else library().values()), everywhere, say, workers).decide()
+        found = Decision(detection, list(effects if effects is not None else library().values()), everywhere, say, runner).decide()
         return with_evidence(found, say)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
@@ -18,6 +19,15 @@ RETRIES = 3
 """How often a piece of work is tried again whose worker was lost."""
 AHEAD = 2
 """So many pieces of work a cluster holds for each of its threads."""
+
+
+def can_be_sent(value: object) -> bool:
+    """Return whether a value can be sent to another process of this machine."""
+    try:
+        pickle.dumps(value)
+    except Exception:  # what a value's own way to be packed may raise is not known
+        return False
+    return True
 
 
 @dataclass(frozen=True)
@@ -50,6 +60,10 @@ class Runner:
         """
         for item in inputs:
             yield item, function(item)
+
+
+HERE = Runner()
+"""Runs here, one after the other."""
 
 
 @dataclass(frozen=True)

@@ -21,17 +21,34 @@ from vehgen.errors import InputError
 from vehgen.fit.parallel import RETRIES, Input, Lost, R, Runner
 
 WORTH_PROCESSES_S = 3.0
-"""Pieces of work that take longer are spread over processes [s]; these need a second or two to start."""
+"""Work that has taken longer is spread over processes [s]; these need a second or two to start."""
+FUNCTION_FOLLOWS = b""
+"""What is sent to a process before another function: nothing else is empty."""
 LOST_PROCESS = "its process ended before it was done, {} times: too little memory, or a script without `if __name__ == '__main__':`"
 
 
 @dataclass
+class _Worker:
+    """A process, the end of its pipe, and the number of the function that it holds."""
+
+    end: Connection
+    process: SpawnProcess
+    holds: int = 0
+
+    def stop(self) -> None:
+        """End the process."""
+        self.end.close()
+        self.process.terminate()
+        self.process.join()
+
+
+@dataclass
 class _Job:
-    """A piece of work under way: its number, its input, its process, and how often it was begun."""
+    """A piece of work under way: its number, its input, its worker, and how often it was begun."""
 
     number: int
     item: Any
-    process: SpawnProcess
+    worker: _Worker
     begun: int
 
 
@@ -44,31 +61,31 @@ class ProcessRunner(Runner):
     def __init__(self, processes: int | None = None) -> None:
         super().__init__()
         self._most = processes or os.cpu_count() or 1
-        self._idle: list[tuple[Connection, SpawnProcess]] = []
+        self._taken = 0.0
+        self._idle: list[_Worker] = []
+        self._functions = 0
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
         while self._idle:
-            end, process = self._idle.pop()
-            end.close()
-            _end(process)
+            self._idle.pop().stop()
 
     def map(self, function: Callable[[Input], R], inputs: Iterable[Input]) -> Iterator[R]:
         """Yield the function's values, in the order of the inputs; an error of the function is raised here.
 
-        Short work is done here, until a piece takes so long that the others are worth processes.
+        Short work is done here, until all that was asked for took so long that the rest is worth processes.
         """
         left = iter(inputs)
-        if not self._idle:
-            for item in left:
-                begun = time.perf_counter()
-                value = function(item)
-                taken = time.perf_counter() - begun
-                yield value
-                if taken > WORTH_PROCESSES_S:
-                    break
+        while self._taken <= WORTH_PROCESSES_S:
+            begun = time.perf_counter()
+            try:
+                value = function(next(left))
+            except StopIteration:
+                return
+            self._taken += time.perf_counter() - begun
+            yield value
         found: dict[int, Any] = {}
         after = 0
         with closing(self._completed(function, left)) as answers:
@@ -90,10 +107,12 @@ class ProcessRunner(Runner):
         """Yield every job with what its process sent, or with its loss."""
         jobs: dict[Connection, _Job] = {}
         left = enumerate(inputs)
+        self._functions += 1
+        sent = self._functions, ForkingPickler.dumps(function)
         try:
             while True:
                 for number, item in islice(left, self._most - len(jobs)):
-                    self._begin(jobs, function, number, item)
+                    self._begin(jobs, sent, number, item)
                 if not jobs:
                     return
                 for end in wait(list(jobs)):
@@ -102,54 +121,59 @@ class ProcessRunner(Runner):
                     try:
                         data = end.recv_bytes()
                     except (EOFError, OSError):
-                        end.close()
-                        _end(job.process)
+                        job.worker.stop()
                         if job.begun <= RETRIES:
-                            self._begin(jobs, function, job.number, job.item, job.begun + 1)
+                            self._begin(jobs, sent, job.number, job.item, job.begun + 1)
                         else:
                             yield job, Lost(LOST_PROCESS.format(job.begun))
                         continue
-                    self._idle.append((end, job.process))
+                    self._idle.append(job.worker)
                     yield job, _unpacked(data)
         finally:
-            for end, job in jobs.items():
-                end.close()
-                _end(job.process)
+            for job in jobs.values():
+                job.worker.stop()
 
-    def _begin(self, jobs: dict[Connection, _Job], function: Callable[[Input], R], number: int, item: Input, begun: int = 1) -> None:
+    def _begin(self, jobs: dict[Connection, _Job], sent: tuple[int, memoryview], number: int, item: Input, begun: int = 1) -> None:
+        """Begin a piece of work: a process is sent a numbered function once, and inputs from then on."""
+        function, packed = sent
         with _unstopped():
-            end, process = self._idle.pop() if self._idle else _started()
-            jobs[end] = _Job(number, item, process, begun)
+            worker = self._idle.pop() if self._idle else _started()
+            jobs[worker.end] = _Job(number, item, worker, begun)
+        data = ForkingPickler.dumps(item)
         with suppress(OSError):  # it has died meanwhile, which is seen when its answer is read
-            end.send((function, item))
+            if worker.holds != function:
+                worker.end.send_bytes(FUNCTION_FOLLOWS)
+                worker.end.send_bytes(packed)
+                worker.holds = function
+            worker.end.send_bytes(data)
 
 
-def _started() -> tuple[Connection, SpawnProcess]:
-    """Return a new process, and the end of its pipe."""
+def _started() -> _Worker:
+    """Return a new process."""
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe()
     process = context.Process(target=_work, args=(theirs,), daemon=True)
     process.start()
     theirs.close()  # the process holds the only end, so that its death ends the pipe
-    return ours, process
-
-
-def _end(process: SpawnProcess) -> None:
-    process.terminate()
-    process.join()
+    return _Worker(ours, process)
 
 
 def _work(end: Connection) -> None:
-    """Do pieces of work until the pipe ends."""
+    """Do pieces of work until the pipe ends; a function serves until another one comes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that waits: it ends this one
     warnings.simplefilter("ignore")
+    packed: bytes | None = None
+    function: Any = None
     with suppress(EOFError):
         while True:
             data = end.recv_bytes()
+            if data == FUNCTION_FOLLOWS:
+                packed, data = end.recv_bytes(), end.recv_bytes()
             answer: tuple[Any, Exception | None]
             try:
-                function, item = ForkingPickler.loads(data)
-                answer = function(item), None
+                if packed is not None:
+                    function, packed = ForkingPickler.loads(packed), None
+                answer = function(ForkingPickler.loads(data)), None
             except Exception as error:  # raised again by the process that waits
                 answer = None, error
             end.send_bytes(_packed(answer))

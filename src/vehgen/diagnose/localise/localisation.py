@@ -12,15 +12,19 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.localise.unknown_force import Place, PlaceResult, list_places, score_locations
 from vehgen.effects.evidence import PlaceEvidence
 from vehgen.fit.linearisation import Lineariser
+from vehgen.fit.parallel import HERE, Runner
 
 ONCE = 1_000_000
 """The derivatives by nuisances serve for all places: they differ little, and take most of the time."""
 
 
-def localise(fit: ModelFit) -> tuple[list[PlaceResult], list[PlaceResult]]:
-    """Test every place on what a fit leaves; return all results, best first, and the smallest hypotheses that reach the floor."""
+def localise(fit: ModelFit, runner: Runner = HERE) -> tuple[list[PlaceResult], list[PlaceResult]]:
+    """Test every place on what a fit leaves; return all results, best first, and the smallest hypotheses that reach the floor.
+
+    The places are tested wherever a runner works.
+    """
     misfit = fit.least_squares.misfit
-    results = score_locations(misfit, fit.least_squares.x, list_places(misfit), Lineariser(misfit, ONCE))
+    results = score_locations(misfit, fit.least_squares.x, list_places(misfit), Lineariser(misfit, ONCE), runner)
     results.sort(key=lambda item: (item.chi, item.unknowns))
     nowhere = next(item for item in results if item.place.kind == "none")
     excess = max(nowhere.chi**2 - 1, 0.0)

@@ -13,10 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from vehgen.fit.least_squares import unknown_bounds
 from vehgen.fit.linearisation import Lineariser, linearise
 from vehgen.fit.misfit import Misfit, flatten
+from vehgen.fit.parallel import HERE, Runner
 from vehgen.mechanics.rows import Row
 from vehgen.simulate.frequency import force_response
 
@@ -82,7 +84,9 @@ def list_places(misfit: Misfit) -> list[Place]:
     return places
 
 
-def score_locations(misfit: Misfit, x: Array, places: Sequence[Place], derive: Lineariser | None = None) -> list[PlaceResult]:
+def score_locations(
+    misfit: Misfit, x: Array, places: Sequence[Place], derive: Lineariser | None = None, runner: Runner = HERE
+) -> list[PlaceResult]:
     """Return each hypothesis with the chi it leaves.
 
     Parameters
@@ -95,15 +99,12 @@ def score_locations(misfit: Misfit, x: Array, places: Sequence[Place], derive: L
         Hypotheses of :func:`list_places`.
     derive
         What linearises the misfit (default: anew at every point, by differences to both sides).
+    runner
+        Where the places are tested.
     """
-    found = []
     derive = derive or Lineariser(misfit)
-    begin = _Point.at(misfit, x, derive)
-    for place in places:
-        result = _test(misfit, begin, place, derive)
-        if result is not None:
-            found.append(result)
-    return found
+    test = _Test(misfit, _Point.at(misfit, x, derive), derive)
+    return [result for result in runner.map(test, places) if result is not None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,6 +122,19 @@ class _Point:
         derivatives = derive(x).spectra
         whole = np.vstack([flatten(item, first=1).T for item in derivatives])
         return cls(x, misfit.whitened_spectrum(x), derivatives, whole.T @ whole)
+
+
+@dataclass(frozen=True, eq=False)
+class _Test:
+    """Tests a place, in whatever process it comes to: matrices are small, and more BLAS threads would only wait."""
+
+    misfit: Misfit
+    begin: _Point
+    derive: Lineariser
+
+    def __call__(self, place: Place) -> PlaceResult | None:
+        with threadpool_limits(1, user_api="blas"):
+            return _test(self.misfit, self.begin, place, self.derive)
 
 
 def _test(misfit: Misfit, begin: _Point, place: Place, derive: Lineariser) -> PlaceResult | None:

@@ -3,32 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vehgen.codegen import compile_all
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.detect.detection import Detection
-from vehgen.diagnose.fits.candidate import Candidate, build_problem, has_room
-from vehgen.diagnose.fits.model_fit import CurrentModel, ModelFit, as_fine, evaluate_fit, refine
-from vehgen.diagnose.fits.multi_start import fit_candidate
-from vehgen.diagnose.fits.occurring import occurring
-from vehgen.diagnose.fits.released import release
-from vehgen.diagnose.fits.restarts import restart
+from vehgen.diagnose.fits.candidate import Candidate, has_room
+from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.fits.screening import screen
-from vehgen.diagnose.localise.localisation import localise, one_force, shortlist
+from vehgen.diagnose.localise.localisation import localise, shortlist
 from vehgen.diagnose.localise.unknown_force import PlaceResult
+from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.diagnose.select.special_cases import does_as_well, simplest_first
-from vehgen.effects import EffectLocator
-from vehgen.effects.evidence import Origins, Residual, StartingPoint
-from vehgen.fit.alignment import align
-from vehgen.fit.misfit import Misfit
-from vehgen.simulate import SimulatorPool
+from vehgen.fit.parallel import HERE, Runner
 
-Array = NDArray[np.float64]
 DiagnosisProgress = Callable[[str, int, int, str], None]
 """Called with the stage, how many of how many, and the best so far."""
 LOOKED_AT_AGAIN = 4
@@ -63,9 +53,9 @@ def search_round(
     candidates: Sequence[Candidate],
     everything: bool = False,
     progress: DiagnosisProgress | None = None,
-    workers: int = 1,
+    runner: Runner = HERE,
 ) -> SearchRound:
-    """Test the places on what a fit leaves, then fit the candidates that may live there; `workers` processes compile their kernels."""
+    """Test the places on what a fit leaves, then fit the candidates that may live there; both wherever `runner` works."""
     beside = f" beside {current.label}" if current.effects else ""
 
     def say(stage: str, done: int, total: int, best: str) -> None:
@@ -74,7 +64,7 @@ def search_round(
 
     say("localise", 0, 1, "")
     try:
-        places, passed = localise(current)
+        places, passed = localise(current, runner)
     except KeyboardInterrupt:
         return SearchRound(current, (), (), (), (), True)
     say("localise", 1, 1, passed[0].place.label if passed else "no single place")
@@ -82,10 +72,10 @@ def search_round(
     chosen = others if everything else shortlist(current, others, places, passed)
     alike = {item.effect.name for item in chosen if item.effect.tie_advice}  # no run tells where: all places are fitted
     chosen = [item for item in others if item in chosen or item.effect.name in alike]
-    found, stopped = fit_candidates(detection, current, passed, chosen, say, everything, workers)
+    found, stopped = fit_candidates(detection, current, passed, chosen, say, everything, runner)
     rest = [item for item in others if item not in chosen]
     if rest and not stopped and not any(item.place.rows for item in passed) and _leave_most(found, current):
-        wider, stopped = fit_candidates(detection, current, passed, rest, say, everything, workers)
+        wider, stopped = fit_candidates(detection, current, passed, rest, say, everything, runner)
         found = simplest_first(sorted([*found, *wider], key=merit), current)
     edge = () if current.effects else current.least_squares.on_bound
     fits, idle = (found, []) if stopped else split_idle(found, Fitter(detection, current, passed).fit_roughly, LEADING, edge)
@@ -104,7 +94,7 @@ def fit_candidates(
     candidates: Sequence[Candidate],
     progress: DiagnosisProgress,
     everything: bool = False,
-    workers: int = 1,
+    runner: Runner = HERE,
 ) -> tuple[list[ModelFit], bool]:
     """Fit every candidate on top of a fit; return the fits, best first, and whether Ctrl-C ended this early.
 
@@ -119,32 +109,32 @@ def fit_candidates(
             progress("screen", 0, 1, "")
             candidates = screen(candidates, base, current, locator, simulators)
             progress("screen", 1, 1, f"{len(candidates)} candidates")
-        if workers > 1:
-            progress("compile", 0, 1, "")
-            problems = [build_problem(item, current.problem, locator, simulators) for item in candidates if item.effect.changes_vehicle]
-            compile_all([trial.simulator.kernel for problem in problems for trial in problem.trials], workers)
-            progress("compile", 1, 1, f"{len(problems)} vehicles")
         for slow_first in (True, False):
-            for done, candidate in enumerate(candidates, start=1):
-                if slow_first or (fitter.laid is not None and candidate.effect.shows_in_slow_motions):
-                    fit = fitter.fit(candidate, slow_first=slow_first)
-                    fits += [] if fit is None else [fit]
+            chosen = [item for item in candidates if slow_first or (fitter.laid is not None and item.effect.shows_in_slow_motions)]
+            for done, fit in enumerate(fitter.fit_all(chosen, runner, slow_first), start=1):
+                fits += [] if fit is None else [fit]
                 best = min(fits, key=merit, default=base)
-                progress("name", done, len(candidates), f"{best.label}, chi {np.sqrt(best.training):.3f}")
+                progress("name", done, len(chosen), f"{best.label}, chi {np.sqrt(best.training):.3f}")
             if any(np.isfinite(fit.validation) and fit.training < limit.NAMED_LEFT**2 for fit in fits):
-                again = [fitter.fit(item, slow_first=False) for item in (_stuck(fits, base) if slow_first else ())]
-                fits += [fit for fit in again if fit is not None]
+                again = _stuck(fits, base) if slow_first else []
+                fits += [fit for fit in fitter.fit_all(again, runner, slow_first=False) if fit is not None]
                 break
         nested = [fitter.fit_within(item, min(fits, key=merit)) for item in _missed_special_cases(fits, base)]
         fits += [fit for fit in nested if fit is not None]
         fits = simplest_first(sorted(_best_of_each(fits), key=merit), base)
-        for i, fit in enumerate(fits[:LEADING]):
-            near = fit.training <= MAY_STILL_WIN * fits[0].training and not fit.last.holds(fits[0].last)
-            if np.isfinite(fit.validation) and near:
-                fits[i] = restart(fit, detection.validation_runs, detection.floor.noises)
+        fits[:1] = fitter.restart_all([fit for fit in fits[:1] if np.isfinite(fit.validation)], runner) or fits[:1]
+        contenders = [i for i, fit in enumerate(fits[:LEADING]) if i and _may_still_win(fit, fits[0])]
+        for i, fit in zip(contenders, fitter.restart_all([fits[i] for i in contenders], runner), strict=True):
+            fits[i] = fit
     except KeyboardInterrupt:
         return simplest_first(sorted(fits, key=merit), base), True
     return simplest_first(sorted(fits, key=merit), base), False
+
+
+def _may_still_win(fit: ModelFit, best: ModelFit) -> bool:
+    """Return whether a fit is near enough to the best one to be sought a lower minimum for."""
+    near = fit.training <= MAY_STILL_WIN * best.training and not fit.last.holds(best.last)
+    return near and bool(np.isfinite(fit.validation))
 
 
 def _stuck(fits: Sequence[ModelFit], base: ModelFit) -> list[Candidate]:
@@ -176,98 +166,6 @@ def _best_of_each(fits: Sequence[ModelFit]) -> list[ModelFit]:
     return list(best.values())
 
 
-class Fitter:
-    """Fits candidates on top of a fit; `passed` are the places that suffice to explain what it leaves."""
-
-    def __init__(self, detection: Detection, base: ModelFit, passed: Sequence[PlaceResult]) -> None:
-        self.detection, self.current, self.simulators = detection, CurrentModel.of(base), SimulatorPool()
-        trial = self.current.problem.trials[0]
-        self.locator = EffectLocator(trial.run.vehicle, dict(trial.values), occurring(base))
-        self.origins = _origins(base, self.current, passed)
-        self.residual = Residual(base.least_squares.misfit, base.least_squares.x)
-        space = self.current.problem.space
-        self.laid = None if base.effects else align(base.least_squares.misfit, space.unit(space.start), bands=())
-
-    def fit(
-        self, candidate: Candidate, begin: Sequence[tuple[float, ...]] = (), checked: bool = True, slow_first: bool = True
-    ) -> ModelFit | None:
-        """Fit one candidate from its own starts and from others; unless it is `checked`, not on the validation runs.
-
-        The errors of runs begin anew in fits of a first effect: those of the base have bent to what is missing.
-        Unless `slow_first`, all motions are fitted at once, from where the base's fit and the place test ended.
-        """
-        starts = [*begin, *candidate.effect.starts(candidate.place, self.locator, self.residual)]
-        laid = self.laid if slow_first and candidate.effect.shows_in_slow_motions else None
-        return self._fit(candidate, candidate.effect.origins(self.origins), starts, checked, laid, slow_first)
-
-    def fit_within(self, candidate: Candidate, general: ModelFit) -> ModelFit | None:
-        """Fit a special case of the last effect of a fit, all motions at once, from where that fit ended."""
-        found, space = general.least_squares, self.current.problem.space
-        known = dict(zip((item.name for item in general.last.effect.parameters), found.values[space.size :], strict=True))
-        usual = candidate.effect.starts(candidate.place, self.locator, self.residual)[0]
-        numbers = tuple(float(known.get(item.name, first)) for item, first in zip(candidate.effect.parameters, usual, strict=True))
-        begin = space.unit(found.values[: space.size]), found.misfit.split(found.x)[1]
-        return self._fit(candidate, [begin], [numbers], True, None, False)
-
-    def _fit(
-        self,
-        candidate: Candidate,
-        origins: Sequence[StartingPoint],
-        starts: Sequence[tuple[float, ...]],
-        checked: bool,
-        laid: Array | None,
-        slow_first: bool,
-    ) -> ModelFit | None:
-        runs, noises = self.detection.validation_runs if checked else (), self.detection.floor.noises
-        return fit_candidate(
-            candidate,
-            self.current,
-            runs,
-            noises,
-            self.detection.band,
-            self.locator,
-            self.simulators,
-            origins,
-            starts,
-            laid,
-            slow_first,
-        )
-
-    def fit_again(self, fit: ModelFit) -> ModelFit:
-        """Fit a first effect anew from where it was, to runs whose recorders, noise, or part (training, validation) have changed."""
-        problem = build_problem(fit.last, self.current.problem, self.locator, self.simulators)
-        steps = {trial.name: trial for part in fit.parts for trial in part.misfit.problem.trials}
-        problem = problem.with_trials([as_fine(trial, steps[trial.name]) for trial in problem.trials])
-        noises, runs = self.detection.floor.noises, self.detection.validation_runs
-        found = refine(problem, fit.least_squares, fit.least_squares.x, fit.effects, noises, self.detection.band, fit.parts)
-        last, found = release(fit.last, self.current, found, self.locator, self.simulators)
-        return replace(evaluate_fit((*fit.effects[:-1], last), found, runs, noises), equivalent_minima=fit.equivalent_minima)
-
-    def weigh_again(self, fit: ModelFit) -> ModelFit:
-        """Return a first effect's fit to the training runs as it is, by the noise that is now known."""
-        old = fit.least_squares.misfit
-        misfit = Misfit(
-            old.problem, self.detection.floor.noises, fit.least_squares.values, old.nuisances, self.detection.band, old.shared, old.known
-        )
-        return evaluate_fit(fit.effects, replace(fit.least_squares, misfit=misfit), (), self.detection.floor.noises)
-
-    def fit_roughly(self, candidate: Candidate) -> ModelFit | None:
-        """Fit one candidate from its own starts, to the training runs alone."""
-        return self.fit(candidate, checked=False)
-
-
-def _origins(base: ModelFit, current: CurrentModel, passed: Sequence[PlaceResult]) -> Origins:
-    """Return where base parameters and nuisances may begin: at the file's values, where the place test leaves them, where they are."""
-    space = current.problem.space
-    fitted: StartingPoint = current.unit, current.errors
-    begun = fitted if base.effects else (space.unit(space.start), current.errors)
-    placed = begun
-    if one_force(passed):
-        unit, errors = base.least_squares.misfit.split(passed[0].x)
-        placed = unit, errors
-    return Origins(begun, placed, fitted)
-
-
 def merit(fit: ModelFit) -> float:
     """Return what ranks fits: -2 ln of the likelihood on the training runs and of the errors it supposes, with the price of its numbers.
 
@@ -282,17 +180,17 @@ def own_numbers(fit: ModelFit) -> int:
     return fit.last.effect.n_numbers(len(fit.least_squares.misfit.problem.trials))
 
 
-def fit_leading_again(fitter: Fitter, fits: Sequence[ModelFit], weigh: bool) -> tuple[ModelFit, ...]:
+def fit_leading_again(fitter: Fitter, fits: Sequence[ModelFit], weigh: bool, runner: Runner = HERE) -> tuple[ModelFit, ...]:
     """Return fits of first effects, the leading ones fitted again from where they are.
 
     Where noise is much less than they were ranked by (`weigh`), all are weighed by it, and contenders fitted again, too.
     """
     leading = [fit for fit in fits[:LOOKED_AT_AGAIN] if np.isfinite(fit.validation)]
     rest = [fit for fit in fits if all(fit is not other for other in leading)]
-    found = [fitter.fit_again(fit) for fit in leading]
+    found = fitter.fit_all_again(leading, runner)
     if weigh and found:
         rest = [fitter.weigh_again(fit) for fit in rest]
         near = CONTENDER * min(fit.training for fit in found)
-        found += [fitter.fit_again(fit) for fit in rest if fit.training <= near]
+        found += fitter.fit_all_again([fit for fit in rest if fit.training <= near], runner)
         rest = [fit for fit in rest if fit.training > near]
     return tuple(simplest_first([*sorted(found, key=merit), *(sorted(rest, key=merit) if weigh else rest)], fitter.detection.base))

@@ -1,0 +1,173 @@
+"""Fits candidates on top of a fit, one by one or side by side in other processes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from vehgen.diagnose.detect.detection import Detection
+from vehgen.diagnose.fits.candidate import Candidate, build_problem
+from vehgen.diagnose.fits.model_fit import CurrentModel, ModelFit, as_fine, evaluate_fit, refine
+from vehgen.diagnose.fits.multi_start import fit_candidate
+from vehgen.diagnose.fits.occurring import occurring
+from vehgen.diagnose.fits.released import release
+from vehgen.diagnose.fits.restarts import restart
+from vehgen.diagnose.localise.localisation import one_force
+from vehgen.diagnose.localise.unknown_force import PlaceResult
+from vehgen.effects import EffectLocator
+from vehgen.effects.evidence import Origins, Residual, StartingPoint
+from vehgen.fit.alignment import align
+from vehgen.fit.misfit import Misfit
+from vehgen.fit.parallel import Runner
+from vehgen.simulate import SimulatorPool
+
+Array = NDArray[np.float64]
+
+
+class Fitter:
+    """Fits candidates on top of a fit; `passed` are the places that suffice to explain what it leaves."""
+
+    def __init__(self, detection: Detection, base: ModelFit, passed: Sequence[PlaceResult]) -> None:
+        self.detection, self.current, self.simulators = detection, CurrentModel.of(base), SimulatorPool()
+        trial = self.current.problem.trials[0]
+        self.locator = EffectLocator(trial.run.vehicle, dict(trial.values), occurring(base))
+        self.origins = _origins(base, self.current, passed)
+        self.residual = Residual(base.least_squares.misfit, base.least_squares.x)
+        space = self.current.problem.space
+        self.laid = None if base.effects else align(base.least_squares.misfit, space.unit(space.start), bands=())
+
+    def fit(
+        self, candidate: Candidate, begin: Sequence[tuple[float, ...]] = (), checked: bool = True, slow_first: bool = True
+    ) -> ModelFit | None:
+        """Fit one candidate from its own starts and from others; unless it is `checked`, not on the validation runs.
+
+        The errors of runs begin anew in fits of a first effect: those of the base have bent to what is missing.
+        Unless `slow_first`, all motions are fitted at once, from where the base's fit and the place test ended.
+        """
+        starts = [*begin, *candidate.effect.starts(candidate.place, self.locator, self.residual)]
+        laid = self.laid if slow_first and candidate.effect.shows_in_slow_motions else None
+        return self._fit(candidate, candidate.effect.origins(self.origins), starts, checked, laid, slow_first)
+
+    def fit_within(self, candidate: Candidate, general: ModelFit) -> ModelFit | None:
+        """Fit a special case of the last effect of a fit, all motions at once, from where that fit ended."""
+        found, space = general.least_squares, self.current.problem.space
+        known = dict(zip((item.name for item in general.last.effect.parameters), found.values[space.size :], strict=True))
+        usual = candidate.effect.starts(candidate.place, self.locator, self.residual)[0]
+        numbers = tuple(float(known.get(item.name, first)) for item, first in zip(candidate.effect.parameters, usual, strict=True))
+        begin = space.unit(found.values[: space.size]), found.misfit.split(found.x)[1]
+        return self._fit(candidate, [begin], [numbers], True, None, False)
+
+    def _fit(
+        self,
+        candidate: Candidate,
+        origins: Sequence[StartingPoint],
+        starts: Sequence[tuple[float, ...]],
+        checked: bool,
+        laid: Array | None,
+        slow_first: bool,
+    ) -> ModelFit | None:
+        runs, noises = self.detection.validation_runs if checked else (), self.detection.floor.noises
+        return fit_candidate(
+            candidate,
+            self.current,
+            runs,
+            noises,
+            self.detection.band,
+            self.locator,
+            self.simulators,
+            origins,
+            starts,
+            laid,
+            slow_first,
+        )
+
+    def fit_again(self, fit: ModelFit) -> ModelFit:
+        """Fit a first effect anew from where it was, to runs whose recorders, noise, or part (training, validation) have changed."""
+        problem = build_problem(fit.last, self.current.problem, self.locator, self.simulators)
+        steps = {trial.name: trial for part in fit.parts for trial in part.misfit.problem.trials}
+        problem = problem.with_trials([as_fine(trial, steps[trial.name]) for trial in problem.trials])
+        noises, runs = self.detection.floor.noises, self.detection.validation_runs
+        found = refine(problem, fit.least_squares, fit.least_squares.x, fit.effects, noises, self.detection.band, fit.parts)
+        last, found = release(fit.last, self.current, found, self.locator, self.simulators)
+        return replace(evaluate_fit((*fit.effects[:-1], last), found, runs, noises), equivalent_minima=fit.equivalent_minima)
+
+    def weigh_again(self, fit: ModelFit) -> ModelFit:
+        """Return a first effect's fit to the training runs as it is, by the noise that is now known."""
+        old = fit.least_squares.misfit
+        misfit = Misfit(
+            old.problem, self.detection.floor.noises, fit.least_squares.values, old.nuisances, self.detection.band, old.shared, old.known
+        )
+        return evaluate_fit(fit.effects, replace(fit.least_squares, misfit=misfit), (), self.detection.floor.noises)
+
+    def fit_all(self, candidates: Sequence[Candidate], runner: Runner, slow_first: bool = True) -> Iterator[ModelFit | None]:
+        """Yield what :meth:`fit` returns for each of some candidates, fitted wherever a runner works."""
+        for candidate, fit in zip(candidates, runner.map(_FitOne(self, slow_first), candidates), strict=True):
+            yield None if fit is None else _as_here(fit, (*self.current.effects, candidate))
+
+    def fit_all_again(self, fits: Sequence[ModelFit], runner: Runner) -> list[ModelFit]:
+        """Return what :meth:`fit_again` returns for each of some fits, fitted wherever a runner works."""
+        return [_as_here(new, old.effects) for old, new in zip(fits, runner.map(_FitAgain(self), fits), strict=True)]
+
+    def restart_all(self, fits: Sequence[ModelFit], runner: Runner) -> list[ModelFit]:
+        """Return the lowest minima about some fits whose response jumps, sought wherever a runner works."""
+        return [_as_here(new, old.effects) for old, new in zip(fits, runner.map(_Restart(self.detection), fits), strict=True)]
+
+    def fit_roughly(self, candidate: Candidate) -> ModelFit | None:
+        """Fit one candidate from its own starts, to the training runs alone."""
+        return self.fit(candidate, checked=False)
+
+
+def _origins(base: ModelFit, current: CurrentModel, passed: Sequence[PlaceResult]) -> Origins:
+    """Return where base parameters and nuisances may begin: at the file's values, where the place test leaves them, where they are."""
+    space = current.problem.space
+    fitted: StartingPoint = current.unit, current.errors
+    begun = fitted if base.effects else (space.unit(space.start), current.errors)
+    placed = begun
+    if one_force(passed):
+        unit, errors = base.least_squares.misfit.split(passed[0].x)
+        placed = unit, errors
+    return Origins(begun, placed, fitted)
+
+
+@dataclass(frozen=True)
+class _FitOne:
+    """Fits a candidate, in whatever process it comes to: matrices are small, and more BLAS threads would only wait."""
+
+    fitter: Fitter
+    slow_first: bool
+
+    def __call__(self, candidate: Candidate) -> ModelFit | None:
+        with threadpool_limits(1, user_api="blas"):
+            return self.fitter.fit(candidate, slow_first=self.slow_first)
+
+
+@dataclass(frozen=True)
+class _FitAgain:
+    """The same for a fit that is fitted again."""
+
+    fitter: Fitter
+
+    def __call__(self, fit: ModelFit) -> ModelFit:
+        with threadpool_limits(1, user_api="blas"):
+            return self.fitter.fit_again(fit)
+
+
+@dataclass(frozen=True)
+class _Restart:
+    """The same for a fit that is begun anew about where it ended."""
+
+    detection: Detection
+
+    def __call__(self, fit: ModelFit) -> ModelFit:
+        with threadpool_limits(1, user_api="blas"):
+            return restart(fit, self.detection.validation_runs, self.detection.floor.noises)
+
+
+def _as_here(fit: ModelFit, effects: Sequence[Candidate]) -> ModelFit:
+    """Return a fit that may come from another process with the effects that this one knows: their functions are others there."""
+    own = tuple(replace(item, effect=known.effect) for item, known in zip(fit.effects, effects, strict=True))
+    return replace(fit, effects=own)
