@@ -6,12 +6,16 @@ import sympy as sp
 
 from vehgen.files.expressions import parse
 from vehgen.mechanics import GRAVITY, derive
-from vehgen.mechanics.evaluation import PopulationValues, evaluate_array, evaluate_number
+from vehgen.mechanics.evaluation import PopulationValues, Program, evaluate_array
 from vehgen.mechanics.symbols import to_sympy
 from vehgen.vehicle import bundled_models, load_vehicle
 
 a, b = sp.symbols("a b", real=True)
 VALUES = {a: -1.75, b: 0.3}
+
+
+def evaluate_number(expression):
+    return Program([expression], list(VALUES))(list(VALUES.values()))[0]
 
 
 @pytest.mark.parametrize(
@@ -27,7 +31,7 @@ VALUES = {a: -1.75, b: 0.3}
 )
 def test_numbers_and_arrays_agree_with_sympy(expression):
     expected = float(expression.subs(VALUES))
-    assert evaluate_number(expression, VALUES) == pytest.approx(expected, rel=1e-14)
+    assert evaluate_number(expression) == pytest.approx(expected, rel=1e-14)
     found = evaluate_array(expression, {symbol: np.full(3, value) for symbol, value in VALUES.items()})
     np.testing.assert_allclose(np.broadcast_to(found, 3), expected, rtol=1e-14)
 
@@ -56,6 +60,6 @@ def test_the_weight_is_that_of_all_bodies_and_axles():
 
 @pytest.mark.parametrize("exponent", ["0.5", "-0.5", "1e-3", "0.1", "1/3", "-2.75", "9.99999999", "2.7182818284590452", "1.41421356237310"])
 def test_an_exponent_is_the_number_that_was_written(exponent):
-    found = evaluate_number(to_sympy(parse(f"b**({exponent})")), VALUES)
+    found = evaluate_number(to_sympy(parse(f"b**({exponent})")))
     value = float(exponent) if "/" not in exponent else 1 / 3
     assert found == pytest.approx(0.3**value, rel=1e-15)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from vehgen.mechanics.coordinates import Coordinate
 from vehgen.mechanics.energies import Element, Energies
-from vehgen.mechanics.evaluation import evaluate_number
+from vehgen.mechanics.evaluation import Program
 from vehgen.mechanics.kinematics import Kinematics
 from vehgen.mechanics.layout import Layout
 from vehgen.mechanics.numeric_model import NumericModel
@@ -170,16 +170,26 @@ class EquationsOfMotion:
             SI values by parameter name, as :meth:`values` gives them.
 
         """
-        values = values or self.values()
-        arrays = {key: self.evaluate_matrix(entries, shape, values) for key, (entries, shape) in self.matrix_entries().items()}
-        weight = self.evaluate_list([self.weight_entries.get(i, sp.S.Zero) for i in range(self.n_dof)], values)
-        outputs = {key: self.evaluate_matrix(entries, shape, values) for key, (entries, shape) in self.output_entries().items()}
-        return NumericModel(**arrays, weight=np.array(weight), outputs=outputs)
+        found = iter(self._program(self._ordered(values or self.values())))
+        own, read = ({key: _filled(entries, shape, found) for key, (entries, shape) in item.items()} for item in self._matrices)
+        return NumericModel(**own, weight=np.fromiter(found, dtype=np.float64, count=self.n_dof), outputs=read)
 
     @cached_property
-    def _symbols(self) -> tuple[tuple[str, sp.Symbol], ...]:
-        """The symbol of every parameter by its name."""
-        return tuple((name, sp.Symbol(name, real=True)) for name in self.parameters)
+    def _matrices(self) -> tuple[dict[str, tuple[SparseMatrix, tuple[int, int]]], dict[str, tuple[SparseMatrix, tuple[int, int]]]]:
+        """The entries and shapes of the matrices and of the channels' coefficients."""
+        return self.matrix_entries(), self.output_entries()
+
+    @cached_property
+    def _program(self) -> Program:
+        """What computes all entries of the matrices, of the channels' coefficients, and the weights."""
+        entries = [value for item in self._matrices for group, _ in item.values() for value in group.values()]
+        return self._compiled([*entries, *(self.weight_entries.get(i, sp.S.Zero) for i in range(self.n_dof))])
+
+    def _compiled(self, expressions: Iterable[sp.Expr]) -> Program:
+        return Program(expressions, [sp.Symbol(name, real=True) for name in self.parameters], self.definitions)
+
+    def _ordered(self, values: Mapping[str, float]) -> list[float]:
+        return [float(values[name]) for name in self.parameters]
 
     def evaluate_list(self, expressions: Iterable[sp.Expr], values: Mapping[str, float]) -> list[float]:
         """Return the values of sympy expressions of the vehicle's parameters, in their order.
@@ -192,17 +202,11 @@ class EquationsOfMotion:
             The value of every one of `parameters` [SI].
 
         """
-        known: dict[sp.Symbol, float] = {symbol: float(values[name]) for name, symbol in self._symbols}
-        for symbol, expression in self.definitions:
-            known[symbol] = evaluate_number(expression, known)
-        return [evaluate_number(expression, known) for expression in expressions]
+        return self._compiled(expressions)(self._ordered(values))
 
     def evaluate_matrix(self, entries: SparseMatrix, shape: tuple[int, int], values: Mapping[str, float]) -> NDArray[np.float64]:
         """Return a matrix of sympy expressions in numbers, zero where it has no entry; see :meth:`evaluate_list`."""
-        found = np.zeros(shape)
-        for place, value in zip(entries, self.evaluate_list(entries.values(), values), strict=True):
-            found[place] = value
-        return found
+        return _filled(entries, shape, iter(self.evaluate_list(entries.values(), values)))
 
     def total_weight(self, values: Mapping[str, float] | None = None) -> float:
         """Return the weight of all bodies and axles [N], none without gravity."""
@@ -216,3 +220,11 @@ class EquationsOfMotion:
         """Return how far each axle runs behind the first to arrive, `shape (n_axles,)` [m]."""
         x = np.array(self.evaluate_list(self.layout.axles.values(), values or self.values()))
         return x.max(initial=-np.inf) - x if x.size else x
+
+
+def _filled(entries: SparseMatrix, shape: tuple[int, int], values: Iterator[float]) -> NDArray[np.float64]:
+    """Return a matrix whose entries are the next of some values."""
+    found = np.zeros(shape)
+    for place in entries:
+        found[place] = next(values)
+    return found

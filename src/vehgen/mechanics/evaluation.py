@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import reduce
 from typing import TYPE_CHECKING, Any
 
@@ -25,55 +24,79 @@ _NUMPY_FUNCTIONS: dict[str, Callable[..., Any]] = {
 }
 
 
-@dataclass(frozen=True)
-class _Arithmetic:
-    """How values of one kind are added, multiplied and raised to a power."""
+class Program:
+    """Expressions of one vehicle's parameters as steps, each of which computes a value once: the entries of matrices share most of theirs.
 
-    add: Callable[[Sequence[Any]], Any]
-    multiply: Callable[[Sequence[Any]], Any]
-    power: Callable[[Any, Any], Any]
+    Parameters
+    ----------
+    expressions
+        Of sums, products, powers, Abs, sign, Max, Min and Heaviside (0 at 0).
+    symbols
+        Those whose values are given.
+    definitions
+        Further symbols, each with an expression of those before it.
+    """
+
+    def __init__(
+        self, expressions: Iterable[sp.Expr], symbols: Sequence[sp.Symbol], definitions: Iterable[tuple[sp.Symbol, sp.Expr]] = ()
+    ) -> None:
+        self._steps: list[tuple[str, float | tuple[int, ...]]] = []
+        numbers: dict[sp.Expr, int] = {symbol: i for i, symbol in enumerate(symbols)}
+
+        def number(expression: sp.Expr) -> int:
+            """Return the number of an expression's value, whose steps are added where they are missing."""
+            if expression not in numbers:
+                given = float(expression) if expression.is_Number else tuple(number(item) for item in expression.args)
+                numbers[expression] = len(symbols) + len(self._steps)
+                self._steps.append((type(expression).__name__, given))
+            return numbers[expression]
+
+        for symbol, expression in definitions:
+            numbers[symbol] = number(expression)
+        self._wanted = [number(expression) for expression in expressions]
+
+    def __call__(self, values: Sequence[float]) -> list[float]:
+        """Return the expressions' values from those of the symbols."""
+        found: list[Any] = list(values)
+        for kind, given in self._steps:
+            if isinstance(given, float):
+                found.append(given)
+                continue
+            arguments = [found[i] for i in given]
+            if kind == "Mul":
+                found.append(math.prod(arguments))
+            elif kind == "Add":
+                found.append(sum(arguments))
+            elif kind == "Pow":
+                found.append(float(arguments[0] ** arguments[1]))
+            else:
+                found.append(_NUMPY_FUNCTIONS[kind](*arguments))
+        return [float(found[i]) for i in self._wanted]
 
 
-def _power_of_arrays(base: Any, exponent: Any) -> Any:
+def _power(base: Any, exponent: Any) -> Any:
     whole = isinstance(exponent, float) and exponent == int(exponent)
     return np.asarray(base, dtype=np.float64) ** (int(exponent) if whole else exponent)
 
 
-_FLOATS = _Arithmetic(sum, math.prod, lambda base, exponent: float(base**exponent))
-_ARRAYS = _Arithmetic(lambda items: reduce(np.add, items), lambda items: reduce(np.multiply, items), _power_of_arrays)
-
-
-def _walk(expression: sp.Expr, known: Mapping[sp.Expr, Any], arithmetic: _Arithmetic) -> Any:
+def _walk(expression: sp.Expr, known: Mapping[sp.Expr, Any]) -> Any:
     if expression in known:
         return known[expression]
     if expression.is_Number:
         return float(expression)
-    arguments = [_walk(argument, known, arithmetic) for argument in expression.args]
+    arguments = [_walk(argument, known) for argument in expression.args]
     if expression.is_Add:
-        return arithmetic.add(arguments)
+        return reduce(np.add, arguments)
     if expression.is_Mul:
-        return arithmetic.multiply(arguments)
+        return reduce(np.multiply, arguments)
     if expression.is_Pow:
-        return arithmetic.power(*arguments)
+        return _power(*arguments)
     return _NUMPY_FUNCTIONS[type(expression).__name__](*arguments)
 
 
-def evaluate_number(expression: sp.Expr, known: Mapping[sp.Symbol, float]) -> float:
-    """Return an expression's value.
-
-    Parameters
-    ----------
-    expression
-        Of sums, products, powers, Abs, sign, Max, Min and Heaviside (0 at 0).
-    known
-        The value of each of its symbols.
-    """
-    return float(_walk(expression, known, _FLOATS))
-
-
 def evaluate_array(expression: sp.Expr, known: Mapping[sp.Symbol, Array]) -> Array:
-    """Return an expression's values, of the shape to which those of its symbols broadcast; see :func:`evaluate_number`."""
-    return np.asarray(_walk(expression, known, _ARRAYS), dtype=np.float64)
+    """Return an expression's values, of the shape to which those of its symbols broadcast; see :class:`Program`."""
+    return np.asarray(_walk(expression, known), dtype=np.float64)
 
 
 class PopulationValues:
