@@ -56,10 +56,10 @@ def test_the_file_holds_the_verdict_and_its_evidence(written):
     diagnosis = Diagnosis.from_dict(data)
     assert Diagnosis.from_dict(diagnosis.to_dict()) == diagnosis
     assert {item.label for item in diagnosis.evidence.places if item.passes} == {"suspension rear", "tyre rear"}
-    assert {item.run for item in diagnosis.evidence.histories} == {"low"}
+    assert {item.run for item in diagnosis.evidence.histories} == {"high"}
     assert diagnosis.evidence.steps[-1].validation == pytest.approx(1.0, abs=0.1)
     assert diagnosis.evidence.force.units == ("m", "m/s", "N")
-    assert {item.run for item in diagnosis.evidence.responses} == {"low"}
+    assert {item.run for item in diagnosis.evidence.responses} == {"high"}
     for item, residual in zip(diagnosis.evidence.responses, diagnosis.evidence.histories, strict=True):
         assert item.measured - item.simulated == pytest.approx(residual.simulated, abs=2e-4 * np.abs(item.measured).max())
     with pytest.raises(InputError, match="read from a file"):

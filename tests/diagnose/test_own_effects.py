@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.diagnose.conftest import CUBIC
+from tests.diagnose.conftest import CUBIC, HUMPS
 from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.localise.localisation import shortlist
 from vehgen.diagnose.localise.unknown_force import Place, PlaceResult
@@ -38,7 +38,7 @@ FILE = """effects:
 
 @pytest.fixture(scope="module")
 def detection(detection_of):
-    return detection_of(CUBIC)
+    return detection_of(CUBIC, runs=HUMPS)
 
 
 def candidates(detection, effects):

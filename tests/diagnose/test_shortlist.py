@@ -3,7 +3,7 @@
 import pytest
 from benchmarks.hidden_effects.generator import Effect
 
-from tests.diagnose.conftest import CUBIC
+from tests.diagnose.conftest import CUBIC, HUMPS
 from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.localise.localisation import shortlist
 from vehgen.diagnose.localise.unknown_force import Place, PlaceResult
@@ -32,7 +32,7 @@ def test_a_channel_whose_absence_leaves_more_than_noise_excludes_nothing(detecti
     ("hidden", "tries_all"), [(CUBIC, True), (Effect("sensor_gain", "F_az", {"error": 0.2}), False)], ids=["a spring", "a gain"]
 )
 def test_where_no_effect_of_a_channel_explains_what_channels_may_all_others_are_tried(detection_of, monkeypatch, hidden, tries_all):
-    detection = detection_of(hidden)
+    detection = detection_of(hidden, runs=HUMPS)
     every = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS["cubic_stiffness"], EFFECTS["sensor_gain"]])
     base = detection.base
     silent = [PlaceResult(Place("channel", name, (), (name,)), 1.0, 1, base.least_squares.x) for name in ("F_az", "R_az")]
