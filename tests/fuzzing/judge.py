@@ -9,13 +9,14 @@ from pathlib import Path
 
 ACCEPTED, REFUSED, FAULT = "accepted", "refused", "FAULT"
 LONGEST = 600
+TOO_SLOW = "too slow"
 DIRECTIONS = {*map(chr, range(0x202A, 0x202F)), *map(chr, range(0x2066, 0x206A)), "\u200e", "\u200f", "\u061c", "\ufeff"}
 PLACE = re.compile(r"^error: (?P<file>[^\n]*?):(?P<line>\d+):(?P<column>\d+): ")
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What a file may cost: CPU [s] and memory beyond the imports [MB]."""
+    """What a file may cost: CPU [s], on a machine as fast as the harness assumes, and memory beyond the imports [MB]."""
 
     seconds: float = 2.0
     megabytes: float = 300.0
@@ -101,7 +102,7 @@ def judge(answer: Answer, folder: Path, limits: Limits, needs_place: bool = True
     if answer.crash:
         reasons.append(f"{answer.crash_type}: {crash_site(answer.crash)}")
     if answer.seconds > limits.seconds:
-        reasons.append(f"too slow: over {limits.seconds:g} s")
+        reasons.append(f"{TOO_SLOW}: over {limits.seconds:g} s")
     if answer.megabytes > limits.megabytes:
         reasons.append(f"too much memory: over {limits.megabytes:g} MB")
     if answer.message is not None:
