@@ -13,6 +13,7 @@ from vehgen.calibrate.summary import summarise
 from vehgen.commands import main
 from vehgen.errors import InputError
 from vehgen.files.results import json_text
+from vehgen.fit import processes
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
 
@@ -24,7 +25,8 @@ def run(tmp_path_factory):
     return str(write_run(tmp_path_factory.mktemp("run"), "hump", sedan_truth()))
 
 
-def test_calibrate_writes_vehicle_result_and_figures(run, tmp_path, capsys):
+def test_calibrate_writes_vehicle_result_and_figures(run, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(processes, "WORTH_PROCESSES_S", 0.0)  # facts go to the processes, too
     out, facts = tmp_path / "out", tmp_path / "known.yaml"
     facts.write_text("kerb_mass: {value: 1500 kg, uncertainty: 300 kg}\n")
     assert main(["calibrate", "sedan2.yaml", run, "--facts", str(facts), "--out", str(out), "--json", *SMALL]) == 0

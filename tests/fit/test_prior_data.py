@@ -1,5 +1,7 @@
 """What is known besides the recordings: it enters a fit, must belong to the vehicle, and weighs axles as a lever does."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -51,6 +53,17 @@ def test_axle_weights_are_those_of_a_lever(problem, tmp_path):
     start = dict(zip(problem.space.names, problem.space.start, strict=True))
     load = 9.81 * (1500.0 * (2.8 - start["Lf"]) / 2.8 + start["mf"])
     assert residual == pytest.approx(load / 1000 - 1, rel=1e-9)
+
+
+def test_facts_of_all_kinds_can_be_sent_to_other_processes(problem, tmp_path):
+    path = tmp_path / "facts.yaml"
+    load = "{front: {value: 1 kN, uncertainty: 1 kN}}"
+    facts = ["parameters: {kf: {value: 60 kN/m, uncertainty: 2 kN/m}}", "kerb_mass: {value: 1.5 t, uncertainty: 10 kg}"]
+    path.write_text("\n".join([*facts, f"axle_weights: {load}", f"uncoupled: {{body: {load}}}"]), encoding="utf-8")
+    facts = load_prior_data(path, problem)
+    sent = pickle.loads(pickle.dumps(facts))
+    np.testing.assert_array_equal(sent.residuals(problem.space.start), facts.residuals(problem.space.start))
+    assert len(facts.residuals(problem.space.start)) == 4
 
 
 def test_derivatives_of_facts_are_those_of_a_lever_and_of_the_numbers_themselves(problem, tmp_path):

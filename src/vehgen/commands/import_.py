@@ -94,6 +94,7 @@ def _summary(found: PhoneImport, files: list[str]) -> dict[str, object]:
     return {
         "speed": found.speed,
         "speed_source": found.speed_source,
+        "speed_deviation": found.speed_deviation,
         "fitted_speed": found.fitted_speed,
         "at": found.at,
         "duration": float(found.time[-1]),

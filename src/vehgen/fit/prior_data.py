@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -168,22 +169,30 @@ def uncouple(vehicle: Vehicle, body: str) -> Vehicle:
 
 def parameter_value(vehicle: Vehicle, name: str) -> FactModel:
     """Return how a parameter's value follows from the free ones [SI]."""
+    return partial(_parameter_values, vehicle, name)
 
-    def of_population(values: Mapping[str, Array]) -> Array:
-        rows = zip(*(values[key] for key in vehicle.free_parameters), strict=True)
-        return np.array([vehicle.all_values(dict(zip(vehicle.free_parameters, map(float, row), strict=True)))[name] for row in rows])
 
-    return of_population
+def _parameter_values(vehicle: Vehicle, name: str, values: Mapping[str, Array]) -> Array:
+    rows = zip(*(values[key] for key in vehicle.free_parameters), strict=True)
+    return np.array([vehicle.all_values(dict(zip(vehicle.free_parameters, map(float, row), strict=True)))[name] for row in rows])
 
 
 def axle_load(model: EquationsOfMotion, axle: str) -> FactModel:
     """Return how an axle's static load [N] follows from the parameters."""
-    return lambda values: _axle_loads(model, values)[axle]
+    return partial(_axle_load, model, axle)
+
+
+def _axle_load(model: EquationsOfMotion, axle: str, values: Mapping[str, Array]) -> Array:
+    return _axle_loads(model, values)[axle]
 
 
 def kerb_mass(model: EquationsOfMotion) -> FactModel:
     """Return how the mass that all axles carry together [kg] follows from the parameters."""
-    return lambda values: np.asarray(sum(_axle_loads(model, values).values()) / GRAVITY)
+    return partial(_kerb_mass, model)
+
+
+def _kerb_mass(model: EquationsOfMotion, values: Mapping[str, Array]) -> Array:
+    return np.asarray(sum(_axle_loads(model, values).values()) / GRAVITY)
 
 
 def _axle_loads(model: EquationsOfMotion, values: Mapping[str, Array]) -> dict[str, Array]:

@@ -11,6 +11,8 @@ from vehgen.phones.export import Stream
 
 MIN_MEDIAN_SPEED_M_S = 0.3
 """A GPS cannot distinguish slower speeds from standing still [m/s]."""
+READING_DEVIATION_M_S = 0.1
+"""Standard deviation of one reading [m/s]: what satellite receivers of phones promise of speeds at best."""
 
 
 @dataclass(frozen=True)
@@ -21,6 +23,11 @@ class CrossingSpeed:
     low: float
     high: float
     count: int
+
+    @property
+    def deviation(self) -> float:
+        """The standard deviation of the median [m/s]."""
+        return READING_DEVIATION_M_S / float(np.sqrt(self.count))
 
     def __str__(self) -> str:
         return f"median {self.median:.3f} m/s of {self.count} GPS readings, {self.low:.3f} to {self.high:.3f} m/s"

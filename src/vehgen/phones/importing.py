@@ -19,7 +19,7 @@ from vehgen.phones.clocks import TRUSTED, Match, epoch_disagreement
 from vehgen.phones.detect import read_export
 from vehgen.phones.export import Stream
 from vehgen.phones.hump_event import HumpEvent
-from vehgen.phones.locating import CLOCK_DOUBT, find_speed, locate
+from vehgen.phones.locating import CLOCK_DOUBT, FoundSpeed, find_speed, locate
 from vehgen.phones.orientation import Orientation
 from vehgen.phones.phone import MARGIN, QUIET, Phone, make_phone
 from vehgen.phones.plan import PhoneSensor, Plan
@@ -69,8 +69,7 @@ class Imported:
     time: Array
     values: Array
     channels: tuple[str, ...]
-    speed: float
-    speed_source: str
+    speed: FoundSpeed
     fitted_speed: float | None
     at: float | None
     wheels: dict[str, float]
@@ -113,23 +112,22 @@ def read_pass(exports: Sequence[str | os.PathLike[str]], plan: Plan) -> Imported
     offsets = simulator.model.wheel_offsets(simulator.model.values(overrides=values))
     wheels = dict(zip(plan.vehicle.axles, map(float, offsets), strict=True))
     distance = max(wheels.values()) + plan.road.length
-    speed, source, events = find_speed(phones, plan, distance)
-    matches, arrivals = locate(phones, plan, simulator, simulator.parameters(values)[0], speed, distance, events)
+    speed, events = find_speed(phones, plan, distance)
+    matches, arrivals = locate(phones, plan, simulator, simulator.parameters(values)[0], speed.value, distance, events)
     if plan.by_axles:
         if min(item.correlation for item in matches) < TRUSTED:
             raise ArgumentError(
                 "the simulated response fits the recordings too badly to find the speed from its axles; give `speed`", "speed"
             )
-        speed, source = speed * matches[0].scale, f"by the axles' marks; {source}"
+        speed = FoundSpeed(speed.value * matches[0].scale, f"by the axles' marks; {speed.source}")
         matches = [replace(item, scale=1.0) for item in matches]
-    return _assemble(phones, plan, speed, source, events, matches, arrivals, distance, wheels)
+    return _assemble(phones, plan, speed, events, matches, arrivals, distance, wheels)
 
 
 def _assemble(
     phones: list[Phone],
     plan: Plan,
-    speed: float,
-    source: str,
+    found_speed: FoundSpeed,
     events: list[HumpEvent | None],
     matches: list[Match],
     arrivals: list[tuple[float, str]],
@@ -137,6 +135,7 @@ def _assemble(
     wheels: dict[str, float],
 ) -> Imported:
     """Choose t = 0, sample every channel, and warn of what is doubtful."""
+    speed, source = found_speed.value, found_speed.source
     is_hump = plan.road.hump is not None
     lead = _lead(phones, plan, speed, [moment for moment, _ in arrivals]) if is_hump else 0.0
     zeros = [moment - lead / speed for moment, _ in arrivals]
@@ -178,7 +177,8 @@ def _assemble(
         warnings.append(f"the axles' marks fit {fitted:.3f} m/s better than {speed:.3f} m/s ({source}); the speed by the axles takes that")
     warnings += _clock_warnings(done)
     at = lead if is_hump else None
-    return Imported(plan, tuple(done), time, np.column_stack(columns), tuple(channels), speed, source, fitted, at, wheels, tuple(warnings))
+    values = np.column_stack(columns)
+    return Imported(plan, tuple(done), time, values, tuple(channels), found_speed, fitted, at, wheels, tuple(warnings))
 
 
 def clipping_warnings(name: str, acceleration: Stream) -> list[str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,20 +23,32 @@ CLOCK_DOUBT = 0.5
 """Difference of two phones' world clocks over one event [s] that deserves a warning."""
 
 
-def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[float, str, list[HumpEvent | None]]:
-    """Return the speed, where it is from, and when every phone recorded the hump."""
+@dataclass(frozen=True)
+class FoundSpeed:
+    """The speed of a pass [m/s], where it is from, and its standard deviation [m/s] where a GPS tells it, else None."""
+
+    value: float
+    source: str
+    deviation: float | None = None
+
+    @classmethod
+    def by_gps(cls, told: CrossingSpeed, name: str) -> FoundSpeed:
+        """Return the speed that the GPS of the phone of a name tells."""
+        return cls(told.median, f"{name}: {told}", told.deviation)
+
+
+def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundSpeed, list[HumpEvent | None]]:
+    """Return the speed, and when every phone recorded the hump."""
     told: CrossingSpeed | None = None
     teller = next((phone for phone in phones if speed_stream(phone.export) is not None), phones[0])
     speed = plan.speed
     if speed is None:
         speed = crossing_speed(speed_stream(teller.export), teller.begin, teller.end, teller.name).median
     if plan.road.hump is None:
-        source = (
-            "given"
-            if plan.speed is not None
-            else f"{teller.name}: " + str(crossing_speed(speed_stream(teller.export), teller.begin, teller.end, teller.name))
-        )
-        return speed, source, [None] * len(phones)
+        if plan.speed is not None:
+            return FoundSpeed(plan.speed, "given"), [None] * len(phones)
+        told = crossing_speed(speed_stream(teller.export), teller.begin, teller.end, teller.name)
+        return FoundSpeed.by_gps(told, teller.name), [None] * len(phones)
     events: list[HumpEvent | None] = [_event(phone, distance / speed) for phone in phones]
     event = events[phones.index(teller)]
     assert event is not None
@@ -45,9 +59,9 @@ def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[float,
             if plan.speed is None:
                 raise
     if plan.speed is not None:
-        return plan.speed, "given" + (f"; {teller.name}: {told}" if told else ""), events
+        return FoundSpeed(plan.speed, "given" + (f"; {teller.name}: {told}" if told else "")), events
     assert told is not None
-    return told.median, f"{teller.name}: {told}", events
+    return FoundSpeed.by_gps(told, teller.name), events
 
 
 def _event(phone: Phone, crossing: float) -> HumpEvent:

@@ -62,9 +62,10 @@ class PhoneSummary:
 class PhoneImport(Result):
     """What the phones of one pass recorded, on one even clock.
 
-    `time shape (n,)` [s] and `values shape (n, n_channels)` of `channels` [m/s^2, rad/s]; `speed` [m/s] and where it is from,
-    `fitted_speed` what the axles' marks say; `at` [m] where the hump begins (None for a measured profile); `wheels` the distance of every
-    axle behind the front wheel [m]; `files` what was written; `imported` everything else, None in an import that was read from a file.
+    `time shape (n,)` [s] and `values shape (n, n_channels)` of `channels` [m/s^2, rad/s]; `speed` [m/s], where it is from, and its
+    standard deviation where a GPS tells it, `fitted_speed` what the axles' marks say; `at` [m] where the hump begins (None for a measured
+    profile); `wheels` the distance of every axle behind the front wheel [m]; `files` what was written; `imported` everything else, None in
+    an import that was read from a file.
     """
 
     KIND: ClassVar[str] = "phone import"
@@ -76,6 +77,7 @@ class PhoneImport(Result):
     channels: tuple[str, ...]
     speed: float
     speed_source: str
+    speed_deviation: float | None
     fitted_speed: float | None
     at: float | None
     wheels: dict[str, float]
@@ -108,12 +110,13 @@ def summarise_import(imported: Imported, files: tuple[str, ...] = ()) -> PhoneIm
     """Return what an import tells."""
     vehicle = imported.plan.vehicle
     return PhoneImport(
-        title=f"{vehicle.title or vehicle.name}, {imported.speed:.3g} m/s",
+        title=f"{vehicle.title or vehicle.name}, {imported.speed.value:.3g} m/s",
         time=imported.time,
         values=imported.values,
         channels=imported.channels,
-        speed=imported.speed,
-        speed_source=imported.speed_source,
+        speed=imported.speed.value,
+        speed_source=imported.speed.source,
+        speed_deviation=imported.speed.deviation,
         fitted_speed=imported.fitted_speed,
         at=imported.at,
         wheels=imported.wheels,

@@ -11,6 +11,7 @@ from typing import Any
 from vehgen.errors import ArgumentError, shortened, shown
 from vehgen.files import write_text
 from vehgen.files.yaml_writer import Commented, OneLine, yaml_document
+from vehgen.fit.nuisances import Nuisances
 from vehgen.phones.importing import Imported, ImportedPhone, clock_difference
 from vehgen.phones.resampling import is_low_passed
 from vehgen.simulate import load_run
@@ -80,7 +81,8 @@ def run_text(imported: Imported, vehicle: VehicleLike, out: Path) -> str:
     data: dict[str, Any] = {
         "vehicle": _vehicle(vehicle, folder),
         "set": plan.parameter_set,
-        "speed": Commented(f"{imported.speed:.6g} m/s", f"{imported.speed_source}{fitted}"),
+        "speed": Commented(f"{imported.speed.value:.6g} m/s", f"{imported.speed.source}{fitted}"),
+        "uncertainty": _uncertainty(imported),
         "duration": f"{imported.time[-1]:.6g} s",
         "sample": f"{1000 / plan.rate:.6g} ms",
         "road": Commented([{plan.road.kind: _road_entry(imported, folder)}], where),
@@ -89,6 +91,14 @@ def run_text(imported: Imported, vehicle: VehicleLike, out: Path) -> str:
         "sensors": {item.phone.sensor.name: _sensor(imported, item) for item in imported.phones},
     }
     return yaml_document({key: value for key, value in data.items() if value is not None}, comments)
+
+
+def _uncertainty(imported: Imported) -> OneLine | None:
+    """Return how well a GPS knows the speed, where that is less well than runs are usually known."""
+    deviation = imported.speed.deviation
+    if deviation is None or deviation <= Nuisances().speed * imported.speed.value:
+        return None
+    return OneLine(speed=f"{deviation:.2g} m/s")
 
 
 def _road_entry(imported: Imported, folder: Path) -> dict[str, Any]:

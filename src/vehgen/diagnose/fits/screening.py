@@ -32,6 +32,7 @@ def screen(
     current: CurrentModel,
     locator: EffectLocator,
     simulators: SimulatorPool,
+    kept_at: str = "",
 ) -> list[Candidate]:
     """Return the candidates worth fitting: all that leave the vehicle alone, of the others those with the largest first-order gain.
 
@@ -44,6 +45,8 @@ def screen(
         What to choose from, the fit they are added to, and the same fit as the current model.
     locator, simulators
         As for :func:`vehgen.diagnose.fits.candidate.pose`.
+    kept_at
+        A place all of whose candidates are kept, whatever their first order says.
     """
     always = [item for item in candidates if not _is_scaled(item)]
     forces = [item for item in candidates if _is_scaled(item) and not any(map(item.holds, candidates))]
@@ -75,7 +78,8 @@ def screen(
                 best = max(best, _gain(projection, moved))
         gains.append((best, candidate))
     gains.sort(key=lambda item: -item[0])
-    return chosen_with_holders(candidates, [*always, *(candidate for _, candidate in gains[:most])])
+    placed = [item for item in forces if item.place == kept_at]
+    return chosen_with_holders(candidates, [*always, *placed, *(candidate for _, candidate in gains[:most])])
 
 
 def _is_scaled(candidate: Candidate) -> bool:

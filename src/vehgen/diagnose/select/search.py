@@ -12,7 +12,7 @@ from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, has_room
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.fits.screening import screen
-from vehgen.diagnose.localise.localisation import localise, shortlist
+from vehgen.diagnose.localise.localisation import localise, owner, shortlist
 from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
@@ -72,7 +72,7 @@ def search_round(
     chosen = others if everything else shortlist(current, others, places, passed)
     alike = {item.effect.name for item in chosen if item.effect.tie_advice}  # no run tells where: all places are fitted
     chosen = [item for item in others if item in chosen or item.effect.name in alike]
-    found, stopped = fit_candidates(detection, current, passed, chosen, say, everything, runner)
+    found, stopped = fit_candidates(detection, current, passed, chosen, say, everything, runner, _strained_place(current, places))
     rest = [item for item in others if item not in chosen]
     if rest and not stopped and not any(item.place.rows for item in passed) and _leave_most(found, current):
         wider, stopped = fit_candidates(detection, current, passed, rest, say, everything, runner)
@@ -80,6 +80,17 @@ def search_round(
     edge = () if current.effects else current.least_squares.on_bound
     fits, idle = (found, []) if stopped else split_idle(found, Fitter(detection, current, passed).fit_roughly, LEADING, edge)
     return SearchRound(current, tuple(places), tuple(passed), tuple(fits), tuple(idle), stopped)
+
+
+def _strained_place(current: ModelFit, places: Sequence[PlaceResult]) -> str:
+    """Return where one force explains a gap best, if the fit of the base ends at its bounds: first orders about such a fit mislead.
+
+    A spring that hardens was left out for what its absence had made of the other parameters.
+    """
+    single = [item for item in places if item.place.rows and item.unknowns == 1 and item.place.kind != "body"]
+    if current.effects or not current.least_squares.on_bound or not single:
+        return ""
+    return owner(min(single, key=lambda item: item.chi).place)
 
 
 def _leave_most(fits: Sequence[ModelFit], current: ModelFit) -> bool:
@@ -95,10 +106,11 @@ def fit_candidates(
     progress: DiagnosisProgress,
     everything: bool = False,
     runner: Runner = HERE,
+    kept_at: str = "",
 ) -> tuple[list[ModelFit], bool]:
     """Fit every candidate on top of a fit; return the fits, best first, and whether Ctrl-C ended this early.
 
-    The candidates are screened first, unless `everything` is to be tried.
+    The candidates are screened first, but for those at the place `kept_at`, unless `everything` is to be tried.
     """
     fitter = Fitter(detection, base, passed)
     current, locator, simulators = fitter.current, fitter.locator, fitter.simulators
@@ -107,7 +119,7 @@ def fit_candidates(
     try:
         if not everything:
             progress("screen", 0, 1, "")
-            candidates = screen(candidates, base, current, locator, simulators)
+            candidates = screen(candidates, base, current, locator, simulators, kept_at)
             progress("screen", 1, 1, f"{len(candidates)} candidates")
         for slow_first in (True, False):
             chosen = [item for item in candidates if slow_first or (fitter.laid is not None and item.effect.shows_in_slow_motions)]
