@@ -13,6 +13,7 @@ import json
 import re
 import shutil
 import tempfile
+import textwrap
 from pathlib import Path
 from typing import Any
 
@@ -30,13 +31,14 @@ HUMP = ["--hump", "half_sine,length=0.5,height=0.03"]
 
 
 def call(*arguments: str) -> str:
-    """Run a command; return what it printed, without spaces at the ends of lines."""
+    """Run a command; return what it printed, warnings included, without spaces at the ends of lines and in lines of a page's width."""
     printed = io.StringIO()
-    with contextlib.redirect_stdout(printed):
+    with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
         code = vehgen(list(arguments))
     if code:
         raise SystemExit(f"vehgen {' '.join(arguments)} ended with {code}")
-    return "\n".join(line.rstrip() for line in printed.getvalue().splitlines()).strip()
+    lines = (line.rstrip() for line in printed.getvalue().splitlines())
+    return "\n".join(textwrap.fill(line, 120) if len(line) > 120 and " wrote " not in line else line for line in lines).strip()
 
 
 def walk(folder: Path) -> dict[str, str]:

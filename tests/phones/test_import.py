@@ -97,6 +97,28 @@ def test_clocks_speed_tilt_and_noise_are_found(tmp_path, capsys, name, road, arr
     assert [item.name for item in measurement.channels] == ["L1_az", "L1_q", "L2_az", "L2_q"]
 
 
+@pytest.mark.parametrize(
+    ("name", "options", "road", "count"),
+    [
+        ("hump_2ms", (), HUMP, 8),
+        ("hump_3ms", (), HUMP, 5),
+        ("hump_2ms", ("--speed", "axles"), HUMP, 0),
+        ("road_3ms", (), ("--profile", str(FOLDER / "road.csv")), 0),
+    ],
+)
+def test_a_run_states_how_well_a_gps_knows_its_speed(tmp_path, capsys, name, options, road, count):
+    """A reading is off by 0.1 m/s; the median of so many by that over the root of their number, unless that is below the usual 1 %."""
+    found = facts(capsys, tmp_path / "run.yaml", both(name), *options, road=road)
+    assert (found["speed_deviation"] is None) == ("axles" in options)
+    stated = load_run(tmp_path / "run.yaml").file.uncertainty
+    if count:
+        assert f"of {count} GPS readings" in found["speed_source"]
+        assert found["speed_deviation"] == pytest.approx(0.1 / count**0.5)
+        assert stated.speed.value == pytest.approx(0.1 / count**0.5, rel=0.02)
+    else:
+        assert stated is None or stated.speed is None
+
+
 def test_the_recording_is_the_true_vehicles_answer(tmp_path, capsys):
     """With the true parameters, and the last milliseconds of each clock, nothing is left but noise: signs, axes and scales are right."""
     assert command(tmp_path / "run.yaml", both("hump_2ms"), "--speed", "2.0") == 0
