@@ -13,7 +13,7 @@ from vehgen.effects import EFFECTS, load_effects
 from vehgen.fit import processes
 from vehgen.fit.parallel import Runner, can_be_sent
 
-TRIED = ("cubic_stiffness", "tyre_damping")
+TRIED = ("cubic_stiffness",)
 FRICTION = Effect("dry_friction", "rear", {"force": 450.0})
 
 
@@ -41,7 +41,7 @@ def test_what_is_sent_to_and_fro_finds_the_same(trials_of, here):
     assert found.verdict.to_dict() == here
     assert here["verdict"] == "named"
     assert found.chosen[-1].last.effect is EFFECTS["cubic_stiffness"]  # not a copy, whose functions are others
-    assert Sent.sent > 12  # places, candidates of two rounds, the best fitted again
+    assert Sent.sent > 10  # places, candidates, the best fitted again
 
 
 @pytest.mark.slow
@@ -57,6 +57,7 @@ def test_processes_find_the_same(record, here, monkeypatch):
     assert found.verdict.to_dict() == here
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")
 def test_a_cluster_finds_the_same(record, here):
     distributed = pytest.importorskip("distributed")

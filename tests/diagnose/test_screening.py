@@ -1,5 +1,7 @@
 """Which candidates the first order says are worth fitting."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from benchmarks.hidden_effects.generator import Effect
@@ -7,6 +9,8 @@ from benchmarks.hidden_effects.generator import Effect
 from vehgen.diagnose.fits import screening
 from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.fits.model_fit import CurrentModel
+from vehgen.diagnose.localise.unknown_force import Place, PlaceResult
+from vehgen.diagnose.select import search
 from vehgen.effects import EFFECTS, EffectLocator
 from vehgen.simulate import SimulatorPool
 
@@ -24,6 +28,37 @@ def test_friction_far_below_where_its_search_begins_is_worth_a_fit(detection_of,
     found = screening.screen(candidates, detection.base, CurrentModel.of(detection.base), locator, SimulatorPool())
     assert any(item.effect.name == "dry_friction" and item.place in ("front", "all suspensions") for item in found)
     assert len(found) < len(candidates)
+
+
+def test_every_law_at_a_place_that_is_kept_is_worth_a_fit(detection_of, monkeypatch):
+    monkeypatch.setattr(screening, "MAX_CANDIDATES", 3)
+    detection = detection_of(Effect("dry_friction", "front", {"force": 150.0}))
+    trial = detection.trials[0]
+    candidates = list_candidates(trial.run.vehicle, detection.trials, LAWS)
+    locator = EffectLocator(trial.run.vehicle, dict(trial.values))
+    found = screening.screen(candidates, detection.base, CurrentModel.of(detection.base), locator, SimulatorPool(), "rear")
+    assert {item.effect.name for item in found if item.place == "rear"} == {effect.name for effect in LAWS}
+    assert len(found) < len(candidates)
+
+
+def test_a_place_is_kept_only_where_the_base_fit_is_strained():
+    """It is that of the one force that leaves least, which a body's is not: it stands for several."""
+    rows, x = ({0: 1.0},), np.zeros(0)
+    places = [
+        PlaceResult(Place("body", "body (pitch moment)", rows), 2.0, 1, x),
+        PlaceResult(Place("body", "body", rows * 2), 1.1, 2, x),
+        PlaceResult(Place("suspension", "rear", rows), 9.0, 1, x),
+        PlaceResult(Place("tyre", "front", rows), 7.0, 1, x),
+        PlaceResult(Place("channel", "F_az", (), ("F_az",)), 3.0, 1, x),
+    ]
+
+    def current(on_bound, effects=()):
+        return SimpleNamespace(effects=effects, least_squares=SimpleNamespace(on_bound=on_bound))
+
+    assert search._strained_place(current(("kf",)), places) == "front"
+    assert search._strained_place(current(()), places) == ""
+    assert search._strained_place(current(("kf",), ("an effect",)), places) == ""
+    assert search._strained_place(current(("kf",)), places[:2]) == ""
 
 
 def test_the_start_beside_the_others_is_smaller_than_all_of_them():
