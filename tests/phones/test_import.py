@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from vehgen.commands import main
+from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.recording import read_recording
+from vehgen.phones.gps import USUAL_SPEED_SHARE
 from vehgen.simulate import Simulator, load_run, make_scenario
 from vehgen.simulate.run_file.acquisition import channel_chains
 
@@ -111,6 +113,7 @@ def test_a_run_states_how_well_a_gps_knows_its_speed(tmp_path, capsys, name, opt
     found = facts(capsys, tmp_path / "run.yaml", both(name), *options, road=road)
     assert (found["speed_deviation"] is None) == ("axles" in options)
     stated = load_run(tmp_path / "run.yaml").file.uncertainty
+    assert Nuisances().speed == USUAL_SPEED_SHARE
     if count:
         assert f"of {count} GPS readings" in found["speed_source"]
         assert found["speed_deviation"] == pytest.approx(0.1 / count**0.5)

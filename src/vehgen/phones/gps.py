@@ -11,6 +11,8 @@ from vehgen.phones.export import Stream
 
 MIN_MEDIAN_SPEED_M_S = 0.3
 """A GPS cannot distinguish slower speeds from standing still [m/s]."""
+USUAL_SPEED_SHARE = 0.01
+"""Standard deviation of a run's speed over the speed, where its file states none."""
 READING_DEVIATION_M_S = 0.1
 """Standard deviation of one reading [m/s]: what satellite receivers of phones promise of speeds at best."""
 

@@ -11,7 +11,7 @@ from typing import Any
 from vehgen.errors import ArgumentError, shortened, shown
 from vehgen.files import write_text
 from vehgen.files.yaml_writer import Commented, OneLine, yaml_document
-from vehgen.fit.nuisances import Nuisances
+from vehgen.phones.gps import USUAL_SPEED_SHARE
 from vehgen.phones.importing import Imported, ImportedPhone, clock_difference
 from vehgen.phones.resampling import is_low_passed
 from vehgen.simulate import load_run
@@ -96,7 +96,7 @@ def run_text(imported: Imported, vehicle: VehicleLike, out: Path) -> str:
 def _uncertainty(imported: Imported) -> OneLine | None:
     """Return how well a GPS knows the speed, where that is less well than runs are usually known."""
     deviation = imported.speed.deviation
-    if deviation is None or deviation <= Nuisances().speed * imported.speed.value:
+    if deviation is None or deviation <= USUAL_SPEED_SHARE * imported.speed.value:
         return None
     return OneLine(speed=f"{deviation:.2g} m/s")
 
