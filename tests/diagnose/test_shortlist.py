@@ -36,7 +36,7 @@ def test_where_no_effect_of_a_channel_explains_what_channels_may_all_others_are_
     every = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS["cubic_stiffness"], EFFECTS["sensor_gain"]])
     base = detection.base
     silent = [PlaceResult(Place("channel", name, (), (name,)), 1.0, 1, base.least_squares.x) for name in ("F_az", "R_az")]
-    monkeypatch.setattr(search, "localise", lambda current: (silent, silent))
+    monkeypatch.setattr(search, "localise", lambda current, runner: (silent, silent))
     fits = search.search_round(detection, base, every).fits
     assert any(fit.last.effect.name == "cubic_stiffness" for fit in fits) == tries_all
     assert fits[0].last.effect.name == ("cubic_stiffness" if tries_all else "sensor_gain")
