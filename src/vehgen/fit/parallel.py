@@ -7,9 +7,12 @@ from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from importlib import import_module
 from itertools import islice
 from typing import Any, TypeVar
+
+from threadpoolctl import threadpool_limits
 
 from vehgen.errors import ArgumentError, InputError
 
@@ -28,6 +31,12 @@ def can_be_sent(value: object) -> bool:
     except Exception:  # what a value's own way to be packed may raise is not known
         return False
     return True
+
+
+def on_one_thread(function: Callable[[Input], R], item: Input) -> R:
+    """Return a function's value, with one BLAS thread: matrices are small, and in a process of its own more would only wait."""
+    with threadpool_limits(1, user_api="blas"):
+        return function(item)
 
 
 @dataclass(frozen=True)
@@ -74,7 +83,7 @@ class DaskRunner(Runner):
 
     def map(self, function: Callable[[Input], R], inputs: Iterable[Input]) -> Iterator[R]:
         """Yield the function's values, in the order of the inputs."""
-        for future in self.client.map(function, list(inputs), retries=RETRIES, pure=False):
+        for future in self.client.map(partial(on_one_thread, function), list(inputs), retries=RETRIES, pure=False):
             yield future.result()
 
     def as_completed(self, function: Callable[[Input], R], inputs: Iterable[Input]) -> Generator[tuple[Input, R | Lost], None, None]:
@@ -85,7 +94,7 @@ class DaskRunner(Runner):
 
         def submit(count: int) -> None:
             for item in islice(left, count):
-                future = self.client.submit(function, item, retries=RETRIES, pure=False)
+                future = self.client.submit(on_one_thread, function, item, retries=RETRIES, pure=False)
                 under_way[future] = item
                 results.add(future)
 

@@ -18,7 +18,7 @@ from multiprocessing.reduction import ForkingPickler
 from typing import Any, Self
 
 from vehgen.errors import InputError
-from vehgen.fit.parallel import RETRIES, Input, Lost, R, Runner
+from vehgen.fit.parallel import RETRIES, Input, Lost, R, Runner, on_one_thread
 
 WORTH_PROCESSES_S = 3.0
 """Work that has taken longer is spread over processes [s]; these need a second or two to start."""
@@ -173,7 +173,7 @@ def _work(end: Connection) -> None:
             try:
                 if packed is not None:
                     function, packed = ForkingPickler.loads(packed), None
-                answer = function(ForkingPickler.loads(data)), None
+                answer = on_one_thread(function, ForkingPickler.loads(data)), None
             except Exception as error:  # raised again by the process that waits
                 answer = None, error
             end.send_bytes(_packed(answer))

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from vehgen.fit.least_squares import unknown_bounds
 from vehgen.fit.linearisation import Lineariser, linearise
@@ -103,7 +103,7 @@ def score_locations(
         Where the places are tested.
     """
     derive = derive or Lineariser(misfit)
-    test = _Test(misfit, _Point.at(misfit, x, derive), derive)
+    test = partial(_test, misfit, _Point.at(misfit, x, derive), derive)
     return [result for result in runner.map(test, places) if result is not None]
 
 
@@ -124,20 +124,7 @@ class _Point:
         return cls(x, misfit.whitened_spectrum(x), derivatives, whole.T @ whole)
 
 
-@dataclass(frozen=True, eq=False)
-class _Test:
-    """Tests a place, in whatever process it comes to: matrices are small, and more BLAS threads would only wait."""
-
-    misfit: Misfit
-    begin: _Point
-    derive: Lineariser
-
-    def __call__(self, place: Place) -> PlaceResult | None:
-        with threadpool_limits(1, user_api="blas"):
-            return _test(self.misfit, self.begin, place, self.derive)
-
-
-def _test(misfit: Misfit, begin: _Point, place: Place, derive: Lineariser) -> PlaceResult | None:
+def _test(misfit: Misfit, begin: _Point, derive: Lineariser, place: Place) -> PlaceResult | None:
     """Fit the unknowns to what a hypothesis cannot explain; None where it explains everything.
 
     Steps come from the normal equations, which the prior keeps well conditioned: the Jacobian is tall.

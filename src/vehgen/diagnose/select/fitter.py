@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, build_problem
@@ -105,16 +105,17 @@ class Fitter:
 
     def fit_all(self, candidates: Sequence[Candidate], runner: Runner, slow_first: bool = True) -> Iterator[ModelFit | None]:
         """Yield what :meth:`fit` returns for each of some candidates, fitted wherever a runner works."""
-        for candidate, fit in zip(candidates, runner.map(_FitOne(self, slow_first), candidates), strict=True):
+        for candidate, fit in zip(candidates, runner.map(partial(self.fit, slow_first=slow_first), candidates), strict=True):
             yield None if fit is None else _as_here(fit, (*self.current.effects, candidate))
 
     def fit_all_again(self, fits: Sequence[ModelFit], runner: Runner) -> list[ModelFit]:
         """Return what :meth:`fit_again` returns for each of some fits, fitted wherever a runner works."""
-        return [_as_here(new, old.effects) for old, new in zip(fits, runner.map(_FitAgain(self), fits), strict=True)]
+        return [_as_here(new, old.effects) for old, new in zip(fits, runner.map(self.fit_again, fits), strict=True)]
 
     def restart_all(self, fits: Sequence[ModelFit], runner: Runner) -> list[ModelFit]:
         """Return the lowest minima about some fits whose response jumps, sought wherever a runner works."""
-        return [_as_here(new, old.effects) for old, new in zip(fits, runner.map(_Restart(self.detection), fits), strict=True)]
+        settle = partial(restart, validation_runs=self.detection.validation_runs, noises=self.detection.floor.noises)
+        return [_as_here(new, old.effects) for old, new in zip(fits, runner.map(settle, fits), strict=True)]
 
     def fit_roughly(self, candidate: Candidate) -> ModelFit | None:
         """Fit one candidate from its own starts, to the training runs alone."""
@@ -131,40 +132,6 @@ def _origins(base: ModelFit, current: CurrentModel, passed: Sequence[PlaceResult
         unit, errors = base.least_squares.misfit.split(passed[0].x)
         placed = unit, errors
     return Origins(begun, placed, fitted)
-
-
-@dataclass(frozen=True)
-class _FitOne:
-    """Fits a candidate, in whatever process it comes to: matrices are small, and more BLAS threads would only wait."""
-
-    fitter: Fitter
-    slow_first: bool
-
-    def __call__(self, candidate: Candidate) -> ModelFit | None:
-        with threadpool_limits(1, user_api="blas"):
-            return self.fitter.fit(candidate, slow_first=self.slow_first)
-
-
-@dataclass(frozen=True)
-class _FitAgain:
-    """The same for a fit that is fitted again."""
-
-    fitter: Fitter
-
-    def __call__(self, fit: ModelFit) -> ModelFit:
-        with threadpool_limits(1, user_api="blas"):
-            return self.fitter.fit_again(fit)
-
-
-@dataclass(frozen=True)
-class _Restart:
-    """The same for a fit that is begun anew about where it ended."""
-
-    detection: Detection
-
-    def __call__(self, fit: ModelFit) -> ModelFit:
-        with threadpool_limits(1, user_api="blas"):
-            return restart(fit, self.detection.validation_runs, self.detection.floor.noises)
 
 
 def _as_here(fit: ModelFit, effects: Sequence[Candidate]) -> ModelFit:
