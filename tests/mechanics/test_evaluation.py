@@ -6,7 +6,7 @@ import sympy as sp
 
 from vehgen.files.expressions import parse
 from vehgen.mechanics import GRAVITY, derive
-from vehgen.mechanics.evaluation import PopulationValues, Program, evaluate_array
+from vehgen.mechanics.evaluation import ExpressionSteps, PopulationValues, evaluate_array
 from vehgen.mechanics.symbols import to_sympy
 from vehgen.vehicle import bundled_models, load_vehicle
 
@@ -15,7 +15,7 @@ VALUES = {a: -1.75, b: 0.3}
 
 
 def evaluate_number(expression):
-    return Program([expression], list(VALUES))(list(VALUES.values()))[0]
+    return ExpressionSteps([expression], list(VALUES))(list(VALUES.values()))[0]
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from vehgen.mechanics.coordinates import Coordinate
 from vehgen.mechanics.energies import Element, Energies
-from vehgen.mechanics.evaluation import Program
+from vehgen.mechanics.evaluation import ExpressionSteps
 from vehgen.mechanics.kinematics import Kinematics
 from vehgen.mechanics.layout import Layout
 from vehgen.mechanics.numeric_model import NumericModel
@@ -170,7 +170,7 @@ class EquationsOfMotion:
             SI values by parameter name, as :meth:`values` gives them.
 
         """
-        found = iter(self._program(self._ordered(values or self.values())))
+        found = iter(self._entry_steps(self._ordered(values or self.values())))
         own, read = ({key: _filled(entries, shape, found) for key, (entries, shape) in item.items()} for item in self._matrices)
         return NumericModel(**own, weight=np.fromiter(found, dtype=np.float64, count=self.n_dof), outputs=read)
 
@@ -180,13 +180,21 @@ class EquationsOfMotion:
         return self.matrix_entries(), self.output_entries()
 
     @cached_property
-    def _program(self) -> Program:
+    def _entry_steps(self) -> ExpressionSteps:
         """What computes all entries of the matrices, of the channels' coefficients, and the weights."""
         entries = [value for item in self._matrices for group, _ in item.values() for value in group.values()]
-        return self._compiled([*entries, *(self.weight_entries.get(i, sp.S.Zero) for i in range(self.n_dof))])
+        return self._steps((*entries, *(self.weight_entries.get(i, sp.S.Zero) for i in range(self.n_dof))))
 
-    def _compiled(self, expressions: Iterable[sp.Expr]) -> Program:
-        return Program(expressions, [sp.Symbol(name, real=True) for name in self.parameters], self.definitions)
+    @cached_property
+    def _known_steps(self) -> dict[tuple[sp.Expr, ...], ExpressionSteps]:
+        """Steps by the expressions that they compute: the same ones are asked for again and again, at other values."""
+        return {}
+
+    def _steps(self, expressions: tuple[sp.Expr, ...]) -> ExpressionSteps:
+        if expressions not in self._known_steps:
+            symbols = [sp.Symbol(name, real=True) for name in self.parameters]
+            self._known_steps[expressions] = ExpressionSteps(expressions, symbols, self.definitions)
+        return self._known_steps[expressions]
 
     def _ordered(self, values: Mapping[str, float]) -> list[float]:
         return [float(values[name]) for name in self.parameters]
@@ -202,7 +210,7 @@ class EquationsOfMotion:
             The value of every one of `parameters` [SI].
 
         """
-        return self._compiled(expressions)(self._ordered(values))
+        return [float(value) for value in self._steps(tuple(expressions))(self._ordered(values))]
 
     def evaluate_matrix(self, entries: SparseMatrix, shape: tuple[int, int], values: Mapping[str, float]) -> NDArray[np.float64]:
         """Return a matrix of sympy expressions in numbers, zero where it has no entry; see :meth:`evaluate_list`."""

@@ -24,8 +24,8 @@ _NUMPY_FUNCTIONS: dict[str, Callable[..., Any]] = {
 }
 
 
-class Program:
-    """Expressions of one vehicle's parameters as steps, each of which computes a value once: the entries of matrices share most of theirs.
+class ExpressionSteps:
+    """Expressions as steps, each of which computes a value once: the entries of matrices share most of theirs.
 
     Parameters
     ----------
@@ -55,9 +55,9 @@ class Program:
             numbers[symbol] = number(expression)
         self._wanted = [number(expression) for expression in expressions]
 
-    def __call__(self, values: Sequence[float]) -> list[float]:
-        """Return the expressions' values from those of the symbols."""
-        found: list[Any] = list(values)
+    def __call__(self, values: Sequence[Any]) -> list[Any]:
+        """Return the expressions' values from those of the symbols: numbers, or arrays of shapes that broadcast."""
+        found = list(values)
         for kind, given in self._steps:
             if isinstance(given, float):
                 found.append(given)
@@ -68,35 +68,23 @@ class Program:
             elif kind == "Add":
                 found.append(sum(arguments))
             elif kind == "Pow":
-                found.append(float(arguments[0] ** arguments[1]))
+                found.append(_power(*arguments))
             else:
                 found.append(_NUMPY_FUNCTIONS[kind](*arguments))
-        return [float(found[i]) for i in self._wanted]
+        return [found[i] for i in self._wanted]
 
 
 def _power(base: Any, exponent: Any) -> Any:
+    if not isinstance(base, np.ndarray):
+        return base**exponent
     whole = isinstance(exponent, float) and exponent == int(exponent)
     return np.asarray(base, dtype=np.float64) ** (int(exponent) if whole else exponent)
 
 
-def _walk(expression: sp.Expr, known: Mapping[sp.Expr, Any]) -> Any:
-    if expression in known:
-        return known[expression]
-    if expression.is_Number:
-        return float(expression)
-    arguments = [_walk(argument, known) for argument in expression.args]
-    if expression.is_Add:
-        return reduce(np.add, arguments)
-    if expression.is_Mul:
-        return reduce(np.multiply, arguments)
-    if expression.is_Pow:
-        return _power(*arguments)
-    return _NUMPY_FUNCTIONS[type(expression).__name__](*arguments)
-
-
 def evaluate_array(expression: sp.Expr, known: Mapping[sp.Symbol, Array]) -> Array:
-    """Return an expression's values, of the shape to which those of its symbols broadcast; see :class:`Program`."""
-    return np.asarray(_walk(expression, known), dtype=np.float64)
+    """Return an expression's values, of the shape to which those of its symbols broadcast; see :class:`ExpressionSteps`."""
+    (found,) = ExpressionSteps([expression], list(known))(list(known.values()))
+    return np.asarray(found, dtype=np.float64)
 
 
 class PopulationValues:
