@@ -134,10 +134,10 @@ def fit_candidates(
         nested = [fitter.fit_within(item, min(fits, key=merit)) for item in _missed_special_cases(fits, base)]
         fits += [fit for fit in nested if fit is not None]
         fits = simplest_first(sorted(_best_of_each(fits), key=merit), base)
-        fits[:1] = fitter.restart_all([fit for fit in fits[:1] if np.isfinite(fit.validation)], runner) or fits[:1]
-        contenders = [i for i, fit in enumerate(fits[:LEADING]) if i and _may_still_win(fit, fits[0])]
-        for i, fit in zip(contenders, fitter.restart_all([fits[i] for i in contenders], runner), strict=True):
-            fits[i] = fit
+        for numbers in (range(1), range(1, LEADING)):  # the best first: who may still win is judged by where it ends
+            contenders = [i for i in numbers if i < len(fits) and _may_still_win(fits[i], fits[0])]
+            for i, fit in zip(contenders, fitter.restart_all([fits[i] for i in contenders], runner), strict=True):
+                fits[i] = fit
     except KeyboardInterrupt:
         return simplest_first(sorted(fits, key=merit), base), True
     return simplest_first(sorted(fits, key=merit), base), False
