@@ -14,7 +14,7 @@ MIN_MEDIAN_SPEED_M_S = 0.3
 USUAL_SPEED_SHARE = 0.01
 """Standard deviation of a run's speed over the speed, where its file states none."""
 READING_DEVIATION_M_S = 0.1
-"""Standard deviation of one reading [m/s]: what satellite receivers of phones promise of speeds at best."""
+"""Standard deviation that is assumed of one reading [m/s]: exports seldom tell their own, and two or three readings not their scatter."""
 
 
 @dataclass(frozen=True)
