@@ -38,7 +38,7 @@ def call(*arguments: str) -> str:
     if code:
         raise SystemExit(f"vehgen {' '.join(arguments)} ended with {code}")
     lines = (line.rstrip() for line in printed.getvalue().splitlines())
-    return "\n".join(textwrap.fill(line, 120) if len(line) > 120 and " wrote " not in line else line for line in lines).strip()
+    return "\n".join(textwrap.fill(line, 120) if len(line) > 120 else line for line in lines).strip()
 
 
 def walk(folder: Path) -> dict[str, str]:

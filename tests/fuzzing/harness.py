@@ -25,7 +25,7 @@ KERNEL_LIMITS = Limits(60.0, 3000.0)
 """What a command may cost that compiles a kernel: its compiler takes seconds by itself."""
 
 YARDSTICK_S = 0.022
-"""What :func:`yardstick` takes on the machine for which the limits of time were set [CPU s]; it should take less on any newer one."""
+"""What :func:`yardstick` takes where the limits of time hold as they are [CPU s], with the other cores at rest."""
 TRIES = 3
 """So often is a case tried that seems too slow."""
 MOST_SLOWNESS = 3.0
