@@ -68,6 +68,20 @@ def test_the_loss_is_minus_two_ln_of_the_likelihood_and_its_slopes_are_its_deriv
             assert (sides[0] - sides[1]) / 2e-5 == pytest.approx(slopes[i], rel=1e-4, abs=1e-4)
 
 
+def test_the_loss_of_one_axle_is_that_of_its_closed_form_however_loud_the_road():
+    """By the matrix determinant lemma and by Sherman and Morrison: 30 channels, the road is up to 1e11 times as loud as their noise."""
+    random = np.random.default_rng(5)
+    answer = make_answer(random, n=20, channels=30, axles=1)
+    level, sigma = 1e-3, random.uniform(1e-12, 1e-11, 30)
+    lines = random.standard_normal((20, 30)) + 1j * random.standard_normal((20, 30))
+    loss, _, _ = Noise(np.full(len(KNOT_WAVENUMBERS), level), sigma).loss_and_slopes(lines, answer)
+    own, road = 2 * answer.dt * sigma**2, answer.gain[:, :, 0]
+    loud = 1 + level * (np.abs(road) ** 2 / own).sum(axis=1)
+    along = np.abs((road.conj() * lines / own).sum(axis=1)) ** 2 * level / loud
+    direct = 2 * (np.log(own).sum() * 20 + np.log(loud).sum() + (np.abs(lines) ** 2 / own).sum() - along.sum())
+    assert loss == pytest.approx(direct, rel=1e-9)
+
+
 def test_level_and_sigma_come_out_of_noise_that_was_drawn_with_them():
     random = np.random.default_rng(2)
     answer = make_answer(random, n=800)

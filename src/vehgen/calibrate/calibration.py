@@ -210,7 +210,7 @@ def fingerprint(problem: Problem, settings: Settings) -> str:
 
 
 def _save(path: Path, problem: Problem, settings: Settings, states: Sequence[SearchState]) -> None:
-    data = {"fingerprint": fingerprint(problem, settings), "states": [json.loads(state.to_json()) for state in states]}
+    data = {"fingerprint": fingerprint(problem, settings), "states": [state.to_data() for state in states]}
     write_text(path, json.dumps(data))
 
 
@@ -219,7 +219,7 @@ def _load(path: Path | None, problem: Problem, settings: Settings) -> list[Searc
         raise InputError(f"there is no search to resume{'' if path is None else f' at {path}'}")
     try:
         data = json.loads(read_text(path, MAX_TABLE_BYTES, "a checkpoint of a calibration", state=True))
-        found, states = data["fingerprint"], [SearchState.from_json(json.dumps(item)) for item in data["states"]]
+        found, states = data["fingerprint"], [SearchState.from_data(item) for item in data["states"]]
     except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise InputError(f"{path} is not a checkpoint of a calibration: {error}") from error
     if found != fingerprint(problem, settings):

@@ -24,6 +24,7 @@ import scipy.optimize
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from vehgen.fit.whittle import loss_and_slopes
 from vehgen.fit.window import taper
 from vehgen.road.iso8608 import REFERENCE_CYCLES_PER_M
 from vehgen.simulate.frequency import transfer_functions
@@ -147,17 +148,10 @@ class Noise:
 
         Of noise that is neither louder nor drawn: the derivatives know nothing of that.
         """
-        scale, b = self._scaled(answer)
-        density = np.eye(len(self.sigma)) + b @ _adjoint(b)
-        inverse = np.linalg.inv(density)
-        scaled = lines / scale
-        weighted = (inverse @ scaled[:, :, None])[:, :, 0]
-        determinant = np.log(scale).sum() + 0.5 * np.linalg.slogdet(density)[1].sum()
-        loss = 2 * (2 * determinant + (scaled.conj() * weighted).real.sum())
-        rest = inverse - weighted[:, :, None] * weighted[:, None, :].conj()
-        by_sigma = 4 * np.diagonal(rest, axis1=1, axis2=2).real.sum(axis=0)
-        by_level = 2 * (b.conj() * (rest @ b)).real[:, :, : answer.gain.shape[2]].sum(axis=(1, 2))
-        return float(loss), answer.weights.T @ by_level, by_sigma
+        level = np.exp(answer.weights @ np.log(self.levels))
+        forced = np.concatenate([answer.gain[..., :0], *self._forced(answer)], axis=2)
+        loss, by_level, by_sigma = loss_and_slopes(lines, self._scale(answer), level, answer.gain, forced)
+        return loss, answer.weights.T @ by_level, by_sigma
 
     def _scaled(self, answer: RoadAnswer) -> tuple[Array, Complex]:
         """Return d `shape (n, n_channels)` and b with S = diag(d) (1 + b b*) diag(d), which is well conditioned however small sigma is."""

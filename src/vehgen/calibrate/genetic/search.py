@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -40,16 +39,14 @@ class SearchState:
     history: tuple[float, ...]
     random: dict[str, Any]
 
-    def to_json(self) -> str:
-        """Return the state as text that :meth:`from_json` reads back exactly (floats in shortest exact form)."""
-        data = {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in vars(self).items()}
-        return json.dumps(data)
+    def to_data(self) -> dict[str, Any]:
+        """Return the state as numbers, texts and lists, which JSON keeps and :meth:`from_data` reads back exactly."""
+        return {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in vars(self).items()}
 
     @classmethod
-    def from_json(cls, text: str) -> SearchState:
-        """Read a state; raises InputError for text that is none."""
+    def from_data(cls, data: Mapping[str, Any]) -> SearchState:
+        """Return a state; raises InputError for data that are none."""
         try:
-            data = json.loads(text)
             arrays = {key: np.array(data[key], dtype=np.float64) for key in ("genes", "objective", "elite", "rates")}
             state = cls(
                 generation=int(data["generation"]),
