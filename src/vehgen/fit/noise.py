@@ -27,7 +27,7 @@ from threadpoolctl import threadpool_limits
 from vehgen.fit.whittle import loss_and_slopes
 from vehgen.fit.window import taper
 from vehgen.road.iso8608 import REFERENCE_CYCLES_PER_M
-from vehgen.simulate.frequency import transfer_functions
+from vehgen.simulate.frequency import maxwell_branches, transfer_functions
 
 if TYPE_CHECKING:
     from vehgen.fit.trial import Trial
@@ -201,7 +201,7 @@ def road_answer(trial: Trial, frequency: Array, values: dict[str, float]) -> Roa
     """Return the channels' answer to a road of level 1 that all axles follow, at frequencies `shape (n,)` [Hz]."""
     model = trial.simulator.model
     acquired = trial.channel_factors(frequency)[:, :, None]
-    displaced, pushed = (item * acquired for item in transfer_functions(model.numeric(values), frequency))
+    displaced, pushed = (item * acquired for item in transfer_functions(model.numeric(values), frequency, maxwell_branches(model, values)))
     speed, dt = trial.scenario.top_speed, trial.recording.dt
     late = model.wheel_offsets(values) / speed
     window = taper(len(trial.recording.time), dt, trial.fade_in)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
+from vehgen.mechanics.laws.relaxation import RELAXATION
 from vehgen.mechanics.numeric_model import NumericModel
 from vehgen.mechanics.rows import Row
 from vehgen.simulate.sensitivity import matrix_derivatives
@@ -19,10 +21,44 @@ MATRIX_NUMBERS = 2_000_000
 """So many numbers may the dynamic stiffnesses hold that are solved at once: 32 MB."""
 
 
-def transfer_functions(numeric: NumericModel, frequency: Array) -> tuple[Complex, Complex]:
+@dataclass(frozen=True)
+class MaxwellBranch:
+    """A law that is linear, but remembers: a spring of stiffness `k` [N/m] in series with a dashpot of `k` times `time` [s].
+
+    Its travel is `row` times the coordinates `shape (n_dof,)` plus `input_row` times the displacement inputs `shape (n_inputs,)`; `read
+    shape (n_channels,)` is what channels read of its force.
+    """
+
+    k: float
+    time: float
+    row: Array
+    input_row: Array
+    read: Array
+
+    def stiffness(self, omega: Array) -> Complex:
+        """Return its force over its travel at angular frequencies [rad/s], `shape (n, 1, 1)`."""
+        turned = 1j * omega[:, None, None] * self.time
+        return np.asarray(self.k * turned / (1 + turned), dtype=np.complex128)
+
+
+def maxwell_branches(model: EquationsOfMotion, values: Mapping[str, float]) -> tuple[MaxwellBranch, ...]:
+    """Return the relaxation laws of a vehicle's elements."""
+    found = []
+    for number, element in enumerate(model.elements):
+        for term in element.laws:
+            if term.law is RELAXATION:
+                row = [element.row.get(i, sp.S.Zero) for i in range(model.n_dof)]
+                input_row = [element.input_row.get(i, sp.S.Zero) for i in range(len(model.inputs))]
+                read = [channel.laws.get(number, sp.S.Zero) for channel in model.channels]
+                k, time, *rest = model.evaluate_list([term.parameters["k"], term.parameters["time"], *row, *input_row, *read], values)
+                found.append(MaxwellBranch(k, time, *np.split(np.array(rest), np.cumsum([len(row), len(input_row)]))))
+    return tuple(found)
+
+
+def transfer_functions(numeric: NumericModel, frequency: Array, branches: Sequence[MaxwellBranch] = ()) -> tuple[Complex, Complex]:
     """Return the channels per unit of every displacement input and of every force.
 
-    Force laws are not in it.
+    Force laws are not in it, but for the `branches`.
 
     Parameters
     ----------
@@ -30,20 +66,27 @@ def transfer_functions(numeric: NumericModel, frequency: Array) -> tuple[Complex
         The model's matrices.
     frequency
         `shape (n,)` [Hz].
+    branches
+        Those of :func:`maxwell_branches` that count.
 
     Returns
     -------
     `shape (n, n_channels, n_inputs)` and `shape (n, n_channels, n_forces)`, complex: amplitude and phase of a channel over the input's.
     """
     count = max(1, MATRIX_NUMBERS // len(numeric.M) ** 2)
-    parts = [_transfer(numeric, 2 * np.pi * frequency[i : i + count]) for i in range(0, max(len(frequency), 1), count)]
+    parts = [_transfer(numeric, 2 * np.pi * frequency[i : i + count], branches) for i in range(0, max(len(frequency), 1), count)]
     displaced, pushed = zip(*parts, strict=True)
     return np.concatenate(displaced), np.concatenate(pushed)
 
 
-def _transfer(numeric: NumericModel, omega: Array) -> tuple[Complex, Complex]:
-    states = np.linalg.solve(dynamic_stiffness(numeric, omega), np.concatenate(_loads(numeric, omega), axis=2))
+def _transfer(numeric: NumericModel, omega: Array, branches: Sequence[MaxwellBranch]) -> tuple[Complex, Complex]:
+    displaced, pushed = _loads(numeric, omega)
     rows, direct = output_rows(numeric.outputs, omega)
+    for item in branches:
+        stiffness = item.stiffness(omega)
+        displaced = displaced - stiffness * np.outer(item.row, item.input_row)
+        rows, direct = rows + stiffness * np.outer(item.read, item.row), direct + stiffness * np.outer(item.read, item.input_row)
+    states = np.linalg.solve(dynamic_stiffness(numeric, omega, branches), np.concatenate([displaced, pushed], axis=2))
     found = rows @ states
     width = direct.shape[2]
     return found[:, :, :width] + direct, np.asarray(found[:, :, width:] + numeric.outputs["force"], dtype=np.complex128)
@@ -55,24 +98,31 @@ def force_response(
     """Return the channels per unit of generalised forces along rows of the coordinates, `shape (n, n_channels, len(rows))`.
 
     Where the forces are those of an element, by its number, against its travel, channels that read what it transmits feel them directly.
-    A constant force on what nothing holds has no answer: there the lines of frequency 0 are those of motionless coordinates.
+    A constant force on what nothing holds has no answer: there the lines of frequency 0 are those of motionless coordinates. Of the
+    vehicle's laws those are in it that :func:`maxwell_branches` returns.
     """
     omega = 2 * np.pi * frequency
-    numeric = model.numeric(values)
+    numeric, branches = model.numeric(values), maxwell_branches(model, values)
     entries = {(i, j): value for j, row in enumerate(rows) for i, value in row.items()}
     loads = model.evaluate_matrix(entries, (model.n_dof, len(rows)), values)
     moving = (omega != 0) | (np.linalg.matrix_rank(numeric.K) == model.n_dof)
     states = np.zeros((len(omega), *loads.shape), dtype=np.complex128)
-    states[moving] = np.linalg.solve(dynamic_stiffness(numeric, omega[moving]), loads.astype(np.complex128)[None])
+    states[moving] = np.linalg.solve(dynamic_stiffness(numeric, omega[moving], branches), loads.astype(np.complex128)[None])
     read = [sp.S.Zero if element is None else channel.laws.get(element, sp.S.Zero) for channel in model.channels]
     direct = np.array(model.evaluate_list(read, values))
-    return np.asarray(output_rows(numeric.outputs, omega)[0] @ states - direct[:, None])
+    reading = output_rows(numeric.outputs, omega)[0]
+    for item in branches:
+        reading = reading + item.stiffness(omega) * np.outer(item.read, item.row)
+    return np.asarray(reading @ states - direct[:, None])
 
 
-def dynamic_stiffness(numeric: NumericModel, omega: Array) -> Complex:
-    """Return K + i w C - w^2 M at angular frequencies [rad/s], `shape (n, n_dof, n_dof)`."""
+def dynamic_stiffness(numeric: NumericModel, omega: Array, branches: Sequence[MaxwellBranch] = ()) -> Complex:
+    """Return K + i w C - w^2 M, with that of branches, at angular frequencies [rad/s], `shape (n, n_dof, n_dof)`."""
     w = omega[:, None, None]
-    return np.asarray(numeric.K + 1j * w * numeric.C - w * w * numeric.M, dtype=np.complex128)
+    found = np.asarray(numeric.K + 1j * w * numeric.C - w * w * numeric.M, dtype=np.complex128)
+    for item in branches:
+        found = found + item.stiffness(omega) * np.outer(item.row, item.row)
+    return found
 
 
 def output_rows(outputs: Mapping[str, Array], omega: Array) -> tuple[Complex, Complex]:
