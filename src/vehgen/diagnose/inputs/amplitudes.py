@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.inputs.adjustments import RunGain
+from vehgen.diagnose.inputs.comparison import Comparison, compare
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always, place_words
 from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.files.units import STANDARD_GRAVITY, factor_to_si, parse_unit
@@ -42,21 +43,48 @@ DRIFT_NOTICED = 0.1
 
 def unit_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     """Yield that channels are stated in other units than they were recorded in, all of them together."""
-    found: dict[tuple[str, str, float], list[str]] = {}
+    found = _other_units(case.trials, case.comparisons)
+    if not found:
+        return
     trials = []
-    for trial, item in zip(case.trials, case.comparisons, strict=True):
+    for trial in case.trials:
         factors = np.ones(len(trial.channels))
+        for (name, _, factor), runs in found.items():
+            if trial.name in runs:
+                factors[trial.channels.index(name)] = 1 / factor
+        trials.append(scaled(trial, factors))
+    faults = tuple(_unit_fault(case.runs, *key, tuple(runs)) for key, runs in found.items())
+    yield Hypothesis(tuple(trials), always(*faults), OTHER_UNIT)
+
+
+def hidden_units(trials: Sequence[Trial], band: tuple[float, float]) -> tuple[MeasurementFault, ...]:
+    """Return channels in other units than stated in all of their runs, by the vehicle file's predictions alone.
+
+    Where the lead-in is loud, a channel that reads 57 times too much passes for one with a noisy sensor: nothing seems to be missing.
+    """
+    predictions = [np.asarray(item.simulator.run(item.simulator.parameters(item.values), item.scenario).responses[0]) for item in trials]
+    comparisons = [compare(trial, own, band) for trial, own in zip(trials, predictions, strict=True)]
+    names, found = tuple(trial.name for trial in trials), _other_units(trials, comparisons)
+    everywhere = {key: tuple(runs) for key, runs in found.items() if len(runs) == sum(key[0] in trial.channels for trial in trials)}
+    return tuple(_unit_fault(names, *key, runs) for key, runs in everywhere.items())
+
+
+def _other_units(trials: Sequence[Trial], comparisons: Sequence[Comparison]) -> dict[tuple[str, str, float], list[str]]:
+    """Return channels whose levels differ from their predictions' by what one unit is worth in another, and the runs in which they do.
+
+    A channel must follow its prediction in one of the runs; over a measured road few do.
+    """
+    found: dict[tuple[str, str, float], list[str]] = {}
+    followed = set()
+    for trial, item in zip(trials, comparisons, strict=True):
         for i, channel in enumerate(trial.recording.channels):
-            if abs(item.own[item.best, i]) < COHERENT:
-                continue
             factor = _nearest_factor(float(item.levels[i]), UNITS_OF.get(channel.quantity, {}))
             if factor != 1.0:
-                factors[i] = 1 / factor
-                found.setdefault((channel.name, channel.quantity, factor), []).append(trial.name)
-        trials.append(scaled(trial, factors))
-    if found:
-        faults = tuple(_unit_fault(case, *key, tuple(runs)) for key, runs in found.items())
-        yield Hypothesis(tuple(trials), always(*faults), OTHER_UNIT)
+                key = channel.name, channel.quantity, factor
+                found.setdefault(key, []).append(trial.name)
+                if abs(item.own[item.best, i]) >= COHERENT:
+                    followed.add(key)
+    return {key: runs for key, runs in found.items() if key in followed}
 
 
 def dead_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
@@ -174,12 +202,12 @@ def _nearest_factor(level: float, units: dict[str, float]) -> float:
     return float(factors[0]) if abs(level - np.log(factors[0])) < NEAR_FACTOR else 1.0
 
 
-def _unit_fault(case: BaseRefits, channel: str, quantity: str, factor: float, runs: tuple[str, ...]) -> MeasurementFault:
+def _unit_fault(names: tuple[str, ...], channel: str, quantity: str, factor: float, runs: tuple[str, ...]) -> MeasurementFault:
     units = UNITS_OF[quantity]
     pairs = [(one, other) for one in units for other in units if abs(np.log(units[other] / units[one] * factor)) < 1e-9]
     pair = next((pair for pair in pairs if next(iter(units)) in pair), pairs[0])
     many = f"{factor:.4g} times too large" if factor > 1 else f"{1 / factor:.4g} times too small"
-    message = f"{channel} is {many} {place_words(runs, case.runs)}: its readings are in {pair[1]}, and taken as {pair[0]}"
+    message = f"{channel} is {many} {place_words(runs, names)}: its readings are in {pair[1]}, and taken as {pair[0]}"
     known = factor_to_si(pair[1], parse_unit(next(iter(units)))[1]) is not None
     cure = f"set `unit: {pair[1]}` for it in the run file" if known else f"multiply its column by {1 / factor:.6g}"
     return MeasurementFault("unit", runs, (channel,), message, cure, factor)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from vehgen.diagnose.detect.road_error import measured_profiles
-from vehgen.diagnose.inputs.amplitudes import dead_hypotheses, drift_hypotheses, gain_hypotheses, unit_hypotheses
+from vehgen.diagnose.inputs.amplitudes import dead_hypotheses, drift_hypotheses, gain_hypotheses, hidden_units, unit_hypotheses
 from vehgen.diagnose.inputs.checks import check_inputs
 from vehgen.diagnose.inputs.clocks import clock_hypotheses
 from vehgen.diagnose.inputs.conditions import BEYOND, findings_of_conditions, moved_roads
@@ -146,8 +146,9 @@ def _pair(case: BaseRefits, judged: Sequence[_Judged]) -> tuple[_Judged, ...]:
 
 
 def recorded_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
-    """Return what recordings show by themselves: clipped and stuck channels, and copies of one pass."""
-    return (*check_inputs(detection.trials), *find_copies(detection.trials, detection.floor.noises, detection.band))
+    """Return what recordings show by themselves: clipped and stuck channels, copies of one pass, and units that noise hides."""
+    hidden = hidden_units(detection.trials, detection.band) if detection.is_quiet else ()
+    return (*check_inputs(detection.trials), *find_copies(detection.trials, detection.floor.noises, detection.band), *hidden)
 
 
 def supposed_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
