@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 import scipy.stats
 
-from vehgen.diagnose.select.estimates import gain_interval, p_value, validation_gain
+from vehgen.diagnose.select import estimates
+from vehgen.diagnose.select.estimates import RunEstimate, excluded, gain_interval, p_value, validation_gain
+from vehgen.diagnose.verdict import NamedParameter
 
 
 def fit(power, train=1.0, count=1000):
@@ -54,3 +56,22 @@ def test_chance_is_the_likelihood_ratio_in_units_of_what_is_left():
     assert p_value(base, better, 2) == pytest.approx(scipy.stats.chi2.sf(20.0, 2))
     base, better = fit(noise(6), train=100.0), fit(noise(6), train=99.0)
     assert p_value(base, better, 1) == pytest.approx(scipy.stats.chi2.sf(1000 / 99.0, 1))
+
+
+@pytest.mark.parametrize(
+    ("half_width", "told"),
+    [(1e3, ["k from -2e+06 to 9e+04 N/m"]), (3e6, [])],
+    ids=["each run is sure", "one run hardly tells"],
+)
+def test_numbers_exclude_one_another_where_each_run_is_sure_of_its_own(monkeypatch, half_width, told):
+    alone = [RunEstimate("one", "k", 8e4, 1e3), RunEstimate("two", "k", 9e4, 1e3), RunEstimate("three", "k", -2e6, half_width)]
+    monkeypatch.setattr(estimates, "estimates_by_run", lambda fit, candidate=None: alone)
+    monkeypatch.setattr(estimates, "estimate", lambda fit, candidate=None: {"k": NamedParameter(8.5e4, None, "N/m")})
+    assert excluded(None) == told
+
+
+def test_numbers_that_differ_by_less_than_themselves_are_of_one_law(monkeypatch):
+    alone = [RunEstimate(str(value), "k", value, 1e2) for value in (8e4, 9e4, 4e4)]
+    monkeypatch.setattr(estimates, "estimates_by_run", lambda fit, candidate=None: alone)
+    monkeypatch.setattr(estimates, "estimate", lambda fit, candidate=None: {"k": NamedParameter(8e4, None, "N/m")})
+    assert excluded(None) == []

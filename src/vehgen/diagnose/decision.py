@@ -24,7 +24,7 @@ from vehgen.diagnose.localise.localisation import localise
 from vehgen.diagnose.naming import Naming
 from vehgen.diagnose.result import Decided, DiagnosisModels
 from vehgen.diagnose.select.criteria import closes_training, excess, p_value_of, passes, unfinished
-from vehgen.diagnose.select.estimates import gain_interval
+from vehgen.diagnose.select.estimates import excluded, gain_interval
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.diagnose.select.group_members import with_members
@@ -157,6 +157,8 @@ class Decision:
         best = first.fits[0]
         good = passes(best, self.base)
         weak = self._too_weak(first, best, good)
+        if weak is None and good and (told := excluded(best)):
+            return self._unknown(first, wording.runs_exclude_one_another(self._words(best.last), told))
         if weak is None and good:
             self.chain = self._combiner().further([best])
             if not self.interrupted and max(self.chain[-1].training, self.chain[-1].validation) > limit.NAMED_LEFT**2:
@@ -177,8 +179,7 @@ class Decision:
         """
         leading = self.chain[-1] if self.chain else next((fit for fit in first.fits[:1] if passes(fit, self.base)), None)
         unsure = leading is None or (bool(self.chain) and unfinished(leading, self.base))
-        named = self.chain[-1].effects if self.chain else ()
-        of_vehicle = all(candidate.effect.changes_vehicle for candidate in named)
+        of_vehicle = all(candidate.effect.changes_vehicle for fit in self.chain[-1:] for candidate in fit.effects)
         if self.detection.chi <= limit.WEAK or (self.chain and of_vehicle and not unsure):
             return None
         mistakes = explain_gap(self.detection, leading, unsure, leading or next(iter(first.fits), None))
@@ -268,7 +269,7 @@ class Decision:
             "check the file, or calibrate first",
         )
 
-    def _unknown(self, first: SearchRound) -> Decided:
+    def _unknown(self, first: SearchRound, reason: str = "") -> Decided:
         best = (len(first.fits), self._words(first.fits[0].last), float(np.sqrt(first.fits[0].training))) if first.fits else None
         if self.base.least_squares.on_bound:
             edge = ", ".join(self.base.least_squares.on_bound)
@@ -281,7 +282,7 @@ class Decision:
             shares = [1 - excess(fit.training) / max(excess(self.base.training), 1e-9) for fit in first.fits[:NEAREST]]
             self.notes.append(wording.ranked([(self._words(fit.last), share) for fit, share in zip(first.fits, shares, strict=False)]))
         causes = [wording.force_words(item.place.kind, item.place.name) for item in first.passed[:3]]
-        ended = self._end("not_in_library", wording.not_in_library(best, causes))
+        ended = self._end("not_in_library", reason or wording.not_in_library(best, causes))
         shown = strongest(first.passed)
         law = None if shown is None else fit_free_form(recover(self.detection, shown))
         if law is None:

@@ -167,6 +167,14 @@ def not_in_library(best: tuple[int, str, float] | None, causes: Sequence[str]) -
     return f"No effect of the library explains what the model misses ({tried}); {where}"
 
 
+def runs_exclude_one_another(label: str, told: Sequence[str]) -> str:
+    """Return the verdict that an effect closes the gap, but with numbers that differ so much from run to run that it is another one."""
+    return (
+        f"{label} imitates what the model misses, but runs ask for numbers of it that exclude one another "
+        f"({join_names(told)}): what acts there is not in the library"
+    )
+
+
 def not_told_from_chance(chi: float, p_value: float) -> str:
     """Return the verdict `too_weak` where the best effect may be chance."""
     gap = f"a gap is there (chi {chi:.3f}, where 1 is noise alone)"

@@ -33,6 +33,8 @@ TOLD = 0.05
 """Runs tell of a parameter that moves them by more than this share of what it moves all runs."""
 SAME_WITHIN = 0.3
 """Runs that differ by less than this share of the value ask for the same number, however sure each is."""
+EXCLUDE_ONE_ANOTHER = 3.0
+"""Runs exclude one another's numbers where what one more of them would ask for may lie so many times a number's value away from it."""
 BLOCK_LINES = 10
 """Spectral lines in a block of the bootstrap."""
 
@@ -227,6 +229,17 @@ def estimates_by_run(fit: ModelFit, candidate: Candidate | None = None) -> list[
             half = NINETY * abs(scale) * float(np.sqrt(max(covariance[n + k, n + k], 0.0) * max(fit.mean_squares[trial.name], 1.0) / seen))
             found.append(RunEstimate(trial.name, parameter.name, value + scale * float(step[n + k]), half))
     return found
+
+
+def excluded(fit: ModelFit) -> list[str]:
+    """Return the parameters of the last effect of which runs ask for numbers that exclude one another: the law is not of that form."""
+    joint, alone = estimate(fit), estimates_by_run(fit)
+    told = []
+    for name, item in joint.items():
+        own = [one for one in alone if one.parameter == name]
+        if disagreement(own) > EXCLUDE_ONE_ANOTHER * abs(item.value):
+            told.append(f"{name} from {min(one.value for one in own):.3g} to {max(one.value for one in own):.3g} {item.unit}".rstrip())
+    return told
 
 
 def unstable(fit: ModelFit, candidate: Candidate | None = None) -> list[str]:
