@@ -76,7 +76,10 @@ def slow_recorder(recorder: FoundRecorder | None, runs: tuple[str, ...]) -> tupl
 
 
 def filter_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
-    """Yield that channels were filtered, all of them together by one filter."""
+    """Yield that channels were filtered, all of them together by one filter; and that all channels were, where most of them seem so.
+
+    A channel that is mostly noise seems to have kept what a filter takes off.
+    """
     found: dict[str, tuple[str, ...]] = {}
     for trial, predicted in zip(case.trials, case.predictions, strict=True):
         kept = _kept(trial, predicted)
@@ -85,8 +88,14 @@ def filter_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
             found[trial.name] = slow
     if not found:
         return
-    runs, channels = tuple(found), tuple(dict.fromkeys(name for names in found.values() for name in names))
+    seen = tuple(dict.fromkeys(name for names in found.values() for name in names))
+    every = tuple(dict.fromkeys(name for trial in case.trials for name in trial.channels))
+    yield _filtered(case, tuple(found), seen)
+    if len(every) > len(seen) > len(every) / 2:
+        yield _filtered(case, case.runs, every)
 
+
+def _filtered(case: BaseRefits, runs: tuple[str, ...], channels: tuple[str, ...]) -> Hypothesis:
     def describe(numbers: Array) -> tuple[MeasurementFault, ...]:
         cutoff = float(np.exp(numbers[-1]))
         where = place_words(runs, case.runs)
@@ -94,7 +103,7 @@ def filter_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
         return (MeasurementFault("low_pass", runs, channels, message, FILTER_CURE, cutoff, "Hz"),)
 
     change = RecorderFilter("", 0.1, runs=runs, channels=channels)
-    yield Hypothesis(case.trials, describe, FILTER_LEFT, (change,), (float(np.log(FIRST_CUTOFF_HZ)),))
+    return Hypothesis(case.trials, describe, FILTER_LEFT, (change,), (float(np.log(FIRST_CUTOFF_HZ)),))
 
 
 def _kept(trial: Trial, predicted: Array) -> Array:
