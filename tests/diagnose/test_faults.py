@@ -1,6 +1,7 @@
 """Plain mistakes made on purpose in recordings and run files are named with run, channel and cure; healthy runs and effects are not."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import scipy.signal
 from benchmarks.hidden_effects.generator import Effect, Hump, RunSpec, nominal, perturbed
 
 from vehgen.diagnose.detect.detection import detect
+from vehgen.diagnose.inputs.amplitudes import hidden_units, unit_hypotheses
 from vehgen.diagnose.inputs.conditions import findings_of_conditions, moved_roads
 from vehgen.diagnose.inputs.judging import explain_gap, plain_mistakes, recorded_mistakes, supposed_mistakes
 from vehgen.diagnose.inputs.recorders import slow_recorder
@@ -134,6 +136,29 @@ def test_a_plain_mistake_is_named_before_any_effect_is_looked_for(plain, case):
     assert fault.cure
 
 
+def test_a_unit_is_told_where_nothing_seems_to_be_missing(plain):
+    """As where a loud lead-in makes noise of it."""
+    found = detect(edited(plain, times(57.3, R_Q)))
+    quiet = SimpleNamespace(trials=found.trials, floor=found.floor, band=found.band, is_quiet=True)
+    (fault,) = recorded_mistakes(quiet)
+    assert told([fault]) == [("unit", EVERY, ("R_q",))]
+    assert fault.value == pytest.approx(57.3, rel=0.01)
+
+
+def test_a_unit_in_one_run_alone_is_left_to_the_refits(plain):
+    assert hidden_units(edited(plain, times(57.3, R_Q), "high"), (0.5, 25.0)) == ()
+
+
+def test_a_unit_holds_in_runs_that_hardly_follow_their_prediction(plain):
+    runs = edited(plain, times(1 / 9.81, R_AZ))
+    levels = np.array([0.1, -0.1, -np.log(9.81), 0.0])
+    follow = [SimpleNamespace(levels=levels, own=np.full((1, 4), own), best=0) for own in (0.9, 0.9, 0.2)]
+    case = SimpleNamespace(trials=runs, comparisons=follow, runs=tuple(trial.name for trial in runs))
+    (hypothesis,) = unit_hypotheses(case)
+    for found, trial in zip(hypothesis.trials, plain, strict=True):
+        np.testing.assert_allclose(found.recording.values, trial.recording.values, rtol=1e-3)
+
+
 def test_two_mistakes_are_both_named(plain):
     runs = edited(edited(plain, lambda values: values[:, [2, 3, 0, 1]], "low"), times(57.3, R_Q))
     assert {item.kind for item in plain_mistakes(detect(runs))} == {"exchanged", "unit"}
@@ -158,6 +183,17 @@ def test_a_mistake_that_looks_like_an_effect_explains_the_gap_with_its_number(pl
     faults = explain_gap(detection)
     assert {item.kind for item in faults} == {kind}
     assert faults[0].value == pytest.approx(value, rel=0.05)
+
+
+def test_a_filter_of_all_channels_is_told_though_one_of_them_is_mostly_noise(plain):
+    def change(values):
+        values = low_passed(8)(values)
+        values[:, F_Q] += 0.4 * np.std(values[:, F_Q]) * np.random.default_rng(5).standard_normal(len(values))
+        return values
+
+    (fault,) = explain_gap(detect(edited(plain, change)))
+    assert told([fault]) == [("low_pass", EVERY, ("F_az", "F_q", "R_az", "R_q"))]
+    assert fault.value == pytest.approx(8, rel=0.1)
 
 
 @pytest.mark.parametrize(
