@@ -1,6 +1,7 @@
 """State space and frequency responses against what shares no code with them: scipy.signal, and the exact first-order hold."""
 
 import json
+import warnings
 
 import numpy as np
 import pytest
@@ -90,6 +91,22 @@ def test_axles_follow_each_other_over_one_road(truck):
     assert road.values[:, :, 0] == pytest.approx(each[:, :, 0] + late[:, None] * each[:, :, 1], rel=1e-12)
     still = frequency_response(truck, [0.01], outputs=[PointOutput("z", DRIVER, "displacement")], speed=100.0)
     assert abs(still.values[0, 0, 0]) == pytest.approx(1.0, abs=1e-3)  # over long waves it goes with the road
+
+
+@pytest.mark.parametrize(
+    ("law", "spring"),
+    [("k: 200 kN/m, time: 10000 s", "k: 700 kN/m, c: 8 kN s/m"), ("k: 40 GN/m, time: 0.0000001 s", "k: 500 kN/m, c: 12 kN s/m")],
+    ids=["a stiff one is a spring", "a quick one is a dashpot"],
+)
+def test_relaxation_counts_in_a_response(law, spring):
+    text = "name: one\nbodies: {{b: {{mass: 4 t, motions: [heave]}}}}\n"
+    text += "axles: {{a: {{body: b, mass: 400 kg, suspension: {{{}}}, tyre: {{k: 2 MN/m}}}}}}\n"
+    one = parse_vehicle(text.format(f"k: 500 kN/m, c: 8 kN s/m, laws: [{{relaxation: {{{law}}}}}]"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = frequency_response(one, FREQUENCY).values
+    expected = frequency_response(parse_vehicle(text.format(spring)), FREQUENCY).values
+    assert np.abs(found - expected).max() < 1e-3 * np.abs(expected).max()
 
 
 def test_poles_are_the_modes(truck):

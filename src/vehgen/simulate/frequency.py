@@ -55,6 +55,11 @@ def maxwell_branches(model: EquationsOfMotion, values: Mapping[str, float]) -> t
     return tuple(found)
 
 
+def leaves_laws_out(model: EquationsOfMotion) -> bool:
+    """Return whether a vehicle has force laws that no frequency response holds: others than :func:`maxwell_branches`."""
+    return any(term.law is not RELAXATION for element in model.elements for term in element.laws)
+
+
 def transfer_functions(numeric: NumericModel, frequency: Array, branches: Sequence[MaxwellBranch] = ()) -> tuple[Complex, Complex]:
     """Return the channels per unit of every displacement input and of every force.
 

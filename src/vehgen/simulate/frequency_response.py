@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
@@ -9,13 +10,13 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from vehgen.errors import ArgumentError
+from vehgen.errors import ArgumentError, ModelWarning
 from vehgen.files.limits import FREQUENCY_LIMIT, SPEED_LIMIT
 from vehgen.files.result_fields import Array1D, Array3D
 from vehgen.files.results import Cell, Result, Table
-from vehgen.mechanics import EquationsOfMotion, ModelLike, NumericModel, Output, Place, all_values
-from vehgen.simulate.frequency import transfer_functions
-from vehgen.simulate.state_space import linear_model
+from vehgen.mechanics import EquationsOfMotion, ModelLike, Output, Place, all_values
+from vehgen.simulate.frequency import leaves_laws_out, maxwell_branches, transfer_functions
+from vehgen.simulate.state_space import model_with_channels
 
 DEFAULT_FREQUENCY_HZ = (0.1, 30.0, 0.05)
 """Where responses are computed unless told: first, last, step [Hz]."""
@@ -94,7 +95,7 @@ def frequency_response(
 
     Returns
     -------
-    The response. Force laws are not in it: a ModelWarning says so.
+    The response. Force laws are not in it, but for relaxation, which is linear: a ModelWarning says so.
 
     Raises
     ------
@@ -102,9 +103,11 @@ def frequency_response(
         For names that the vehicle lacks, frequencies that are none, a speed for a vehicle without axles, and one that cannot be.
     """
     f = _frequencies(frequency)
-    found = linear_model(model, outputs, forces)
+    found = model_with_channels(model, outputs, forces)
+    if leaves_laws_out(found):
+        warnings.warn(ModelWarning(f"the force laws of {found.vehicle.name} are left out: this response is linear"), stacklevel=2)
     known = all_values(found, values, parameter_set)
-    displaced, pushed = transfer_functions(found.numeric(known), f)
+    displaced, pushed = transfer_functions(found.numeric(known), f, maxwell_branches(found, known))
     inputs = found.inputs
     if speed is not None:
         delays = axle_delays(found, known, speed)
@@ -123,13 +126,15 @@ def frequency_response(
     )
 
 
-def over_one_road(numeric: NumericModel, frequency: NDArray[np.float64], delays: NDArray[np.float64]) -> NDArray[np.complex128]:
-    """Return the channels per metre of one road that all axles meet, force laws left out.
+def over_one_road(
+    model: EquationsOfMotion, values: Mapping[str, float], frequency: NDArray[np.float64], delays: NDArray[np.float64]
+) -> NDArray[np.complex128]:
+    """Return the channels per metre of one road that all axles meet, force laws left out, but for relaxation.
 
     Parameters
     ----------
-    numeric
-        The model's matrices.
+    model, values
+        Equations of motion and their parameters [SI].
     frequency
         `shape (n,)` [Hz].
     delays
@@ -139,7 +144,7 @@ def over_one_road(numeric: NumericModel, frequency: NDArray[np.float64], delays:
     -------
     `shape (n, n_channels)`, complex.
     """
-    return _one_road(transfer_functions(numeric, frequency)[0], frequency, delays)
+    return _one_road(transfer_functions(model.numeric(values), frequency, maxwell_branches(model, values))[0], frequency, delays)
 
 
 def _one_road(displaced: NDArray[np.complex128], f: NDArray[np.float64], delays: NDArray[np.float64]) -> NDArray[np.complex128]:

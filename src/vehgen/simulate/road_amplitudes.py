@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.mechanics import ElementOutput, NumericModel, Output, Place, PointOutput, all_values, derive
+from vehgen.mechanics import ElementOutput, EquationsOfMotion, Output, Place, PointOutput, all_values, derive
 from vehgen.simulate.frequency_response import DEFAULT_SPEED_M_S, axle_delays, over_one_road
 from vehgen.vehicle import Vehicle
 
@@ -48,7 +48,7 @@ class RoadAmplitudes:
 
 
 def road_amplitudes(vehicle: Vehicle, values: Mapping[str, float], speed: float = DEFAULT_SPEED_M_S) -> RoadAmplitudes:
-    """Return what one road under all wheels does to a vehicle, its force laws left out.
+    """Return what one road under all wheels does to a vehicle, its force laws left out, but for relaxation.
 
     Parameters
     ----------
@@ -72,9 +72,9 @@ def road_amplitudes(vehicle: Vehicle, values: Mapping[str, float], speed: float 
     wanted = _outputs(vehicle)
     model = derive(vehicle, [output for _, _, output in wanted])
     known = all_values(model, values)
-    numeric, delays = model.numeric(known), axle_delays(model, known, speed)
+    delays = axle_delays(model, known, speed)
     frequency = np.geomspace(*AMPLITUDE_BAND_HZ, AMPLITUDE_LINES)
-    found = np.abs(over_one_road(numeric, frequency, delays))
+    found = np.abs(over_one_road(model, known, frequency, delays))
     lines = _peak_lines(found)
     loads = {name: found[lines[i], i] if lines[i] else 0.0 for i, (group, name, _) in enumerate(wanted) if group == TYRE_LOAD}
     axles = list(vehicle.axles)
@@ -82,7 +82,7 @@ def road_amplitudes(vehicle: Vehicle, values: Mapping[str, float], speed: float 
     curves = []
     for i, ((group, name, _), channel) in enumerate(zip(wanted, model.channels, strict=True)):
         if group == HEAVE or name in shown:
-            peak = _peak(numeric, delays, i, frequency[lines[i] - 1], frequency[lines[i] + 1]) if lines[i] else None
+            peak = _peak(model, known, delays, i, frequency[lines[i] - 1], frequency[lines[i] + 1]) if lines[i] else None
             curves.append(RoadAmplitude(name, group, f"{channel.unit}/m", found[:, i], peak))
     return RoadAmplitudes(frequency, speed, tuple(curves))
 
@@ -104,9 +104,11 @@ def _peak_lines(amplitude: Array) -> list[int]:
     return [int(line) + 1 if top > 0 else 0 for line, top in zip(heights.argmax(axis=0), heights.max(axis=0), strict=True)]
 
 
-def _peak(numeric: NumericModel, delays: Array, column: int, low: float, high: float) -> tuple[float, float]:
+def _peak(
+    model: EquationsOfMotion, values: Mapping[str, float], delays: Array, column: int, low: float, high: float
+) -> tuple[float, float]:
     """Return frequency [Hz] and |H| of a channel's maximum between two frequencies [Hz]."""
     frequency = np.linspace(low, high, LINES_OF_A_PEAK)
-    amplitude = np.abs(over_one_road(numeric, frequency, delays)[:, column])
+    amplitude = np.abs(over_one_road(model, values, frequency, delays)[:, column])
     top = int(amplitude.argmax())
     return float(frequency[top]), float(amplitude[top])

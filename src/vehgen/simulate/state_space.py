@@ -109,7 +109,9 @@ def state_space(
     if input_rates not in get_args(InputRates):
         known = did_you_mean(str(input_rates), get_args(InputRates))
         raise ArgumentError(f"`input_rates`: unknown choice {input_rates!r}; {known}", "input_rates")
-    found = linear_model(model, outputs, forces)
+    found = model_with_channels(model, outputs, forces)
+    if any(element.laws for element in found.elements):
+        warnings.warn(ModelWarning(f"the force laws of {found.vehicle.name} are left out: these equations are linear"), stacklevel=2)
     numeric = found.numeric(all_values(found, values, parameter_set))
     A, B = numeric.state_matrices()
     C, D, felt = _output_matrices(numeric, A, B)
@@ -143,14 +145,6 @@ def _named(model: EquationsOfMotion, A: Array, B: Array, C: Array, D: Array, col
         state_units=(*(item.unit for item in model.coordinates), *(f"{item.unit}/s" for item in model.coordinates)),
         input_units=tuple(units[i] for i in columns),
     )
-
-
-def linear_model(model: ModelLike, outputs: Iterable[Output], forces: Iterable[Place]) -> EquationsOfMotion:
-    """Return equations of motion with channels; warn of force laws, which no linear result holds."""
-    found = model_with_channels(model, outputs, forces)
-    if any(element.laws for element in found.elements):
-        warnings.warn(ModelWarning(f"the force laws of {found.vehicle.name} are left out: these equations are linear"), stacklevel=3)
-    return found
 
 
 def model_with_channels(model: ModelLike, outputs: Iterable[Output] = (), forces: Iterable[Place] = ()) -> EquationsOfMotion:

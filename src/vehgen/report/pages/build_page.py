@@ -199,6 +199,7 @@ def _road(build: Build, model: EquationsOfMotion) -> dict[str, object] | None:
         return {"figure": None}
     from vehgen.report.curve_values import inline_figure
     from vehgen.report.plots.road_amplitude_plot import plot_road_amplitudes, shown_amplitude
+    from vehgen.simulate.frequency import leaves_laws_out
     from vehgen.simulate.road_amplitudes import AMPLITUDE_BAND_HZ, road_amplitudes
 
     found = road_amplitudes(model.vehicle, {name: build.values[name] for name in model.vehicle.free_parameters})
@@ -213,6 +214,7 @@ def _road(build: Build, model: EquationsOfMotion) -> dict[str, object] | None:
         "band": AMPLITUDE_BAND_HZ,
         "file": shlex.quote(next(iter(build.inputs), model.vehicle.name)),
         "peaks": peaks,
+        "laws": leaves_laws_out(model),
         "figure": inline_figure(plot_road_amplitudes(found), "road", title),
     }
 
