@@ -58,6 +58,10 @@ def test_several_effects_ties_and_doubts_are_told():
         "model missed on runs that they were not fitted to; hysteresis in the rear suspension would do as well as one of these"
     )
     assert wording.ambiguous([friction, gain]).endswith("or sensor gain of about 1.2 at F_az: each explains the runs equally well")
+    assert wording.ambiguous([friction] * 5).count("ry friction") == 5
+    many = wording.ambiguous([friction, *[gain] * 8])
+    assert many.count("sensor gain") == 3
+    assert many.endswith("or one of 5 others: each explains the runs equally well")
     assert wording.named([friction], None).endswith("on the runs for fitting; the other runs show no gap")
 
 

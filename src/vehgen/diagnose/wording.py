@@ -13,6 +13,8 @@ from vehgen.vehicle import Vehicle
 
 SHARE_CALLED_ALL = 0.995
 """A share from which on the text says "all"."""
+MOST_TOLD = 4
+"""So many effects that do as well as one another are told in words, and how many more there are."""
 UNSEEN_RUNS = "on runs that it was not fitted to"
 _AT = {
     "suspension": "in the {} suspension",
@@ -134,7 +136,10 @@ def ranked(effects: Sequence[tuple[str, float]]) -> str:
 
 def ambiguous(effects: Sequence[str]) -> str:
     """Return the verdict `ambiguous` between effects, of :func:`effect_words`, each of which explains the runs by itself."""
-    return f"{join_names([effects[0], *map(_inner, effects[1:])])}: each explains the runs equally well"
+    told = [effects[0], *map(_inner, effects[1:])]
+    if len(told) > MOST_TOLD + 1:
+        told[MOST_TOLD:] = [f"one of {len(told) - MOST_TOLD} others"]
+    return f"{join_names(told)}: each explains the runs equally well"
 
 
 def no_missing_effect(chi: float) -> str:
