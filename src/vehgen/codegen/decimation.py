@@ -6,37 +6,22 @@ samples at once, which is what vector instructions are made for.
 
 from __future__ import annotations
 
-import inspect
 import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import cache
-from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.codegen.cache import import_kernel
+from vehgen.codegen.compiled_loops import compile_loops
 
 Array = NDArray[np.float64]
 MANY_NUMBERS = 5_000_000
 """Numbers below which one core is as quick as several."""
 TAPS_AT_ONCE = 4
 """Taps that are added to the samples in one pass."""
-_HEAD = '''"""Decimating FIR filter of responses; written by vehgen.codegen.decimation."""
-
-from __future__ import annotations
-
-import numba
-import numpy as np
-
-
-@numba.njit(
-    "void(f8[:, :, ::1], f8[:, :, ::1], i8, f8[:, :, ::1])",
-    nogil=True, cache=True, fastmath={"contract", "nsz"}, error_model="numpy",
-)
-'''
+_SIGNATURE_OF_PHASES = "void(f8[:, :, ::1], f8[:, :, ::1], i8, f8[:, :, ::1])"
 
 
 def filter_phases(fine: Array, weights: Array, last: int, found: Array) -> None:
@@ -60,11 +45,6 @@ def filter_phases(fine: Array, weights: Array, last: int, found: Array) -> None:
                     for i in range(n_samples):  # over slices that begin at 0: an index that might be negative is no vector's
                         total[i] += w0 * s0[i] + w1 * s1[i] + w2 * s2[i] + w3 * s3[i]
             found[a, :, c] = total
-
-
-@cache
-def _module() -> ModuleType:
-    return import_kernel(_HEAD + inspect.getsource(filter_phases))
 
 
 @dataclass(frozen=True)
@@ -115,7 +95,7 @@ def decimate(fine: Array, phases: Phases, count: int, threads: int | None = None
     found = np.empty((len(fine), count, len(phases.weights)))
     workers = min(threads or os.cpu_count() or 1, len(fine)) if fine.size > MANY_NUMBERS and len(fine) > 1 else 1
     bounds = np.linspace(0, len(fine), workers + 1).astype(int).tolist()
-    run = _module().filter_phases
+    run = compile_loops(filter_phases, _SIGNATURE_OF_PHASES)
 
     def part(number: int) -> None:
         piece = slice(bounds[number], bounds[number + 1])

@@ -6,30 +6,14 @@ LAPACK that took a tenth of a calibration.
 
 from __future__ import annotations
 
-import inspect
-from functools import cache
-from types import ModuleType
-
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.codegen.cache import import_kernel
+from vehgen.codegen.compiled_loops import compile_loops
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-_HEAD = '''"""Whittle's likelihood; written by vehgen.fit.whittle."""
-
-from __future__ import annotations
-
-import numba
-import numpy as np
-
-
-@numba.njit(
-    "f8(c16[:, ::1], f8[:, ::1], f8[::1], c16[:, :, ::1], c16[:, :, ::1], f8[::1], f8[::1])",
-    nogil=True, cache=True, fastmath={"contract", "nsz"}, error_model="numpy",
-)
-'''
+_SIGNATURE_OF_LINES = "f8(c16[:, ::1], f8[:, ::1], f8[::1], c16[:, :, ::1], c16[:, :, ::1], f8[::1], f8[::1])"
 
 
 def sum_lines(lines: Complex, scale: Array, level: Array, gain: Complex, forced: Complex, by_level: Array, by_scale: Array) -> float:
@@ -94,11 +78,6 @@ def sum_lines(lines: Complex, scale: Array, level: Array, gain: Complex, forced:
     return loss
 
 
-@cache
-def _module() -> ModuleType:
-    return import_kernel(_HEAD + inspect.getsource(sum_lines))
-
-
 def loss_and_slopes(lines: Complex, scale: Array, level: Array, gain: Complex, forced: Complex) -> tuple[float, Array, Array]:
     """Return -2 ln of Whittle's likelihood of spectral lines, less a constant, and its derivatives.
 
@@ -120,4 +99,4 @@ def loss_and_slopes(lines: Complex, scale: Array, level: Array, gain: Complex, f
     """
     by_level, by_scale = np.empty(len(lines)), np.empty(lines.shape[1])
     arrays = (np.ascontiguousarray(item) for item in (lines, scale, level, gain, forced))
-    return float(_module().sum_lines(*arrays, by_level, by_scale)), by_level, by_scale
+    return float(compile_loops(sum_lines, _SIGNATURE_OF_LINES)(*arrays, by_level, by_scale)), by_level, by_scale
