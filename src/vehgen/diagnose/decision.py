@@ -42,7 +42,7 @@ LOOKS_AGAIN = 2
 NEAREST = 4
 """So many of the effects that come nearest are told where nothing can be named."""
 MUCH_QUIETER = 2.0
-"""Where noise is found to be less by so much, all candidates are weighed anew by it."""
+"""Where noise is found to be less by so much than what candidates were last weighed by, all of them are weighed anew."""
 
 
 class Decision:
@@ -53,6 +53,7 @@ class Decision:
     ) -> None:
         self.detection = detection
         self.base = detection.base
+        self.weighed_by = detection.base.training
         self.everything = everything
         self.progress = progress
         self.runner = runner
@@ -134,15 +135,16 @@ class Decision:
         detection = look_again(self.detection, best) or with_reaching_run(self.detection, best)
         if detection is None:
             return first
-        held, before = self.validation_runs, self.base.training
+        held = self.validation_runs
         self.detection, self.base = detection, detection.base
         if self.validation_runs != held:  # what places leave is told of the runs that are fitted
             places, passed = localise(self.base, self.runner)
             first = replace(first, places=tuple(places), passed=tuple(passed))
         fitter = Fitter(detection, self.base, first.passed)
-        quieter = self.base.training > MUCH_QUIETER * before
+        quieter = self.base.training > MUCH_QUIETER * self.weighed_by
         fits, idle = list(fit_leading_again(fitter, first.fits, quieter, self.runner)), list[ModelFit]()
         if quieter:  # what loud noise hid, freed base parameters may do as well
+            self.weighed_by = self.base.training
             fits, idle = split_idle(fits, fitter.fit_roughly, LEADING, self.base.least_squares.on_bound)
         self.rounds[:] = [replace(first, current=self.base, fits=tuple(fits), idle=tuple(idle))]
         return self.rounds[-1]
@@ -271,11 +273,8 @@ class Decision:
 
     def _unknown(self, first: SearchRound, reason: str = "") -> Decided:
         best = (len(first.fits), self._words(first.fits[0].last), float(np.sqrt(first.fits[0].training))) if first.fits else None
-        if self.base.least_squares.on_bound:
-            edge = ", ".join(self.base.least_squares.on_bound)
-            self.notes.append(
-                f"the refit, within 35 % of the file's values, ends at its edge for {edge}: if they are uncertain, calibrate first"
-            )
+        if edge := self.base.least_squares.on_bound:
+            self.notes.append(wording.at_the_edge(edge))
         if strained := [item.message for item in supposed_mistakes(self.detection)]:
             self.notes.append(wording.supposed(strained))
         if first.fits:

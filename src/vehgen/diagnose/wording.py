@@ -231,6 +231,11 @@ def supposed(messages: Sequence[str]) -> str:
     return f"The refit supposes more than can be believed, for want of the effect or because it is so: {'; '.join(messages)}"
 
 
+def at_the_edge(names: Sequence[str]) -> str:
+    """Return the note on base parameters that the refit leaves at the edge of their bounds."""
+    return f"the refit, within 35 % of the file's values, ends at its edge for {', '.join(names)}: if they are uncertain, calibrate first"
+
+
 def constant_force(found: Condition) -> str:
     """Return the note on what acts beside a measured force all along."""
     return f"the fit supposes {constant_force_words(found)}"
