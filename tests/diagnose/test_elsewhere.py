@@ -1,6 +1,8 @@
 """Places tested and candidates fitted in other processes, or on a cluster: the diagnosis is the same, bit for bit."""
 
 import pickle
+import subprocess
+import sys
 from dataclasses import replace
 
 import pytest
@@ -83,3 +85,11 @@ def test_effects_of_the_library_and_of_files_can_be_sent(tmp_path):
         file = tmp_path / f"{len(kind)}.yaml"
         file.write_text(f"effects:\n  own: {{title: A, meaning: b, attaches: suspension, {kind}, parameters: {parameters}}}\n")
         assert can_be_sent(load_effects(file))
+
+
+def test_what_a_notebooks_cell_defines_stays_where_it_is(tmp_path):
+    code = "from vehgen.fit.parallel import can_be_sent\ndef own(): pass\nprint(can_be_sent(own), can_be_sent(can_be_sent))\n"
+    script = tmp_path / "script.py"
+    script.write_text(code, encoding="utf-8")
+    told = [subprocess.run([sys.executable, *item], input=code, capture_output=True, encoding="utf-8") for item in ((), (str(script),))]
+    assert [item.stdout.split() for item in told] == [["False", "True"], ["True", "True"]]

@@ -14,15 +14,14 @@ import scipy.linalg
 import scipy.optimize
 from numpy.typing import NDArray
 
-from vehgen.calibrate.identifiability import FREQUENCIES, distinct_trials, null_space, remaining_directions
+from vehgen.calibrate.identifiability import answer_derivatives, answers, distinct_trials, null_space, remaining_directions
 from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.prior_data import PriorData
-from vehgen.simulate.frequency import response_derivatives, transfer_functions
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 MAX_LOSS_CHANGE = 1e-3
-"""A set whose -2 ln L differs by more from the fit's is no equivalent: force laws are not in the frequency responses."""
+"""A set whose -2 ln L differs by more from the fit's is no equivalent: responses show force laws at some amplitudes only."""
 LONGEST_MOVE, SHORTEST_MOVE = 0.1, 1e-4
 """Steps along the surface, in the unit cube."""
 MAX_MOVES = 40
@@ -129,11 +128,8 @@ class _Surface:
         return remaining_directions(null, derivatives[len(derivatives) - n_known :])
 
     def _responses(self, values: Array) -> list[Complex]:
-        """Return the frequency responses of all sensors, `shape (n_frequencies, n_channels, n_inputs)`, a trial each."""
-        return [
-            transfer_functions(trial.simulator.model.numeric(self.problem.values_of(values, trial)), FREQUENCIES)[0]
-            for trial in distinct_trials(self.problem)
-        ]
+        """Return the frequency responses of all sensors, `shape (n, n_channels, n_inputs)`, a trial each; one at each travel of laws."""
+        return [answers(trial.simulator.model, self.problem.values_of(values, trial)) for trial in distinct_trials(self.problem)]
 
     def _known(self, values: Array) -> Array:
         return np.zeros(0) if self.facts is None else FACT_WEIGHT * self.facts.residuals(values)
@@ -150,7 +146,7 @@ class _Surface:
         """Return the derivatives of :meth:`_off` by the unit cube's coordinates, those of the facts last."""
         names, parts = self.space.names, []
         for trial, scale in zip(distinct_trials(self.problem), self.scales, strict=True):
-            derived = response_derivatives(trial.simulator.model, self.problem.values_of(values, trial), names, FREQUENCIES) / scale
+            derived = answer_derivatives(trial.simulator.model, self.problem.values_of(values, trial), names) / scale
             derived[[i for i, name in enumerate(names) if name in trial.fixed]] = 0.0
             parts.append(derived.reshape(len(names), -1))
         flat = np.concatenate(parts, axis=1)

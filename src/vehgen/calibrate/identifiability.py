@@ -19,9 +19,11 @@ from vehgen.fit.problem import Problem
 from vehgen.fit.space import SearchSpace
 from vehgen.fit.trial import Trial
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
-from vehgen.simulate.frequency import response_derivatives
+from vehgen.simulate.frequency import response_derivatives, transfer_functions
+from vehgen.simulate.harmonic_laws import harmonic_laws
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 FREQUENCIES = np.geomspace(0.4, 40.0, 40)
 """Where responses are compared [Hz]; the null space does not depend on the choice."""
 NULL_SHARE = 1e-9
@@ -80,7 +82,7 @@ def find_structure(problem: Problem, values: Array) -> Structure:
     """Return the structural rank and null directions at searched values `shape (n_parameters,)` [SI].
 
     Every trial's sensors are taken together. The axles' ways to the sensors count one by one: their roads are one road with known delays,
-    which runs at several speeds separate. Force laws are not in it.
+    which runs at several speeds separate.
     """
     found = []
     for trial in distinct_trials(problem):
@@ -154,7 +156,22 @@ def _scaled_derivatives(
 
 def stacked_derivatives(model: EquationsOfMotion, values: Mapping[str, float], names: tuple[str, ...]) -> Array:
     """Return the derivatives of all channels' frequency responses by parameters, each channel scaled to 1, `shape (m, len(names))`."""
-    derived = response_derivatives(model, values, names, FREQUENCIES)
+    derived = answer_derivatives(model, values, names)
     scale = np.linalg.norm(derived, axis=(0, 1), keepdims=True)
     flat = (derived / np.where(scale > 0, scale, 1.0)).reshape(len(names), -1)
     return np.concatenate([flat.real, flat.imag], axis=1).T
+
+
+def answers(model: EquationsOfMotion, values: Mapping[str, float]) -> Complex:
+    """Return the frequency responses of all channels to the road, `shape (n, n_channels, n_inputs)`, at FREQUENCIES.
+
+    Force laws are in them as what they are to harmonic travels: FREQUENCIES come again for every amplitude.
+    """
+    numeric, looks = model.numeric(values), harmonic_laws(model, values, FREQUENCIES)
+    return np.concatenate([transfer_functions(numeric, FREQUENCIES, [item.law for item in laws])[0] for laws in looks])
+
+
+def answer_derivatives(model: EquationsOfMotion, values: Mapping[str, float], names: tuple[str, ...]) -> Complex:
+    """Return the derivatives of :func:`answers` by parameters, exact, `shape (len(names), n, n_channels, n_inputs)`."""
+    looks = harmonic_laws(model, values, FREQUENCIES, names)
+    return np.concatenate([response_derivatives(model, values, names, FREQUENCIES, laws) for laws in looks], axis=1)

@@ -31,6 +31,8 @@ Array = NDArray[np.float64]
 LEVEL = 0.90
 """Confidence level of all intervals."""
 _GRADIENT_STEP = 1e-5
+_LEAST_INFORMATION = 0.25
+"""What recordings say nothing of, such as a stop that no run meets, is known to two ranges: an interval beyond both ends, not none."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +113,7 @@ class Uncertainty:
             self.null = remaining_directions(structure.null, facts.jacobian(self.values) * space.slopes(self.values))
         self.basis = replace(structure, null=self.null).row_space
         reduced = self.basis.T @ self.information @ self.basis
-        self.covariance = self.basis @ np.linalg.pinv(reduced, hermitian=True) @ self.basis.T
+        self.covariance = self.basis @ _covariance(reduced) @ self.basis.T
 
     def gradient(self, quantity: Quantity) -> Array:
         """Return a quantity's derivatives by the unit cube's coordinates, `shape (n_parameters,)`."""
@@ -140,7 +142,7 @@ class Uncertainty:
         """Return every parameter with its interval for the case that the fixed parameters are known exactly."""
         kept = [i for i in range(self.structure.space.size) if i not in self.structure.fixed_parameters]
         covariance = np.zeros_like(self.information)
-        covariance[np.ix_(kept, kept)] = np.linalg.pinv(self.information[np.ix_(kept, kept)], hermitian=True)
+        covariance[np.ix_(kept, kept)] = _covariance(self.information[np.ix_(kept, kept)])
         slopes = self.structure.space.slopes(self.values)
         found = []
         for i, name in enumerate(self.structure.space.names):
@@ -211,6 +213,11 @@ class Uncertainty:
             factor = float(np.exp(min(spread / value, 50.0)))
             return Estimate(name, value, value / factor, value * factor)
         return Estimate(name, value, value - spread, value + spread)
+
+
+def _covariance(information: Array) -> Array:
+    """Return the covariance of coordinates of the unit cube, `shape (n, n)`, from what is known of them."""
+    return np.asarray(np.linalg.pinv(information + _LEAST_INFORMATION * np.eye(len(information)), hermitian=True))
 
 
 def _component(i: int) -> Quantity:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os.path
 import pickle
+import sys
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
@@ -25,12 +27,12 @@ AHEAD = 2
 
 
 def can_be_sent(value: object) -> bool:
-    """Return whether a value can be sent to another process of this machine."""
+    """Return whether a value can be sent to another process of this machine: what a notebook's cell defines is not known there."""
     try:
-        pickle.dumps(value)
+        packed = pickle.dumps(value)
     except Exception:  # what a value's own way to be packed may raise is not known
         return False
-    return True
+    return b"__main__" not in packed or os.path.isfile(getattr(sys.modules["__main__"], "__file__", None) or "")
 
 
 def on_one_thread(function: Callable[[Input], R], item: Input) -> R:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import sympy as sp
@@ -13,12 +14,36 @@ from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.laws.relaxation import RELAXATION
 from vehgen.mechanics.numeric_model import NumericModel
 from vehgen.mechanics.rows import Row
+from vehgen.simulate.harmonic_laws import LawResponse
 from vehgen.simulate.sensitivity import matrix_derivatives
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 MATRIX_NUMBERS = 2_000_000
 """So many numbers may the dynamic stiffnesses hold that are solved at once: 32 MB."""
+
+
+class Branch(Protocol):
+    """A force that is a complex stiffness times a travel: see :class:`MaxwellBranch`."""
+
+    @property
+    def row(self) -> Array:
+        """The travel by the coordinates."""
+        ...
+
+    @property
+    def input_row(self) -> Array:
+        """The travel by the displacement inputs."""
+        ...
+
+    @property
+    def read(self) -> Array:
+        """What channels read of the force."""
+        ...
+
+    def stiffness(self, omega: Array) -> Complex:
+        """Return the force over the travel at angular frequencies [rad/s], `shape (n, 1, 1)`."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -60,7 +85,7 @@ def leaves_laws_out(model: EquationsOfMotion) -> bool:
     return any(term.law is not RELAXATION for element in model.elements for term in element.laws)
 
 
-def transfer_functions(numeric: NumericModel, frequency: Array, branches: Sequence[MaxwellBranch] = ()) -> tuple[Complex, Complex]:
+def transfer_functions(numeric: NumericModel, frequency: Array, branches: Sequence[Branch] = ()) -> tuple[Complex, Complex]:
     """Return the channels per unit of every displacement input and of every force.
 
     Force laws are not in it, but for the `branches`.
@@ -72,7 +97,7 @@ def transfer_functions(numeric: NumericModel, frequency: Array, branches: Sequen
     frequency
         `shape (n,)` [Hz].
     branches
-        Those of :func:`maxwell_branches` that count.
+        Those of :func:`maxwell_branches` that count, or what stands for laws at one amplitude (:func:`harmonic_laws`).
 
     Returns
     -------
@@ -84,13 +109,12 @@ def transfer_functions(numeric: NumericModel, frequency: Array, branches: Sequen
     return np.concatenate(displaced), np.concatenate(pushed)
 
 
-def _transfer(numeric: NumericModel, omega: Array, branches: Sequence[MaxwellBranch]) -> tuple[Complex, Complex]:
+def _transfer(numeric: NumericModel, omega: Array, branches: Sequence[Branch]) -> tuple[Complex, Complex]:
     displaced, pushed = _loads(numeric, omega)
     rows, direct = output_rows(numeric.outputs, omega)
     for item in branches:
-        stiffness = item.stiffness(omega)
-        displaced = displaced - stiffness * np.outer(item.row, item.input_row)
-        rows, direct = rows + stiffness * np.outer(item.read, item.row), direct + stiffness * np.outer(item.read, item.input_row)
+        _, load, read, reaching = _quarters(item.stiffness(omega) * _block(item), len(item.row))
+        displaced, rows, direct = displaced - load, rows + read, direct + reaching
     states = np.linalg.solve(dynamic_stiffness(numeric, omega, branches), np.concatenate([displaced, pushed], axis=2))
     found = rows @ states
     width = direct.shape[2]
@@ -121,13 +145,30 @@ def force_response(
     return np.asarray(reading @ states - direct[:, None])
 
 
-def dynamic_stiffness(numeric: NumericModel, omega: Array, branches: Sequence[MaxwellBranch] = ()) -> Complex:
+def dynamic_stiffness(numeric: NumericModel, omega: Array, branches: Sequence[Branch] = ()) -> Complex:
     """Return K + i w C - w^2 M, with that of branches, at angular frequencies [rad/s], `shape (n, n_dof, n_dof)`."""
     w = omega[:, None, None]
     found = np.asarray(numeric.K + 1j * w * numeric.C - w * w * numeric.M, dtype=np.complex128)
     for item in branches:
         found = found + item.stiffness(omega) * np.outer(item.row, item.row)
     return found
+
+
+def _block(item: Branch) -> Array:
+    """Return what a branch of stiffness 1 adds: to coordinates and channels (rows), by coordinates and inputs (columns)."""
+    return np.outer(np.concatenate([item.row, item.read]), np.concatenate([item.row, item.input_row]))
+
+
+def _moved_block(item: Branch, moved: Branch) -> Array:
+    """Return the derivative of :func:`_block` by a parameter that moves the rows of a branch."""
+    down, across = np.concatenate([item.row, item.read]), np.concatenate([item.row, item.input_row])
+    return np.outer(np.concatenate([moved.row, moved.read]), across) + np.outer(down, np.concatenate([moved.row, moved.input_row]))
+
+
+def _quarters(block: Complex, n_dof: int) -> tuple[Complex, Complex, Complex, Complex]:
+    """Return a block's stiffness of coordinates, their pull at inputs, and what channels read of both."""
+    upper, lower = block[:, :n_dof], block[:, n_dof:]
+    return upper[:, :, :n_dof], upper[:, :, n_dof:], lower[:, :, :n_dof], lower[:, :, n_dof:]
 
 
 def output_rows(outputs: Mapping[str, Array], omega: Array) -> tuple[Complex, Complex]:
@@ -144,10 +185,13 @@ def _loads(numeric: NumericModel, omega: Array) -> tuple[Complex, Complex]:
     )
 
 
-def response_derivatives(model: EquationsOfMotion, values: Mapping[str, float], names: tuple[str, ...], frequency: Array) -> Complex:
+def response_derivatives(
+    model: EquationsOfMotion, values: Mapping[str, float], names: tuple[str, ...], frequency: Array, laws: Sequence[LawResponse] = ()
+) -> Complex:
     """Return the derivatives of the road part of :func:`transfer_functions` by parameters, exact.
 
-    With D X = E and H = R X + W, a parameter moves H by dR X + R D^-1 (dE - dD X) + dW.
+    With D X = E and H = R X + W, a parameter moves H by dR X + R D^-1 (dE - dD X) + dW. `laws` are those of
+    :func:`vehgen.simulate.harmonic_laws.harmonic_laws` at one amplitude, for the same parameters.
 
     Returns
     -------
@@ -156,15 +200,24 @@ def response_derivatives(model: EquationsOfMotion, values: Mapping[str, float], 
     omega = 2 * np.pi * frequency
     w = omega[:, None, None]
     numeric = model.numeric(values)
-    stiffness = dynamic_stiffness(numeric, omega)
-    states = np.linalg.solve(stiffness, _loads(numeric, omega)[0])
-    rows, _ = output_rows(numeric.outputs, omega)
+    stiffness = dynamic_stiffness(numeric, omega, [item.law for item in laws])
+    load, (rows, _) = _loads(numeric, omega)[0], output_rows(numeric.outputs, omega)
+    for item in laws:
+        _, pulled, read, _ = _quarters(item.law.stiffness(omega) * _block(item.law), model.n_dof)
+        load, rows = load - pulled, rows + read
+    states = np.linalg.solve(stiffness, load)
     adjoint = np.linalg.solve(stiffness.transpose(0, 2, 1), rows.transpose(0, 2, 1)).transpose(0, 2, 1)
     found = np.empty((len(names), len(frequency), rows.shape[1], states.shape[2]), dtype=np.complex128)
     for i, name in enumerate(names):
         d = matrix_derivatives(model, name, values)
         moved_rows, moved_direct = output_rows(d, omega)
-        moved_stiffness = d["K"] + 1j * w * d["C"] - w * w * d["M"]
-        moved_load = d["P"] + 1j * w * d["Q"]
+        moved_stiffness = np.asarray(d["K"] + 1j * w * d["C"] - w * w * d["M"], dtype=np.complex128)
+        moved_load = np.asarray(d["P"] + 1j * w * d["Q"], dtype=np.complex128)
+        for item in laws:
+            moved = item.derivatives[i]
+            block = moved.stiffness(omega) * _block(item.law) + item.law.stiffness(omega) * _moved_block(item.law, moved)
+            stiffer, pulled, read, reaching = _quarters(block, model.n_dof)
+            moved_stiffness, moved_load = moved_stiffness + stiffer, moved_load - pulled
+            moved_rows, moved_direct = moved_rows + read, moved_direct + reaching
         found[i] = moved_rows @ states + adjoint @ (moved_load - moved_stiffness @ states) + moved_direct
     return found

@@ -93,15 +93,23 @@ def matrix_derivatives(model: EquationsOfMotion, name: str, values: Mapping[str,
 
     The keys are those of :class:`vehgen.mechanics.equations_of_motion.NumericModel` (`M`, `C`, `K`, `P`, `Q`, `F`) and of its `outputs`.
     """
-    chain: dict[sp.Symbol, sp.Expr] = {sp.Symbol(name, real=True): sp.S.One}
-    for symbol, expression in model.definitions:
-        chain[symbol] = _total(expression, chain)
-    found = {}
+    chain, found = chain_of(model, name), {}
     for key, (entries, shape) in {**model.matrix_entries(), **model.output_entries()}.items():
-        derived = {place: _total(value, chain) for place, value in entries.items()}
+        derived = {place: total_derivative(value, chain) for place, value in entries.items()}
         found[key] = model.evaluate_matrix({place: item for place, item in derived.items() if item != 0}, shape, values)
     return found
 
 
-def _total(expression: sp.Expr, chain: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
-    return sp.Add(*(sp.diff(expression, symbol) * rate for symbol, rate in chain.items() if rate != 0 and expression.has(symbol)))
+def chain_of(model: EquationsOfMotion, name: str) -> dict[sp.Symbol, sp.Expr]:
+    """Return the derivatives of a parameter and of all symbols that follow from it."""
+    chain: dict[sp.Symbol, sp.Expr] = {sp.Symbol(name, real=True): sp.S.One}
+    for symbol, expression in model.definitions:
+        rate = total_derivative(expression, chain)
+        if rate != 0:
+            chain[symbol] = rate
+    return chain
+
+
+def total_derivative(expression: sp.Expr, chain: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+    """Return an expression's derivative along the derivatives of its symbols."""
+    return sp.Add(*(sp.diff(expression, symbol) * rate for symbol, rate in chain.items() if expression.has(symbol)))
