@@ -89,7 +89,7 @@ def write_kernel(
 
     """
     nonlinear = any(element.laws for element in model.elements)
-    step = _cheapest_step(model) if from_rest and not nonlinear else write_step(model, sweeps)
+    step = cheapest_step(model) if from_rest and not nonlinear else write_step(model, sweeps)
     lanes = lanes or (NONLINEAR_LANES if nonlinear else SINGLE_LANES if precision == "single" else LANES)
     printer = PythonPrinter(
         step.program, {STEP_PHASE: [node for _, node in step.states], SAMPLE_PHASE: step.channels}, step.time_step, precision == "single"
@@ -112,7 +112,7 @@ def write_kernel(
     )
 
 
-def _cheapest_step(model: EquationsOfMotion) -> StepProgram:
+def cheapest_step(model: EquationsOfMotion) -> StepProgram:
     """Return the form of a step that takes fewer instructions; none has more operations than one in displacements and velocities."""
     plain = write_step(model)
     if plain.step_cost()[0] > MOST_REWRITTEN:
