@@ -13,6 +13,7 @@ from vehgen.diagnose.collecting import run_chis
 from vehgen.diagnose.combining import Combiner
 from vehgen.diagnose.design.experiment import VISIBLE, propose_stronger
 from vehgen.diagnose.detect.detection import Detection, believable, look_again, run_gaps
+from vehgen.diagnose.detect.odd_run import odd_run
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.checks import variety_notes
@@ -86,7 +87,8 @@ class Decision:
         if detection.is_quiet:
             if mistakes := supposed_mistakes(detection):
                 return self._strained(mistakes)
-            return self._end("no_missing_effect", wording.no_missing_effect(detection.chi))
+            odd = self._odd_run()
+            return odd or self._end("no_missing_effect", wording.no_missing_effect(detection.chi))
         if mistakes := plain_mistakes(detection):
             return self._mistaken(mistakes)
         return self._explain_gap()
@@ -172,7 +174,12 @@ class Decision:
     def _all_idle(self) -> Decided | None:
         """Return the verdict where a gap is small, and no effect does more for it than base parameters do."""
         chi = self.detection.chi
-        return self._end("too_weak", wording.small_gap(chi)) if chi <= limit.WEAK else None
+        return self._odd_run() or self._end("too_weak", wording.small_gap(chi)) if chi <= limit.WEAK else None
+
+    def _odd_run(self) -> Decided | None:
+        """Return the verdict where little seems to be missing, but a run asks for a vehicle of its own."""
+        odd = odd_run(self.detection)
+        return None if odd is None else self._end("too_weak", wording.odd_run(odd), wording.odd_run_again(odd))
 
     def _other_mistakes(self, first: SearchRound) -> Decided | None:
         """Return the verdict where a mistake that looks like an effect explains the runs, and no effect of the vehicle does.
@@ -193,7 +200,7 @@ class Decision:
         if p > limit.SIGNIFICANT and (good or chi <= VISIBLE):
             return self._propose(wording.not_told_from_chance(chi, p), best)
         if chi <= limit.WEAK and not good:
-            return self._propose(wording.small_gap(chi), best)
+            return self._odd_run() or self._propose(wording.small_gap(chi), best)
         if not good:
             return None
         interval = gain_interval(self.base, best, self.validation_runs)
@@ -263,13 +270,7 @@ class Decision:
         return self._end("insufficient_data", wording.stopped(len(fits), best), "let the diagnosis run to its end")
 
     def _out_of_range(self, freed: ModelFit) -> Decided:
-        space = freed.least_squares.misfit.problem.space
-        ratios = dict(zip(space.names, (freed.least_squares.values / space.start).tolist(), strict=True))
-        return self._end(
-            "insufficient_data",
-            wording.out_of_range({name: ratios[name] for name in freed.last.freed if name in ratios}),
-            "check the file, or calibrate first",
-        )
+        return self._end("insufficient_data", wording.out_of_range(freed), "check the file, or calibrate first")
 
     def _unknown(self, first: SearchRound, reason: str = "") -> Decided:
         best = (len(first.fits), self._words(first.fits[0].last), float(np.sqrt(first.fits[0].training))) if first.fits else None

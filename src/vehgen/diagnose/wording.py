@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
+from vehgen.diagnose.detect.odd_run import OddRun
 from vehgen.diagnose.fits.candidate import Candidate
+from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.verdict import NamedParameter
 from vehgen.effects.places import ALIKE, ALL_RUNS, ALL_SUSPENSIONS, ALL_TYRES, EACH_TYRE
 from vehgen.fit.nuisances import Condition
@@ -191,6 +193,20 @@ def small_gap(chi: float) -> str:
     return f"Too weak to name: a small gap is there (chi {chi:.3f}, where 1 is noise alone), and no effect closes enough of it"
 
 
+def odd_run(found: OddRun) -> str:
+    """Return what is told where one run does not agree with the others on the vehicle, though little seems to be missing."""
+    return (
+        f"The runs do not agree on the vehicle: with parameters of its own {found.run} would leave {found.gain:.0f} less in squares, where "
+        f"chance takes about {found.by_chance:.0f}. Another load or vehicle made that run, or an effect grows with height or speed; "
+        "it is too weak to tell which"
+    )
+
+
+def odd_run_again(found: OddRun) -> str:
+    """Return the next experiment where one run does not agree with the others."""
+    return f"repeat {found.run} with the load of the other runs, and record humps of heights and speeds between those of the runs"
+
+
 def not_seen_again(label: str) -> str:
     """Return the verdict `too_weak` where the validation runs do not show the best effect."""
     return f"Too weak to name: {label} suits the runs that it was fitted to, but the other runs do not show it"
@@ -252,16 +268,12 @@ def more_general(effect: str, forces: Sequence[str]) -> str:
     return f"{_inner(effect)}{beside} would do as well; the one with fewer numbers is named"
 
 
-def out_of_range(ratios: Mapping[str, float]) -> str:
-    """Return the verdict `insufficient_data` where base parameters far from the file's values explain the gap as well as an effect.
-
-    Parameters
-    ----------
-    ratios
-        Fitted value over the file's, by parameter.
-    """
-    told = join_names([f"{name} of {ratio:.2f} times the file's value" for name, ratio in ratios.items()], "and")
-    return f"The runs cannot tell before this is put right: {told} explains the gap as well as any effect"
+def out_of_range(freed: ModelFit) -> str:
+    """Return the verdict `insufficient_data` where base parameters far from the file's values explain the gap as well as an effect."""
+    space = freed.least_squares.misfit.problem.space
+    ratios = dict(zip(space.names, (freed.least_squares.values / space.start).tolist(), strict=True))
+    told = [f"{name} of {ratios[name]:.2f} times the file's value" for name in freed.last.freed if name in ratios]
+    return f"The runs cannot tell before this is put right: {join_names(told, 'and')} explains the gap as well as any effect"
 
 
 def stopped(count: int, best: tuple[str, float] | None) -> str:
