@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import csv
 import io
+import re
 import shutil
 from pathlib import Path
 
@@ -80,7 +81,7 @@ def write_columns(path: Path, response: vehgen.Response, values: np.ndarray) -> 
 
 
 def import_phones(folder: Path) -> None:
-    """Write the runs of docs/calibrate.md, less what they say of recorders."""
+    """Write the runs of docs/calibrate.md, less what they say of recorders and of how well speeds are known."""
     shutil.copytree(ROOT / "docs" / "examples" / "phones", folder)
     asked = [part for sensor in PHONE_SENSORS for part in ("--sensor", sensor)]
     for name in ("hump_2ms", "hump_3ms"):
@@ -90,4 +91,5 @@ def import_phones(folder: Path) -> None:
             code = command(["import", *exports, "--vehicle", "tractor5", *asked, "--hump", HUMP, "--out", str(run)])
         if code:
             raise SystemExit(f"the phones' recordings of {name} were not imported")
-        run.write_text(run.read_text(encoding="utf-8").replace("acquisition: unknown, ", ""), encoding="utf-8")
+        text = re.sub(r"^uncertainty:.*\n(?:[ ].*\n)*", "", run.read_text(encoding="utf-8"), flags=re.MULTILINE)
+        run.write_text(text.replace("acquisition: unknown, ", ""), encoding="utf-8")

@@ -41,7 +41,7 @@ def table(before: dict[str, float] | None, here: dict[str, float], work: dict[st
         "constants",
         "arithmetic [ns]",
         "reading [ns]",
-        "share of limit",
+        "limit/here",
     ]
     rows = [head, ["---"] * len(head)]
     for name, taken in here.items():
