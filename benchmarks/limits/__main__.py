@@ -31,7 +31,7 @@ def timed(source: Path) -> dict[str, float]:
 
 
 def table(before: dict[str, float] | None, here: dict[str, float], work: dict[str, Work], best: Rates) -> list[str]:
-    """Return a table in Markdown, a row a vehicle; friction, whose count of sweeps varies, has no limit."""
+    """Return a table in Markdown, a row a vehicle; a step with force laws is not counted, and has no limit."""
     head = [
         "vehicle",
         "against [ns]",

@@ -8,7 +8,7 @@ from benchmarks.hidden_effects.generator import Case, Effect, Hump, RandomRoad, 
 
 from vehgen.diagnose.collecting import force_evidence
 from vehgen.diagnose.localise import unknown_force as place_test
-from vehgen.diagnose.localise.free_form import POOR, fit_free_form, recover
+from vehgen.diagnose.localise.free_form import fit_free_form, recover
 from vehgen.diagnose.localise.recovered_force import RecoveredForce, strongest
 from vehgen.diagnose.localise.unknown_force import Place, list_places
 from vehgen.diagnose.pipeline import detect
@@ -16,7 +16,7 @@ from vehgen.fit.trial import load_trials
 from vehgen.report.figure_files import figure_svg
 from vehgen.report.plots.force_plots import plot_force
 
-K3 = 1e8
+K3 = 9e7
 CASE = Case(
     "sedan2",
     effects=(Effect("cubic_stiffness", "rear", {"k3": K3}),),
@@ -64,8 +64,8 @@ def test_the_true_spring_lies_within_the_interval_of_the_curve(spring):
 
 def test_a_cubic_spring_is_explained_on_untouched_runs_without_memory(spring):
     assert [run.validation for run in spring.runs] == [False, False, True]
-    assert spring.explained > POOR  # by how much depends on where a base fit ends whose parameters stand at their bounds
-    assert spring.hysteresis < 1 - POOR
+    assert spring.explained > 0.85
+    assert spring.hysteresis < 0.1
     assert spring.travel.share > 10 * spring.rate.share
 
 

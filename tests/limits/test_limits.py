@@ -1,8 +1,10 @@
 """The limits of kernels: counts against those of a kernel's text, and what a table makes of times and rates."""
 
+import numpy as np
 import pytest
+from benchmarks.limits import machine
 from benchmarks.limits.__main__ import table
-from benchmarks.limits.machine import Rates, Work, rates, work_of
+from benchmarks.limits.machine import Rates, Work, work_of
 from benchmarks.limits.worker import models
 
 from vehgen.codegen import write_kernel
@@ -27,8 +29,13 @@ def test_the_slower_of_arithmetic_and_reading_is_the_limit():
     assert rows[3] == "| friction | 9.00 | 6.00 | 0.67 |  |  |  |  |  |"
 
 
-def test_a_core_multiplies_and_adds_side_by_side_no_slower_than_one_after_the_other(monkeypatch):
-    monkeypatch.setattr("benchmarks.limits.machine.TIMES", 20_000)
-    found = rates()
-    assert found.mixed > 0.8 * found.fused > 0
-    assert found.read > 0
+def test_the_loops_do_what_their_rates_count(monkeypatch):
+    x = np.zeros(2 * machine.WIDTH)
+    machine._mixed(x, 0.5, 3)
+    assert set(x[: machine.WIDTH]) == {0.875}  # 0.5, 0.75, 0.875
+    assert set(x[machine.WIDTH :]) == {1.5}
+    assert machine._fused(np.zeros(machine.WIDTH), 0.5, 2) == 0.75
+    half = 8 * machine.WIDTH
+    assert machine._read(np.ones(2 * half), 0.5, 2) == 1.5 * 1.5 * half  # every number is read, once each time
+    monkeypatch.setattr(machine, "TIMES", 20_000)
+    assert min(vars(machine.rates()).values()) > 0

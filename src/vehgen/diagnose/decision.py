@@ -27,7 +27,7 @@ from vehgen.diagnose.result import Decided, DiagnosisModels
 from vehgen.diagnose.select.criteria import closes_training, excess, p_value_of, passes, unfinished
 from vehgen.diagnose.select.estimates import excluded, gain_interval
 from vehgen.diagnose.select.fitter import Fitter
-from vehgen.diagnose.select.freed_base import split_idle
+from vehgen.diagnose.select.freed_base import freed_ratios, split_idle
 from vehgen.diagnose.select.group_members import with_members
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
@@ -270,7 +270,7 @@ class Decision:
         return self._end("insufficient_data", wording.stopped(len(fits), best), "let the diagnosis run to its end")
 
     def _out_of_range(self, freed: ModelFit) -> Decided:
-        return self._end("insufficient_data", wording.out_of_range(freed), "check the file, or calibrate first")
+        return self._end("insufficient_data", wording.out_of_range(freed_ratios(freed)), "check the file, or calibrate first")
 
     def _unknown(self, first: SearchRound, reason: str = "") -> Decided:
         best = (len(first.fits), self._words(first.fits[0].last), float(np.sqrt(first.fits[0].training))) if first.fits else None

@@ -7,7 +7,6 @@ from itertools import pairwise
 
 from vehgen.diagnose.detect.odd_run import OddRun
 from vehgen.diagnose.fits.candidate import Candidate
-from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.verdict import NamedParameter
 from vehgen.effects.places import ALIKE, ALL_RUNS, ALL_SUSPENSIONS, ALL_TYRES, EACH_TYRE
 from vehgen.fit.nuisances import Condition
@@ -268,12 +267,16 @@ def more_general(effect: str, forces: Sequence[str]) -> str:
     return f"{_inner(effect)}{beside} would do as well; the one with fewer numbers is named"
 
 
-def out_of_range(freed: ModelFit) -> str:
-    """Return the verdict `insufficient_data` where base parameters far from the file's values explain the gap as well as an effect."""
-    space = freed.least_squares.misfit.problem.space
-    ratios = dict(zip(space.names, (freed.least_squares.values / space.start).tolist(), strict=True))
-    told = [f"{name} of {ratios[name]:.2f} times the file's value" for name in freed.last.freed if name in ratios]
-    return f"The runs cannot tell before this is put right: {join_names(told, 'and')} explains the gap as well as any effect"
+def out_of_range(ratios: Mapping[str, float]) -> str:
+    """Return the verdict `insufficient_data` where base parameters far from the file's values explain the gap as well as an effect.
+
+    Parameters
+    ----------
+    ratios
+        Fitted value over the file's, by parameter.
+    """
+    told = join_names([f"{name} of {ratio:.2f} times the file's value" for name, ratio in ratios.items()], "and")
+    return f"The runs cannot tell before this is put right: {told} explains the gap as well as any effect"
 
 
 def stopped(count: int, best: tuple[str, float] | None) -> str:

@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 ODD_AMONG = 3
 """So many runs there must be: of two nobody can say which is odd."""
 ODD_FACTOR, ODD_MARGIN = 4.0, 60.0
-"""So many times what chance gives, and so much more, an odd run gains. Healthy runs of an independent world gained 62 at most, of 168."""
+"""So many times what chance gives, and so much more, an odd run gains at least; healthy runs of an independent world gained 62 at most."""
 
 
 @dataclass(frozen=True)

@@ -66,6 +66,13 @@ def split_idle(fits: Sequence[ModelFit], fit_one: FitOne, count: int, edge: tupl
     return kept, sorted(idle.values(), key=_price)
 
 
+def freed_ratios(freed: ModelFit) -> dict[str, float]:
+    """Return the fitted value over the file's of every base parameter that was set free."""
+    space = freed.least_squares.misfit.problem.space
+    ratios = dict(zip(space.names, (freed.least_squares.values / space.start).tolist(), strict=True))
+    return {name: ratios[name] for name in freed.last.freed if name in ratios}
+
+
 def _price(freed: ModelFit) -> float:
     """Return what ranks freed base parameters: -2 ln of the likelihood on the training runs, with the price of each (BIC)."""
     total = sum(freed.counts.values())
