@@ -6,31 +6,12 @@ import time
 
 import numpy as np
 
-from vehgen.codegen import Excitation, Kernel, write_kernel
-from vehgen.mechanics import EquationsOfMotion, Place, PointOutput, derive
-from vehgen.road import ConstantSpeed, Hump, Track, wheel_inputs
+from benchmarks.limits.worker import N, observed, over_a_hump
+from vehgen.codegen import Kernel, write_kernel
 from vehgen.simulate.benchmark import DECIMATION, population
-from vehgen.vehicle import bundled_models, load_vehicle
+from vehgen.vehicle import bundled_models
 
-N, DT, STEPS = 304, 1e-3, 10_000
-
-
-def observed(name: str) -> EquationsOfMotion:
-    """Return a bundled vehicle with the channels of a phone on its first body."""
-    vehicle = load_vehicle(name)
-    body = next(iter(vehicle.bodies))
-    pitches = vehicle.bodies[body].motions is None or "pitch" in vehicle.bodies[body].motions
-    kinds = ("acceleration", "pitch_rate") if pitches else ("acceleration",)
-    return derive(vehicle, [PointOutput(kind, Place("s", body), kind) for kind in kinds])
-
-
-def over_a_hump(model: EquationsOfMotion) -> Excitation:
-    """Return 10 s over a hump at 2 m/s."""
-    track = Track((Hump.from_shape("half_sine", 1.0, 0.4, 0.03),))
-    wheels = wheel_inputs(track, ConstantSpeed(2.0), model.wheel_offsets(), np.arange(STEPS + 1) * DT)
-    inputs, rates = np.zeros((2, STEPS + 1, len(model.inputs)))
-    inputs[:, : wheels.heights.shape[1]], rates[:, : wheels.heights.shape[1]] = wheels.heights, wheels.rates
-    return Excitation(DT, inputs, rates, np.zeros((STEPS + 1, len(model.forces))))
+STEPS = 10_000
 
 
 def main(rounds: int = 15) -> None:
@@ -39,7 +20,7 @@ def main(rounds: int = 15) -> None:
     print("|---|---|---|---|---|---|---|---|")
     for name in bundled_models():
         model = observed(name)
-        kernel, ride, everyone = Kernel(model), over_a_hump(model), population(model, N)
+        kernel, ride, everyone = Kernel(model), over_a_hump(model, STEPS), population(model, N)
         counts = [write_kernel(model, from_rest=value).operation_counts["step"] for value in (False, True)]
         texts, gap = [], 0.0
         for n in (N, 1):
