@@ -6,6 +6,8 @@ import pytest
 from tests.oracles.laws import Branch, integrate
 from vehgen.codegen import Excitation, Kernel
 from vehgen.mechanics import Place, PointOutput, derive
+from vehgen.road import ConstantSpeed, Hump, Track, wheel_inputs
+from vehgen.simulate.benchmark import benchmark_model, population
 from vehgen.vehicle import parse_vehicle
 
 QUARTER = """
@@ -56,3 +58,15 @@ def test_halving_the_step_quarters_the_error_as_of_smooth_laws(model):
     finest = sampled(model, 6.25e-5)[:, 1]
     coarse, fine = (np.sqrt(np.mean((sampled(model, dt)[:, 1] - finest) ** 2)) for dt in (1e-3, 5e-4))
     assert coarse > 3 * fine
+
+
+def test_three_sweeps_settle_suspensions_that_stick_on_one_body():
+    """On a slow hump, a truck whose five suspensions mostly stick couples their forces most; twelve sweeps leave nothing to settle."""
+    model = benchmark_model("dry friction on all suspensions")
+    times = np.arange(3001) * 1e-3
+    wheels = wheel_inputs(Track((Hump.from_shape("half_sine", 1.0, 0.4, 0.03),)), ConstantSpeed(2.0), model.wheel_offsets(), times)
+    excitation = Excitation(1e-3, wheels.heights, wheels.rates, np.zeros((len(times), 0)))
+    found, settled = (Kernel(model, sweeps=sweeps).run(population(model, 8), excitation, 10).responses for sweeps in (None, 12))
+    error = np.sqrt(np.mean((found - settled) ** 2, axis=(0, 1)) / np.mean(settled**2, axis=(0, 1)))
+    assert error.max() < 0.02
+    assert error.min() < 0.001

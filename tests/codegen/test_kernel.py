@@ -172,10 +172,10 @@ def test_operation_counts_do_not_rise():
 
 NONLINEAR_BASELINE = {
     "asymmetric_damping": 579,
-    "asymmetric_friction": 712,
+    "asymmetric_friction": 677,
     "bump_stop": 557,
     "cubic_stiffness": 667,
-    "dry_friction": 682,
+    "dry_friction": 657,
     "elasto_plastic": 567,
     "hysteresis": 942,
     "progressive_stiffness": 517,

@@ -5,50 +5,25 @@ constant matrix of the linear step and J the elements' travel rows. Each element
     x + G_ll f_l(x) = x_free_l - sum over the others of G_lm f_m,    G = J W,
 whose left side grows with x. Off the diagonal G is small (only the bodies couple the elements), so a few sweeps, started from the forces
 of the last step, converge; all elements step at once in a sweep (Jacobi), because a chain of dependent steps would leave the processor
-waiting. Each step follows a line through the laws' present force: for each law its tangent (Newton), or, where its slope has a known bound,
-half of that bound. Such a chord never diverges on a law of bounded slope, and its division is done once per individual. For dry friction,
-which is set-valued, see friction.py.
+waiting. Where all elements push one body a sweep overshoots: friction alone on its element is damped in every other sweep, but not in the
+last, which leaves a third of the error on a truck whose suspensions stick. Each step follows a line through the laws' present force: for
+each law its tangent (Newton), or, where its slope has a known bound, half of that bound. Such a chord never diverges on a law of bounded
+slope, and its division is done once per individual. For dry friction, which is set-valued, see friction.py.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import sympy as sp
 
 from vehgen.codegen.factorisation import Factor, Matrix, factorise
-from vehgen.codegen.friction import friction_now, mean_friction
+from vehgen.codegen.friction import Slip, friction_now, mean_friction
+from vehgen.codegen.nonlinear_element import ElementAtBegin, NonlinearElement, NonlinearStep
 from vehgen.codegen.program import SAMPLE_PHASE, SETUP_PHASE, STEP_PHASE, Node, Program
 from vehgen.mechanics.energies import Element
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.law_terms import RATE, REST, STATIC, TIME_STEP, TRAVEL
-from vehgen.mechanics.laws import LawStep
-
-
-@dataclass
-class NonlinearElement:
-    """A nonlinear element in the program: its rows, compliance, laws and states."""
-
-    number: int
-    element: Element
-    row: dict[int, Node]
-    input_row: dict[int, Node]
-    steps: list[LawStep]
-    static: Node | None
-    rest: Node | None
-    states: dict[sp.Symbol, str]
-    smooth: bool
-    bounded: bool
-    friction: bool
-
-
-@dataclass(frozen=True)
-class NonlinearStep:
-    """What the laws add to a step: the velocity in its middle, and further states (leaf, value after the step)."""
-
-    middle: list[Node]
-    states: list[tuple[Node, Node]]
 
 
 class Condensation:
@@ -170,66 +145,76 @@ class Condensation:
 
     def write(self, free: list[Node], u: list[Node], v: list[Node], drives: list[Node]) -> NonlinearStep:
         """Write the sweeps of a step that would reach the velocity `free` without the laws."""
-        program, zero = self.program, self.program.number(0.0)
-        width = len(self.model.inputs)
-        starts, ground, free_rates, stops, pulls = [], [], [], [], []
-        for joint in self.joints:
-            ground.append(self._times(joint.input_row, drives[width:]))
-            starts.append(program.add(self._times(joint.row, u), self._times(joint.input_row, drives[:width])))
-            free_rates.append(self._times(joint.row, free))
-            stop = program.subtract(program.multiply(program.number(0.5), self._times(joint.row, v)), ground[-1])
-            stops.append(stop)
-            pulls.append(program.multiply(self.inverse[joint.number], program.subtract(free_rates[-1], stop)))
+        program, width = self.program, len(self.model.inputs)
+        starts = [program.add(self._times(joint.row, u), self._times(joint.input_row, drives[:width])) for joint in self.joints]
+        begins = [
+            ElementAtBegin(start, self._times(joint.input_row, drives[width:]), self._times(joint.row, free), self._times(joint.row, v))
+            for joint, start in zip(self.joints, starts, strict=True)
+        ]
         forces = [program.leaf(f"f{joint.number}", STEP_PHASE) for joint in self.joints]
-        held: list[Node] = [zero] * len(self.joints)
+        held: dict[int, Node] = {}
         before = forces
-        for _ in range(self.sweeps):
+        for number in range(self.sweeps):
             before = forces
-            forces = []
-            for joint in self.joints:
-                i = joint.number
-                rate = program.total(
-                    [free_rates[i], *(program.negate(program.multiply(self.compliance[i][j], force)) for j, force in enumerate(before))]
-                )
-                smooth, slope = self._smooth(joint, rate, starts[i], ground[i])
-                total = smooth
-                if joint.friction:
-                    friction, held[i] = self._friction(joint, before, pulls[i], smooth, slope, program.subtract(rate, stops[i]), v)
-                    total = program.add(smooth, friction)
-                share = self._relaxation(joint, slope)
-                forces.append(program.add(total, program.multiply(share, program.subtract(before[i], total))))
+            forces, held = self._sweep(before, begins, damped=number % 2 == 1 and number + 1 < self.sweeps)
         middle = [
             program.total([free[i], *(program.negate(program.multiply(self.reach[j][i], forces[j])) for j in range(len(self.joints)))])
             for i in range(self.model.n_dof)
         ]
         states = [(program.leaf(f"f{joint.number}", STEP_PHASE), forces[joint.number]) for joint in self.joints]
-        for joint in self.joints:
-            if joint.friction:
-                last = program.leaf(f"g{joint.number}", STEP_PHASE)
-                states += [(program.leaf(f"h{joint.number}", STEP_PHASE), last), (last, held[joint.number])]
-        for joint in self.joints:
-            rate = self._times(joint.row, middle)
-            d = program.add(starts[joint.number], program.multiply(self.half_h, rate))
-            moved = program.add(rate, ground[joint.number])
-            ends = {
-                sp.Symbol(f"_{name}{joint.number}_{place}", real=True): end
-                for place, step in enumerate(joint.steps)
-                for name, end in step.states.items()
-            }
-            states += [
-                (program.leaf(name, STEP_PHASE), self._read(joint, ends[symbol], d, moved, STEP_PHASE))
-                for symbol, name in joint.states.items()
-            ]
+        for number, holding in held.items():
+            last = program.leaf(f"g{number}", STEP_PHASE)
+            states += [(program.leaf(f"h{number}", STEP_PHASE), last), (last, holding)]
+        for joint, begin in zip(self.joints, begins, strict=True):
+            states += self._law_states(joint, begin, middle)
         states.append((program.leaf("residual", STEP_PHASE), self._residual(before, forces)))
         return NonlinearStep(middle, states)
 
-    def _smooth(self, joint: NonlinearElement, rate: Node, start: Node, ground: Node) -> tuple[Node, Node]:
+    def _sweep(self, before: list[Node], begins: list[ElementAtBegin], damped: bool) -> tuple[list[Node], dict[int, Node]]:
+        """Return the laws' forces, of those before, and what would hold the slip of those with friction, by their numbers."""
+        program, forces, held = self.program, list[Node](), dict[int, Node]()
+        for joint, begin, last in zip(self.joints, begins, before, strict=True):
+            i = joint.number
+            others = [program.negate(program.multiply(self.compliance[i][j], force)) for j, force in enumerate(before)]
+            rate = program.total([begin.free_rate, *others])
+            total, slope = self._smooth(joint, rate, begin)
+            if joint.friction:
+                slip = self._slip(joint, before, begin, total, slope, rate)
+                total, held[i] = program.add(total, mean_friction(program, slip)), slip.holding
+            kept = self._relaxation(joint, slope)
+            if damped and not joint.smooth:
+                kept = program.subtract(program.number(1.0), self._damping(i))
+            forces.append(program.add(total, program.multiply(kept, program.subtract(last, total))))
+        return forces, held
+
+    def _damping(self, number: int) -> Node:
+        """Return the share of its change that an element's force takes in a damped sweep."""
+        program, one = self.program, self.program.number(1.0)
+        sizes = [program.apply("abs", item) for j, item in enumerate(self.normalised[number]) if j != number]
+        return program.divide(one, program.add(one, program.multiply(program.number(0.5), program.total(sizes))))
+
+    def _law_states(self, joint: NonlinearElement, begin: ElementAtBegin, middle: list[Node]) -> list[tuple[Node, Node]]:
+        """Return the states of an element's laws with their values after the step."""
+        program = self.program
+        rate = self._times(joint.row, middle)
+        d = program.add(begin.travel, program.multiply(self.half_h, rate))
+        moved = program.add(rate, begin.ground)
+        ends = {
+            sp.Symbol(f"_{name}{joint.number}_{place}", real=True): end
+            for place, step in enumerate(joint.steps)
+            for name, end in step.states.items()
+        }
+        return [
+            (program.leaf(name, STEP_PHASE), self._read(joint, ends[symbol], d, moved, STEP_PHASE)) for symbol, name in joint.states.items()
+        ]
+
+    def _smooth(self, joint: NonlinearElement, rate: Node, begin: ElementAtBegin) -> tuple[Node, Node]:
         """Return the smooth force of an element's laws at a rate, and the slope of the step's line through it."""
         zero = self.program.number(0.0)
         if not joint.smooth:
             return zero, zero
-        d = self.program.add(start, self.program.multiply(self.half_h, rate))
-        moved = self.program.add(rate, ground)
+        d = self.program.add(begin.travel, self.program.multiply(self.half_h, rate))
+        moved = self.program.add(rate, begin.ground)
         smooth = sp.Add(*(step.force for step in joint.steps))
         slope = sp.Add(*(step.slope for step in joint.steps if step.slope is not None)) / 2
         for step in joint.steps:
@@ -243,18 +228,16 @@ class Condensation:
         stiff = program.multiply(self.compliance[joint.number][joint.number], slope)
         return program.divide(stiff, program.add(program.number(1.0), stiff))
 
-    def _friction(
-        self, joint: NonlinearElement, before: list[Node], pull: Node, smooth: Node, slope: Node, slip: Node, v: list[Node]
-    ) -> tuple[Node, Node]:
-        """Return the mean friction over the step, and the force that would keep the slip as it is."""
+    def _slip(self, joint: NonlinearElement, before: list[Node], begin: ElementAtBegin, smooth: Node, slope: Node, rate: Node) -> Slip:
+        """Return what friction over the step is found from, given the other laws' forces."""
         program, i = self.program, joint.number
+        stop = program.subtract(program.multiply(program.number(0.5), begin.moving), begin.ground)
+        pull = program.multiply(self.inverse[i], program.subtract(begin.free_rate, stop))
         others = [program.negate(program.multiply(self.normalised[i][j], force)) for j, force in enumerate(before) if j != i]
-        stopping = program.total([pull, *others, program.negate(smooth), program.multiply(slope, slip)])
-        moving = self._times(joint.row, v)
-        lost = program.multiply(program.multiply(program.number(0.5), program.add(self.inverse[i], slope)), moving)
-        holding = program.subtract(stopping, lost)
-        bound, middle = self._bound(joint)
-        return program.add(middle, mean_friction(program, program.subtract(holding, middle), lost, moving, bound)), holding
+        along = program.multiply(slope, program.subtract(rate, stop))
+        stopping = program.total([pull, *others, program.negate(smooth), along])
+        lost = program.multiply(program.multiply(program.number(0.5), program.add(self.inverse[i], slope)), begin.moving)
+        return Slip(program.subtract(stopping, lost), lost, begin.moving, *self._bound(joint))
 
     def _bound(self, joint: NonlinearElement) -> tuple[Node, Node]:
         """Return the bound of an element's friction, and what it is within the bound of."""

@@ -1,19 +1,22 @@
 """Dry friction within a step: when the slip ends, what holds it then, and what acts at a sample.
 
-A step knows two forces: the one that would stop an element's slip by its end, and the one that would keep the slip as it is. A slip s lasts
-against its friction F sign(s) for the share (stopping - holding)/(F sign(s) - holding) of the step. What follows is the holding force
-clipped to +-F: within, the element sticks; beyond, it slips back. The mean over both parts is the force of the step, so that a slip that
-ends within a step costs no order of accuracy. Friction of unequal bounds is clipped about their middle: there, holding - middle stands for
-the holding force. Where the element sticks, that mean is the force that stops the slip (Moreau,
+A step knows two forces: the one that would stop an element's slip by its end, and the one that would keep the slip as it is, H. With L the
+size of their difference, and everything counted along the slip, the slip lasts against its friction F for the share L/(F - H) of the step.
+What follows is the holding force clipped to +-F: within, the element sticks; beyond, it slips back. The mean over both parts,
+    F - max(F - H - L, 0) 2F/max(F - H, 2F),
+is the force of the step, so that a slip that ends within a step costs no order of accuracy. Friction of unequal bounds is clipped about
+their middle: there, H - middle stands for H. Where the element sticks, that mean is the force that stops the slip, H + L (Moreau,
 doi:10.1007/978-3-7091-2624-0_1).
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from vehgen.codegen.program import Node, Program
 
-SMALLEST_SQUARE = 1e-30
-"""Friction forces whose difference has a smaller square are equal [N^2]."""
+SMALLEST_BOUND = 1e-12
+"""A bound below half of this counts as that, so that nothing is divided by zero [N]."""
 SLIPPING = 200.0
 """At a sample, an element slips where more than 1/SLIPPING of the bound would be needed to stop it within a step."""
 
@@ -23,28 +26,30 @@ def clip(program: Program, force: Node, bound: Node) -> Node:
     return program.apply("min", program.apply("max", force, program.negate(bound)), bound)
 
 
-def mean_friction(program: Program, holding: Node, lost: Node, slip: Node, bound: Node) -> Node:
-    """Return the mean friction over a step.
+@dataclass(frozen=True)
+class Slip:
+    """An element that slips or sticks in a step.
 
-    Parameters
-    ----------
-    program
-        Where it is written.
-    holding
-        The force that would keep the slip as it is.
-    lost
-        What stops the slip by the end of the step, beyond `holding`.
-    slip
-        The slip at the start of the step; only its sign counts.
-    bound
-        The bound F.
+    `holding` is the force that would keep the slip as it is, `lost` what stops the slip by the end of the step beyond it, `slip` the slip
+    at the start of the step, of which only the sign counts. Friction is within `bound` of `middle`.
     """
-    first = program.multiply(bound, program.apply("sign", slip))
-    after, span = clip(program, holding, bound), program.subtract(first, holding)
-    size = program.apply("max", program.multiply(span, span), program.number(SMALLEST_SQUARE))
-    share = program.divide(program.multiply(lost, span), size)
-    share = program.apply("min", program.apply("max", share, program.number(0.0)), program.number(1.0))
-    return program.add(after, program.multiply(share, program.subtract(first, after)))
+
+    holding: Node
+    lost: Node
+    slip: Node
+    bound: Node
+    middle: Node
+
+
+def mean_friction(program: Program, item: Slip) -> Node:
+    """Return the mean friction of an element over a step."""
+    side = program.subtract(program.multiply(program.number(2.0), program.apply("step", item.slip)), program.number(1.0))
+    span = program.subtract(item.bound, program.multiply(side, program.subtract(item.holding, item.middle)))
+    missing = program.apply("max", program.subtract(span, program.apply("abs", item.lost)), program.number(0.0))
+    width = program.apply("max", program.multiply(program.number(2.0), item.bound), program.number(SMALLEST_BOUND))
+    share = program.divide(program.multiply(side, width), program.apply("max", span, width))
+    most = program.add(item.middle, program.multiply(side, item.bound))
+    return program.subtract(most, program.multiply(missing, share))
 
 
 def friction_now(program: Program, holding: Node, stopping: Node, bound: Node) -> Node:
