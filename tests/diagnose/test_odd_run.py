@@ -1,11 +1,17 @@
-"""A run that does not agree with the others on the vehicle, where recalibration and errors of runs hide it."""
+"""A run that does not agree with the others on the vehicle or a sensor, where recalibration and errors of runs hide it."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 from benchmarks.hidden_effects.generator import Case, true_parameters
 
 from tests.diagnose.conftest import HUMPS
+from vehgen.diagnose.detect.all_runs import AllRuns
 from vehgen.diagnose.detect.detection import detect
-from vehgen.diagnose.detect.odd_run import odd_run
+from vehgen.diagnose.detect.odd_run import OddChannel, OddRun, disagreement
+from vehgen.diagnose.inputs.adjustments import RunGain
+from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.diagnose.pipeline import diagnose_trials
 
 OTHER = {"kr": 0.99, "cf": 1.008, "IZ": 1.008}
@@ -23,17 +29,18 @@ def mixed(trials_of):
 def test_a_run_by_another_vehicle_is_odd(mixed):
     detection = detect(mixed)
     assert detection.is_quiet
-    found = odd_run(detection)
-    assert found is not None
+    found = disagreement(detection)
+    assert isinstance(found, OddRun)
     assert found.run == "fast"
+    assert found.others_agree
 
 
 def test_runs_by_one_vehicle_agree(detection_of):
-    assert odd_run(detection_of(runs=HUMPS)) is None
+    assert disagreement(detection_of(runs=HUMPS)) is None
 
 
 def test_two_runs_cannot_tell_which_of_them_is_odd(mixed):
-    assert odd_run(detect(mixed[1:])) is None
+    assert disagreement(detect(mixed[1:])) is None
 
 
 def test_what_hides_in_the_noise_is_told_by_the_run_that_shows_it(mixed):
@@ -42,3 +49,48 @@ def test_what_hides_in_the_noise_is_told_by_the_run_that_shows_it(mixed):
     assert "fast" in found.verdict.reason
     assert "The runs do not agree on the vehicle" in found.verdict.reason
     assert "repeat fast" in found.verdict.next_experiment
+
+
+GAIN = 1.06
+
+
+@pytest.fixture(scope="module")
+def louder(trials_of):
+    """Three runs; in the fast one the first channel reads 6 % more."""
+    found = []
+    for trial in trials_of(runs=HUMPS):
+        values = trial.recording.values.copy()
+        if trial.name == "fast":
+            values[:, 0] *= GAIN
+        found.append(replace(trial, recording=replace(trial.recording, values=values)))
+    return detect(found)
+
+
+def test_a_sensor_that_reads_more_in_one_run_is_told_with_its_factor(louder):
+    found = disagreement(louder)
+    assert isinstance(found, OddChannel)
+    assert (found.run, found.channel) == ("fast", louder.trials[0].channels[0])
+    assert found.factor == pytest.approx(GAIN, abs=4 * found.sigma)
+    assert found.sigma < 0.01
+
+
+def test_first_order_gains_are_those_of_a_fit_with_that_number_free(louder):
+    runs = AllRuns(louder)
+    run = [trial.name for trial in runs.trials].index("fast")
+    channel = runs.trials[run].channels[0]
+    own = runs.own_gain(run, 0)
+    case = BaseRefits(louder)
+    together = case.refit(case.problem)[1]
+    fit, left = case.refit(case.problem, (RunGain(channel, 0.05, 1.0, run="fast"),), (1.0,))
+    values = sum(2 * lines.size for lines in fit.misfit.whitened_spectrum(fit.x))
+    assert fit.misfit.adjusted(fit.x)[-1] == pytest.approx(1 + own.values[0], abs=2 * own.information[0, 0] ** -0.5)
+    assert (together - left) * case.excess * values == pytest.approx(own.gain, rel=0.2)
+
+
+def test_of_two_numbers_the_one_takes_what_the_other_seemed_to_need(louder):
+    """Beside the gain of the channel that has one, no parameters of its own are needed in any run."""
+    runs = AllRuns(louder)
+    run = [trial.name for trial in runs.trials].index("fast")
+    gain, vehicle = runs.own_gain(run, 0), runs.own_parameters(run)
+    assert vehicle.gain > 100 > 50 > runs.beside(vehicle, gain).gain
+    assert np.all(np.linalg.eigvalsh(runs.beside(vehicle, gain).information) > 0)

@@ -13,25 +13,25 @@ from vehgen.diagnose.collecting import run_chis
 from vehgen.diagnose.combining import Combiner
 from vehgen.diagnose.design.experiment import VISIBLE, propose_stronger
 from vehgen.diagnose.detect.detection import Detection, believable, look_again, run_gaps
-from vehgen.diagnose.detect.odd_run import odd_run
+from vehgen.diagnose.detect.odd_run import OddChannel, disagreement
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.checks import variety_notes
 from vehgen.diagnose.inputs.conditions import BEYOND
 from vehgen.diagnose.inputs.fault import MeasurementFault
-from vehgen.diagnose.inputs.judging import explain_gap, plain_mistakes, recorded_mistakes, supposed_mistakes
+from vehgen.diagnose.inputs.judging import explain_gap, moved_axles, odd_mistake, plain_mistakes, recorded_mistakes, supposed_mistakes
 from vehgen.diagnose.localise.free_form import FreeForm, fit_free_form, recover, strongest
 from vehgen.diagnose.localise.localisation import localise
 from vehgen.diagnose.naming import Naming
 from vehgen.diagnose.result import Decided, DiagnosisModels
-from vehgen.diagnose.select.criteria import closes_training, excess, p_value_of, passes, unfinished
+from vehgen.diagnose.select.criteria import excess, freed_instead, p_value_of, passes, unfinished
 from vehgen.diagnose.select.estimates import excluded, gain_interval
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import freed_ratios, split_idle
 from vehgen.diagnose.select.group_members import with_members
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
-from vehgen.diagnose.select.search import LEADING, DiagnosisProgress, SearchRound, fit_leading_again, merit, search_round
+from vehgen.diagnose.select.search import LEADING, DiagnosisProgress, SearchRound, fit_leading_again, search_round
 from vehgen.diagnose.verdict import Gap, PlaceChi, Verdict, VerdictName
 from vehgen.effects import Effect
 from vehgen.errors import InputError
@@ -87,20 +87,18 @@ class Decision:
         if detection.is_quiet:
             if mistakes := supposed_mistakes(detection):
                 return self._strained(mistakes)
-            odd = self._odd_run()
-            return odd or self._end("no_missing_effect", wording.no_missing_effect(detection.chi))
-        if mistakes := plain_mistakes(detection):
-            return self._mistaken(mistakes)
-        return self._explain_gap()
+            return self._disagreement() or self._nothing()
+        mistakes = plain_mistakes(detection)
+        return self._mistaken(mistakes) if mistakes else self._explain_gap()
 
     def _strained(self, mistakes: tuple[MeasurementFault, ...]) -> Decided:
         """Return the verdict where the base explains the runs, but supposes more of them than can be believed: an effect or a mistake."""
         believed = believable(self.detection)
-        if believed.is_quiet:
-            left = supposed_mistakes(believed)
-            return self._mistaken(left) if left else self._end("no_missing_effect", wording.no_missing_effect(believed.chi))
         other = Decision(believed, self.effects, self.everything, self.progress, self.runner)
         other.notes += self.notes
+        if believed.is_quiet:
+            left = supposed_mistakes(believed)
+            return self._mistaken(left) if left else other._disagreement() or other._nothing()
         found = other._explain_gap()
         self.interrupted = found.stopped
         chain = found.models.chosen
@@ -113,17 +111,17 @@ class Decision:
         if not detection.validation_runs:
             more = f"record at least three runs{', with two hump heights or speeds' if detection.trials[0].run.vehicle.axles else ''}"
             return self._end("insufficient_data", wording.too_few_runs(detection.chi, len(detection.trials)), more)
+        if self.base.least_squares.on_bound and (mistakes := moved_axles(detection)):
+            return self._mistaken(mistakes)
         if not self._candidates(self.base):
             raise InputError("no effect of the library can live on this vehicle")
         first = self._search_round(self.base)
         if first.stopped:
             return self._stopped()
-        for _ in range(LOOKS_AGAIN):
-            if freed := self._freed(first):
+        for look in range(LOOKS_AGAIN + 1):
+            first = self._again(first) if look else first
+            if freed := freed_instead(first, self.base):
                 return self._out_of_range(freed)
-            first = self._again(first)
-        if freed := self._freed(first):
-            return self._out_of_range(freed)
         weak = self._add(first) if first.fits else self._all_idle()
         if self.interrupted:
             return self._name(self.chain) if self.chain else self._stopped()
@@ -151,11 +149,6 @@ class Decision:
         self.rounds[:] = [replace(first, current=self.base, fits=tuple(fits), idle=tuple(idle))]
         return self.rounds[-1]
 
-    def _freed(self, first: SearchRound) -> ModelFit | None:
-        """Return base parameters that close the gap, freed as an effect frees them, as well as any effect does; None where none do."""
-        freed = next((fit for fit in first.idle[:1] if closes_training(fit, self.base)), None)
-        return freed if freed is not None and (not first.fits or merit(freed) <= merit(first.fits[0])) else None
-
     def _add(self, first: SearchRound) -> Decided | None:
         """Add what passes to the chain; return the verdict where the best effect is too weak to be named."""
         best = first.fits[0]
@@ -174,12 +167,19 @@ class Decision:
     def _all_idle(self) -> Decided | None:
         """Return the verdict where a gap is small, and no effect does more for it than base parameters do."""
         chi = self.detection.chi
-        return self._odd_run() or self._end("too_weak", wording.small_gap(chi)) if chi <= limit.WEAK else None
+        return self._disagreement() or self._end("too_weak", wording.small_gap(chi)) if chi <= limit.WEAK else None
 
-    def _odd_run(self) -> Decided | None:
-        """Return the verdict where little seems to be missing, but a run asks for a vehicle of its own."""
-        odd = odd_run(self.detection)
-        return None if odd is None else self._end("too_weak", wording.odd_run(odd), wording.odd_run_again(odd))
+    def _disagreement(self) -> Decided | None:
+        """Return the verdict where little seems to be missing, but a run or one of its channels does not agree with the others."""
+        odd = disagreement(self.detection)
+        if odd is None:
+            return None
+        if isinstance(odd, OddChannel) or (odd.others_agree and self.rounds):  # else an effect that was not tried may do it
+            return self._mistaken((odd_mistake(odd),))
+        return self._end("too_weak", wording.odd_run(odd), wording.odd_run_again(odd))
+
+    def _nothing(self) -> Decided:
+        return self._end("no_missing_effect", wording.no_missing_effect(self.detection.chi))
 
     def _other_mistakes(self, first: SearchRound) -> Decided | None:
         """Return the verdict where a mistake that looks like an effect explains the runs, and no effect of the vehicle does.
@@ -200,7 +200,7 @@ class Decision:
         if p > limit.SIGNIFICANT and (good or chi <= VISIBLE):
             return self._propose(wording.not_told_from_chance(chi, p), best)
         if chi <= limit.WEAK and not good:
-            return self._odd_run() or self._propose(wording.small_gap(chi), best)
+            return self._disagreement() or self._propose(wording.small_gap(chi), best)
         if not good:
             return None
         interval = gain_interval(self.base, best, self.validation_runs)

@@ -53,20 +53,29 @@ class Linearisation:
         prior[:, self.n_unknowns - self.n_priors :] = np.eye(self.n_priors)
         return np.vstack([*(flatten(lines, first=1).T for lines in self.spectra), prior])
 
+    def rows(self, number: int) -> Array:
+        """Return a trial's derivatives by the unknowns that it depends on as real numbers, `shape (n_columns, 2 n_lines n_channels)`."""
+        return real_rows(self.blocks[number])
+
     def normal(self, lines: list[Complex], x: Array) -> tuple[Array, Array]:
         """Return J'J `shape (n_unknowns, n_unknowns)` and J'r `shape (n_unknowns,)`, priors of the errors included.
 
         `lines` are each trial's whitened residuals at the unknowns x.
         """
         information, gradient = np.zeros((self.n_unknowns, self.n_unknowns)), np.zeros(self.n_unknowns)
-        for block, columns, line in zip(self.blocks, self.columns, lines, strict=True):
-            rows = np.ascontiguousarray(block).view(np.float64).reshape(len(block), 2 * line.size)
+        for number, (columns, line) in enumerate(zip(self.columns, lines, strict=True)):
+            rows = self.rows(number)
             information[np.ix_(columns, columns)] += 2 * rows @ rows.T
-            gradient[columns] += 2 * rows @ np.ascontiguousarray(line).ravel().view(np.float64)
+            gradient[columns] += 2 * rows @ real_rows(line[None])[0]
         held = np.arange(self.n_unknowns - self.n_priors, self.n_unknowns)
         information[held, held] += 1.0
         gradient[held] += x[held]
         return information, gradient
+
+
+def real_rows(lines: Complex) -> Array:
+    """Return whitened lines `shape (n, n_lines, n_channels)` as real numbers, `shape (n, 2 n_lines n_channels)`: half of unit variance."""
+    return np.ascontiguousarray(lines).view(np.float64).reshape(len(lines), 2 * lines[0].size)
 
 
 def linearise(misfit: Misfit, x: Array, *, one_sided: bool = False, slopes_of: Linearisation | None = None) -> Linearisation:

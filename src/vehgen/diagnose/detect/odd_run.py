@@ -1,9 +1,10 @@
-"""Whether runs over humps agree on the vehicle: what one of them gains by parameters of its own.
+"""Whether runs over humps agree on the vehicle and on what its sensors read.
 
 A base model that fits all runs within the noise may hide what is missing: recalibrated parameters and the errors of runs share it out
 among them. A run that was made with another load, or in which an effect that grows with travel shows most, asks for other parameters than
-the rest. To the first order about the fit to all runs it can be told, run by run, by how much -2 ln L would fall if only that run had
-parameters of its own. Errors of recorders and drivers hardly look like it: healthy runs gain about as many as there are parameters.
+the rest; a sensor that was changed for one run reads more in it. To the first order about the fit to all runs it can be told by how much
+-2 ln L would fall if only that run had parameters, or only one of its channels a gain, of its own. Errors of recorders and drivers hardly
+look like it: healthy runs gain about as many as there are numbers.
 """
 
 from __future__ import annotations
@@ -11,69 +12,89 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
+from vehgen.diagnose.detect.all_runs import AllRuns, OwnNumbers
 from vehgen.diagnose.detect.road_error import measured_profiles
-from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, refine
-from vehgen.fit.least_squares import LeastSquaresFit
-from vehgen.fit.linearisation import linearise
 
 if TYPE_CHECKING:
     from vehgen.diagnose.detect.detection import Detection
 
-Array = NDArray[np.float64]
 ODD_AMONG = 3
 """So many runs there must be: of two nobody can say which is odd."""
 ODD_FACTOR, ODD_MARGIN = 4.0, 60.0
 """So many times what chance gives, and so much more, an odd run gains at least; healthy runs of an independent world gained 62 at most."""
+AGREE = 3.0
+"""Runs agree that gain at most so many times what chance gives: healthy ones gained 2.9 times that at most."""
+ODD_CHANNEL = 16.0
+"""So much an odd channel gains at least, four standard deviations: healthy ones gained 6.2 at most."""
+ODD_READING = 0.05
+"""By so much an odd channel reads more or less at least."""
 
 
 @dataclass(frozen=True)
 class OddRun:
-    """A run that asks for a vehicle of its own: -2 ln L would fall by `gain`, where chance gives about `by_chance`."""
+    """A run that asks for a vehicle of its own: -2 ln L would fall by `gain`, where chance gives about `by_chance`.
+
+    `others_agree` is whether the other runs over humps agree on the vehicle once this one has its own: an effect would show in them, too,
+    unless something touches in this run only.
+    """
 
     run: str
     gain: float
     by_chance: float
+    others_agree: bool
 
 
-def odd_run(detection: Detection) -> OddRun | None:
-    """Return the run over humps that disagrees most with the others on the vehicle; None where all agree as well as chance lets them.
+@dataclass(frozen=True)
+class OddChannel:
+    """A channel that reads `factor` times, give or take `sigma`, in one run what it reads in the others."""
+
+    run: str
+    channel: str
+    factor: float
+    sigma: float
+
+
+def disagreement(detection: Detection) -> OddRun | OddChannel | None:
+    """Return what disagrees most: one channel of one run over humps, if that is all, or else a run; None where all agree.
 
     Measured roads have errors of their own and are left out; so are rigs.
     """
     trials = detection.trials
-    judged = [trial.name for trial in trials if trial.scenario.track.parts and not measured_profiles(trial)]
-    if len(trials) < ODD_AMONG or not judged:
+    if len(trials) < ODD_AMONG or not any(_is_judged(detection, trial.name) for trial in trials):
         return None
-    joint = _fit_all(detection)
-    found = max((item for item in _own_parameters(joint) if item.run in judged), key=lambda item: item.gain)
-    return found if found.gain > ODD_MARGIN + ODD_FACTOR * found.by_chance else None
+    runs = AllRuns(detection)
+    judged = [number for number, trial in enumerate(runs.trials) if _is_judged(detection, trial.name)]
+    vehicles = [runs.own_parameters(number) for number in judged]
+    return _odd_channel(runs, vehicles) or _odd_run(runs, vehicles)
 
 
-def _fit_all(detection: Detection) -> LeastSquaresFit:
-    """Return the base fitted to all runs, validation runs too."""
-    fit, parts = detection.base.least_squares, detection.base.parts
-    return refine(fit.misfit.problem.with_trials(detection.trials), fit, fit.x, (), fit.misfit.noises, known_errors=parts)
+def _is_judged(detection: Detection, run: str) -> bool:
+    trial = next(trial for trial in detection.trials if trial.name == run)
+    return bool(trial.scenario.track.parts) and not measured_profiles(trial)
 
 
-def _own_parameters(fit: LeastSquaresFit) -> list[OddRun]:
-    """Return what every run gains by parameters of its own that have the base's priors about the common ones."""
-    misfit = fit.misfit
-    n, space = misfit.n_parameters, misfit.problem.space
-    lines, linear = misfit.whitened_spectrum(fit.x), linearise(misfit, fit.x, one_sided=True)
-    prior = 1 / BASE_PRIOR_SIGMA**2
-    information, gradient = linear.normal(lines, fit.x)
-    information[:n, :n] += prior * np.eye(n)
-    gradient[:n] += prior * (fit.x[:n] - space.unit(space.start))
-    inverse = np.linalg.pinv(information, hermitian=True)
-    found = []
-    for trial, block, columns, line in zip(misfit.problem.trials, linear.blocks, linear.columns, lines, strict=True):
-        rows = np.ascontiguousarray(block).view(np.float64).reshape(len(block), 2 * line.size)
-        cross = np.zeros((n, len(information)))
-        cross[:, columns] = 2 * rows[:n] @ rows.T
-        own = cross[:, :n] + prior * np.eye(n) - cross @ inverse @ cross.T
-        pull = 2 * rows[:n] @ np.ascontiguousarray(line).ravel().view(np.float64) - cross @ inverse @ gradient
-        found.append(OddRun(trial.name, float(pull @ np.linalg.solve(own, pull)), n))
-    return found
+def _is_odd(vehicle: OwnNumbers) -> bool:
+    return vehicle.gain > ODD_MARGIN + ODD_FACTOR * len(vehicle.pull)
+
+
+def _odd_run(runs: AllRuns, vehicles: list[OwnNumbers]) -> OddRun | None:
+    worst = max(vehicles, key=lambda item: item.gain)
+    if not _is_odd(worst):
+        return None
+    by_chance = len(worst.pull)
+    agree = all(runs.beside(item, worst).gain <= AGREE * by_chance for item in vehicles if item is not worst)
+    return OddRun(runs.trials[worst.run].name, worst.gain, by_chance, agree)
+
+
+def _odd_channel(runs: AllRuns, vehicles: list[OwnNumbers]) -> OddChannel | None:
+    """Return a channel beside which no other one is odd, and no run."""
+    gains = {(item.run, c): runs.own_gain(item.run, c) for item in vehicles for c in range(len(runs.trials[item.run].channels))}
+    (run, channel), best = max(gains.items(), key=lambda item: item[1].gain)
+    more = float(best.values[0])
+    if best.gain < ODD_CHANNEL or abs(more) < ODD_READING:
+        return None
+    others = [runs.beside(own, best) for key, own in gains.items() if key != (run, channel)]
+    if any(own.gain > ODD_CHANNEL for own in others) or any(_is_odd(runs.beside(vehicle, best)) for vehicle in vehicles):
+        return None
+    trial = runs.trials[run]
+    return OddChannel(trial.name, trial.channels[channel], 1 + more, float(best.information[0, 0] ** -0.5))

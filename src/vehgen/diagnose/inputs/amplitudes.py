@@ -146,13 +146,17 @@ def gain_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     name = trial.channels[int(channel)]
 
     def describe(numbers: Array) -> tuple[MeasurementFault, ...]:
-        gain = float(numbers[-1])
-        message = f"{name} reads {gain:.3g} times what it reads in the other runs {place_words((trial.name,), case.runs)}"
-        cure = "find out what was changed on this sensor, put its column right, or leave the channel out of this run"
-        return (MeasurementFault("gain", (trial.name,), (name,), message, cure, gain),)
+        return (other_gain(trial.name, name, float(numbers[-1])),)
 
     adjustment = RunGain(name, 0.05, 1.0, run=trial.name)
     yield Hypothesis(case.trials, describe, ONE_CHANNEL, (adjustment,), (begin,))
+
+
+def other_gain(run: str, channel: str, gain: float) -> MeasurementFault:
+    """Return that a channel reads `gain` times as much in one run as in the others."""
+    message = f"{channel} reads {gain:.3g} times what it reads in the other runs in {run}"
+    cure = "find out what was changed on this sensor, put its column right, or leave the channel out of this run"
+    return MeasurementFault("gain", (run,), (channel,), message, cure, gain)
 
 
 def drift_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:

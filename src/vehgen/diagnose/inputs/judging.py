@@ -7,8 +7,9 @@ from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from vehgen.diagnose.detect.odd_run import OddChannel, OddRun
 from vehgen.diagnose.detect.road_error import measured_profiles
-from vehgen.diagnose.inputs.amplitudes import dead_hypotheses, drift_hypotheses, gain_hypotheses, hidden_units, unit_hypotheses
+from vehgen.diagnose.inputs.amplitudes import dead_hypotheses, drift_hypotheses, gain_hypotheses, hidden_units, other_gain, unit_hypotheses
 from vehgen.diagnose.inputs.checks import check_inputs
 from vehgen.diagnose.inputs.clocks import clock_hypotheses
 from vehgen.diagnose.inputs.conditions import BEYOND, findings_of_conditions, moved_roads
@@ -21,7 +22,7 @@ from vehgen.diagnose.inputs.labels import label_hypotheses
 from vehgen.diagnose.inputs.levels import level_hypotheses
 from vehgen.diagnose.inputs.recorders import filter_hypotheses, rate_hypotheses, slow_recorder
 from vehgen.diagnose.inputs.refits import BaseRefits
-from vehgen.diagnose.inputs.vehicle import axle_hypotheses, other_vehicle, strange_run_hypotheses, unrelated_recording
+from vehgen.diagnose.inputs.vehicle import axle_hypotheses, other_vehicle, strange_run, strange_run_hypotheses, unrelated_recording
 from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.fit.least_squares import LeastSquaresFit
 
@@ -162,9 +163,21 @@ def supposed_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
     return (*found, *unrelated_recording(detection.base.least_squares), *moved, *slow)
 
 
+def odd_mistake(odd: OddRun | OddChannel) -> MeasurementFault:
+    """Return the mistake by which a run, or one of its channels, does not agree with the others."""
+    return other_gain(odd.run, odd.channel, odd.factor) if isinstance(odd, OddChannel) else strange_run(odd.run)
+
+
 def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
     """Return mistakes that no effect of the library looks like."""
     return find_mistakes(BaseRefits(detection), plain_only=True)
+
+
+def moved_axles(detection: Detection) -> tuple[MeasurementFault, ...]:
+    """Return that axles are elsewhere than the vehicle file says, where that alone leaves noise: no effect need be looked for."""
+    case = BaseRefits(detection)
+    best = _least(_judge(case, (axle_hypotheses,)))
+    return best.faults if best is not None and best.left * case.excess <= FLOOR and not best.strained else ()
 
 
 def explain_gap(

@@ -128,10 +128,15 @@ def strange_run_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
         left = case.refit(wide, unit=np.asarray(wide.space.unit(wide.space.start)))[1]
         if left > max(OTHER, (NOISE_FLOOR**2 - 1) / case.excess):
             continue
-        message = f"{trial.name} does not go with the other runs: a vehicle fits them, and another one, of the same make, fits {trial.name}"
-        cure = "check that it is a run of this vehicle, loaded as in the other runs; else leave it out, or state its parameters with `set`"
         blind = frozenset((trial.name, channel) for channel in trial.channels)
-        yield Hypothesis(case.trials, always(MeasurementFault("other_vehicle", (trial.name,), (), message, cure)), STRANGE, blind=blind)
+        yield Hypothesis(case.trials, always(strange_run(trial.name)), STRANGE, blind=blind)
+
+
+def strange_run(run: str) -> MeasurementFault:
+    """Return that one run is of another vehicle than the others."""
+    message = f"{run} does not go with the other runs: a vehicle fits them, and another one, of the same make, fits {run}"
+    cure = "check that it is a run of this vehicle, loaded as in the other runs; else leave it out, or state its parameters with `set`"
+    return MeasurementFault("other_vehicle", (run,), (), message, cure)
 
 
 def other_vehicle(case: BaseRefits) -> tuple[MeasurementFault, ...]:

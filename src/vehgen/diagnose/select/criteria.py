@@ -10,7 +10,7 @@ from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.estimates import p_value
-from vehgen.diagnose.select.search import SearchRound, own_numbers
+from vehgen.diagnose.select.search import SearchRound, merit, own_numbers
 from vehgen.diagnose.select.special_cases import does_as_well
 
 
@@ -28,6 +28,12 @@ def closes_training(fit: ModelFit, base: ModelFit) -> bool:
     """Return whether a fit closes the gap of the base on the training runs, and AT_LEAST a share of it where that is small."""
     after, before = excess(fit.training), excess(base.training)
     return after <= limit.AT_LEAST * before and _closes(after, before)
+
+
+def freed_instead(first: SearchRound, base: ModelFit) -> ModelFit | None:
+    """Return base parameters that close the gap, freed as an effect frees them, as well as any effect does; None where none do."""
+    freed = next((fit for fit in first.idle[:1] if closes_training(fit, base)), None)
+    return freed if freed is not None and (not first.fits or merit(freed) <= merit(first.fits[0])) else None
 
 
 def _closes(after: float, before: float) -> bool:
