@@ -51,12 +51,12 @@ def test_what_hides_in_the_noise_is_told_by_the_run_that_shows_it(mixed):
     assert "repeat fast" in found.verdict.next_experiment
 
 
-GAIN = 1.06
+GAIN = 1.1
 
 
 @pytest.fixture(scope="module")
 def louder(trials_of):
-    """Three runs; in the fast one the first channel reads 6 % more."""
+    """Three runs; in the fast one the first channel reads 10 % more."""
     found = []
     for trial in trials_of(runs=HUMPS):
         values = trial.recording.values.copy()
@@ -83,7 +83,7 @@ def test_first_order_gains_are_those_of_a_fit_with_that_number_free(louder):
     together = case.refit(case.problem)[1]
     fit, left = case.refit(case.problem, (RunGain(channel, 0.05, 1.0, run="fast"),), (1.0,))
     values = sum(2 * lines.size for lines in fit.misfit.whitened_spectrum(fit.x))
-    assert fit.misfit.adjusted(fit.x)[-1] == pytest.approx(1 + own.values[0], abs=2 * own.information[0, 0] ** -0.5)
+    assert fit.misfit.adjusted(fit.x)[-1] == pytest.approx(1 + own.values[0], abs=0.05 * (GAIN - 1))
     assert (together - left) * case.excess * values == pytest.approx(own.gain, rel=0.2)
 
 

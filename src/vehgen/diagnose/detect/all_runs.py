@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from vehgen.diagnose.detect.detection import Detection
 
 Array = NDArray[np.float64]
-PRIOR = 1 / BASE_PRIOR_SIGMA**2
+BASE_PRIOR_WEIGHT = 1 / BASE_PRIOR_SIGMA**2
+"""What a base parameter's prior adds to the information on it, in the unit cube."""
 
 
 @dataclass(frozen=True)
@@ -55,14 +56,14 @@ class AllRuns:
         self._lines = misfit.whitened_spectrum(self.fit.x)
         self._linear = linearise(misfit, self.fit.x, one_sided=True)
         information, self._gradient = self._linear.normal(self._lines, self.fit.x)
-        information[:n, :n] += PRIOR * np.eye(n)
-        self._gradient[:n] += PRIOR * (self.fit.x[:n] - space.unit(space.start))
+        information[:n, :n] += BASE_PRIOR_WEIGHT * np.eye(n)
+        self._gradient[:n] += BASE_PRIOR_WEIGHT * (self.fit.x[:n] - space.unit(space.start))
         self._inverse = np.linalg.pinv(information, hermitian=True)
 
     def own_parameters(self, run: int) -> OwnNumbers:
         """Return that a run has base parameters of its own, with the base's priors about the common ones."""
         n = self.misfit.n_parameters
-        return self._own(run, self._linear.rows(run)[:n], PRIOR * np.eye(n))
+        return self._own(run, self._linear.rows(run)[:n], BASE_PRIOR_WEIGHT * np.eye(n))
 
     def own_gain(self, run: int, channel: int) -> OwnNumbers:
         """Return that a channel reads more in a run than in the others, relative to what it should."""

@@ -22,12 +22,12 @@ ODD_AMONG = 3
 """So many runs there must be: of two nobody can say which is odd."""
 ODD_FACTOR, ODD_MARGIN = 4.0, 60.0
 """So many times what chance gives, and so much more, an odd run gains at least; healthy runs of an independent world gained 62 at most."""
-AGREE = 3.0
+OTHERS_AGREE = 3.0
 """Runs agree that gain at most so many times what chance gives: healthy ones gained 2.9 times that at most."""
-ODD_CHANNEL = 16.0
-"""So much an odd channel gains at least, four standard deviations: healthy ones gained 6.2 at most."""
-ODD_READING = 0.05
-"""By so much an odd channel reads more or less at least."""
+ODD_CHANNEL = 36.0
+"""So much an odd channel gains at least, six standard deviations: healthy ones gained 15 at most."""
+ODD_READING = 0.08
+"""By so much an odd channel reads more or less at least; healthy ones that gained more than 6 read 3 % more at most."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def _odd_run(runs: AllRuns, vehicles: list[OwnNumbers]) -> OddRun | None:
     if not _is_odd(worst):
         return None
     by_chance = len(worst.pull)
-    agree = all(runs.beside(item, worst).gain <= AGREE * by_chance for item in vehicles if item is not worst)
+    agree = all(runs.beside(item, worst).gain <= OTHERS_AGREE * by_chance for item in vehicles if item is not worst)
     return OddRun(runs.trials[worst.run].name, worst.gain, by_chance, agree)
 
 
