@@ -45,7 +45,7 @@ class Trial:
 
     `values` are the vehicle's free parameters in this run before anything is searched [SI]; `fixed` names those that the run file sets
     itself, which no search changes. `jumps` tells of a response that jumps, as one with dry friction does (see
-    :mod:`vehgen.fit.resolution`).
+    :mod:`vehgen.fit.resolution`); `lines` are frequencies [Hz] of what shakes the vehicle all the time and is no noise.
     """
 
     name: str
@@ -56,6 +56,7 @@ class Trial:
     values: dict[str, float]
     fixed: tuple[str, ...]
     jumps: bool = False
+    lines: tuple[float, ...] = ()
 
     @property
     def channels(self) -> tuple[str, ...]:

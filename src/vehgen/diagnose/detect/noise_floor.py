@@ -58,6 +58,8 @@ CLEARLY_LOUDER = 3.0
 """Lead-ins are louder than their noise where their power in a band is so many standard deviations above it."""
 LINE_STANDS_OUT = 20.0
 """A spectral line of more than so many times the median power of its band is none of them."""
+LINE_WIDTH, LINE_LEAKS = 0.03, 2.5
+"""A line that is no noise reaches this share of its frequency to both sides, or else so many lines."""
 STEADY = 3.0
 """The loudest quarter of a quiet lead-in is less than this many times as loud as the middling one."""
 LARGEST_RATIO = 4.0
@@ -191,9 +193,11 @@ def _with_own_level(part: Trial | None, noise: Noise, band: tuple[float, float])
 
 
 def lead_in_lines(part: Trial, band: tuple[float, float]) -> tuple[Complex, RoadAnswer]:
-    """Return the spectral lines within a band [Hz] of a lead-in without its mean, and the road's way into them."""
+    """Return the spectral lines within a band [Hz] of a lead-in without its mean, and the road's way into them; none that is no noise."""
     frequency = np.asarray(np.fft.rfftfreq(len(part.recording.time), part.recording.dt), dtype=np.float64)
     inside = (frequency >= max(band[0], 1.0)) & (frequency <= band[1])
+    for line in part.lines:
+        inside &= np.abs(frequency - line) > max(LINE_WIDTH * line, LINE_LEAKS * frequency[1])
     lines = transform(part.recording.values - part.recording.values.mean(axis=0), part.recording.dt, inside)
     return lines, road_answer(part, frequency[inside], part.values)
 

@@ -1,0 +1,65 @@
+"""What shakes a vehicle all the time, before the hump too, is no noise: an engine's line, and a wheel's that is out of round."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.diagnose.conftest import HUMPS
+from vehgen.diagnose.detect.detection import detect
+from vehgen.diagnose.detect.noise_floor import lead_in, lead_in_lines
+from vehgen.diagnose.detect.steady_lines import steady_lines
+
+ENGINE_HZ, TURNS_PER_M = 17.0, 2.5
+LOUD = 8.0
+"""The line's amplitude over the noise of a channel."""
+
+
+@pytest.fixture(scope="module")
+def shaken(trials_of, detection_of):
+    """Return a function that adds a line to the first channel of the runs named, at a frequency that depends on their speed."""
+    sigma = {name: noise.sigma[0] for name, noise in detection_of(runs=HUMPS).floor.noises.items()}
+
+    def add(frequency, names=("low", "high", "fast")):
+        found = []
+        for trial in trials_of(runs=HUMPS):
+            values = trial.recording.values.copy()
+            if trial.name in names:
+                phase = 2 * np.pi * frequency(trial.scenario.top_speed) * trial.recording.time
+                values[:, 0] += LOUD * sigma[trial.name] * np.sin(phase + len(found))
+            found.append(replace(trial, recording=replace(trial.recording, values=values)))
+        return found
+
+    return add
+
+
+def test_the_line_of_an_engine_is_found_and_takes_no_part_in_the_noise(shaken, detection_of):
+    clean, found = detection_of(runs=HUMPS), detect(shaken(lambda speed: ENGINE_HZ))
+    assert not found.is_quiet
+    for trial in found.trials:
+        assert trial.lines
+        assert np.abs(np.array(trial.lines) - ENGINE_HZ).max() < 0.5
+        ratio = found.floor.noises[trial.name].sigma / clean.floor.noises[trial.name].sigma
+        assert ratio == pytest.approx(np.ones(len(ratio)), rel=0.2)
+
+
+def test_the_line_of_a_wheel_follows_the_speed(shaken):
+    found = detect(shaken(lambda speed: TURNS_PER_M * speed))
+    assert not found.is_quiet
+    for trial in found.trials:
+        assert trial.lines == pytest.approx([TURNS_PER_M * trial.scenario.top_speed] * len(trial.lines), rel=0.05)
+        assert trial.lines
+
+
+def test_a_line_of_one_run_and_none_at_all_change_nothing(shaken, detection_of):
+    assert not steady_lines(detection_of(runs=HUMPS).base)
+    assert not any(trial.lines for trial in detect(shaken(lambda speed: ENGINE_HZ, names=("high",))).trials)
+
+
+def test_a_lead_in_is_seen_without_its_lines(trials_of):
+    part = next(item for trial in trials_of(runs=HUMPS) if (item := lead_in(trial)) is not None)
+    kept = lead_in_lines(replace(part, lines=(ENGINE_HZ,)), (0.5, 40.0))[1].frequency
+    every = lead_in_lines(part, (0.5, 40.0))[1].frequency
+    lost = np.setdiff1d(every, kept)
+    assert lost.min() < ENGINE_HZ < lost.max()
+    assert 5 <= len(lost) <= 7
