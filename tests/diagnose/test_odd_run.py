@@ -7,12 +7,14 @@ import pytest
 from benchmarks.hidden_effects.generator import Case, true_parameters
 
 from tests.diagnose.conftest import HUMPS
+from vehgen.diagnose import decision
 from vehgen.diagnose.detect.all_runs import AllRuns
 from vehgen.diagnose.detect.detection import detect
 from vehgen.diagnose.detect.odd_run import OddChannel, OddRun, disagreement
 from vehgen.diagnose.inputs.adjustments import RunGain
 from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.diagnose.pipeline import diagnose_trials
+from vehgen.effects import library
 
 OTHER = {"kr": 0.99, "cf": 1.008, "IZ": 1.008}
 """What the other vehicle has of some parameters: so little that its run nearly agrees, in recordings as good as these."""
@@ -43,10 +45,24 @@ def test_two_runs_cannot_tell_which_of_them_is_odd(mixed):
     assert disagreement(detect(mixed[1:])) is None
 
 
-def test_what_hides_in_the_noise_is_told_by_the_run_that_shows_it(mixed):
-    found = diagnose_trials(mixed)
+@pytest.fixture(scope="module")
+def spring():
+    """The effect that is tried: what the others of the library do is not asked here."""
+    return [library()["cubic_stiffness"]]
+
+
+def test_a_run_by_another_vehicle_is_told_where_no_effect_explains_it(mixed, spring):
+    found = diagnose_trials(mixed, spring)
+    assert found.verdict.verdict == "measurement_fault"
+    assert [(item.kind, item.runs) for item in found.verdict.faults] == [("other_vehicle", ("fast",))]
+    assert "loaded as in the other runs" in found.verdict.faults[0].cure
+
+
+def test_a_run_that_disagrees_is_told_without_a_cause_where_the_others_do_not_agree_either(mixed, spring, monkeypatch):
+    odd = disagreement(detect(mixed))
+    monkeypatch.setattr(decision, "disagreement", lambda detection: replace(odd, others_agree=False))
+    found = diagnose_trials(mixed, spring)
     assert found.verdict.verdict == "too_weak"
-    assert "fast" in found.verdict.reason
     assert "The runs do not agree on the vehicle" in found.verdict.reason
     assert "repeat fast" in found.verdict.next_experiment
 

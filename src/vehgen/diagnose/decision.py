@@ -24,7 +24,7 @@ from vehgen.diagnose.localise.free_form import FreeForm, fit_free_form, recover,
 from vehgen.diagnose.localise.localisation import localise
 from vehgen.diagnose.naming import Naming
 from vehgen.diagnose.result import Decided, DiagnosisModels
-from vehgen.diagnose.select.criteria import excess, freed_instead, p_value_of, passes, unfinished
+from vehgen.diagnose.select.criteria import explained_shares, freed_instead, p_value_of, passes, unfinished
 from vehgen.diagnose.select.estimates import excluded, gain_interval
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import freed_ratios, split_idle
@@ -40,8 +40,6 @@ from vehgen.fit.parallel import HERE, Runner
 LOOK_AGAIN_SHARE = 0.5
 """Where the best candidate leaves no more than this share of the excess, recorder and profiles are judged by it."""
 LOOKS_AGAIN = 2
-NEAREST = 4
-"""So many of the effects that come nearest are told where nothing can be named."""
 MUCH_QUIETER = 2.0
 """Where noise is found to be less by so much than what candidates were last weighed by, all of them are weighed anew."""
 
@@ -68,7 +66,7 @@ class Decision:
 
     @property
     def validation_runs(self) -> list[str]:
-        """Names of the validation runs."""
+        """Their names."""
         return [trial.name for trial in self.detection.validation_runs]
 
     def decide(self) -> Decided:
@@ -171,12 +169,16 @@ class Decision:
 
     def _disagreement(self) -> Decided | None:
         """Return the verdict where little seems to be missing, but a run or one of its channels does not agree with the others."""
-        odd = disagreement(self.detection)
-        if odd is None:
+        if (odd := disagreement(self.detection)) is None:
             return None
-        if isinstance(odd, OddChannel) or (odd.others_agree and self.rounds):  # else an effect that was not tried may do it
+        if isinstance(odd, OddChannel) or (odd.others_agree and self._no_effect_passes()):
             return self._mistaken((odd_mistake(odd),))
         return self._end("too_weak", wording.odd_run(odd), wording.odd_run_again(odd))
+
+    def _no_effect_passes(self) -> bool:
+        """Whether the library has been tried, now if not before, and nothing of it passes."""
+        first = (self.rounds or [self._search_round(self.base)])[0]
+        return not first.stopped and not any(passes(fit, self.base) for fit in first.fits[:1])
 
     def _nothing(self) -> Decided:
         return self._end("no_missing_effect", wording.no_missing_effect(self.detection.chi))
@@ -279,12 +281,10 @@ class Decision:
         if strained := [item.message for item in supposed_mistakes(self.detection)]:
             self.notes.append(wording.supposed(strained))
         if first.fits:
-            shares = [1 - excess(fit.training) / max(excess(self.base.training), 1e-9) for fit in first.fits[:NEAREST]]
-            self.notes.append(wording.ranked([(self._words(fit.last), share) for fit, share in zip(first.fits, shares, strict=False)]))
+            self.notes.append(wording.ranked([(self._words(fit.last), share) for fit, share in explained_shares(first, self.base)]))
         causes = [wording.force_words(item.place.kind, item.place.name) for item in first.passed[:3]]
         ended = self._end("not_in_library", reason or wording.not_in_library(best, causes))
-        shown = strongest(first.passed)
-        law = None if shown is None else fit_free_form(recover(self.detection, shown))
+        law = None if (shown := strongest(first.passed)) is None else fit_free_form(recover(self.detection, shown))
         if law is None:
             return ended
         verdict = replace(ended.verdict, free_form=law.to_dict(), notes=(*ended.verdict.notes, law.describe()))

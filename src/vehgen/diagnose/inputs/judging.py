@@ -174,10 +174,12 @@ def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
 
 
 def moved_axles(detection: Detection) -> tuple[MeasurementFault, ...]:
-    """Return that axles are elsewhere than the vehicle file says, where that alone leaves noise: no effect need be looked for."""
+    """Return that axles are elsewhere than the vehicle file says, where that alone leaves noise, and no clock that runs too fast does."""
     case = BaseRefits(detection)
     best = _least(_judge(case, (axle_hypotheses,)))
-    return best.faults if best is not None and best.left * case.excess <= FLOOR and not best.strained else ()
+    if best is None or best.left * case.excess > FLOOR or best.strained:
+        return ()
+    return () if _least(_judge(case, (rate_hypotheses,))) else best.faults
 
 
 def explain_gap(

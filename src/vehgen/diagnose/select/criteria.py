@@ -13,6 +13,9 @@ from vehgen.diagnose.select.estimates import p_value
 from vehgen.diagnose.select.search import SearchRound, merit, own_numbers
 from vehgen.diagnose.select.special_cases import does_as_well
 
+NEAREST = 4
+"""So many of the effects that come nearest are told where nothing can be named."""
+
 
 def excess(mean_square: float) -> float:
     """Return how far a mean square of whitened residuals is above the noise; infinite where it is not a number."""
@@ -28,6 +31,11 @@ def closes_training(fit: ModelFit, base: ModelFit) -> bool:
     """Return whether a fit closes the gap of the base on the training runs, and AT_LEAST a share of it where that is small."""
     after, before = excess(fit.training), excess(base.training)
     return after <= limit.AT_LEAST * before and _closes(after, before)
+
+
+def explained_shares(first: SearchRound, base: ModelFit) -> list[tuple[ModelFit, float]]:
+    """Return the NEAREST leading fits with the share of the gap's excess that each explains."""
+    return [(fit, 1 - excess(fit.training) / max(excess(base.training), 1e-9)) for fit in first.fits[:NEAREST]]
 
 
 def freed_instead(first: SearchRound, base: ModelFit) -> ModelFit | None:
