@@ -10,10 +10,14 @@ import scipy.signal
 from benchmarks.hidden_effects.generator import Effect, Hump, RunSpec, nominal, perturbed
 
 from vehgen.diagnose.detect.detection import detect
+from vehgen.diagnose.inputs import judging
 from vehgen.diagnose.inputs.amplitudes import hidden_units, unit_hypotheses
 from vehgen.diagnose.inputs.conditions import findings_of_conditions, moved_roads
+from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always
 from vehgen.diagnose.inputs.judging import explain_gap, plain_mistakes, recorded_mistakes, supposed_mistakes
 from vehgen.diagnose.inputs.recorders import slow_recorder
+from vehgen.diagnose.inputs.refits import BaseRefits
+from vehgen.diagnose.inputs.vehicle import strange_run_hypotheses
 from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.fit.chain_estimate import ChainEstimate, ChainFit
@@ -213,12 +217,52 @@ def test_what_no_careful_measurement_does_is_no_missing_effect(plain, make, kind
     assert value is None or fault.value == pytest.approx(value, abs=0.01)
 
 
-def test_a_run_of_another_vehicle_is_told_from_the_others(trials_of, plain):
+@pytest.fixture(scope="module")
+def mixed(trials_of, plain):
+    """Three runs; the one named high is of another vehicle."""
     other = dict(zip(("mH", "IZ", "kf", "kr"), (1.35, 1.35, 1.2, 0.8), strict=True))
     parameters = {name: factor * nominal("sedan2")[name] for name, factor in other.items()}
     (strange,) = [trial for trial in trials_of(runs=RUNS, parameters=perturbed("sedan2", 3) | parameters) if trial.name == "high"]
-    (fault,) = explain_gap(detect([strange if trial.name == "high" else trial for trial in plain]))
+    return detect([strange if trial.name == "high" else trial for trial in plain])
+
+
+def test_a_run_of_another_vehicle_is_told_from_the_others(mixed):
+    (fault,) = explain_gap(mixed)
     assert (fault.kind, fault.runs) == ("other_vehicle", ("high",))
+
+
+def test_a_run_of_another_vehicle_is_fitted_from_what_fits_all_runs_too(mixed, monkeypatch):
+    """Over a long road a fit from the file's values may end far off: that alone is no reason."""
+    case = BaseRefits(mixed)
+    refit = case.refit
+
+    def far_from_the_files_values(problem, *, unit=None, **options):
+        fit, left = refit(problem, unit=unit, **options)
+        return fit, 10.0 if unit is not None and np.allclose(unit, problem.space.unit(problem.space.start)) else left
+
+    monkeypatch.setattr(case, "refit", far_from_the_files_values)
+    assert "high" in {run for item in strange_run_hypotheses(case) for run, _ in item.blind}
+
+
+def supposed(kind, left, sigmas):
+    """Return a hypothesis with its refit: what it leaves, and what it supposes of runs beside."""
+    fit = SimpleNamespace(x=None, misfit=SimpleNamespace(adjusted=lambda x: x), conditions=lambda: [SimpleNamespace(sigmas=sigmas)])
+    return Hypothesis((), always(MeasurementFault(kind, (), (), kind, "")), 0.25), (fit, left)
+
+
+@pytest.mark.parametrize(
+    ("others", "told"),
+    [((0.01, 0.5), "easy"), ((0.2, 0.5), "strained"), ((0.01, 4.0), "strained")],
+    ids=["leaves noise", "leaves more than noise", "strained too"],
+)
+def test_of_mistakes_that_leave_noise_one_that_supposes_nothing_else_is_told(monkeypatch, others, told):
+    both = [supposed("strained", -0.05, 4.0), supposed("easy", *others)]
+    fits = {id(hypothesis): fit for hypothesis, fit in both}
+    monkeypatch.setattr(judging, "PLAIN", ())
+    monkeypatch.setattr(judging, "SUBTLE", tuple(lambda case, item=item: [item] for item, _ in both))
+    case = SimpleNamespace(excess=3.0, judge=lambda item: fits[id(item)], accept=lambda *_: setattr(case, "excess", 0.0))
+    (fault,) = judging.find_mistakes(case)
+    assert fault.kind == told
 
 
 def test_a_clock_that_runs_fast_is_told_or_tied_with_the_speed(plain):

@@ -78,6 +78,10 @@ class _Judged:
         """Whether the refit supposes something of runs or sensors beyond belief."""
         return any(abs(item.sigmas) > BEYOND for item in self.fit.conditions())
 
+    def explains(self, excess: float) -> bool:
+        """Whether it leaves noise of an excess, and supposes nothing else."""
+        return self.left * excess <= FLOOR and not self.strained
+
 
 def find_mistakes(case: BaseRefits, plain_only: bool = False) -> tuple[MeasurementFault, ...]:
     """Return the mistakes that explain the gap, the one that explains most first; nothing where none does.
@@ -105,12 +109,12 @@ def find_mistakes(case: BaseRefits, plain_only: bool = False) -> tuple[Measureme
 def _next(case: BaseRefits, plain_only: bool) -> tuple[_Judged, ...]:
     """Return the mistake that explains most, or two plain ones that only together explain enough; nothing where there is none."""
     judged = _judge(case, PLAIN)
-    best = _least(judged)
+    best = _least(judged, case.excess)
     if best is None and (pair := _pair(case, judged)):
         return pair
     doubtful = not plain_only if best is None else best.left > CLEAR and best.left * case.excess > FLOOR
     if doubtful:
-        other = _least(_judge(case, SUBTLE))
+        other = _least(_judge(case, SUBTLE), case.excess)
         best = other if best is None or (other is not None and other.left < BY_FAR * best.left) else best
     return () if best is None else (best,)
 
@@ -124,15 +128,16 @@ def _judge(case: BaseRefits, generators: tuple[Generator, ...]) -> list[_Judged]
             faults = hypothesis.describe(fit.misfit.adjusted(fit.x))
             if faults:
                 judged.append(_Judged(hypothesis, fit, left, faults))
-        best = _least(judged)
-        if best is not None and best.left * case.excess <= FLOOR and not best.strained:
+        best = _least(judged, case.excess)
+        if best is not None and best.explains(case.excess):
             break
     return judged
 
 
-def _least(judged: Sequence[_Judged]) -> _Judged | None:
-    """Return what leaves least of what keeps its limit."""
-    return min((item for item in judged if item.left <= item.hypothesis.limit), key=lambda item: item.left, default=None)
+def _least(judged: Sequence[_Judged], excess: float) -> _Judged | None:
+    """Return what leaves least of what keeps its limit; of what leaves noise, what supposes nothing else."""
+    kept = [item for item in judged if item.left <= item.hypothesis.limit]
+    return min([item for item in kept if item.explains(excess)] or kept, key=lambda item: item.left, default=None)
 
 
 def _pair(case: BaseRefits, judged: Sequence[_Judged]) -> tuple[_Judged, ...]:
@@ -142,7 +147,7 @@ def _pair(case: BaseRefits, judged: Sequence[_Judged]) -> tuple[_Judged, ...]:
         return ()
     beside = copy(case)
     beside.accept(first.hypothesis, first.fit, first.left)
-    second = _least(_judge(beside, PLAIN))
+    second = _least(_judge(beside, PLAIN), beside.excess)
     return () if second is None or first.left * second.left > first.hypothesis.limit else (first, second)
 
 
@@ -176,10 +181,10 @@ def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
 def moved_axles(detection: Detection) -> tuple[MeasurementFault, ...]:
     """Return that axles are elsewhere than the vehicle file says, where that alone leaves noise, and no clock that runs too fast does."""
     case = BaseRefits(detection)
-    best = _least(_judge(case, (axle_hypotheses,)))
-    if best is None or best.left * case.excess > FLOOR or best.strained:
+    best = _least(_judge(case, (axle_hypotheses,)), case.excess)
+    if best is None or not best.explains(case.excess):
         return ()
-    return () if _least(_judge(case, (rate_hypotheses,))) else best.faults
+    return () if _least(_judge(case, (rate_hypotheses,)), case.excess) else best.faults
 
 
 def explain_gap(
