@@ -140,6 +140,7 @@ def test_another_vehicle_is_told_by_its_parameters(detection_of):
     assert finding.kind == "other_parameters"
     ratios = dict(re.findall(r"(\w+) (\S+) times", finding.message))
     assert {name: float(ratio) for name, ratio in ratios.items()} == pytest.approx({"kf": 2.0, "kr": 2.0}, rel=0.02)
+    assert "something unknown" in finding.message, "one or two parameters may stand for it"
 
 
 def test_recordings_that_have_nothing_to_do_with_the_vehicle_are_refused(plain):

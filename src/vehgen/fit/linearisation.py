@@ -75,7 +75,8 @@ class Linearisation:
 
 def real_rows(lines: Complex) -> Array:
     """Return whitened lines `shape (n, n_lines, n_channels)` as real numbers, `shape (n, 2 n_lines n_channels)`: half of unit variance."""
-    return np.ascontiguousarray(lines).view(np.float64).reshape(len(lines), 2 * lines[0].size)
+    n, n_lines, n_channels = lines.shape
+    return np.ascontiguousarray(lines).view(np.float64).reshape(n, 2 * n_lines * n_channels)
 
 
 def linearise(misfit: Misfit, x: Array, *, one_sided: bool = False, slopes_of: Linearisation | None = None) -> Linearisation:

@@ -40,6 +40,8 @@ NUDGE = 1e-3
 """Parameters are changed by this share to see which axles they move."""
 LEAST_RUNS, SUSPECTS = 3, 2
 """Of so many runs at least, so many that the base fits worst may be of another vehicle."""
+FEW = 2
+"""So few parameters far off may stand for what the model lacks there."""
 STRANGE = 0.1
 """Largest share of the excess that the other runs may leave without it."""
 SPEED_FITS_TOO = 2.0
@@ -169,6 +171,8 @@ def other_vehicle(case: BaseRefits) -> tuple[MeasurementFault, ...]:
         f"the recordings are of a vehicle with other parameters than the file's ({listed} its value): that alone explains "
         f"{100 * (1 - left):.0f} % of the gap"
     )
+    if len(far) <= FEW:
+        message += "; something unknown that acts as they do in these runs would look the same"
     return (MeasurementFault("other_parameters", (), (), message, "check the vehicle file, or calibrate first"),)
 
 
