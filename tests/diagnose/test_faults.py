@@ -288,12 +288,27 @@ def test_a_recorder_that_hides_wheel_hop_is_told_where_it_is_clear():
 def test_a_road_that_begins_elsewhere_is_told_where_all_other_runs_agree():
     delays = {"low": 0.004, "high": -0.003, "road": 0.101}
     conditions = [Condition(run, "delay", "", value, "s", 0.2) for run, value in delays.items()]
-    (fault,) = moved_roads(conditions, {"road": 10.0})
+    arrivals = dict.fromkeys(delays, 3.0)
+    (fault,) = moved_roads(conditions, {"road": 10.0}, arrivals)
     assert (fault.kind, fault.runs) == ("road_position", ("road",))
     assert fault.value == pytest.approx(1.0, abs=0.02)
     assert "further along" in fault.message
     scattered = [replace(item, value=value) for item, value in zip(conditions, (0.04, -0.03, 0.1), strict=True)]
-    assert moved_roads(scattered, {"road": 10.0}) == ()
+    assert moved_roads(scattered, {"road": 10.0}, arrivals) == ()
+    assert moved_roads(conditions[1:], {"road": 10.0}, arrivals) == (), "one other run tells nothing of what is usual"
+
+
+def test_a_road_elsewhere_is_told_beside_starts_that_speeds_explain():
+    """Slower than stated, a run meets its road later: nothing is wrong with its start."""
+    faster, arrivals = {"low": -0.02, "high": 0.015, "road": 0.004}, {"low": 2.5, "high": 3.0, "road": 4.0}
+    conditions = [Condition(run, "speed", "", value, "", 0.01) for run, value in faster.items()]
+    late = {run: arrivals[run] * (1 / (1 + value) - 1) for run, value in faster.items()}
+    starts = [Condition(run, "delay", "", value, "s", 0.2) for run, value in late.items()]
+    assert moved_roads([*conditions, *starts], {"road": 10.0}, arrivals) == ()
+    moved = [*starts[:2], replace(starts[2], value=late["road"] - 0.09)]
+    (fault,) = moved_roads([*conditions, *moved], {"road": 10.0}, arrivals)
+    assert fault.value == pytest.approx(-0.9, abs=0.01)
+    assert moved_roads(moved, {"road": 10.0}, arrivals) == (), "their starts scatter, if speeds say nothing of them"
 
 
 def test_a_near_copy_of_a_pass_is_no_run_of_its_own(plain):

@@ -107,7 +107,9 @@ def findings_of_conditions(
     return tuple(found)
 
 
-def moved_roads(conditions: Sequence[Condition], speeds: Mapping[str, float]) -> tuple[MeasurementFault, ...]:
+def moved_roads(
+    conditions: Sequence[Condition], speeds: Mapping[str, float], arrivals: Mapping[str, float]
+) -> tuple[MeasurementFault, ...]:
     """Return which roads lie elsewhere along the way: their runs' clocks stand out from those of all other runs.
 
     Parameters
@@ -116,16 +118,18 @@ def moved_roads(conditions: Sequence[Condition], speeds: Mapping[str, float]) ->
         All conditions of a fit.
     speeds
         The speed [m/s] of every run over a measured profile, whose place is easily mistaken.
+    arrivals
+        When [s] after its recording's start each run's road is first met, as stated.
     """
-    delays = {item.run: item for item in conditions if item.name == "delay"}
+    delays = {item.run: item.value for item in conditions if item.name == "delay" and item.run in arrivals}
+    faster = {item.run: item.value for item in conditions if item.name == "speed"}
+    # of a start that was measured along the way, a slower run meets its road later; of one that a clock told, not
+    after_the_way = {run: value - arrivals[run] * (1 / (1 + faster.get(run, 0.0)) - 1) for run, value in delays.items()}
     found = []
     for run in (name for name in speeds if name in delays):
-        others = np.array([item.value for name, item in delays.items() if name != run])
-        if len(others) < LEAST_OTHERS:
+        if len(delays) <= LEAST_OTHERS:
             continue
-        usual = float(np.median(others))
-        spread = max(float(np.sqrt(np.mean((others - usual) ** 2))), CLOCKS_SPREAD_S)
-        late = delays[run].value - usual
+        late, spread = min((_stands_out(run, starts) for starts in (delays, after_the_way)), key=lambda item: item[1])
         shift = late * speeds[run]
         if abs(late) < STANDS_OUT * spread or abs(shift) < LEAST_SHIFT_M:
             continue
@@ -136,6 +140,13 @@ def moved_roads(conditions: Sequence[Condition], speeds: Mapping[str, float]) ->
         cure = "measure where the profile begins, or state when the recording starts"
         found.append(MeasurementFault("road_position", (run,), (), message, cure, shift, "m"))
     return tuple(found)
+
+
+def _stands_out(run: str, starts: Mapping[str, float]) -> tuple[float, float]:
+    """Return how much later [s] a run starts than the others usually do, and how far these are spread [s]."""
+    others = np.array([value for name, value in starts.items() if name != run])
+    usual = float(np.median(others))
+    return starts[run] - usual, max(float(np.sqrt(np.mean((others - usual) ** 2))), CLOCKS_SPREAD_S)
 
 
 def _fault(alike: Sequence[Condition], runs: tuple[str, ...]) -> MeasurementFault:

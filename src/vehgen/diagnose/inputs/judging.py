@@ -163,7 +163,8 @@ def supposed_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
     found = findings_of_conditions(conditions, [trial.name for trial in detection.trials], road_heights(detection.trials))
     speeds = {trial.name: trial.scenario.top_speed for trial in detection.trials if measured_profiles(trial)}
     told = {run for item in found if item.kind == "clock" for run in item.runs}
-    moved = (item for item in moved_roads(conditions, speeds) if not told & set(item.runs))
+    arrivals = {trial.name: trial.scenario.first_arrival - trial.scenario.start for trial in detection.trials if trial.scenario.track.parts}
+    moved = (item for item in moved_roads(conditions, speeds, arrivals) if not told & set(item.runs))
     slow = slow_recorder(detection.recorder, tuple(trial.name for trial in detection.trials))
     return (*found, *unrelated_recording(detection.base.least_squares), *moved, *slow)
 
