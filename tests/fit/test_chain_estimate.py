@@ -36,7 +36,7 @@ def test_point_samples_are_told_from_filtered_ones(tmp_path, rough):
     assert found.scale < 1.2
 
 
-@pytest.mark.parametrize(("order", "cut_off"), [(2, 30.0), (4, 22.0), (8, 35.0)])
+@pytest.mark.parametrize(("order", "cut_off"), [(2, 30.0), (4, 22.0), (4, 8.0), (8, 35.0)])
 def test_a_low_pass_is_found_with_its_cut_off(tmp_path, rough, order, cut_off):
     road, channels = rough
     misfit, x = recorded(tmp_path, low_passed(channels, order, cut_off), 12.0, road)

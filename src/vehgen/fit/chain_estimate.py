@@ -33,7 +33,8 @@ CLEAR_LOSS = 10.0
 LOW_PASSES: tuple[tuple[FilterKind, int], ...] = tuple((kind, order) for kind in ("butterworth", "bessel") for order in (2, 4, 8))
 """Kinds and orders tried."""
 CUT_OFF_SHARES = np.geomspace(0.15, 0.5, 7)
-"""Cut-offs first tried, over the recording's rate."""
+"""Cut-offs first tried, over the recording's rate; where the lowest is best, lower ones down to LOWEST_SHARE."""
+LOWEST_SHARE = 0.03
 REFINED_SHARE = 0.01
 """A cut-off is refined to this share of itself."""
 SAME_GAIN = 0.05
@@ -276,9 +277,13 @@ def _best_cut_off(search: _Search, kind: FilterKind, order: int, rate: float) ->
         tried[log_share] = search.fit(AcquisitionChain(kind, order, float(np.exp(log_share)) * rate))
         return tried[log_share].loss
 
-    grid = np.log(CUT_OFF_SHARES)
-    i = int(np.argmin([loss(float(item)) for item in grid]))
-    ends = float(grid[max(i - 1, 0)]), float(grid[min(i + 1, len(grid) - 1)])
+    grid = np.log(CUT_OFF_SHARES).tolist()
+    losses = [loss(item) for item in grid]
+    while losses[0] == min(losses) and grid[0] > np.log(LOWEST_SHARE):
+        grid.insert(0, 2 * grid[0] - grid[1])
+        losses.insert(0, loss(grid[0]))
+    i = int(np.argmin(losses))
+    ends = grid[max(i - 1, 0)], grid[min(i + 1, len(grid) - 1)]
     scipy.optimize.minimize_scalar(loss, bounds=ends, method="bounded", options={"xatol": REFINED_SHARE, "maxiter": 8})
     return min(tried.values(), key=lambda item: item.loss)
 
