@@ -122,6 +122,14 @@ def test_a_run_states_how_well_a_gps_knows_its_speed(tmp_path, capsys, name, opt
         assert stated is None or stated.speed is None
 
 
+def test_where_the_vehicle_fits_too_badly_for_its_axles_to_tell_the_speed_the_gps_does(tmp_path, capsys, monkeypatch):
+    by_gps = facts(capsys, tmp_path / "gps.yaml", both("hump_2ms"))
+    monkeypatch.setattr("vehgen.phones.importing.TRUSTED", 0.9999)
+    found = facts(capsys, tmp_path / "run.yaml", both("hump_2ms"), "--speed", "axles")
+    assert (found["speed"], found["speed_deviation"]) == (by_gps["speed"], by_gps["speed_deviation"])
+    assert any("so the GPS's stands" in warning for warning in found["warnings"])
+
+
 def test_the_recording_is_the_true_vehicles_answer(tmp_path, capsys):
     """With the true parameters, and the last milliseconds of each clock, nothing is left but noise: signs, axes and scales are right."""
     assert command(tmp_path / "run.yaml", both("hump_2ms"), "--speed", "2.0") == 0

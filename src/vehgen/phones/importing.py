@@ -114,13 +114,11 @@ def read_pass(exports: Sequence[str | os.PathLike[str]], plan: Plan) -> Imported
     distance = max(wheels.values()) + plan.road.length
     speed, events = find_speed(phones, plan, distance)
     matches, arrivals = locate(phones, plan, simulator, simulator.parameters(values)[0], speed.value, distance, events)
-    if plan.by_axles:
-        if min(item.correlation for item in matches) < TRUSTED:
-            raise ArgumentError(
-                "the simulated response fits the recordings too badly to find the speed from its axles; give `speed`", "speed"
-            )
+    if plan.by_axles and all(item.correlation >= TRUSTED for item in matches):
         speed = FoundSpeed(speed.value * matches[0].scale, f"by the axles' marks; {speed.source}")
         matches = [replace(item, scale=1.0) for item in matches]
+    elif plan.by_axles and speed.deviation is None:
+        raise ArgumentError("the simulated response fits the recordings too badly to find the speed from its axles; give `speed`", "speed")
     return _assemble(phones, plan, speed, events, matches, arrivals, distance, wheels)
 
 
@@ -175,6 +173,11 @@ def _assemble(
     fitted = speed * matches[0].scale if all(item.correlation >= TRUSTED for item in matches) else None
     if fitted is not None and abs(fitted / speed - 1) > SPEED_DOUBT:
         warnings.append(f"the axles' marks fit {fitted:.3f} m/s better than {speed:.3f} m/s ({source}); the speed by the axles takes that")
+    if plan.by_axles and found_speed.deviation is not None:
+        warnings.append(
+            "the vehicle's answer fits too badly to find the speed from its axles, so the GPS's stands, give or take "
+            f"{found_speed.deviation:.2g} m/s: check vehicle, place and forward axis, or `diagnose` what the vehicle lacks"
+        )
     warnings += _clock_warnings(done)
     at = lead if is_hump else None
     values = np.column_stack(columns)
