@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 ODD_AMONG = 3
 """So many runs there must be: of two nobody can say which is odd."""
-ODD_FACTOR, ODD_MARGIN = 4.0, 60.0
-"""So many times what chance gives, and so much more, an odd run gains at least; healthy runs of an independent world gained 62 at most."""
+ODD_FACTOR, ODD_MARGIN = 8.0, 60.0
+"""So many times what chance gives, and so much more, an odd run gains at least; of 58 healthy vehicles one gained 205, a truck."""
 OTHERS_AGREE = 3.0
 """Runs agree that gain at most so many times what chance gives: healthy ones gained 2.9 times that at most."""
 ODD_CHANNEL = 36.0
