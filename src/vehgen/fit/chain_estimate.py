@@ -33,8 +33,9 @@ CLEAR_LOSS = 10.0
 LOW_PASSES: tuple[tuple[FilterKind, int], ...] = tuple((kind, order) for kind in ("butterworth", "bessel") for order in (2, 4, 8))
 """Kinds and orders tried."""
 CUT_OFF_SHARES = np.geomspace(0.15, 0.5, 7)
-"""Cut-offs first tried, over the recording's rate; where the lowest is best, lower ones down to LOWEST_SHARE."""
+"""Cut-offs first tried, over the recording's rate."""
 LOWEST_SHARE = 0.03
+"""Where the lowest of them is best, lower ones are tried, down to this."""
 REFINED_SHARE = 0.01
 """A cut-off is refined to this share of itself."""
 SAME_GAIN = 0.05
