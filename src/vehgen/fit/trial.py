@@ -37,6 +37,8 @@ MOST_SKIPPED = 0.5
 """No more than this share of a recording is left out."""
 LONGEST_STEP_S = 1e-3
 """Longest internal step [s]: through 10 ms steps a stiffness comes out 17 % wrong at 15 Hz (Newmark's period error)."""
+SLOW_PERIOD_ERROR = 2.1e-3
+"""Where only slow motions are compared, to begin a fit, steps may be so long that Newmark's scheme errs by this share of their period."""
 
 
 @dataclass(frozen=True)
@@ -80,6 +82,17 @@ class Trial:
     def channel_factors(self, frequency: Array) -> Complex:
         """Return what the recorders make of spectral lines of the channels: factors `shape (n, n_channels)` at frequencies [Hz]."""
         return channel_factors(self.scenario, self.channels, frequency)
+
+    def for_slow_motions(self, highest: float) -> Trial:
+        """Return the trial simulated with the longest step that serves for motions up to a frequency [Hz], its samples the same.
+
+        The period error of the scheme is (omega dt)^2 / 12 to the first order; see SLOW_PERIOD_ERROR.
+        """
+        scenario, longest = self.scenario, math.sqrt(12 * SLOW_PERIOD_ERROR) / (2 * math.pi * highest)
+        decimation = math.ceil(self.recording.dt / longest * (1 - 1e-9))
+        if decimation >= scenario.decimation:
+            return self
+        return replace(self, scenario=replace(scenario, dt=scenario.dt * scenario.decimation / decimation, decimation=decimation))
 
     def of_sensors(self, sensors: Sequence[str], simulators: SimulatorPool) -> Trial:
         """Return the trial with some of its sensors only.

@@ -143,10 +143,11 @@ class _Rough:
         return fits[0]
 
     def _misfit(self, top: float | None) -> Misfit:
-        """Return the misfit of a stage."""
+        """Return the misfit of a stage; slow motions are simulated with long steps."""
         few = self.laid is not None and top is not None and top <= SLOW_HZ
         band = self.band[0], top or self.band[1]
-        return Misfit(self.problem, self.noises, self.problem.space.start, FEW_NUISANCES if few else NUISANCES, band, self.shared)
+        problem = self.problem if top is None else self.problem.with_trials([item.for_slow_motions(top) for item in self.problem.trials])
+        return Misfit(problem, self.noises, problem.space.start, FEW_NUISANCES if few else NUISANCES, band, self.shared)
 
     def _like(self, misfit: Misfit, fit: LeastSquaresFit) -> tuple[Array, Array]:
         """Return parameters and errors of a stage as the fit before it has them."""
@@ -172,7 +173,7 @@ class _Rough:
         unit, errors, numbers = start
         nearby = self.current.nearby if misfit.nuisances is NUISANCES else None
         return fit_least_squares(
-            self.problem, unit, options, noises=self.noises, start=errors, shared=self.shared, numbers=numbers, nearby=nearby
+            misfit.problem, unit, options, noises=self.noises, start=errors, shared=self.shared, numbers=numbers, nearby=nearby
         )
 
     def _starts(self, misfit: Misfit, origins: Sequence[StartingPoint], begin: Sequence[tuple[float, ...]]) -> list[Start]:
