@@ -6,8 +6,6 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
-from threadpoolctl import threadpool_limits
-
 from vehgen.calibrate.calibration import CalibrationProgress, Settings, calibrate_problem
 from vehgen.calibrate.genetic import GeneticSearch
 from vehgen.calibrate.result import CalibrationSummary
@@ -16,6 +14,7 @@ from vehgen.errors import ArgumentError, did_you_mean
 from vehgen.files.limits import check_count, check_seed, check_share
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.nuisances import asked_nuisances
+from vehgen.fit.one_thread import one_blas_thread
 from vehgen.fit.parallel import runner_at
 from vehgen.fit.prior_data import load_prior_data
 from vehgen.fit.problem import make_problem
@@ -117,7 +116,7 @@ def calibrate(
     problem = make_problem(load_trials(runs, as_vehicle(vehicle)))
     prior_data = None if facts is None else load_prior_data(Path(facts), problem)
     path = None if checkpoint is None else Path(checkpoint)
-    with runner_at(scheduler, workers) as runner, threadpool_limits(1, user_api="blas"):  # small matrices: more threads only wait
+    with runner_at(scheduler, workers) as runner, one_blas_thread():  # small matrices: more threads only wait
         found = calibrate_problem(problem, settings, prior_data, progress, path, resume, runner)
         return summarise(found, prior_data, _names(combinations, "combinations"), 0 if found.stopped else bootstrap, runner)
 

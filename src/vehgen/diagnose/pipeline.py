@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from threadpoolctl import threadpool_limits
-
 from vehgen.diagnose.collecting import collect
 from vehgen.diagnose.decision import Decision
 from vehgen.diagnose.detect.detection import Detection, detect
@@ -14,6 +12,7 @@ from vehgen.diagnose.localise.localisation import localise, shortlist
 from vehgen.diagnose.result import Decided, Diagnosis
 from vehgen.diagnose.select.search import DiagnosisProgress, search_round
 from vehgen.effects import Effect, library
+from vehgen.fit.one_thread import one_blas_thread
 from vehgen.fit.parallel import HERE, Runner
 from vehgen.fit.trial import Trial
 
@@ -52,7 +51,7 @@ def diagnose_trials(
     InputError
         For trials that do not belong together.
     """
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         say = progress or (lambda stage, done, total, best: None)
         say("detect", 0, 1, "")
         detection = detect(sorted(trials, key=kind_of_run), band)  # whatever order they came in

@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from vehgen.codegen.decimation import Phases, decimate
 from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
@@ -21,6 +20,7 @@ from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.fit.noise import Noise, road_answer
 from vehgen.fit.nuisances import LOW_PASS
+from vehgen.fit.one_thread import one_blas_thread
 from vehgen.fit.trial import Trial
 from vehgen.fit.window import taper
 from vehgen.measure.acquisition import POINT_SAMPLES, UNKNOWN, AcquisitionChain, FilterKind
@@ -143,7 +143,7 @@ def estimate_chain(
     unknown = [name for name in every if any(name in trial.channels and not trial.scenario.chain(name).is_known for trial in trials)]
     search = _Search.of(misfit, x, tuple(channels or unknown or every), prior_sigma)
     rate = slowest_rate(trials)
-    with threadpool_limits(1, user_api="blas"):  # tall and thin matrices: more threads only wait for one another
+    with one_blas_thread():  # tall and thin matrices: more threads only wait for one another
         families = [search.fit(POINT_SAMPLES), search.fit(UNKNOWN.assumed(rate))]
         families += [_best_cut_off(search, kind, order, rate) for kind, order in LOW_PASSES]
     best, *others = sorted(families, key=lambda item: item.loss)

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.alignment import MOST_SIGMAS, align, error_bounds
@@ -17,6 +16,7 @@ from vehgen.fit.linearisation import Linearisation, Lineariser
 from vehgen.fit.misfit import Misfit, Noises, flatten
 from vehgen.fit.noise import EVEN, Noise, estimate_noise
 from vehgen.fit.nuisances import Condition, Nuisances
+from vehgen.fit.one_thread import one_blas_thread
 from vehgen.fit.prior_data import PriorData
 from vehgen.fit.problem import Problem
 from vehgen.fit.rig_noise import RunResidual, likeliest_noises, unstated_sizes
@@ -182,7 +182,7 @@ def _fit(
             gradient[:n] += slopes.T @ prior_data.residuals(values)
         return LinearisedPoint(information, gradient)
 
-    with threadpool_limits(1, user_api="blas"):  # small matrices: more threads only wait for one another
+    with one_blas_thread():  # small matrices: more threads only wait for one another
         renew = (lambda x: linearised(x, derive.linearise_anew)) if options.jacobian_refresh > 1 and tolerance < COARSE_TOLERANCE else None
         found = minimise(square, linearised, x, unknown_bounds(misfit, options.most_sigmas), tolerance, options.max_steps, renew)
     return found, kept[0]

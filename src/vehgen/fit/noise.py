@@ -22,8 +22,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
+from vehgen.fit.one_thread import one_blas_thread
 from vehgen.fit.whittle import loss_and_slopes
 from vehgen.fit.window import taper
 from vehgen.road.iso8608 import REFERENCE_CYCLES_PER_M
@@ -271,7 +271,7 @@ def estimate_noise(residuals: Sequence[tuple[Complex, RoadAnswer]], start: Noise
         (np.log(low), np.log(low) + 12.0) for low in floor
     ]
     found = []
-    with threadpool_limits(1, user_api="blas"):  # a dozen unknowns: more threads only wait for one another
+    with one_blas_thread():  # a dozen unknowns: more threads only wait for one another
         for first in (start, mostly_road):
             levels, sigma = np.clip(first.levels, SMALLEST_LEVEL, LARGEST_LEVEL), np.maximum(first.sigma, floor)
             begun = np.concatenate([np.log(levels), np.zeros(spread), np.log(sigma)])

@@ -14,9 +14,8 @@ from importlib import import_module
 from itertools import islice
 from typing import Any, TypeVar
 
-from threadpoolctl import threadpool_limits
-
 from vehgen.errors import ArgumentError, InputError
+from vehgen.fit.one_thread import one_blas_thread
 
 Input = TypeVar("Input")
 R = TypeVar("R")
@@ -37,7 +36,7 @@ def can_be_sent(value: object) -> bool:
 
 def on_one_thread(function: Callable[[Input], R], item: Input) -> R:
     """Return a function's value, with one BLAS thread: matrices are small, and in a process of its own more would only wait."""
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         return function(item)
 
 

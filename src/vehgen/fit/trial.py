@@ -84,15 +84,16 @@ class Trial:
         return channel_factors(self.scenario, self.channels, frequency)
 
     def for_slow_motions(self, highest: float) -> Trial:
-        """Return the trial simulated with the longest step that serves for motions up to a frequency [Hz], its samples the same.
+        """Return the trial as it serves for motions up to a frequency [Hz]: with the longest step, and no filter that leaves them as is.
 
-        The period error of the scheme is (omega dt)^2 / 12 to the first order; see SLOW_PERIOD_ERROR.
+        Its samples are at the same times. The period error of the scheme is (omega dt)^2 / 12 to the first order; see SLOW_PERIOD_ERROR.
         """
-        scenario, longest = self.scenario, math.sqrt(12 * SLOW_PERIOD_ERROR) / (2 * math.pi * highest)
-        decimation = math.ceil(self.recording.dt / longest * (1 - 1e-9))
-        if decimation >= scenario.decimation:
-            return self
-        return replace(self, scenario=replace(scenario, dt=scenario.dt * scenario.decimation / decimation, decimation=decimation))
+        scenario, dt = self.scenario, self.recording.dt
+        longest = math.sqrt(12 * SLOW_PERIOD_ERROR) / (2 * math.pi * highest)
+        decimation = min(math.ceil(dt / longest * (1 - 1e-9)), scenario.decimation)
+        chains = {name: scenario.chain(name).for_slow_motions(highest, 1 / dt) for name in self.channels}
+        step = scenario.dt * scenario.decimation / decimation
+        return replace(self, scenario=replace(scenario, dt=step, decimation=decimation, chains=chains))
 
     def of_sensors(self, sensors: Sequence[str], simulators: SimulatorPool) -> Trial:
         """Return the trial with some of its sensors only.

@@ -8,7 +8,7 @@ in software does it.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal, get_args
 
@@ -35,6 +35,8 @@ DECAYED = 1e-6
 """An impulse response ends where it stays below this share of its peak."""
 FLAT_SHARE = 0.6
 """Share of the Nyquist frequency of the taps up to which they follow a recursive low-pass exactly; above, they fade to nothing."""
+FOLDS_FROM = 9.0
+"""So many times as fast as slow motions is what may fold onto them, at least, without a low-pass."""
 _TABLE_LINES = 64
 """An ideal low-pass is tabulated at so many frequencies over the inverse of its length."""
 
@@ -92,6 +94,16 @@ class AcquisitionChain:
         if self.is_known:
             return self
         return AcquisitionChain("ideal", 1, UNKNOWN_CUT_OFF * rate, self.delay, self.range, self.resolution, self.rate)
+
+    def for_slow_motions(self, highest: float, rate: float) -> AcquisitionChain:
+        """Return the chain of a recording at `rate` [Hz] where only motions up to a frequency [Hz] matter, to begin a fit.
+
+        An ideal low-pass leaves them as they are, and has the most taps of all; without it what folds onto them comes from above
+        `rate` less that frequency, where vehicles move little (FOLDS_FROM).
+        """
+        assumed = self.assumed(rate)
+        passes = assumed.filter == "ideal" and highest <= (1 - IDEAL_TRANSITION) * (assumed.cut_off or 0.0)
+        return replace(assumed, filter="none", cut_off=None) if passes and rate - highest >= FOLDS_FROM * highest else self
 
     def filtering(self) -> AcquisitionChain:
         """Return the chain without its range and resolution: what two chains must share to make the same of a motion."""

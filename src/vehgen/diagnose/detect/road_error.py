@@ -18,11 +18,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.fit.misfit import Noises
 from vehgen.fit.noise import EVEN, KNOT_WAVENUMBERS, LARGEST_LEVEL, SMALLEST_LEVEL, Noise, RoadAnswer
+from vehgen.fit.one_thread import one_blas_thread
 from vehgen.fit.trial import Trial
 from vehgen.road import MeasuredProfile
 from vehgen.road.iso8608 import REFERENCE_CYCLES_PER_M
@@ -127,6 +127,6 @@ def find_profile_error(trial: Trial, lines: Complex, answer: RoadAnswer, lead: N
         (0.0, np.log(LOUDEST)),
     ]
     starts = [np.array([np.log(error), np.log(drift), 0.0]) for error, drift in ((1e-5, 1e-9), (2e-4, 1e-7))]
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         found = [scipy.optimize.minimize(loss, start, method="L-BFGS-B", bounds=bounds, options={"maxiter": 30}) for start in starts]
     return read(min(found, key=lambda item: float(item.fun)).x)
