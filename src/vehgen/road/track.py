@@ -77,6 +77,13 @@ class Track:
         """Where the last hump ends for the rear edge of the footprint [m]; -inf without a hump."""
         return max((part.end for part in self.parts), default=-np.inf) + self.footprint / 2
 
+    @property
+    def reaches(self) -> tuple[tuple[float, float], ...] | None:
+        """From where to where [m] each of its humps moves a wheel's centre; None where a part that is no hump may do so anywhere."""
+        humps = [part.deformed(*self.deformation) for part in self.parts if isinstance(part, Hump)]
+        half = self.footprint / 2 + GRID if self.footprint > 0 else 0.0
+        return tuple((item.at - half, item.end + half) for item in humps) if len(humps) == len(self.parts) else None
+
     def height(self, s: Array) -> Array:
         """Return the height [m], averaged over the footprint, under a wheel centred at s [m]."""
         s = np.asarray(s, dtype=np.float64)

@@ -15,8 +15,8 @@ from vehgen.road.track import Track
 Array = NDArray[np.float64]
 LONGEST_PASS_S = 1e6
 """Longer than this nobody drives to a hump [s]."""
-
-
+SHORT_PASSAGE = 0.3
+"""Humps are looked up where they are alone, unless that is more than this share of a run."""
 _SLOPE_STEP_M = 1e-6
 """Distance over which a road's slope is taken [m]: a wheel's way between two simulations of a difference is as short."""
 
@@ -47,7 +47,8 @@ def wheel_inputs(track: Track, speed: SpeedLaw, offsets: Array, time: Array) -> 
     -------
     Heights at these times, and central differences over half a step to both sides (second order).
     """
-    return _inputs(track.height(_under(speed.distance(_moments(time)), offsets)), _step(time))
+    found = _Passage.of([track], speed.distance(_moments(time)), offsets)
+    return _inputs(found.spread(track.height(found.under)), _step(time))
 
 
 def nearby_inputs(
@@ -71,14 +72,51 @@ def nearby_inputs(
     """
     moments = _moments(time)
     way, step = speed.distance(moments), _step(time)
-    under = _under(way, offsets)
+    found = _Passage.of([track, *tracks], way, offsets)
     for other in tracks:
-        yield _inputs(other.height(under), step)
+        yield _inputs(found.spread(other.height(found.under)), step)
     if speeds:
-        heights = track.height(under)
-        slopes = (track.height(under + _SLOPE_STEP_M) - heights) / _SLOPE_STEP_M
+        heights = track.height(found.under)
+        slopes = (track.height(found.under + _SLOPE_STEP_M) - heights) / _SLOPE_STEP_M
+        at, own = moments[found.moments], way[found.moments]
         for law in speeds:
-            yield _inputs(heights + slopes * (law.distance(moments) - way), step)
+            yield _inputs(found.spread(heights + slopes * (law.distance(at) - own)), step)
+
+
+@dataclass(frozen=True)
+class _Passage:
+    """Where axles are [m] when tracks may move them: `under`, at the moments with these numbers.
+
+    Over humps, that is little of a run, and `under` and `moments shape (n,)` go through the axles one after another, which `axles shape
+    (n,)` numbers. Elsewhere `under` is `shape (n_axles, n_moments)`, axle by axle, as looking up neighbours in a table is quick.
+    """
+
+    under: Array
+    moments: NDArray[np.intp] | slice
+    axles: NDArray[np.intp] | None
+    shape: tuple[int, int]
+
+    @classmethod
+    def of(cls, tracks: Sequence[Track], way: Array, offsets: Array) -> _Passage:
+        """Return the passage of an ascending way `shape (n_moments,)` [m] over any of some tracks."""
+        offsets, shape = np.asarray(offsets, dtype=np.float64), (len(offsets), len(way))
+        spans = _spans(tracks)
+        if spans is not None:
+            ends = np.searchsorted(way, spans[None] + offsets[:, None, None])
+            counts = (ends[..., 1] - ends[..., 0]).sum(axis=1)
+            if counts.sum() < SHORT_PASSAGE * len(offsets) * len(way):
+                moments = np.concatenate([np.arange(first, last) for first, last in ends.reshape(-1, 2)])
+                axles = np.repeat(np.arange(len(offsets)), counts)
+                return cls(way[moments] - offsets[axles], moments, axles, shape)
+        return cls(np.asarray(way[None, :] - offsets[:, None]), slice(None), None, shape)
+
+    def spread(self, heights: Array) -> Array:
+        """Return heights at `under` as those of all axles at all moments, `shape (n_axles, n_moments)`."""
+        if self.axles is None:
+            return heights
+        found = np.zeros(self.shape)
+        found[self.axles, self.moments] = heights
+        return found
 
 
 def _moments(time: Array) -> Array:
@@ -93,14 +131,27 @@ def _step(time: Array) -> float:
     return float(time[1] - time[0]) if len(time) > 1 else 1.0
 
 
-def _under(way: Array, offsets: Array) -> Array:
-    """Return where every axle is, `shape (n_axles, n_moments)`: axle by axle, as looking up neighbours in a table is quick."""
-    return np.asarray(way[None, :] - np.asarray(offsets, dtype=np.float64)[:, None])
-
-
 def _inputs(heights: Array, step: float) -> WheelInputs:
     """Return what heights `shape (n_axles, n_moments)` at the moments of a run make."""
     return WheelInputs(heights[:, 1::2].T, ((heights[:, 2::2] - heights[:, :-2:2]) / step).T)
+
+
+def _spans(tracks: Sequence[Track]) -> Array | None:
+    """Return from where to where [m] humps of tracks, or a little before, may move a wheel, `shape (n, 2)`, apart from one another.
+
+    None where there is none, or where something else may move it.
+    """
+    reaches = [item.reaches for item in tracks]
+    known = sorted(span for item in reaches if item is not None for span in item)
+    if not known or any(item is None for item in reaches):
+        return None
+    spans: list[list[float]] = []
+    for first, last in known:
+        if spans and first - _SLOPE_STEP_M <= spans[-1][1]:
+            spans[-1][1] = max(spans[-1][1], last)
+        else:
+            spans.append([first - _SLOPE_STEP_M, last])
+    return np.array(spans)
 
 
 def pass_time(track: Track, speed: SpeedLaw, offsets: Array) -> float:

@@ -1,0 +1,47 @@
+"""Humps are looked up where they are alone: the same heights as from looking everywhere."""
+
+import numpy as np
+import pytest
+
+from vehgen.road import AdjustedSpeed, ConstantSpeed, Hump, MeasuredProfile, Track, Wander, nearby_inputs, wheel_inputs
+
+TIME = np.arange(0, 12, 1e-3)
+OFFSETS = np.array([0.0, 3.46, 4.8, 12.25])
+SPEED = AdjustedSpeed(ConstantSpeed(2.0), 0.01, 1.02, 2.0, Wander((0.0, 4.0, 8.0, 12.0), (0.01, -0.02, 0.01, 0.0)))
+ONE, OTHER = Hump.from_shape("half_sine", 4.0, 0.5, 0.03), Hump.from_shape("trapezoid", 9.0, 0.4, -0.02)
+PROFILE = MeasuredProfile(np.linspace(0.0, 40.0, 801), 1e-3 * np.sin(np.arange(801.0)))
+ROADS = {"a hump": (ONE,), "two humps": (OTHER, ONE), "humps that touch": (ONE, Hump.from_shape("versine", 4.5, 0.4, 0.01)), "no hump": ()}
+ROADS |= {
+    "a hump on a rough road": (ONE, PROFILE),
+    "a train of humps": tuple(Hump.from_shape("versine", at, 0.9, 0.01) for at in range(30)),
+}
+
+
+@pytest.mark.parametrize("footprint", [0.0, 0.24])
+@pytest.mark.parametrize("deformation", [(1.0, 1.0, 0.0, 0.0), (1.03, 0.9, 0.05, 2e-5)])
+@pytest.mark.parametrize("parts", ROADS.values(), ids=ROADS)
+def test_every_wheel_is_where_the_road_is(parts, deformation, footprint):
+    track = Track(parts, footprint, 1.1, deformation)
+    found = wheel_inputs(track, SPEED, OFFSETS, TIME)
+    for axle, offset in enumerate(OFFSETS):
+        assert found.heights[:, axle] == pytest.approx(track.height(SPEED.distance(TIME) - offset), abs=1e-12)
+        around = [track.height(SPEED.distance(TIME + half) - offset) for half in (-5e-4, 5e-4)]
+        assert found.rates[:, axle] == pytest.approx((around[1] - around[0]) / 1e-3, abs=1e-9)
+
+
+@pytest.mark.parametrize("footprint", [0.0, 0.24])
+@pytest.mark.parametrize("parts", ROADS.values(), ids=ROADS)
+def test_drives_nearby_are_those_drives_to_the_first_order(parts, footprint):
+    track, near = Track(parts, footprint), Track(parts, footprint, deformation=(1 + 1e-6, 1.0, 0.0, 0.0))
+    faster = AdjustedSpeed(SPEED.law, SPEED.delay, SPEED.scale + 1e-7, SPEED.anchor, SPEED.wander)
+    over_near, at_faster = nearby_inputs(track, SPEED, [near], [faster], OFFSETS, TIME)
+    assert over_near.heights == pytest.approx(wheel_inputs(near, SPEED, OFFSETS, TIME).heights, abs=1e-12)
+    assert at_faster.heights == pytest.approx(wheel_inputs(track, faster, OFFSETS, TIME).heights, abs=1e-8)
+
+
+def test_a_track_says_where_its_humps_reach():
+    assert np.array(Track((ONE, OTHER)).reaches) == pytest.approx(np.array([(4.0, 4.5), (9.0, 9.4)]))
+    assert Track((ONE, PROFILE)).reaches is None
+    (reach,) = Track((ONE,), footprint=0.2).reaches
+    assert reach[0] <= 3.9
+    assert reach[1] >= 4.6
