@@ -39,6 +39,8 @@ LONGEST_STEP_S = 1e-3
 """Longest internal step [s]: through 10 ms steps a stiffness comes out 17 % wrong at 15 Hz (Newmark's period error)."""
 SLOW_PERIOD_ERROR = 2.1e-3
 """Where only slow motions are compared, to begin a fit, steps may be so long that Newmark's scheme errs by this share of their period."""
+WORTH_LONGER = 2.0
+"""They are made longer by this factor at least, or not at all."""
 
 
 @dataclass(frozen=True)
@@ -87,10 +89,13 @@ class Trial:
         """Return the trial as it serves for motions up to a frequency [Hz]: with the longest step, and no filter that leaves them as is.
 
         Its samples are at the same times. The period error of the scheme is (omega dt)^2 / 12 to the first order; see SLOW_PERIOD_ERROR.
+        A run over anything but humps stays as it is: what a rough road shakes fast folds onto slow motions.
         """
         scenario, dt = self.scenario, self.recording.dt
         longest = math.sqrt(12 * SLOW_PERIOD_ERROR) / (2 * math.pi * highest)
-        decimation = min(math.ceil(dt / longest * (1 - 1e-9)), scenario.decimation)
+        decimation = math.ceil(dt / longest * (1 - 1e-9))
+        if not scenario.over_humps_alone or decimation * WORTH_LONGER > scenario.decimation:
+            return self
         chains = {name: scenario.chain(name).for_slow_motions(highest, 1 / dt) for name in self.channels}
         step = scenario.dt * scenario.decimation / decimation
         return replace(self, scenario=replace(scenario, dt=step, decimation=decimation, chains=chains))

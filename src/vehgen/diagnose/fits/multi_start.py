@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.fits.candidate import Candidate, build_problem, carried
+from vehgen.diagnose.fits.errors_anew import without_strain
 from vehgen.diagnose.fits.model_fit import (
     JACOBIAN_REFRESH,
     NUISANCES,
@@ -91,7 +92,7 @@ def fit_candidate(
     effects = (*current.effects, candidate)
     if best.chi2 - 1 > HOPELESS * max(current.training - 1, 0.0):
         return evaluate_fit(effects, best, (), noises)
-    fit = refine(resolve(best.misfit, best.x), best, best.x, effects)
+    fit = without_strain(refine(resolve(best.misfit, best.x), best, best.x, effects), effects)
     candidate, fit = release(candidate, current, fit, locator, simulators)
     return evaluate_fit((*current.effects, candidate), fit, validation_runs, noises)
 
