@@ -41,7 +41,7 @@ def test_what_believable_errors_leave_is_told(monkeypatch, detection_of):
     ("effect", "name", "verdict"),
     [
         (CUBIC, "cubic_stiffness", "named"),
-        (Effect("sensor_gain", "F_az", {"error": 0.15}), "sensor_gain", "measurement_fault"),
+        (Effect("sensor_gain", "F_az", {"error": 0.15}), "sensor_gain", "named"),
     ],
     ids=["of the vehicle", "of a sensor"],
 )

@@ -204,6 +204,37 @@ def test_clipping_is_reported(tmp_path, capsys):
     assert "acceleration z is clipped at 12.5 m/s^2" in found["warnings"][0]
 
 
+def scaled(factor):
+    """Return a change of the last three numbers of every line, its accelerations."""
+
+    def change(lines):
+        cells = (line.split(",") for line in lines)
+        return [",".join([*times, *(f"{factor * float(cell):.9e}" for cell in own)]) for *times, x, y, z in cells for own in [(x, y, z)]]
+
+    return rows(change)
+
+
+def test_a_phone_whose_gain_is_wrong_is_read_with_a_warning(tmp_path, capsys):
+    """Its accelerations come out as much too large as its gravity; all else is found as without."""
+    true = facts(capsys, tmp_path / "true.yaml", both("hump_2ms"))
+    found = facts(capsys, tmp_path / "run.yaml", [both("hump_2ms")[0], changed(tmp_path / "b.zip", both("hump_2ms")[1], scaled(1.24))])
+    assert true["warnings"] == []
+    (warning,) = found["warnings"]
+    assert warning.startswith("b.zip: at rest gravity reads 12.")
+    assert float(warning.partition("a gain of ")[2].partition(",")[0]) == pytest.approx(1.24, rel=0.01)
+    assert found["phones"][1]["zero"] == pytest.approx(true["phones"][1]["zero"], abs=1e-3)
+    own, others = (np.genfromtxt(tmp_path / f"{name}_recording.csv", delimiter=",", names=True) for name in ("run", "true"))
+    assert np.linalg.lstsq(others["L2_az"][:, None], own["L2_az"], rcond=None)[0] == pytest.approx(1.24, rel=0.01)
+    assert own["L1_az"] == pytest.approx(others["L1_az"], abs=1e-6)
+
+
+def test_a_phone_that_writes_another_unit_is_refused_with_it(tmp_path, capsys):
+    export = changed(tmp_path / "a.zip", both("hump_2ms")[0], scaled(10.0))
+    assert "is its unit m/s^2?" in refusal(capsys, tmp_path / "run.yaml", [export], sensors=(L1,))
+    export = changed(tmp_path / "b.zip", both("hump_2ms")[0], scaled(1 / 0.3048))
+    assert "it seems to be in ft/s^2; these files are read in m/s^2" in refusal(capsys, tmp_path / "run.yaml", [export], sensors=(L1,))
+
+
 @pytest.mark.parametrize(
     ("change", "options", "message"),
     [

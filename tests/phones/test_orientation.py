@@ -51,7 +51,12 @@ def test_face_up_needs_no_word():
         ([0, 9.81, 0], {}, "did not lie flat; say which of its axes pointed up"),
         ([0, 0, 9.81], {"up": "y"}, "is not along y, said to point up"),
         ([0, 0, 9.81], {"up": "z", "sign": -1}, "so the sign of accelerations is +1, not -1"),
-        ([0, 0, 4.0], {}, "at rest gravity reads 4.000 m/s^2"),
+        ([0, 0, 4.0], {}, "at rest gravity reads 4 m/s^2 (x +0.00, y +0.00, z +4.00 m/s^2), not 9.8: was the vehicle at a steady speed"),
+        ([0, 0, 25.0], {}, "was the vehicle at a steady speed, and is the recording in m/s^2?"),
+        ([0.02, 0, 0.99], {}, "it seems to be in g;"),
+        ([0, 0, 32.2], {}, "it seems to be in ft/s^2;"),
+        ([0, 30, 1004.0], {}, "it seems to be in mg or cm/s^2;"),
+        ([0, 0, 9790.0], {}, "it seems to be in mm/s^2;"),
         ([0, 0, 9.81], {"forward": "z"}, "said to point forward, points up"),
         ([0, 0, 9.81], {"forward": "w"}, "forward is an axis of the phone, found 'w'"),
         (None, {}, "without gravity, which would show how it lay; say which of its axes pointed up"),
@@ -75,3 +80,21 @@ def test_face_down_and_reversed_are_told_apart_by_up():
 def test_without_gravity_nothing_is_subtracted():
     orientation = find_orientation(None, "phone", "z", "y", -1)
     assert orientation.upward(np.array([[0.0, 0.0, -1.5]])) == pytest.approx([1.5])
+
+
+@pytest.mark.parametrize("factor", [0.52, 0.9, 1.233, 1.9])
+def test_a_gain_is_told_and_left_in_the_readings(factor):
+    """The accelerometer reads `factor` times what it should, motion and gravity alike: the motion comes out as often too large."""
+    tilt = Rotation.from_euler("xy", [4.0, -6.0], degrees=True).as_matrix()
+    motion = np.array([0.3, -0.2, 1.7])
+    orientation = find_orientation(factor * tilt @ (9.80665 * UP), "phone")
+    assert orientation.upward(factor * (tilt @ (motion + 9.80665 * UP))[None]) == pytest.approx([factor * 1.7])
+    (warning,) = orientation.warnings
+    assert f"a gain of {factor:.3f}, or an offset of {9.80665 * (factor - 1):+.2f} m/s^2" in warning
+    assert "`sensor_gain`" in warning
+
+
+def test_an_offset_that_chips_have_is_no_warning():
+    orientation = find_orientation(np.array([0.0, 0.0, 10.1]), "phone")
+    assert orientation.warnings == ()
+    assert "offset or gain is +3.0% off" in orientation.notes[-1]

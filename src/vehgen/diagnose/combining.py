@@ -10,7 +10,7 @@ from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit
 from vehgen.diagnose.localise.localisation import suffices
-from vehgen.diagnose.select.criteria import adds, excess, needs_both, p_value_of, passes, seeds, unfinished
+from vehgen.diagnose.select.criteria import adds, excess, is_told, needs_both, p_value_of, passes, seeds, unfinished
 from vehgen.diagnose.select.estimates import gain_interval
 from vehgen.diagnose.select.group_members import leading_group, member_seeds, with_rest
 from vehgen.diagnose.select.search import SearchRound
@@ -102,7 +102,8 @@ class Combiner:
         return evaluate_fit(seed.effects, seed.least_squares, self.detection.validation_runs, self.detection.floor.noises)
 
     def _is_sure(self, look: SearchRound, fit: ModelFit) -> bool:
-        return p_value_of(look, fit, self.tried) <= limit.SIGNIFICANT
+        """Return whether an added effect is no chance, and the runs tell its size."""
+        return p_value_of(look, fit, self.tried) <= limit.SIGNIFICANT and is_told(fit)
 
     def _holds(self, fit: ModelFit) -> bool:
         """Return whether a fit closes some of the gap on validation runs for sure."""

@@ -17,7 +17,6 @@ from vehgen.diagnose.detect.odd_run import OddChannel, disagreement
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.checks import variety_notes
-from vehgen.diagnose.inputs.conditions import BEYOND
 from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.judging import explain_gap, moved_axles, odd_mistake, plain_mistakes, recorded_mistakes, supposed_mistakes
 from vehgen.diagnose.localise.free_form import FreeForm, fit_free_form, recover, strongest
@@ -29,6 +28,7 @@ from vehgen.diagnose.select.estimates import excluded, gain_interval
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import freed_ratios, split_idle
 from vehgen.diagnose.select.group_members import with_members
+from vehgen.diagnose.select.one_error import explains_easily, one_error
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
 from vehgen.diagnose.select.search import LEADING, DiagnosisProgress, SearchRound, fit_leading_again, search_round
@@ -95,14 +95,15 @@ class Decision:
         other = Decision(believed, self.effects, self.everything, self.progress, self.runner)
         other.notes += self.notes
         if believed.is_quiet:
-            left = supposed_mistakes(believed)
-            return self._mistaken(left) if left else other._disagreement() or other._nothing()
+            return self._mistaken(left) if (left := supposed_mistakes(believed)) else other._disagreement() or other._nothing()
         found = other._explain_gap()
-        self.interrupted = found.stopped
-        chain = found.models.chosen
-        of_vehicle = bool(chain) and all(item.effect.changes_vehicle for item in chain[-1].effects)
-        easily = of_vehicle and all(abs(item.sigmas) <= BEYOND for item in chain[-1].least_squares.conditions())
-        return found if easily else self._mistaken(mistakes)
+        single = one_error(self.detection, believed, found, self._candidates(believed.base), self.runner)
+        self.interrupted = single.stopped
+        if single.fits:
+            other = Decision(believed, self.effects, self.everything, self.progress, self.runner)
+            other.notes, other.rounds = list(self.notes), [single]
+            return other._name([single.fits[0]])
+        return found if explains_easily(found) else self._mistaken(mistakes)
 
     def _explain_gap(self) -> Decided:
         detection = self.detection
@@ -276,8 +277,7 @@ class Decision:
 
     def _unknown(self, first: SearchRound, reason: str = "") -> Decided:
         best = (len(first.fits), self._words(first.fits[0].last), float(np.sqrt(first.fits[0].training))) if first.fits else None
-        if edge := self.base.least_squares.on_bound:
-            self.notes.append(wording.at_the_edge(edge))
+        self.notes += [wording.at_the_edge(edge)] if (edge := self.base.least_squares.on_bound) else []
         if strained := [item.message for item in supposed_mistakes(self.detection)]:
             self.notes.append(wording.supposed(strained))
         if first.fits:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
-from vehgen.files.units import STANDARD_GRAVITY
+from vehgen.phones.gravity import is_gravity, no_gravity
 
 Array = NDArray[np.float64]
 
@@ -102,6 +102,8 @@ class PhoneExport:
 def acceleration_kind(values: Array) -> str:
     """Say whether `values shape (n, 3)` [m/s^2] hold gravity, by their mean: a phone that stays on a vehicle reads about 9.8 or 0 m/s^2.
 
+    With gravity it may read from half to twice as much, where its gain is wrong.
+
     Raises
     ------
     InputError
@@ -112,11 +114,11 @@ def acceleration_kind(values: Array) -> str:
         raise InputError("an acceleration file holds no number")
     with np.errstate(over="ignore", invalid="ignore"):
         mean = float(np.linalg.norm(np.median(finite, axis=0)))
-    if abs(mean - STANDARD_GRAVITY) < 2.0:
+    if is_gravity(mean):
         return ACCELERATION_STREAM
     if mean < 2.0:
         return LINEAR_ACCELERATION_STREAM
     raise InputError(
-        f"the acceleration has a mean of {mean:.3g} m/s^2; a phone on a vehicle shows about 9.8 with gravity, about 0 without: "
-        "is its unit m/s^2?"
+        f"the acceleration has a mean of {mean:.4g} m/s^2; a phone on a vehicle shows about 9.8 with gravity, about 0 without: "
+        + no_gravity(mean, "is its unit m/s^2?")
     )

@@ -159,6 +159,7 @@ def _assemble(
         notes = [*phone.notes, *phone.short_gaps(zero, zero + float(time[-1])), *(orientation.notes if orientation else ())]
         used = phone.acceleration.between(zero, zero + float(time[-1]))
         warnings += clipping_warnings(phone.name, used)
+        warnings += [f"{phone.name}: {text}" for text in (orientation.warnings if orientation else ())]
         if is_hump and item.correlation < TRUSTED:
             warnings.append(
                 f"{phone.name}: the vehicle's answer fits badly (correlation {item.correlation:.2f}), so its clock is set by {found_by}: "

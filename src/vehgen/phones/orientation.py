@@ -2,7 +2,8 @@
 
 Right-handed axes x forward, y left, z up: pitch, nose-down positive, is a rotation about the left axis. A phone's axes: x to the right and
 y to the top edge of its screen, z out of the screen. At rest an accelerometer reads gravity upwards, +9.8 m/s^2 on z face up; some
-apps reverse the sign, and from a face-down phone that looks the same. What the readings leave open is asked for, never guessed.
+apps reverse the sign, and from a face-down phone that looks the same. What the readings leave open is asked for, never guessed. How much
+gravity is read shows a gain or an offset: it is told, and changes nothing that was recorded.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.units import STANDARD_GRAVITY
+from vehgen.phones.gravity import gain_warnings, is_gravity, no_gravity
 
 Array = NDArray[np.float64]
 AXES = {
@@ -30,7 +32,7 @@ class Orientation:
     """Unit vectors `up` and `left shape (3,)` in the phone's axes (`left` None where forward is unknown).
 
     `sign` is -1 where the app reversed accelerations; `tilt` the angle [deg] from the nearest axis of the phone; `gravity` the magnitude
-    that was read [m/s^2], 0 where none was; `notes` what was found, in words.
+    that was read [m/s^2], 0 where none was; `notes` what was found, in words, `warnings` what is doubtful.
     """
 
     up: Array
@@ -39,6 +41,7 @@ class Orientation:
     tilt: float
     gravity: float
     notes: tuple[str, ...]
+    warnings: tuple[str, ...] = ()
 
     def upward(self, acceleration: Array) -> Array:
         """Return the upward acceleration `shape (n,)` of readings `shape (n, 3)`, less the gravity that was read at rest [m/s^2]."""
@@ -92,14 +95,15 @@ def find_orientation(
         direction, magnitude, sign, notes = _by_gravity(gravity, name, up, sign)
         tilt = float(np.degrees(np.arccos(np.clip(np.abs(direction).max(), 0.0, 1.0))))
     left = _left(direction, forward, name) if forward is not None else None
-    return Orientation(direction, left, sign, tilt, magnitude, tuple(notes))
+    return Orientation(direction, left, sign, tilt, magnitude, tuple(notes), gain_warnings(magnitude) if magnitude else ())
 
 
 def _by_gravity(gravity: Array, name: str, up: str | None, sign: int | None) -> tuple[Array, float, int, list[str]]:
     magnitude = float(np.linalg.norm(gravity))
     reading = "x {:+.2f}, y {:+.2f}, z {:+.2f} m/s^2".format(*gravity)
-    if abs(magnitude - STANDARD_GRAVITY) > 1.0:
-        raise InputError(f"{name}: at rest gravity reads {magnitude:.3f} m/s^2 ({reading}), not 9.8: was the vehicle at a steady speed?")
+    if not is_gravity(magnitude):
+        why = no_gravity(magnitude, "was the vehicle at a steady speed, and is the recording in m/s^2?")
+        raise InputError(f"{name}: at rest gravity reads {magnitude:.4g} m/s^2 ({reading}), not 9.8: {why}")
     direction = gravity / magnitude
     if up is not None:
         along = float(direction @ np.array(AXES[up]))

@@ -109,6 +109,7 @@ def read_drive(
             channels.append(RoughRoadChannel(f"{phone.sensor.name}_q", phone.sensor.name, "pitch_rate", "rad/s"))
         notes += _notes(phone, (*phone.notes, *(orientation.notes if orientation else ())))
         warnings += clipping_warnings(phone.name, phone.acceleration.between(float(own[0]), float(own[-1])))
+        warnings += [f"{phone.name}: {text}" for text in (orientation.warnings if orientation else ())]
     gps = _gps(phones, clocks)
     return RoughRoadDrive(
         grid - begin,

@@ -200,17 +200,19 @@ def refine(
     noises: Noises | None = None,
     band: tuple[float, float] | None = None,
     known_errors: Sequence[LeastSquaresFit] = (),
+    most_sigmas: float = MOST_SIGMAS,
 ) -> LeastSquaresFit:
     """Fit finely from the unknowns `x` of another fit, on a problem with the same unknowns, of which the last are the effects'.
 
-    With its noise and band, or with other ones. Where the runs are others, `known_errors` are fits that tell where their errors begin.
+    With its noise and band, or with other ones, and errors of `most_sigmas` standard deviations at most. Where the runs are others,
+    `known_errors` are fits that tell where their errors begin.
     """
     misfit = fit.misfit
     n_effect_parameters = sum(len(item.parameters) for item in effects)
     names = problem.space.names[: problem.space.size - n_effect_parameters]
     unit, errors = misfit.split(x)
-    priors = base_priors(names, effects)
-    options = replace(OPTIONS, band=band or misfit.band, max_steps=40, prior_sigma=priors, n_effect_parameters=n_effect_parameters)
+    options = replace(OPTIONS, band=band or misfit.band, max_steps=40, n_effect_parameters=n_effect_parameters)
+    options = replace(options, prior_sigma=base_priors(names, effects), most_sigmas=most_sigmas)
     numbers = tuple(misfit.adjusted(x))
     if known_errors:
         begun = Misfit(problem, noises or misfit.noises, problem.space.start, NUISANCES, options.band, misfit.shared, misfit.known)

@@ -9,9 +9,10 @@ import numpy as np
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
-from vehgen.diagnose.select.estimates import p_value
+from vehgen.diagnose.select.estimates import estimate, excluded, p_value
 from vehgen.diagnose.select.search import SearchRound, merit, own_numbers
 from vehgen.diagnose.select.special_cases import does_as_well
+from vehgen.effects import RunEffect
 
 NEAREST = 4
 """So many of the effects that come nearest are told where nothing can be named."""
@@ -51,6 +52,21 @@ def _closes(after: float, before: float) -> bool:
 def p_value_of(found: SearchRound, fit: ModelFit, tried: int) -> float:
     """Return the p-value of a fit's last effect, times the number of candidates that could have been tried."""
     return min(1.0, tried * p_value(found.current, fit, own_numbers(fit)))
+
+
+def is_told(fit: ModelFit) -> bool:
+    """Return whether the runs tell the size of the last effect of a fit.
+
+    They do not where they ask for numbers that exclude one another, and, of an error of all runs or of a sensor, where its 90 % interval
+    holds the number that changes nothing. Of a law it may: a stop that is surely there can be of any stiffness.
+    """
+    if excluded(fit):
+        return False
+    effect = fit.last.effect
+    if not isinstance(effect, RunEffect):
+        return True
+    interval = estimate(fit)[effect.parameters[0].name].interval
+    return interval is None or not interval[0] <= effect.neutral <= interval[1]
 
 
 def tied(found: SearchRound, best: ModelFit) -> list[ModelFit]:

@@ -1,0 +1,82 @@
+"""One error of the measurement in place of many: a speed, a gain, a clock that alone explains what the base has to bend many for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from vehgen.diagnose.detect.detection import BELIEVED_SIGMAS, Detection
+from vehgen.diagnose.fits.candidate import Candidate
+from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit, refine
+from vehgen.diagnose.inputs.conditions import BEYOND
+from vehgen.diagnose.inputs.judging import supposed_mistakes
+from vehgen.diagnose.result import Decided
+from vehgen.diagnose.select.criteria import is_told
+from vehgen.diagnose.select.fitter import Fitter
+from vehgen.diagnose.select.search import SearchRound, merit
+from vehgen.effects import RunEffect
+from vehgen.fit.parallel import HERE, Runner
+
+
+def explains_easily(found: Decided) -> bool:
+    """Return whether effects of the vehicle were found, and beside them no error of a run or a sensor is beyond belief."""
+    chain = found.models.chosen
+    of_vehicle = bool(chain) and all(item.effect.changes_vehicle for item in chain[-1].effects)
+    return of_vehicle and all(abs(item.sigmas) <= BEYOND for item in chain[-1].least_squares.conditions())
+
+
+def one_error(
+    strained: Detection, believed: Detection, found: Decided, candidates: Sequence[Candidate], runner: Runner = HERE
+) -> SearchRound:
+    """Try each error of all runs, or of a sensor, alone; return those that explain the runs, the likeliest first.
+
+    None is tried where effects of the vehicle explain them, or Ctrl-C ended the search for these.
+
+    One that does leaves noise, with all other errors of BELIEVED_SIGMAS at most and nothing to be supposed of the runs. It is likelier,
+    with the price of its number, than the many errors of the strained base, and the runs tell its size.
+
+    Parameters
+    ----------
+    strained
+        Its base explains the runs, but supposes more of them than can be believed.
+    believed
+        The same with a base that supposes no more, and does not explain them.
+    found
+        What the search for effects beside that base found.
+    candidates
+        Every effect at every place; those of the vehicle are passed over.
+    runner
+        Where they are fitted.
+    """
+    current = believed.base
+    nothing = SearchRound(current, (), (), (), (), found.stopped)
+    if found.stopped or explains_easily(found):
+        return nothing
+    alone = [item for item in candidates if isinstance(item.effect, RunEffect)]
+    fits: list[ModelFit] = []
+    try:
+        for fit in Fitter(believed, current, ()).fit_all(alone, runner):
+            if fit is not None and _explains(fit := _within_belief(fit, believed), strained, believed):
+                fits.append(fit)
+    except KeyboardInterrupt:
+        return replace(nothing, stopped=True)
+    return replace(nothing, fits=tuple(sorted(fits, key=merit)))
+
+
+def _within_belief(fit: ModelFit, believed: Detection) -> ModelFit:
+    """Return a fit with errors of BELIEVED_SIGMAS at most: refined, where they are larger."""
+    supposed = [abs(item.sigmas) for part in fit.parts for item in part.conditions()]
+    if not np.isfinite(fit.validation) or max(supposed, default=0.0) <= BELIEVED_SIGMAS:
+        return fit
+    old, noises = fit.least_squares, believed.floor.noises
+    found = refine(old.misfit.problem, old, old.x, fit.effects, most_sigmas=BELIEVED_SIGMAS)
+    return evaluate_fit(fit.effects, found, believed.validation_runs, noises, BELIEVED_SIGMAS)
+
+
+def _explains(fit: ModelFit, strained: Detection, believed: Detection) -> bool:
+    """Return whether an error alone explains the runs, better than the many of the strained base."""
+    with_it = replace(believed, base=fit)
+    quiet = bool(np.isfinite(fit.validation)) and with_it.is_quiet and not supposed_mistakes(with_it)
+    return quiet and merit(fit) < strained.base.squares and is_told(fit)

@@ -1,0 +1,76 @@
+"""One error of the measurement in place of many: which one is told, and that none is where there are two, or where many are likelier."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+from benchmarks.hidden_effects.generator import Effect
+
+from tests.diagnose.conftest import CUBIC, HUMPS
+from vehgen.diagnose.detect.detection import believable
+from vehgen.diagnose.fits.candidate import list_candidates
+from vehgen.diagnose.select.estimates import estimate
+from vehgen.diagnose.select.one_error import _within_belief, one_error
+from vehgen.effects import EFFECTS
+
+GAIN = Effect("sensor_gain", "F_az", {"error": 0.15})
+LATE = Effect("sensor_delay", "R", {"time": 0.06})
+NAMES = ("cubic_stiffness", "sensor_gain", "sensor_delay", "speed_error")
+NOTHING = SimpleNamespace(stopped=False, models=SimpleNamespace(chosen=()))
+"""What a search finds that names no effect."""
+
+
+def candidates_of(detection, names=NAMES):
+    return list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS[name] for name in names], detection.floor.noises)
+
+
+def tried(detection, strained=None, found=NOTHING):
+    believed = believable(detection)
+    return one_error(strained or detection, believed, found, candidates_of(detection))
+
+
+@pytest.mark.parametrize(
+    ("effect", "label", "value"),
+    [(GAIN, "sensor_gain at F_az", 1.15), (Effect("speed_error", "all", {"error": 0.05}), "speed_error at all runs", 1.05)],
+    ids=["gain", "speed"],
+)
+def test_the_one_error_that_explains_the_runs_is_found(detection_of, effect, label, value):
+    round_ = tried(detection_of(effect, runs=HUMPS))
+    assert [fit.label for fit in round_.fits] == [label]
+    (found,) = estimate(round_.fits[0]).values()
+    assert found.value == pytest.approx(value, rel=0.02)
+    assert found.interval[0] < value < found.interval[1]
+    for part in round_.fits[0].parts:
+        assert max(abs(item.sigmas) for item in part.conditions()) <= 2.5 + 1e-9
+
+
+@pytest.mark.parametrize("effects", [(GAIN, LATE), (CUBIC,)], ids=["two errors", "an effect of the vehicle"])
+def test_none_is_told_where_one_alone_does_not_explain_the_runs(detection_of, effects):
+    assert tried(detection_of(*effects, runs=HUMPS)).fits == ()
+
+
+def test_none_is_told_where_many_small_errors_are_likelier(detection_of):
+    detection = detection_of(GAIN, runs=HUMPS)
+    assert tried(detection, replace(detection, base=replace(detection.base, training=0.5))).fits == ()
+
+
+def test_none_is_tried_after_a_stop_or_beside_an_effect_of_the_vehicle(detection_of):
+    detection = detection_of(GAIN, runs=HUMPS)
+    stopped = tried(detection, found=SimpleNamespace(stopped=True, models=SimpleNamespace(chosen=())))
+    assert (stopped.fits, stopped.stopped) == ((), True)
+    easy = SimpleNamespace(sigmas=1.0)
+    spring = SimpleNamespace(
+        effects=[SimpleNamespace(effect=EFFECTS["cubic_stiffness"])], least_squares=SimpleNamespace(conditions=lambda: [easy])
+    )
+    beside = tried(detection, found=SimpleNamespace(stopped=False, models=SimpleNamespace(chosen=[spring])))
+    assert (beside.fits, beside.stopped) == ((), False)
+
+
+def test_what_a_fit_supposes_beyond_belief_is_held_within(detection_of):
+    """The base of runs with a wrong gain supposes other gains of four standard deviations; held within, it is the believable one."""
+    detection = detection_of(GAIN, runs=HUMPS)
+    held, believed = _within_belief(detection.base, detection), believable(detection).base
+    largest = [max(abs(item.sigmas) for part in fit.parts for item in part.conditions()) for fit in (detection.base, held)]
+    assert largest[0] > 3.9
+    assert largest[1] <= 2.5 + 1e-9
+    assert (held.training, held.validation) == pytest.approx((believed.training, believed.validation), rel=1e-2)
