@@ -12,7 +12,7 @@ from vehgen.diagnose.fits.candidate import build_problem, list_candidates
 from vehgen.effects import EFFECTS, EffectLocator
 from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.misfit import Misfit
-from vehgen.fit.noise import KNOT_WAVENUMBERS, Noise, road_answer
+from vehgen.fit.noise import KNOT_WAVENUMBERS, SMALLEST_LEVEL, DrawnDensity, Noise, road_answer
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
 from vehgen.simulate import SimulatorPool
@@ -59,7 +59,9 @@ def stuck(record, tmp_path_factory):
     return trials, find_noise_floor(trials, BAND_HZ).noises
 
 
-def test_a_smooth_road_under_stuck_friction_is_not_taken_for_a_rough_one(stuck):
+@pytest.fixture(scope="module")
+def stuck_fit(stuck):
+    """The vehicle with its friction, as it is."""
     trials, noises = stuck
     vehicle = trials[0].run.vehicle
     locator, base = EffectLocator(vehicle, trials[0].values), make_problem(trials)
@@ -69,10 +71,30 @@ def test_a_smooth_road_under_stuck_friction_is_not_taken_for_a_rough_one(stuck):
     point[-1] = FORCE
     misfit = Misfit(problem, noises, point, None, BAND_HZ)
     x = np.concatenate([problem.space.unit(point), np.zeros(misfit.n_unknowns - problem.space.size)])
-    fit = LeastSquaresFit(misfit, x, 1.0, 0.0)
-    runs = [DrawnRun(fit, number, noises[trial.name]) for number, trial in enumerate(trials)]
+    return LeastSquaresFit(misfit, x, 1.0, 0.0)
+
+
+def test_a_smooth_road_under_stuck_friction_is_not_taken_for_a_rough_one(stuck, stuck_fit):
+    trials, noises = stuck
+    runs = [DrawnRun(stuck_fit, number, noises[trial.name]) for number, trial in enumerate(trials)]
     inside = (KNOT_WAVENUMBERS > 0.3) & (KNOT_WAVENUMBERS < 4)
     for run, levels in zip(runs, find_levels(runs), strict=True):
         linear, own = (np.exp(np.log(item[inside]).mean()) for item in (run.lead.levels, levels))
         assert CLASS_A / 4 < own < 4 * CLASS_A
         assert linear > 2 * own
+
+
+def test_a_vehicle_that_passes_nothing_on_keeps_the_smallest_levels(stuck, stuck_fit, monkeypatch):
+    """Stuck friction may pass on less of a road than a linear vehicle shows of the smallest level."""
+    trials, noises = stuck
+    n = len(trials[0].channels)
+
+    def nothing(self, levels, count, *, hump=True):
+        frequency = self.fit.misfit.frequency(self.number)
+        return DrawnDensity(frequency, np.zeros((len(frequency), n, n), dtype=np.complex128))
+
+    monkeypatch.setattr(DrawnRun, "density", nothing)
+    even = np.full(len(KNOT_WAVENUMBERS), 1.5 * SMALLEST_LEVEL)
+    runs = [DrawnRun(stuck_fit, number, Noise(even, 1e-5 * noises[trial.name].sigma)) for number, trial in enumerate(trials)]
+    for levels in find_levels(runs):
+        assert levels == pytest.approx(SMALLEST_LEVEL)

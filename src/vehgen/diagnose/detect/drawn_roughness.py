@@ -84,7 +84,7 @@ def _asked(run: DrawnRun, levels: Array, lead: tuple[Complex, RoadAnswer] | None
     lines, answer = lead
     drawn = replace(run.lead, louder=None, drawn=run.density(levels, ROADS_TRIED, hump=False))
     total = _own_densities(drawn, answer)
-    share = (total - _own_densities(replace(drawn, drawn=None, levels=EVEN), answer)) / total
+    share = np.maximum(total - _own_densities(replace(drawn, drawn=None, levels=EVEN), answer), 0.0) / total
     weights = answer.weights.T
     return np.stack([weights @ (share * np.abs(lines) ** 2 / total).sum(axis=1), weights @ share.sum(axis=1)])
 
