@@ -46,6 +46,7 @@ def _parser() -> argparse.ArgumentParser:
     tell.add_argument("--cases", nargs="+", help="names of cases (default: all)")
     tell.add_argument("--scored", type=Path, nargs="+", default=[], help="what `score` wrote of them: outcomes are kept beside")
     tell.add_argument("--missed", action="store_true", help="only cases that --scored says were not seen")
+    tell.add_argument("--steps", action="store_true", help="also say at which step the diagnosis loses what is hidden")
     tell.add_argument("--twins-of", type=Path, help="the cases with their effects, where `folder` was made --without them")
     told = commands.add_parser("told", help="print what `tellable` found")
     told.add_argument("measured", type=Path, nargs="+")
@@ -62,7 +63,8 @@ def _tell(options: argparse.Namespace) -> None:
     names = options.cases or sorted(path.name for path in (options.folder / "truth").iterdir())
     names = [name for name in names if name in missed(scored)] if options.missed else names
     warnings.simplefilter("ignore")
-    measure_set(options.folder, options.out, names, options.twins_of, {item["case"]: item["judged"] for item in scored})
+    judged = {item["case"]: item["judged"] for item in scored}
+    measure_set(options.folder, options.out, names, options.twins_of, judged, options.steps)
 
 
 def main() -> None:

@@ -59,7 +59,7 @@ class _Gains:
     def _simulated(self, exact: Misfit, candidate: Candidate, problem: Problem, unit: Array, start: tuple[float, ...]) -> Array:
         numbers = [(value - item.neutral) / item.scale for item, value in zip(candidate.shared, start, strict=False)]
         lines = exact.whitened_spectrum(np.concatenate([unit, numbers, self.fitter.current.errors]))
-        return np.concatenate([flatten(item) for item in lines]) - self.lines
+        return np.asarray(np.concatenate([flatten(item) for item in lines]) - self.lines)
 
     def _gain(self, moved: Array, scaled: bool) -> float:
         free, left = self.projection.remainder(moved), self.projection.left

@@ -15,6 +15,7 @@ from benchmarks.measured_world.solve import imported, vehicle_file, workplace
 from benchmarks.measured_world.telling.falls import Falls, price
 from benchmarks.measured_world.telling.gains import first_order_gains
 from benchmarks.measured_world.telling.rule import BESIDE, FITTED
+from benchmarks.measured_world.telling.steps import steps_of_case
 from benchmarks.measured_world.telling.true_law import true_candidate, true_start
 from vehgen.diagnose.detect.detection import Detection, detect
 from vehgen.diagnose.detect.splitting import kind_of_run
@@ -28,11 +29,18 @@ TOLD = 8
 """So many of the largest first-order gains are kept, with their laws."""
 
 
-def measure_set(root: Path, out: Path, names: Sequence[str], twins_of: Path | None = None, judged: Mapping[str, str] | None = None) -> None:
+def measure_set(
+    root: Path,
+    out: Path,
+    names: Sequence[str],
+    twins_of: Path | None = None,
+    judged: Mapping[str, str] | None = None,
+    with_steps: bool = False,
+) -> None:
     """Append the measurement of the cases `names` of `root` to `out`, but of those that are there; failures are recorded as such.
 
     Twins are asked for what is hidden in the cases of `twins_of` of the same names; `judged` are outcomes of scored cases, to be kept
-    beside.
+    beside. `with_steps` the diagnosis's own steps are gone through, too, where something is hidden.
     """
     lines = out.read_text(encoding="utf-8").splitlines() if out.is_file() else []
     known = {(item["set"], item["case"]) for item in map(json.loads, lines)}
@@ -41,6 +49,8 @@ def measure_set(root: Path, out: Path, names: Sequence[str], twins_of: Path | No
             continue
         asked = None if twins_of is None else _truth(twins_of, name)["effects"][0]
         record = measure_case(root, name, asked) | ({"judged": judged[name]} if judged and name in judged else {})
+        if with_steps and record["hidden"] is not None and "failed" not in record:
+            record["steps"] = steps_of_case(root, name, record["hidden"])
         with out.open("a", encoding="utf-8") as stream:
             stream.write(json.dumps(record) + "\n")
         print(summary(record), flush=True)
