@@ -1,7 +1,8 @@
 """When a hidden effect counts as one that its recordings can tell, and the levels that a fall must exceed.
 
 The rule was written down before any case with an effect was measured. Levels come from vehicles without an effect alone: sealed healthy
-ones, and twins, which are cases with an effect made again without it.
+ones, and twins, which are cases with an effect made again without it. They are the largest of the records given,
+so that more records can only raise them, and excuse more misses.
 """
 
 from __future__ import annotations
