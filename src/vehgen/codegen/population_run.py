@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.codegen.compiled_loops import compile_loops
-from vehgen.codegen.emit_llvm import compiles
 from vehgen.codegen.excitation import Excitation
 from vehgen.codegen.kernel_source import KernelSource
 from vehgen.codegen.time_loop import LOOP_IMPORTS, LOOP_SIGNATURE, SHARED_SIGNATURE, advance_block, read_shared
@@ -117,6 +116,8 @@ class PopulationRun:
     def _advance_block(
         self, first: int, drives: list[NDArray[Any]], shared: list[NDArray[Any]], consume: Consume, into: NDArray[Any] | None
     ) -> None:
+        from vehgen.codegen.emit_llvm import compiles
+
         source, module, lanes = self.source, self.module, self.source.lanes
         last = min(first + lanes, len(self.columns))
         rows = np.minimum(np.arange(first, first + lanes), last - 1)

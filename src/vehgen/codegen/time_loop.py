@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.codegen.emit_llvm import call_kernel
+if TYPE_CHECKING:  # where it is compiled, LOOP_IMPORTS imports it
+    from vehgen.codegen.emit_llvm import call_kernel
 
 LOOP_IMPORTS = "from vehgen.codegen.emit_llvm import call_kernel"
 LOOP_SIGNATURE = (
