@@ -20,7 +20,22 @@ SHARED_SIGNATURE = "void({f}[:, :, ::1], i8, i8, i8, i8, {f}[:, ::1], i8)"
 
 def read_shared(array: NDArray[Any], first: int, last: int, pattern: int, every: int, rows: NDArray[Any], place: int) -> None:
     """Write what all lanes read of an array's columns, at every so manieth step, to the columns of `rows` from `place` on."""
-    last_step, half = array.shape[1] - 1, array.dtype.type(0.5)
+    last_step, half, width = array.shape[1] - 1, array.dtype.type(0.5), array.shape[2]
+    if pattern > 0 and every == 1 and last - first == width and rows.shape[1] == width:  # all of them: as one long array, which is quicker
+        values, found = array[0].reshape(-1), rows.reshape(-1)
+        begin = values.size - width
+        for i in range(width):
+            found[begin + i] = values[begin + i]
+        now, after, target = values[:begin], values[width:], found[:begin]
+        for i in range(begin):
+            target[i] = half * (now[i] + after[i])
+        if pattern == 2:
+            later, target = values[2 * width :], found[width:]
+            for i in range(later.size):
+                target[i] = half * (now[i] + later[i]) + after[i]
+            for i in range(width if last_step > 0 else 0):
+                found[begin + i] = half * (values[begin - width + i] + values[begin + i]) + values[begin + i]
+        return
     for i in range(first, last):
         at = place + i - first
         if pattern == 0:
