@@ -71,7 +71,7 @@ LABEL = re.compile(
     r"([pq]_\d+|(mean_)?(f_\d+|d?w_input_\d+)|[uvxraefghWGMCKPQF]\d+(_\d+)*|vm\d+|s\d+_\d+_\d+|(static|rest)\d+|[AMK]_?_(inv|l)\d+(_\d+)?)\Z"
 )
 OWN = {"work", "j", "dt", "drives", "math", "lower", "upper", "sign", "step", "abs", "float32", "float64", "residual"}
-PHASE_NAMES = {"phase", "work", "active", "dt", "drives", "steps", "setup", "advance", "sample"}
+PHASE_NAMES = {"phase", "work", "active", "dt", "drives", "steps", "kept", "setup", "advance", "sample"}
 
 RESIDUAL_LINE = "State: what is left to be balanced (r) and twice the forces of springs (e, g), the residual form.\n"
 
@@ -126,8 +126,10 @@ def check_source(text: str) -> None:
                 continue
             (decorator,) = statement.decorator_list
             assert re.fullmatch(r"entry\('f[48]'\)", ast.unparse(decorator))
-            assert statement.body.pop(0).value.value == (
-                "Compute what follows from parameters alone (phase 0), so many steps (1), or the channels of a sample (2)."
+            assert re.fullmatch(
+                r"Compute what follows from parameters alone \(phase 0\), "
+                r"or so many steps with the channels of a sample (before|after) them \(1\)\.",
+                statement.body.pop(0).value.value,
             )
             check_function(statement, PHASES, PHASE_NAMES)
     assert set(seen) <= {

@@ -19,13 +19,15 @@ class DriveReads:
 
     `columns` says of each of these three, for each of the three arrays, the first column that is read, the one after the last, the place of
     the first among all that is read, and the pattern: VALUES, MEANS or SUMS. `step_row` and `sample_row` are how many numbers a step and a
-    sample read, `n_inputs` how many displacement inputs there are.
+    sample read, `n_inputs` how many displacement inputs there are. `ends`: a step ends
+    in the state of its sample, and reads sums; else it begins there.
     """
 
     columns: tuple[tuple[tuple[int, int, int, int], ...], ...]
     step_row: int
     sample_row: int
     n_inputs: int
+    ends: bool
 
     def place(self, group: int, number: int) -> int:
         """Return the place of a drive among all that is read; drives are numbered inputs first, then rates, then forces."""
@@ -60,7 +62,7 @@ def drive_reads(numbers: Sequence[Sequence[int]], n_inputs: int, sums: bool) -> 
             before += end - start
         columns.append(tuple(found))
         ends.append(before)
-    return DriveReads(tuple(columns), ends[0], ends[2] - ends[0], n_inputs)
+    return DriveReads(tuple(columns), ends[0], ends[2] - ends[0], n_inputs, sums)
 
 
 def _array(number: int, n_inputs: int) -> int:

@@ -93,28 +93,36 @@ def entry(number: str) -> Callable[[Callable[..., None]], Any]:
     """Return a decorator for the function of a kernel that :func:`call_kernel` calls; its numbers are of numba's type `number`."""
     if not compiles():
         return lambda function: function
-    signature = f"void(i8, CPointer({number}), i8, {number}, CPointer({number}), i8)"
+    signature = f"void(i8, CPointer({number}), i8, {number}, CPointer({number}), i8, CPointer({number}))"
     decorator: Callable[[Callable[..., None]], Any] = numba.cfunc(signature, cache=True)
     return decorator
 
 
-def _call_kernel(_context: Any, _kernel: Any, _phase: Any, work: Any, _active: Any, _dt: Any, drives: Any, _row: Any, _steps: Any) -> Any:
+def _call_kernel(
+    _context: Any, _kernel: Any, _phase: Any, work: Any, _active: Any, _dt: Any, drives: Any, _row: Any, _steps: Any, kept: Any, _place: Any
+) -> Any:
     def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        address, phase, _, active, dt, _, row, steps = arguments
-        lanes, rows = (make_array(signature.args[i])(context, builder, arguments[i]) for i in (2, 5))  # type: ignore[no-untyped-call]
-        first = builder.gep(rows.data, [builder.mul(row, builder.extract_value(rows.shape, 1))])
-        values = [phase, lanes.data, active, dt, first, steps]
+        address, phase, _, active, dt, _, row, steps, _, place = arguments
+        lanes, *rows = (make_array(signature.args[i])(context, builder, arguments[i]) for i in (2, 5, 8))  # type: ignore[no-untyped-call]
+        first, sample = (
+            builder.gep(item.data, [builder.mul(number, builder.extract_value(item.shape, 1))])
+            for item, number in zip(rows, (row, place), strict=True)
+        )
+        values = [phase, lanes.data, active, dt, first, steps, sample]
         kind = ir.FunctionType(ir.VoidType(), [value.type for value in values])
         builder.call(builder.inttoptr(address, kind.as_pointer()), values)
         return context.get_dummy_value()
 
     whole = types.int64
-    return types.none(whole, whole, work, whole, work.dtype, drives, whole, whole), code
+    return types.none(whole, whole, work, whole, work.dtype, drives, whole, whole, kept, whole), code
 
 
-def _call_plainly(kernel: Any, phase: int, work: Any, active: int, dt: float, drives: Any, row: int, steps: int) -> None:
-    kernel(phase, work, active, dt, drives[row:].ravel(), steps)
+def _call_plainly(
+    kernel: Any, phase: int, work: Any, active: int, dt: float, drives: Any, row: int, steps: int, kept: Any, place: int
+) -> None:
+    kernel(phase, work, active, dt, drives[row:].ravel(), steps, kept[place:].ravel())
 
 
 call_kernel: Any = intrinsic(_call_kernel) if compiles() else _call_plainly
-"""Call a kernel from numba's code: (its address, the phase, work, active lanes, dt, rows of drives, the first of these, steps)."""
+"""Call a kernel from numba's code: (its address, the phase, work, active lanes, dt, the steps' rows of drives, the first of them, steps,
+the samples' rows of drives, the one of them)."""

@@ -210,6 +210,8 @@ def _code(step: StepProgram, printer: PythonPrinter, work: _WorkArray) -> list[s
     sample, sample_scratch = work.loops(printer.needed[SAMPLE_PHASE], step.channels, "KEPT", work.sample_read)
     scratch = max(setup_scratch, advance_scratch, sample_scratch)
     sections = _sections(len(work.parameters), len(constants), len(states), len(step.channels), scratch)
+    calls = ["        advance(work, active, dt, drives, steps)", "        sample(work, active, dt, kept, 1)"]
+    when = "after" if work.reads.ends else "before"
     width, each = VECTOR // (4 if printer.single else 8), lanes if work.own else 1
     return [
         "",
@@ -221,14 +223,12 @@ def _code(step: StepProgram, printer: PythonPrinter, work: _WorkArray) -> list[s
         "",
         "",
         f'@entry("{"f4" if printer.single else "f8"}")',
-        "def run(phase, work, active, dt, drives, steps):",
-        '    """Compute what follows from parameters alone (phase 0), so many steps (1), or the channels of a sample (2)."""',
+        "def run(phase, work, active, dt, drives, steps, kept):",
+        f'    """Compute what follows from parameters alone (phase 0), or so many steps with the channels of a sample {when} them (1)."""',
         "    if phase == 0:",
-        "        setup(work, active, dt, drives, steps)",
-        "    elif phase == 1:",
-        "        advance(work, active, dt, drives, steps)",
+        "        setup(work, active, dt, kept, 1)",
         "    else:",
-        "        sample(work, active, dt, drives, steps)",
+        *(calls if work.reads.ends else reversed(calls)),
     ]
 
 

@@ -93,7 +93,7 @@ def advance_block(
         `shape (n_individuals, n_samples, n_channels)`: what is written; there may be fewer individuals than lanes.
     """
     n_steps, active, half = inputs.shape[1] - 1, responses.shape[0], work.dtype.type(0.5)
-    call_kernel(kernel, 0, work, active, dt, steps, 0, 1)
+    call_kernel(kernel, 0, work, active, dt, steps, 0, 0, samples, 0)
     for start in range(0, responses.shape[1], samples.shape[0]):
         stop = min(start + samples.shape[0], responses.shape[1])
         begin = max((start - 1) * keep + 1 if ends else start * keep, 0)
@@ -123,14 +123,10 @@ def advance_block(
                             for j in range(active):
                                 k = min(j, last_set)
                                 rows[row, place + i * lanes + j] = half * (array[k, before, i] + array[k, after, i]) + array[k, n, i]
-        for part in range(2 * start, 2 * stop):
-            sample = part // 2
-            if part % 2 == ends:
-                call_kernel(kernel, 2, work, active, dt, samples, sample - start, 1)
-                for channel in range(responses.shape[2]):
-                    for j in range(active):
-                        responses[j, sample, channel] = work[kept + channel * lanes + j]
-            else:
-                first = max((sample - 1) * keep + 1, 0) if ends else sample * keep
-                last = sample * keep + 1 if ends else min((sample + 1) * keep, n_steps)
-                call_kernel(kernel, 1, work, active, dt, steps, first - begin, last - first)
+        for sample in range(start, stop):
+            first = max((sample - 1) * keep + 1, 0) if ends else sample * keep
+            last = sample * keep + 1 if ends else min((sample + 1) * keep, n_steps)
+            call_kernel(kernel, 1, work, active, dt, steps, first - begin, last - first, samples, sample - start)
+            for channel in range(responses.shape[2]):
+                for j in range(active):
+                    responses[j, sample, channel] = work[kept + channel * lanes + j]
