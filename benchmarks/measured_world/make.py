@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -43,22 +44,28 @@ def write_case(case: Case, out: Path) -> None:
     write_json(sealed / "truth.json", truth(case, facts, more))
 
 
-def _make(set_name: str, seed: int, kind: str, recorder: str, out: Path, number: int) -> str:
+def _make(set_name: str, seed: int, kind: str, recorder: str, out: Path, without: bool, number: int) -> str:
     if kind == RIGS:
         rig = draw_rig(SETS[set_name], seed, number)
         if not (out / "truth" / rig.name / "truth.json").is_file():
             rig_files.write_case(rig, out)
         return rig.name
     case = draw_case(set_name, seed, kind, number, recorder)
+    case = replace(case, effects=(), strength=None) if without else case
     if not (out / "truth" / case.name / "truth.json").is_file():
         write_case(case, out)
     return case.name
 
 
-def make_set(set_name: str, seed: int, kind: str, count: int, out: Path, recorder: str = "mixed", processes: int = 1) -> None:
-    """Write `count` cases of a kind; those that are there already stay as they are."""
+def make_set(
+    set_name: str, seed: int, kind: str, count: int, out: Path, recorder: str = "mixed", processes: int = 1, without: bool = False
+) -> None:
+    """Write `count` cases of a kind; those that are there already stay as they are.
+
+    `without` their effects they are twins of those with them.
+    """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    work = partial(_make, set_name, seed, kind, recorder, out)
+    work = partial(_make, set_name, seed, kind, recorder, out, without)
     if processes == 1:
         for number in range(count):
             print(work(number), flush=True)

@@ -66,30 +66,12 @@ Arithmetic operations: 0 once per individual, 0 per step, 0 per kept sample.
 """
 ARITHMETIC = (ast.Assign, ast.Name, ast.Store, ast.Load, ast.Tuple, ast.Subscript, ast.Constant, ast.BinOp, ast.UnaryOp, ast.Call,
               ast.Attribute, ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.USub)  # fmt: skip
-LOOPS = (*ARITHMETIC, ast.For, ast.If, ast.Compare, ast.Eq, ast.Lt, ast.Mod, ast.FloorDiv, ast.Expr)
+PHASES = (*ARITHMETIC, ast.If, ast.Compare, ast.Eq, ast.Expr)
 LABEL = re.compile(
     r"([pq]_\d+|(mean_)?(f_\d+|d?w_input_\d+)|[uvxraefghWGMCKPQF]\d+(_\d+)*|vm\d+|s\d+_\d+_\d+|(static|rest)\d+|[AMK]_?_(inv|l)\d+(_\d+)?)\Z"
 )
 OWN = {"work", "j", "dt", "drives", "math", "lower", "upper", "sign", "step", "abs", "float32", "float64", "residual"}
-LOOP_NAMES = OWN | {
-    "inputs",
-    "rates",
-    "forces",
-    "keep",
-    "responses",
-    "n_steps",
-    "n",
-    "sample",
-    "channel",
-    "range",
-    "KEPT",
-    "k",
-    "last",
-    "min",
-    "before",
-    "after",
-    "share",
-}
+PHASE_NAMES = {"phase", "work", "active", "dt", "drives", "steps", "kept", "setup", "advance", "sample"}
 
 RESIDUAL_LINE = "State: what is left to be balanced (r) and twice the forces of springs (e, g), the residual form.\n"
 
@@ -112,11 +94,11 @@ def check_function(function: ast.FunctionDef, allowed: tuple[type[ast.AST], ...]
         for node in ast.walk(statement):
             assert isinstance(node, allowed), ast.dump(node)
             if isinstance(node, ast.Name):
-                assert node.id in names or LABEL.match(node.id) or re.fullmatch(r"(setup|sample|advance)_\d+", node.id), node.id
+                assert node.id in names or LABEL.match(node.id), node.id
             elif isinstance(node, ast.Constant):
                 assert type(node.value) in (int, float), node.value
             elif isinstance(node, ast.Attribute):
-                assert ast.unparse(node) in ("math.sqrt", "inputs.shape")
+                assert ast.unparse(node) == "math.sqrt"
 
 
 def check_source(text: str) -> None:
@@ -128,27 +110,32 @@ def check_source(text: str) -> None:
         if isinstance(statement, ast.Import | ast.ImportFrom):
             seen.append(ast.unparse(statement))
         elif isinstance(statement, ast.Assign):
-            assert ast.unparse(statement.targets[0]) in {"LANES", "PARAMETERS", "CONSTANTS", "STATE", "DRIVES", "KEPT", "SCRATCH", "WORK"}
+            target = ast.unparse(statement.targets[0])
+            if target in ("setup", "sample", "advance"):
+                assert re.fullmatch(rf"{target} = emit_llvm\(({target}_\d+, )+width=\d+, row=\d+\)", ast.unparse(statement))
+                continue
+            assert target in {"LANES", "PARAMETERS", "CONSTANTS", "STATE", "KEPT", "SCRATCH", "WORK"}
             assert type(statement.value.value) is int
         else:
             assert isinstance(statement, ast.FunctionDef)
-            (decorator,) = statement.decorator_list
-            if statement.name != "advance":
+            if statement.name != "run":
                 assert re.fullmatch(r"(setup|sample|advance)_\d+", statement.name)
-                assert ast.unparse(decorator) == "emit_llvm"
+                assert statement.decorator_list == []
                 assert ast.unparse(statement.args) == "work, j, dt, drives"
                 check_function(statement, ARITHMETIC, OWN)
                 continue
-            assert ast.unparse(decorator.func) == "numba.njit"
-            assert re.sub(r"\d+", "0", statement.body.pop(0).value.value) == (
-                "Advance 0 individuals over all steps, each driven by its own inputs or all by one set.\n\n"
-                "    inputs, rates and forces have shape (sets, steps + 0, width), responses (0, samples, 0).\n    "
+            (decorator,) = statement.decorator_list
+            assert re.fullmatch(r"entry\('f[48]'\)", ast.unparse(decorator))
+            assert re.fullmatch(
+                r"Compute what follows from parameters alone \(phase 0\), "
+                r"or so many steps with the channels of a sample (before|after) them \(1\)\.",
+                statement.body.pop(0).value.value,
             )
-            check_function(statement, LOOPS, LOOP_NAMES)
+            check_function(statement, PHASES, PHASE_NAMES)
     assert set(seen) <= {
-        "import math", "import numba", "from numba import float32, float64", "from vehgen.codegen.emit_llvm import emit_llvm",
+        "import math", "from numba import float32, float64", "from vehgen.codegen.emit_llvm import emit_llvm, entry",
     }  # fmt: skip
-    assert statements[-1].name == "advance"
+    assert statements[-1].name == "run"
 
 
 @pytest.fixture(scope="module")

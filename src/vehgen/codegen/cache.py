@@ -43,7 +43,7 @@ def cache_folder() -> Path:
     return base / "vehgen"
 
 
-_WRITER = (Path(__file__).parent / "emit_llvm.py").read_text(encoding="utf-8")
+_WRITER = "".join((Path(__file__).parent / name).read_text(encoding="utf-8") for name in ("emit_llvm.py", "llvm_text.py"))
 """What turns a kernel's text into instructions: numba does not see when it changes."""
 
 

@@ -1,14 +1,15 @@
 """Straight-line functions of generated kernels, turned into machine code without numba's front end.
 
-A kernel's loops hold hundreds of assignments. numba would trace, type and lower every one of them, which takes most of a compilation. A
-function decorated with :func:`emit_llvm` is read by Python's own parser instead, and its instructions are written where it is called. It
-may hold nothing but
+A kernel's steps hold hundreds of assignments. numba would trace, type and lower every one of them, and LLVM would have to find out that
+neighbouring lanes can be computed together. What :func:`emit_llvm` joins is read by Python's own parser instead, and written as a function
+of LLVM that computes several lanes at once: each name is a vector, or one number where all lanes share it. A body may hold nothing but
 
-    a, b = drives                       the numbers that are the same for all lanes
     name = expression                   each name once
-    work[12 + j] = expression
+    work[16 + j] = expression
 
-with + - * / **, lower, upper, sign, step, abs, math.sqrt, float32 and float64 in the expressions, of names, constants, work[12 + j], dt.
+with + - * / **, lower, upper, sign, step, abs, math.sqrt, float32 and float64 in the expressions, of names, constants, work[16 + j],
+drives[16 + j], drives[3] (the same for all lanes) and dt. Places of lanes are multiples of their number, and arrays start on a cache line,
+so that vectors are read and written whole.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
+import llvmlite.binding as llvm
 import numba
 import numpy as np
 from llvmlite import ir
@@ -27,7 +29,8 @@ from numba.core import types
 from numba.extending import intrinsic
 from numba.np.arrayobj import make_array
 
-SINGLE, DOUBLE = ir.FloatType(), ir.DoubleType()
+from vehgen.codegen.llvm_text import write_function
+
 _PLAIN_FUNCTIONS = {
     "math": SimpleNamespace(sqrt=np.sqrt),  # of a negative number: not a number, as when compiled
     "lower": lambda a, b: a if a < b else b,
@@ -43,111 +46,83 @@ def compiles() -> bool:
     return not getattr(numba.config, "DISABLE_JIT", 0)
 
 
-def emit_llvm(function: Callable[..., None]) -> Any:
-    """Return a function `(work, j, dt, drives)` of a kernel as something that numba's code can call; see the head of this file.
+def emit_llvm(*bodies: Callable[..., None], width: int, row: int) -> Any:
+    """Join bodies `(work, j, dt, drives)` to a function `(work, active, dt, drives, steps)`: so many steps of all active lanes.
 
-    Where numba is told not to compile (NUMBA_DISABLE_JIT), it stays a function of plain Python.
+    `width` lanes are computed at once, and a step has `row` numbers of `drives`. numba's code can call it; where numba is told not to
+    compile (NUMBA_DISABLE_JIT), it is plain Python, lane by lane.
     """
     if not compiles():
-        function.__globals__.update(_PLAIN_FUNCTIONS)
-        return function
+        return _plain(bodies, width, row)
 
-    def choose(_context: Any, work: Any, j: Any, dt: Any, drives: Any) -> Any:
-        def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            array = signature.args[0]
-            pointer = make_array(array)(context, builder, arguments[0]).data  # type: ignore[no-untyped-call]
-            writer = _Writer(builder, pointer, context.get_data_type(array.dtype), arguments[1], {"dt": arguments[2]}, arguments[3])
-            for statement in _body(function):
-                writer.write(statement)
+    def choose(_context: Any, work: Any, active: Any, dt: Any, drives: Any, steps: Any) -> Any:
+        def code(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+            if not bodies:  # a vehicle without channels
+                return context.get_dummy_value()
+            name = f"{bodies[0].__module__}.{bodies[0].__name__}"
+            text = write_function(name, [_statements(body) for body in bodies], width, row, str(context.get_data_type(work.dtype)))
+            context.active_code_library.add_llvm_module(llvm.parse_assembly(text))
+            kind = ir.FunctionType(ir.VoidType(), [argument.type for argument in arguments])
+            builder.call(ir.Function(builder.module, kind, name), arguments)
             return context.get_dummy_value()
 
-        return types.none(work, j, dt, drives), code
+        return types.none(work, active, dt, drives, steps), code
 
     return intrinsic(choose)
 
 
-def _body(function: Callable[..., None]) -> list[ast.stmt]:
+def _statements(function: Callable[..., None]) -> list[ast.stmt]:
     definition = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
     assert isinstance(definition, ast.FunctionDef)
     return definition.body
 
 
-class _Writer:
-    """Writes statements as instructions at a builder's place; `known` are values by name, `drives` the value of that argument."""
+def _plain(bodies: tuple[Callable[..., None], ...], width: int, row: int) -> Callable[..., None]:
+    def run(work: Any, active: int, dt: float, drives: Any, steps: int) -> None:
+        for step in range(steps):
+            for body in bodies:
+                for j in range(-(-active // width) * width):
+                    body(work, j, dt, drives[step * row :])
 
-    def __init__(self, builder: Any, work: Any, number: Any, j: Any, known: dict[str, Any], drives: Any) -> None:
-        self.builder, self.work, self.number, self.j, self.known, self.drives = builder, work, number, j, known, drives
+    for body in bodies:
+        body.__globals__.update(_PLAIN_FUNCTIONS)
+    return run
 
-    def write(self, statement: ast.stmt) -> None:
-        """Write one statement."""
-        assert isinstance(statement, ast.Assign), ast.dump(statement)
-        target = statement.targets[0]
-        if isinstance(target, ast.Tuple):
-            for i, name in enumerate(target.elts):
-                assert isinstance(name, ast.Name)
-                self.known[name.id] = self.builder.extract_value(self.drives, i)
-            return
-        value = self.value(statement.value)
-        if isinstance(target, ast.Name):
-            self.known[target.id] = value
-        else:
-            self.builder.store(self._as(value, self.number), self._place(target))
 
-    def value(self, item: ast.expr) -> Any:
-        """Return an expression's value."""
-        if isinstance(item, ast.Name):
-            return self.known[item.id]
-        if isinstance(item, ast.Constant):
-            return DOUBLE(float(item.value))  # type: ignore[arg-type]
-        if isinstance(item, ast.Subscript):
-            return self.builder.load(self._place(item))
-        if isinstance(item, ast.UnaryOp):
-            assert isinstance(item.op, ast.USub), ast.dump(item)
-            return self.builder.fneg(self.value(item.operand))
-        if isinstance(item, ast.BinOp):
-            return self._binary(item)
-        assert isinstance(item, ast.Call), ast.dump(item)
-        name = item.func.attr if isinstance(item.func, ast.Attribute) else item.func.id  # type: ignore[attr-defined]
-        return self._call(name, [self.value(argument) for argument in item.args])
+def entry(number: str) -> Callable[[Callable[..., None]], Any]:
+    """Return a decorator for the function of a kernel that :func:`call_kernel` calls; its numbers are of numba's type `number`."""
+    if not compiles():
+        return lambda function: function
+    signature = f"void(i8, CPointer({number}), i8, {number}, CPointer({number}), i8, CPointer({number}))"
+    decorator: Callable[[Callable[..., None]], Any] = numba.cfunc(signature, cache=True)
+    return decorator
 
-    def _binary(self, item: ast.BinOp) -> Any:
-        left, right = self._alike(self.value(item.left), self.value(item.right))
-        if isinstance(item.op, ast.Pow):
-            return self.builder.call(self.builder.module.declare_intrinsic("llvm.pow", [left.type]), (left, right))
-        operations = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}
-        return getattr(self.builder, operations[type(item.op)])(left, right)
 
-    def _call(self, name: str, arguments: list[Any]) -> Any:
-        if name in ("float32", "float64"):
-            return self._as(arguments[0], SINGLE if name == "float32" else DOUBLE)
-        if name in ("sqrt", "abs"):
-            function = self.builder.module.declare_intrinsic({"sqrt": "llvm.sqrt", "abs": "llvm.fabs"}[name], [arguments[0].type])
-            return self.builder.call(function, arguments)
-        if name in ("lower", "upper"):
-            left, right = self._alike(*arguments)
-            return self.builder.select(self.builder.fcmp_ordered("<" if name == "lower" else ">", left, right), left, right)
-        (value,) = arguments
-        one, zero, minus = (value.type(number) for number in (1.0, 0.0, -1.0))
-        low = zero if name == "step" else self.builder.select(self.builder.fcmp_ordered("<", value, zero), minus, zero)
-        assert name in ("step", "sign"), name
-        return self.builder.select(self.builder.fcmp_ordered(">", value, zero), one, low)
+def _call_kernel(
+    _context: Any, _kernel: Any, _phase: Any, work: Any, _active: Any, _dt: Any, drives: Any, _row: Any, _steps: Any, kept: Any, _place: Any
+) -> Any:
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        address, phase, _, active, dt, _, row, steps, _, place = arguments
+        lanes, *rows = (make_array(signature.args[i])(context, builder, arguments[i]) for i in (2, 5, 8))  # type: ignore[no-untyped-call]
+        first, sample = (
+            builder.gep(item.data, [builder.mul(number, builder.extract_value(item.shape, 1))])
+            for item, number in zip(rows, (row, place), strict=True)
+        )
+        values = [phase, lanes.data, active, dt, first, steps, sample]
+        kind = ir.FunctionType(ir.VoidType(), [value.type for value in values])
+        builder.call(builder.inttoptr(address, kind.as_pointer()), values)
+        return context.get_dummy_value()
 
-    def _alike(self, left: Any, right: Any) -> tuple[Any, Any]:
-        """Return two numbers in the wider of their types."""
-        kind = SINGLE if left.type == right.type == SINGLE else DOUBLE
-        return self._as(left, kind), self._as(right, kind)
+    whole = types.int64
+    return types.none(whole, whole, work, whole, work.dtype, drives, whole, whole, kept, whole), code
 
-    def _as(self, value: Any, kind: Any) -> Any:
-        if value.type == kind:
-            return value
-        if isinstance(value, ir.Constant):
-            return kind(value.constant)
-        return self.builder.fptrunc(value, kind) if kind == SINGLE else self.builder.fpext(value, kind)
 
-    def _place(self, item: ast.expr) -> Any:
-        """Return the address of work[number + j]."""
-        assert isinstance(item, ast.Subscript)
-        assert isinstance(item.slice, ast.BinOp)
-        assert isinstance(item.slice.left, ast.Constant)
-        index = self.builder.add(self.j, self.j.type(item.slice.left.value))
-        return self.builder.gep(self.work, [index])
+def _call_plainly(
+    kernel: Any, phase: int, work: Any, active: int, dt: float, drives: Any, row: int, steps: int, kept: Any, place: int
+) -> None:
+    kernel(phase, work, active, dt, drives[row:].ravel(), steps, kept[place:].ravel())
+
+
+call_kernel: Any = intrinsic(_call_kernel) if compiles() else _call_plainly
+"""Call a kernel from numba's code: (its address, the phase, work, active lanes, dt, the steps' rows of drives, the first of them, steps,
+the samples' rows of drives, the one of them)."""

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from vehgen.codegen.cache import cache_folder, import_kernel, is_compiled, kernel_name
 from vehgen.codegen.excitation import Excitation
 from vehgen.codegen.kernel_source import KernelSource, Precision, write_kernel
-from vehgen.codegen.population_run import PopulationRun
+from vehgen.codegen.population_run import PopulationRun, own_drives
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
@@ -84,7 +84,7 @@ class Kernel:
 
     def __getstate__(self) -> dict[str, object]:
         """Leave the compiled code behind: who receives a kernel imports it again from the cache, or compiles it."""
-        return {key: value for key, value in vars(self).items() if key not in ("_module", "_moving")}
+        return {key: value for key, value in vars(self).items() if key not in ("_module", "_variants")}
 
     @property
     def folder(self) -> Path:
@@ -101,13 +101,19 @@ class Kernel:
         return import_kernel(self.source.text, self._folder)
 
     @cached_property
-    def _moving(self) -> tuple[KernelSource, ModuleType]:
-        """The kernel of runs that do not start from rest: the same one, unless its states are no displacements and velocities."""
-        if not self.source.from_rest:
+    def _variants(self) -> dict[tuple[bool, bool], tuple[KernelSource, ModuleType]]:
+        return {}
+
+    def _variant(self, moving: bool, own_drives: bool) -> tuple[KernelSource, ModuleType]:
+        """Return the kernel of runs that do not start from rest, or whose individuals have drives of their own."""
+        moving = moving and self.source.from_rest
+        if not moving and not own_drives:
             return self.source, self._module
-        sweeps, precision = self._options
-        source = write_kernel(self.model, sweeps=sweeps, precision=precision, from_rest=False)
-        return source, import_kernel(source.text, self._folder)
+        if (moving, own_drives) not in self._variants:
+            sweeps, precision = self._options
+            source = write_kernel(self.model, sweeps=sweeps, precision=precision, from_rest=not moving, own_drives=own_drives)
+            self._variants[moving, own_drives] = source, import_kernel(source.text, self._folder)
+        return self._variants[moving, own_drives]
 
     def compile(self) -> None:
         """Compile now, or load what an earlier process compiled."""
@@ -195,7 +201,7 @@ class Kernel:
         return np.hstack([parameters, rest.travels[:, self.source.static_travels]]), rest.failures
 
     def _population(self, columns: Array, excitation: Excitation, decimation: int, initial: Array | None = None) -> PopulationRun:
-        source, module = (self.source, self._module) if initial is None else self._moving
+        source, module = self._variant(initial is not None, own_drives(excitation))
         return PopulationRun(source, module, columns, excitation, decimation, initial)
 
     def _failures(self, columns: Array, responses: NDArray[Any], residuals: Array) -> dict[int, str]:

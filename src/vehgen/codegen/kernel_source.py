@@ -8,13 +8,13 @@ the cache, as long as their names sort alike (the order of a sum follows its nam
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
-from vehgen.codegen.drive_reads import LATER_MEANS, MEANS, SUMS, VALUES, neighbours, read_drives
+from vehgen.codegen.drive_reads import DriveReads, drive_reads
 from vehgen.codegen.lane_loops import split_loop
 from vehgen.codegen.legend import kernel_legend
 from vehgen.codegen.newmark import write_step
@@ -29,6 +29,8 @@ LANES = 16
 """Individuals that advance side by side in the innermost loop."""
 SINGLE_LANES = 32
 """The same in single precision: two vectors of 16 numbers, one of which computes while the other one waits."""
+VECTOR = 64
+"""Bytes of what a lane's instructions compute at once, in the numbers of the loops: 8 lanes, or 16 in single precision."""
 NONLINEAR_LANES = 16
 """The same with force laws, whose many constants would not stay in the first cache otherwise."""
 MOST_REWRITTEN = 2500
@@ -44,6 +46,7 @@ class KernelSource:
     `legend` says to people what the numbered names in the text stand for; it is never imported. `static_travels` are the elements
     whose travel from the unloaded position to static equilibrium [m] follows the parameters as further columns. `from_rest` says that its
     states are no displacements and velocities, so that it can only start from rest; `single` that its loops are in single precision.
+    `reads` are the drives that it reads.
     """
 
     text: str
@@ -57,6 +60,7 @@ class KernelSource:
     single: bool
     n_dof: int
     n_channels: int
+    reads: DriveReads
     static_travels: tuple[int, ...] = ()
 
     @property
@@ -71,6 +75,7 @@ def write_kernel(
     sweeps: int | None = None,
     precision: Precision = "double",
     from_rest: bool = True,
+    own_drives: bool = False,
 ) -> KernelSource:
     """Print the Newmark kernel of a model.
 
@@ -86,6 +91,8 @@ def write_kernel(
         Of the arrays and of all arithmetic in the loops; what depends on parameters alone is computed in double and rounded.
     from_rest
         Whether runs start from rest; else the state is displacements and velocities.
+    own_drives
+        Whether each lane has drives of its own; else all share theirs.
 
     """
     nonlinear = any(element.laws for element in model.elements)
@@ -94,7 +101,8 @@ def write_kernel(
     printer = PythonPrinter(
         step.program, {STEP_PHASE: [node for _, node in step.states], SAMPLE_PHASE: step.channels}, step.time_step, precision == "single"
     )
-    lines = [_header(model, printer, bool(step.sample_means)), *_code(model, step, printer, lanes)]
+    work = _WorkArray(step, printer, lanes, len(model.inputs), own_drives)
+    lines = [_header(model, printer, bool(step.sample_means)), *_code(step, printer, work)]
     text = _fold("\n".join(lines) + "\n")
     return KernelSource(
         text,
@@ -108,6 +116,7 @@ def write_kernel(
         printer.single,
         model.n_dof,
         len(step.channels),
+        work.reads,
         tuple(step.static_travels),
     )
 
@@ -135,20 +144,24 @@ Arithmetic operations: {counts["setup"]} once per individual, {counts["step"]} p
 """
 
 import math
-
-import numba
-{"from numba import float32, float64" if printer.single else ""}
-from vehgen.codegen.emit_llvm import emit_llvm'''
+{chr(10) + "from numba import float32, float64" + chr(10) if printer.single else ""}
+from vehgen.codegen.emit_llvm import emit_llvm, entry'''
 
 
 class _WorkArray:
     """Where the values of a kernel stand in its one array, in rows of lanes."""
 
-    def __init__(self, step: StepProgram, printer: PythonPrinter, lanes: int) -> None:
-        self.step, self.printer, self.lanes = step, printer, lanes
+    def __init__(self, step: StepProgram, printer: PythonPrinter, lanes: int, n_inputs: int, own: bool) -> None:
+        self.step, self.printer, self.lanes, self.own = step, printer, lanes, own
         self.parameters = {node: i for i, node in enumerate([*step.parameters.values(), *step.static_travels.values()])}
         self.states = {step.program.labels[leaf]: i for i, (leaf, _) in enumerate(step.states)}
-        self.drives = {node: i for i, node in enumerate([*step.drives, *step.sample_means])}
+        used = [set(printer.needed[STEP_PHASE]), set(printer.needed[SAMPLE_PHASE])]
+        groups = [(step.drives, used[0]), (step.drives, used[1]), (step.sample_means, used[1])]
+        numbers = [[number for number, node in enumerate(nodes) if node in needed] for nodes, needed in groups]
+        self.reads = drive_reads(numbers, n_inputs, bool(step.sample_means))
+        self.drives = [
+            {nodes[number]: self.reads.place(group, number) for number in numbers[group]} for group, (nodes, _) in enumerate(groups)
+        ]
 
     def place(self, section: str, row: int) -> str:
         """Return a row of a section, as it is read and written."""
@@ -161,32 +174,24 @@ class _WorkArray:
         text = self.place("PARAMETERS", self.parameters[node])
         return f"float64({text})" if self.printer.single else text
 
-    def loop_read(self, node: Node) -> str | None:
-        """Return how a leaf or a constant is read in a step or at a sample; None for what is already a variable."""
+    def step_read(self, node: Node) -> str | None:
+        """Return how a leaf or a constant is read in a step; None for what is already a variable."""
+        return self._loop_read(node, self.drives[0], 0)
+
+    def sample_read(self, node: Node) -> str | None:
+        """Return how a leaf or a constant is read at a sample; None for what is already a variable."""
+        return self._loop_read(node, {**self.drives[1], **self.drives[2]}, self.reads.step_row)
+
+    def _loop_read(self, node: Node, drives: dict[Node, int], before: int) -> str | None:
         if node in self.printer.constants:
             return self.place("CONSTANTS", self.printer.constants[node])
-        if node in self.drives:
-            return f"({self.printer.name(node)} + {self.place('DRIVES', self.drives[node])})"
+        if node in drives:
+            place = drives[node] - before
+            return f"drives[{place * self.lanes} + j]" if self.own else f"drives[{place}]"
         name = self.step.program.labels.get(node, "")
         if self.step.program.operations[node] == "leaf" and name in self.states:
             return self.place("STATE", self.states[name])
         return None
-
-    @property
-    def numbers(self) -> tuple[str, str]:
-        """How 0 and 1/2 are written in the loops."""
-        return self.printer.number(0.0), self.printer.number(0.5)
-
-    def reads(self, phase: int, groups: list[tuple[list[Node], str]], width: int) -> tuple[list[str], list[str]]:
-        """Return the lines that read the drives of a loop, in groups with their patterns, and the names of what all lanes share."""
-        used = set(self.printer.needed[phase])
-        found = [
-            (self.printer.name(node), self.place("DRIVES", self.drives[node]), number, pattern)
-            for nodes, pattern in groups
-            for number, node in enumerate(nodes)
-            if node in used
-        ]
-        return read_drives(found, width, self.numbers, self.lanes)
 
     def loops(
         self, nodes: list[Node], results: list[Node], section: str, read: Callable[[Node], str | None]
@@ -197,93 +202,57 @@ class _WorkArray:
         return split_loop(lines, stores, self.lanes)
 
 
-def _lane_functions(name: str, bodies: list[list[str]], lanes: int, indent: int, shared: Sequence[str] = ()) -> tuple[list[str], list[str]]:
-    """Return functions of one lane with these bodies, and the loops over lanes that call them with the `shared` variables."""
-    together = f"({', '.join(shared)}{',' if len(shared) == 1 else ''})"
-    first = [f"    {together} = drives"] if shared else []
-    blank = "    " * indent
-    functions, calls = [], []
-    for i, body in enumerate(body for body in bodies if body):
-        functions += ["", "", "@emit_llvm", f"def {name}_{i}(work, j, dt, drives):", *first, *(f"    {line}" for line in body)]
-        calls += [f"{blank}for j in range({lanes}):", f"{blank}    {name}_{i}(work, j, dt, {together})"]
-    return functions, calls
-
-
-def _code(model: EquationsOfMotion, step: StepProgram, printer: PythonPrinter, lanes: int) -> list[str]:
-    """Return the lines of a kernel after its imports: sections of the work array, functions of one lane, the loop over steps."""
-    work = _WorkArray(step, printer, lanes)
-    constants, states = list(printer.constants), [node for _, node in step.states]
+def _code(step: StepProgram, printer: PythonPrinter, work: _WorkArray) -> list[str]:
+    """Return the lines of a kernel after its imports: sections of the work array, bodies of its loops over lanes, and what joins them."""
+    constants, states, lanes = list(printer.constants), [node for _, node in step.states], work.lanes
     setup, setup_scratch = work.loops(printer.setup, constants, "CONSTANTS", work.setup_read)
-    advance, advance_scratch = work.loops(printer.needed[STEP_PHASE], states, "STATE", work.loop_read)
-    sample, sample_scratch = work.loops(printer.needed[SAMPLE_PHASE], step.channels, "KEPT", work.loop_read)
+    advance, advance_scratch = work.loops(printer.needed[STEP_PHASE], states, "STATE", work.step_read)
+    sample, sample_scratch = work.loops(printer.needed[SAMPLE_PHASE], step.channels, "KEPT", work.sample_read)
     scratch = max(setup_scratch, advance_scratch, sample_scratch)
-    sections = _sections(len(work.parameters), len(constants), len(states), len(work.drives), len(step.channels), scratch)
-    residual = bool(step.sample_means)
-    means, mean_names = work.reads(STEP_PHASE, [(step.drives, SUMS if residual else MEANS)], len(model.inputs))
-    values, value_names = work.reads(SAMPLE_PHASE, [(step.drives, VALUES), (step.sample_means, LATER_MEANS)], len(model.inputs))
-    setup_functions, setup_calls = _lane_functions("setup", setup, lanes, 1)
-    sample_functions, sample_calls = _lane_functions("sample", sample, lanes, 0, value_names)
-    advance_functions, advance_calls = _lane_functions("advance", advance, lanes, 0, mean_names)
-    sample_lines = [
-        *values,
-        *sample_calls,
-        f"for channel in range({len(step.channels)}):",
-        f"    for j in range({lanes}):",
-        f"        responses[j, sample, channel] = work[KEPT + channel*{lanes} + j]",
-    ]
-    step_lines = [*means, *advance_calls]
+    sections = _sections(len(work.parameters), len(constants), len(states), len(step.channels), scratch)
+    calls = ["        advance(work, active, dt, drives, steps)", "        sample(work, active, dt, kept, 1)"]
+    when = "after" if work.reads.ends else "before"
+    width, each = VECTOR // (4 if printer.single else 8), lanes if work.own else 1
     return [
         "",
         "LANES = " + str(lanes),
         *(f"{name} = {start * lanes}" for name, start in sections.items()),
-        *setup_functions,
-        *sample_functions,
-        *advance_functions,
-        *_signature(len(step.channels), lanes, printer.single),
-        *setup_calls,
-        *_loop(step_lines, sample_lines, neighbours(printer.number(0.0), printer.number(1.0)) if residual else []),
+        *_functions("setup", setup, VECTOR // 8, 0),
+        *_functions("advance", advance, width, work.reads.step_row * each),
+        *_functions("sample", sample, width, work.reads.sample_row * each),
+        "",
+        "",
+        f'@entry("{"f4" if printer.single else "f8"}")',
+        "def run(phase, work, active, dt, drives, steps, kept):",
+        f'    """Compute what follows from parameters alone (phase 0), or so many steps with the channels of a sample {when} them (1)."""',
+        "    if phase == 0:",
+        "        setup(work, active, dt, kept, 1)",
+        "    else:",
+        *(calls if work.reads.ends else reversed(calls)),
     ]
 
 
-def _loop(step_lines: list[str], sample_lines: list[str], before: list[str]) -> list[str]:
-    """Return the loop over steps: each ends in the state of its sample where lines `before` it are given, else it begins from there."""
-    sample = ["if n % keep == 0:", "    sample = n // keep", *(f"    {line}" for line in sample_lines)]
-    step = [*before, *step_lines] if before else ["if n < n_steps:", *(f"    {line}" for line in step_lines)]
-    body = [*step, *sample] if before else [*sample, *step]
-    return ["    for n in range(n_steps + 1):", *(f"        {line}" for line in body)]
-
-
-def _signature(n_channels: int, lanes: int, single: bool) -> list[str]:
-    """Return the head of the function that advances all lanes."""
-    return [
-        "",
-        "",
-        "@numba.njit(",
-        '    "void(f8[::1], f8[:, :, ::1], f8[:, :, ::1], f8[:, :, ::1], f8, i8, f8[:, :, ::1])",'.replace("f8", "f4" if single else "f8"),
-        '    nogil=True, cache=True, fastmath={"contract", "nsz"}, error_model="numpy",',
-        ")",
-        "def advance(work, inputs, rates, forces, dt, keep, responses):",
-        f'    """Advance {lanes} individuals over all steps, each driven by its own inputs or all by one set.',
-        "",
-        f"    inputs, rates and forces have shape (sets, steps + 1, width), responses ({lanes}, samples, {n_channels}).",
-        '    """',
-        "    n_steps = inputs.shape[1] - 1",
-        "    last = inputs.shape[0] - 1",
-    ]
+def _functions(name: str, bodies: list[list[str]], width: int, row: int) -> list[str]:
+    """Return functions of one lane with these bodies, and how they are joined, `width` lanes at once, `row` drives for a step."""
+    lines, names = [], []
+    for i, body in enumerate(body for body in bodies if body):
+        names.append(f"{name}_{i}")
+        lines += ["", "", f"def {names[-1]}(work, j, dt, drives):", *(f"    {line}" for line in body)]
+    return [*lines, "", "", f"{name} = emit_llvm({', '.join([*names, f'width={width}', f'row={row}'])})"]
 
 
 def _fold(text: str) -> str:
     """Write `work[STATE + 96 + j]` as `work[1248 + j]`, the one form of it that :func:`vehgen.codegen.emit_llvm.emit_llvm` reads."""
-    starts = {name: int(value) for name, value in re.findall(r"^(PARAMETERS|CONSTANTS|STATE|DRIVES|KEPT|SCRATCH) = (\d+)$", text, re.M)}
+    starts = {name: int(value) for name, value in re.findall(r"^(PARAMETERS|CONSTANTS|STATE|KEPT|SCRATCH) = (\d+)$", text, re.M)}
     return re.sub(r"work\[([A-Z]+) \+ (\d+) \+ j\]", lambda match: f"work[{starts[match[1]] + int(match[2])} + j]", text)
 
 
-def _sections(n_parameters: int, n_constants: int, n_states: int, n_drives: int, n_channels: int, n_scratch: int) -> dict[str, int]:
+def _sections(n_parameters: int, n_constants: int, n_states: int, n_channels: int, n_scratch: int) -> dict[str, int]:
     """Return where each section of the work array starts, in rows of lanes; WORK is its whole length.
 
     One array instead of several lets the compiler see from constant distances that no two accesses overlap.
     """
-    sizes = {"PARAMETERS": n_parameters, "CONSTANTS": n_constants, "STATE": n_states, "DRIVES": n_drives, "KEPT": n_channels}
+    sizes = {"PARAMETERS": n_parameters, "CONSTANTS": n_constants, "STATE": n_states, "KEPT": n_channels}
     sizes["SCRATCH"] = n_scratch
     starts, start = {}, 0
     for name, size in sizes.items():

@@ -12,12 +12,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.codegen.compiled_loops import compile_loops
 from vehgen.codegen.excitation import Excitation
 from vehgen.codegen.kernel_source import KernelSource
+from vehgen.codegen.time_loop import LOOP_IMPORTS, LOOP_SIGNATURE, SHARED_SIGNATURE, advance_block, read_shared
 
 Array = NDArray[np.float64]
 Consume = Callable[[slice, NDArray[Any], Array], None]
 """Given which individuals a block holds, their responses, and their residuals; several threads call it."""
+OWN_ROWS = 64
+"""Steps whose drives are read at once where each lane has its own: few enough for the first cache."""
 WORTH_THREADS = 1_000_000
 """Blocks times steps times coordinates below which one core is as quick as several."""
 
@@ -28,6 +32,11 @@ def aligned(size: int, number: type[np.floating[Any]] = np.float64) -> NDArray[A
     raw = np.zeros(size + 64 // width, dtype=number)
     start = (-raw.ctypes.data // width) % (64 // width)
     return raw[start : start + size]
+
+
+def own_drives(excitation: Excitation) -> bool:
+    """Whether individuals have drives of their own."""
+    return any(item.ndim == 3 for item in (excitation.inputs, excitation.rates, excitation.forces))
 
 
 @dataclass(frozen=True)
@@ -54,6 +63,7 @@ class PopulationRun:
             `shape (n_individuals, n_samples, n_channels)`, in the kernel's precision: where whole blocks write their responses.
         """
         drives = self._drives()
+        shared = [] if self.own_drives else self._shared(drives)
         starts = range(0, len(self.columns), self.source.lanes)
         many = len(starts) > 1 and len(starts) * self.excitation.n_steps * self.source.n_dof > WORTH_THREADS
         workers = min(threads or os.cpu_count() or 1, len(starts)) if many else 1
@@ -61,7 +71,7 @@ class PopulationRun:
 
         def work_off(_worker: int) -> None:
             for first in left:
-                self._advance_block(first, drives, consume, into)
+                self._advance_block(first, drives, shared, consume, into)
 
         if workers > 1:
             with ThreadPoolExecutor(workers) as pool:
@@ -75,20 +85,56 @@ class PopulationRun:
         arrays = [np.ascontiguousarray(item, dtype=self.source.number) for item in items]
         return [item if item.ndim == 3 else item[None] for item in arrays]
 
-    def _advance_block(self, first: int, drives: list[NDArray[Any]], consume: Consume, into: NDArray[Any] | None) -> None:
+    def _shared(self, drives: list[NDArray[Any]]) -> list[NDArray[Any]]:
+        """Return the rows of drives that all individuals share, those of steps and those of samples."""
+        reads, n_steps = self.source.reads, self.excitation.n_steps
+        number = self.source.number
+        rows = [np.empty((n_steps + 1, reads.step_row), number), np.empty((n_steps // self.decimation + 1, reads.sample_row), number)]
+        read = compile_loops(read_shared, SHARED_SIGNATURE.format(f=self._f))
+        for group, columns in enumerate(reads.columns):
+            target, every, before = (rows[1], self.decimation, reads.step_row) if group else (rows[0], 1, 0)
+            for array, (start, end, place, pattern) in zip(drives, columns, strict=True):
+                if end > start:
+                    read(array, start, end, pattern, every, target, place - before)
+        return rows
+
+    def _space(self) -> list[NDArray[Any]]:
+        """Return space for some rows of steps' and of samples' drives where each lane has its own."""
+        reads, lanes, samples = self.source.reads, self.source.lanes, max(1, OWN_ROWS // self.decimation)
+        shapes = ((samples * self.decimation, reads.step_row * lanes), (samples, reads.sample_row * lanes))
+        return [aligned(rows * width, self.source.number).reshape(rows, width) for rows, width in shapes]
+
+    @property
+    def own_drives(self) -> bool:
+        """Whether individuals have drives of their own."""
+        return own_drives(self.excitation)
+
+    @property
+    def _f(self) -> str:
+        return "f4" if self.source.single else "f8"
+
+    def _advance_block(
+        self, first: int, drives: list[NDArray[Any]], shared: list[NDArray[Any]], consume: Consume, into: NDArray[Any] | None
+    ) -> None:
+        from vehgen.codegen.emit_llvm import compiles
+
         source, module, lanes = self.source, self.module, self.source.lanes
         last = min(first + lanes, len(self.columns))
         rows = np.minimum(np.arange(first, first + lanes), last - 1)
         work = aligned(module.WORK, source.number)
         work[: self.columns.shape[1] * lanes] = np.ascontiguousarray(self.columns[rows].T).ravel()
-        state = work[module.STATE : module.DRIVES]
+        state = work[module.STATE : module.KEPT]
         if self.initial is not None:
             state[: self.initial.shape[1] * lanes] = np.ascontiguousarray(self.initial[rows].T).ravel()
-        if into is None or last - first < lanes:
-            target = np.empty((lanes, self.excitation.n_steps // self.decimation + 1, source.n_channels), dtype=source.number)
+        if into is None:
+            target = np.empty((last - first, self.excitation.n_steps // self.decimation + 1, source.n_channels), dtype=source.number)
         else:
             target = into[first:last]
         own = (item if len(item) == 1 else item[first:last] for item in drives)
-        module.advance(work, *own, self.excitation.dt, self.decimation, target)
+        loop = compile_loops(advance_block, LOOP_SIGNATURE.format(f=self._f), LOOP_IMPORTS)
+        kernel: Any = module.run.address if compiles() else module.run
+        places, shares = shared or self._space(), int(bool(shared))
+        reads, ends = source.reads.array(), int(source.from_rest)
+        loop(kernel, work, lanes, self.excitation.dt, *places, shares, *own, reads, module.KEPT, self.decimation, ends, target)
         residuals = state[-lanes:] if source.nonlinear else np.zeros(lanes)
-        consume(slice(first, last), target[: last - first], residuals[: last - first])
+        consume(slice(first, last), target, residuals[: last - first])

@@ -1,0 +1,225 @@
+"""Bodies of loops over lanes, written as text of LLVM (its "intermediate representation") that computes several lanes at once.
+
+See :mod:`vehgen.codegen.emit_llvm` for what a body may hold.
+"""
+
+from __future__ import annotations
+
+import ast
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+CACHE_LINE = 64
+"""Bytes; a vector that is longer begins on one."""
+_BYTES = {"float": 4, "double": 8}
+_OPERATIONS = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}
+_FUSED = "contract nsz"
+"""Products may be fused with sums, and the sign of zero may be lost."""
+
+
+def write_function(name: str, bodies: Sequence[Sequence[ast.stmt]], width: int, row: int, number: str) -> str:
+    """Return the text of a function `(work, active, dt, rows, steps)`.
+
+    In each step it runs the bodies one after the other, each for all lanes that are active, with the next row of drives.
+
+    Parameters
+    ----------
+    name
+        What it is called; another function of that name must be the same.
+    bodies
+        Their statements.
+    width
+        Lanes that are computed at once.
+    row
+        Numbers in a row of drives.
+    number
+        Type of all numbers: "float" or "double".
+    """
+    lines: list[str] = []
+    declared: set[str] = set()
+    for i, body in enumerate(bodies):
+        writer = _Writer(width, number, f"b{i}.")
+        for statement in body:
+            writer.write(statement)
+        declared |= writer.declared
+        before, after = f"body{i - 1}" if i else "step", f"body{i + 1}" if i < len(bodies) - 1 else "done"
+        lines += [
+            f"  br label %body{i}" if i == 0 else "",
+            f"body{i}:",
+            f"  %j{i} = phi i64 [0, %{before}], [%next{i}, %body{i}]",
+            f"  %b{i}.lanes = getelementptr {number}, {number}* %work, i64 %j{i}",
+            f"  %b{i}.own = getelementptr {number}, {number}* %drives, i64 %j{i}",
+            *(f"  {line}" for line in writer.lines),
+            f"  %next{i} = add i64 %j{i}, {width}",
+            f"  %more{i} = icmp slt i64 %next{i}, %active",
+            f"  br i1 %more{i}, label %body{i}, label %{after}",
+        ]
+    text = "\n".join(lines)
+    return f"""{"".join(f"declare {item}" + chr(10) for item in sorted(declared))}
+define weak_odr void @"{name}"({number}* noalias %work, i64 %active, {number} %dt, {number}* noalias %rows, i64 %steps) noinline nounwind {{
+begin:
+  %some = icmp sgt i64 %steps, 0
+  br i1 %some, label %step, label %end
+step:
+  %n = phi i64 [0, %begin], [%later, %done]
+  %start = mul i64 %n, {row}
+  %drives = getelementptr {number}, {number}* %rows, i64 %start
+{text}
+done:
+  %later = add i64 %n, 1
+  %again = icmp slt i64 %later, %steps
+  br i1 %again, label %step, label %end
+end:
+  ret void
+}}
+"""
+
+
+@dataclass(frozen=True)
+class _Value:
+    """A number: how it is written, its type, and whether each lane has its own."""
+
+    text: str
+    number: str
+    wide: bool
+
+
+class _Writer:
+    """Writes statements as instructions; `known` are values by name."""
+
+    def __init__(self, lanes: int, number: str, prefix: str) -> None:
+        self.lanes, self.number, self.prefix = lanes, number, prefix
+        self.known = {"dt": _Value("%dt", number, False)}
+        self.lines: list[str] = []
+        self.declared: set[str] = set()
+        self._splats: dict[str, _Value] = {}
+
+    def write(self, statement: ast.stmt) -> None:
+        """Write one statement."""
+        assert isinstance(statement, ast.Assign), ast.dump(statement)
+        target = statement.targets[0]
+        value = self.value(statement.value)
+        if isinstance(target, ast.Name):
+            self.known[target.id] = value
+            return
+        value = self._wide(self._as(value, self.number))
+        place = self._place(target)
+        self.lines.append(f"store {self._kind(value)} {value.text}, {place}")
+
+    def value(self, item: ast.expr) -> _Value:
+        """Return an expression's value."""
+        if isinstance(item, ast.Name):
+            return self.known[item.id]
+        if isinstance(item, ast.Constant):
+            return _Value(_literal(float(item.value)), "double", False)  # type: ignore[arg-type]
+        if isinstance(item, ast.Subscript):
+            if isinstance(item.slice, ast.Constant):
+                return self._new(f"load {self.number}, {self._address('%drives', item.slice.value)}", self.number, False)
+            return self._new(f"load <{self.lanes} x {self.number}>, {self._place(item)}", self.number, True)
+        if isinstance(item, ast.UnaryOp):
+            assert isinstance(item.op, ast.USub), ast.dump(item)
+            value = self.value(item.operand)
+            return self._new(f"fneg {self._kind(value)} {value.text}", value.number, value.wide)
+        if isinstance(item, ast.BinOp):
+            left, right = self._alike(self.value(item.left), self.value(item.right))
+            if isinstance(item.op, ast.Pow):
+                return self._function("pow", [left, right])
+            return self._new(f"{_OPERATIONS[type(item.op)]} {_FUSED} {self._kind(left)} {left.text}, {right.text}", left.number, left.wide)
+        assert isinstance(item, ast.Call), ast.dump(item)
+        name = item.func.attr if isinstance(item.func, ast.Attribute) else item.func.id  # type: ignore[attr-defined]
+        return self._call(name, [self.value(argument) for argument in item.args])
+
+    def _call(self, name: str, arguments: list[_Value]) -> _Value:
+        if name in ("float32", "float64"):
+            return self._as(arguments[0], "float" if name == "float32" else "double")
+        if name in ("sqrt", "abs"):
+            return self._function({"sqrt": "sqrt", "abs": "fabs"}[name], arguments)
+        if name in ("lower", "upper"):
+            left, right = self._alike(*arguments)
+            return self._select("olt" if name == "lower" else "ogt", (left, right), (left, right))
+        assert name in ("step", "sign"), name
+        (value,) = arguments
+        one, zero, minus = (self._alike(_Value(_literal(number), value.number, False), value)[0] for number in (1.0, 0.0, -1.0))
+        low = zero if name == "step" else self._select("olt", (value, zero), (minus, zero))
+        return self._select("ogt", (value, zero), (one, low))
+
+    def _select(self, relation: str, pair: tuple[_Value, _Value], choice: tuple[_Value, _Value]) -> _Value:
+        kind, (yes, no) = self._kind(pair[0]), choice
+        bit = f"<{self.lanes} x i1>" if pair[0].wide else "i1"
+        test = self._new(f"fcmp {_FUSED} {relation} {kind} {pair[0].text}, {pair[1].text}", "i1", pair[0].wide)
+        return self._new(f"select {bit} {test.text}, {kind} {yes.text}, {kind} {no.text}", yes.number, yes.wide)
+
+    def _function(self, name: str, arguments: list[_Value]) -> _Value:
+        """Call one of LLVM's own functions."""
+        value = arguments[0]
+        kind, bits = self._kind(value), 8 * _BYTES[value.number]
+        full = f"@llvm.{name}.v{self.lanes}f{bits}" if value.wide else f"@llvm.{name}.f{bits}"
+        self.declared.add(f"{kind} {full}({', '.join([kind] * len(arguments))})")
+        return self._new(f"call {kind} {full}({', '.join(f'{kind} {item.text}' for item in arguments)})", value.number, value.wide)
+
+    def _new(self, instruction: str, number: str, wide: bool) -> _Value:
+        name = f"%{self.prefix}{len(self.lines)}"
+        self.lines.append(f"{name} = {instruction}")
+        return _Value(name, number, wide)
+
+    def _kind(self, value: _Value) -> str:
+        return f"<{self.lanes} x {value.number}>" if value.wide else value.number
+
+    def _alike(self, left: _Value, right: _Value) -> tuple[_Value, _Value]:
+        """Return two values in the wider of their types, as vectors where one of them is."""
+        number = "float" if left.number == right.number == "float" else "double"
+        left, right = self._as(left, number), self._as(right, number)
+        return (self._wide(left), self._wide(right)) if left.wide or right.wide else (left, right)
+
+    def _as(self, value: _Value, number: str) -> _Value:
+        if value.number == number:
+            return value
+        if not value.text.startswith("%"):  # a constant
+            return (
+                _Value(_literal(_rounded(value.text)), number, value.wide) if number == "float" else _Value(value.text, number, value.wide)
+            )
+        kind = self._kind(_Value("", number, value.wide))
+        return self._new(f"{'fptrunc' if number == 'float' else 'fpext'} {self._kind(value)} {value.text} to {kind}", number, value.wide)
+
+    def _wide(self, value: _Value) -> _Value:
+        """Return a value as a vector of lanes."""
+        if value.wide:
+            return value
+        if not value.text.startswith("%"):
+            return _Value(f"<{', '.join([f'{value.number} {value.text}'] * self.lanes)}>", value.number, True)
+        if value.text not in self._splats:
+            kind = f"<{self.lanes} x {value.number}>"
+            first = self._new(f"insertelement {kind} undef, {value.number} {value.text}, i32 0", value.number, True)
+            splat = f"shufflevector {kind} {first.text}, {kind} undef, <{self.lanes} x i32> zeroinitializer"
+            self._splats[value.text] = self._new(splat, value.number, True)
+        return self._splats[value.text]
+
+    def _place(self, item: ast.expr) -> str:
+        """Return the address of work[number + j] or drives[number + j] with its alignment."""
+        assert isinstance(item, ast.Subscript)
+        assert isinstance(item.slice, ast.BinOp)
+        assert isinstance(item.slice.left, ast.Constant)
+        assert isinstance(item.value, ast.Name)
+        start, vector = item.slice.left.value, f"<{self.lanes} x {self.number}>"
+        assert isinstance(start, int)
+        assert start % self.lanes == 0
+        base = f"%{self.prefix}lanes" if item.value.id == "work" else f"%{self.prefix}own"
+        wide = self._new(f"bitcast {self._address(base, start)} to {vector}*", self.number, False)
+        return f"{vector}* {wide.text}, align {min(CACHE_LINE, self.lanes * _BYTES[self.number])}"
+
+    def _address(self, base: str, place: object) -> str:
+        """Return the address of a number that is `place` numbers beyond another one."""
+        return f"{self.number}* {self._new(f'getelementptr {self.number}, {self.number}* {base}, i64 {place}', self.number, False).text}"
+
+
+def _literal(value: float) -> str:
+    """Return a number as LLVM reads it back, digit for digit: the bits of it in double precision."""
+    return f"0x{struct.unpack('<Q', struct.pack('<d', value))[0]:016X}"
+
+
+def _rounded(text: str) -> float:
+    """Return the number of a literal, rounded to single precision."""
+    return float(np.float32(struct.unpack("<d", struct.pack("<Q", int(text, 16)))[0]))
