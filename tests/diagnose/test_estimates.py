@@ -7,7 +7,8 @@ import pytest
 import scipy.stats
 
 from vehgen.diagnose.select import estimates
-from vehgen.diagnose.select.estimates import RunEstimate, excluded, gain_interval, p_value, validation_gain
+from vehgen.diagnose.select.estimates import RunEstimate, excluded, p_value
+from vehgen.diagnose.select.validation import gain_interval, seen_again, validation_gain
 from vehgen.diagnose.verdict import NamedParameter
 
 
@@ -75,3 +76,23 @@ def test_numbers_that_differ_by_less_than_themselves_are_of_one_law(monkeypatch)
     monkeypatch.setattr(estimates, "estimates_by_run", lambda fit, candidate=None: alone)
     monkeypatch.setattr(estimates, "estimate", lambda fit, candidate=None: {"k": NamedParameter(8e4, None, "N/m")})
     assert excluded(None) == []
+
+
+def test_runs_without_a_gap_speak_by_their_squares():
+    """A law takes squares off a few lines, which chi over all of them hardly shows."""
+    power = noise(7)
+    seen, faint, chance = (power.copy() for _ in range(3))
+    seen[50:90] += 2.0
+    faint[50:90] += 0.5
+    chance[55, 0] += 150.0  # in one line alone
+    clean = SimpleNamespace(**{**vars(fit(power)), "validation": 1.0})
+    for loud, told in ((seen, True), (faint, False), (chance, False)):
+        base = SimpleNamespace(**{**vars(fit(loud)), "validation": 1.05})  # counts as no gap
+        assert validation_gain(base, clean) is None
+        assert seen_again(base, clean, ["new"]) == told
+    assert not seen_again(clean, clean, [])
+
+
+def test_runs_with_a_gap_speak_by_the_share_of_it_that_is_closed():
+    assert seen_again(fit(noise(1, 5.0)), fit(noise(2, 2.0)), ["new"])
+    assert not seen_again(fit(noise(1, 5.0)), fit(noise(2, 5.2)), ["new"])

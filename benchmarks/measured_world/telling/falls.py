@@ -13,10 +13,11 @@ from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit, base_priors
 from vehgen.diagnose.fits.multi_start import fit_candidate
 from vehgen.diagnose.select.criteria import passes
-from vehgen.diagnose.select.estimates import fitted_numbers, gain_interval, p_value
+from vehgen.diagnose.select.estimates import fitted_numbers, p_value
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import FREED_BASE
 from vehgen.diagnose.select.search import own_numbers
+from vehgen.diagnose.select.validation import gain_interval
 from vehgen.effects.evidence import StartingPoint
 from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
 

@@ -17,9 +17,9 @@ from vehgen.diagnose.detect.splitting import kind_of_run
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.criteria import p_value_of, passes, tied
-from vehgen.diagnose.select.estimates import gain_interval
 from vehgen.diagnose.select.placebo_laws import compare_with_placebo_laws
 from vehgen.diagnose.select.search import SearchRound, merit, search_round
+from vehgen.diagnose.select.validation import gain_interval
 from vehgen.effects import library
 from vehgen.fit.trial import load_trials
 from vehgen.vehicle import as_vehicle

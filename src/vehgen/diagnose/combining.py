@@ -11,9 +11,9 @@ from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit
 from vehgen.diagnose.localise.localisation import suffices
 from vehgen.diagnose.select.criteria import adds, excess, is_told, needs_both, p_value_of, passes, seeds, unfinished
-from vehgen.diagnose.select.estimates import gain_interval
 from vehgen.diagnose.select.group_members import leading_group, member_seeds, with_rest
 from vehgen.diagnose.select.search import SearchRound
+from vehgen.diagnose.select.validation import seen_again
 
 MOST_EFFECTS = 3
 """So many effects are added at most, each of which is sure beside the others ..."""
@@ -106,9 +106,8 @@ class Combiner:
         return p_value_of(look, fit, self.tried) <= limit.SIGNIFICANT and is_told(fit)
 
     def _holds(self, fit: ModelFit) -> bool:
-        """Return whether a fit closes some of the gap on validation runs for sure."""
-        interval = gain_interval(self.base, fit, [trial.name for trial in self.detection.validation_runs])
-        return interval is not None and interval[0] > 0
+        """Return whether validation runs speak for what a fit adds to the base."""
+        return seen_again(self.base, fit, [trial.name for trial in self.detection.validation_runs])
 
     def _both(self, first: SearchRound, look: SearchRound, pair: ModelFit) -> bool:
         enough = passes(pair, self.base) and adds(look, pair) and needs_both(pair, first.fits)

@@ -24,7 +24,7 @@ from vehgen.diagnose.localise.localisation import localise
 from vehgen.diagnose.naming import Naming
 from vehgen.diagnose.result import Decided, DiagnosisModels
 from vehgen.diagnose.select.criteria import explained_shares, freed_instead, p_value_of, passes, unfinished
-from vehgen.diagnose.select.estimates import excluded, gain_interval
+from vehgen.diagnose.select.estimates import excluded
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import freed_ratios, split_idle
 from vehgen.diagnose.select.group_members import with_members
@@ -32,6 +32,7 @@ from vehgen.diagnose.select.one_error import explains_easily, one_error
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
 from vehgen.diagnose.select.search import LEADING, DiagnosisProgress, SearchRound, fit_leading_again, search_round
+from vehgen.diagnose.select.validation import seen_again
 from vehgen.diagnose.verdict import Gap, PlaceChi, Verdict, VerdictName
 from vehgen.effects import Effect
 from vehgen.errors import InputError
@@ -206,8 +207,7 @@ class Decision:
             return self._disagreement() or self._propose(wording.small_gap(chi), best)
         if not good:
             return None
-        interval = gain_interval(self.base, best, self.validation_runs)
-        if interval is None or interval[0] <= 0:
+        if not seen_again(self.base, best, self.validation_runs):
             shown = [gap.run for gap in run_gaps(self.detection) if gap.chi > limit.WEAK and gap.run not in self.validation_runs]
             if shown and chi > VISIBLE:
                 return self._end("insufficient_data", *wording.seen_once(self._words(best.last), chi, shown))

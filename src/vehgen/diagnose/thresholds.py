@@ -39,3 +39,7 @@ CROWD = 2
 """A further effect with which more than this many others tie is not named."""
 FURTHER = 0.25
 """A further effect must leave at most this share of the excess left before it."""
+VALIDATION_FALL = 200.0
+"""Validation runs that show no gap speak for an effect whose squares fall by so much with it, in -2 ln of the likelihood.
+
+Laws fitted to vehicles that hid nothing took 174 off at most (docs/hidden-effects.md)."""

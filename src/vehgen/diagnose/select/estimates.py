@@ -9,7 +9,6 @@ import numpy as np
 import scipy.stats
 from numpy.typing import NDArray
 
-from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.verdict import NamedParameter
@@ -35,8 +34,6 @@ SAME_WITHIN = 0.3
 """Runs that differ by less than this share of the value ask for the same number, however sure each is."""
 EXCLUDE_ONE_ANOTHER = 3.0
 """Runs exclude one another's numbers where what one more of them would ask for may lie so many times a number's value away from it."""
-BLOCK_LINES = 10
-"""Spectral lines in a block of the bootstrap."""
 
 
 @dataclass(frozen=True)
@@ -253,36 +250,6 @@ def unstable(fit: ModelFit, candidate: Candidate | None = None) -> list[str]:
                 told.append(f"{name} is {item.value:.4g} {item.unit}".rstrip() + f" in all runs, {own.value:.4g} in {own.run} alone")
                 break
     return told
-
-
-def validation_gain(base: ModelFit, fit: ModelFit) -> float | None:
-    """Return the share of the excess on validation runs that a fit closes; None where those runs show no gap, or were not simulated."""
-    if not (np.isfinite(fit.validation) and base.validation > limit.NOISE_FLOOR**2):
-        return None
-    return float(1 - max(fit.validation - 1, 0.0) / (base.validation - 1))
-
-
-def gain_interval(
-    base: ModelFit, fit: ModelFit, validation_runs: Sequence[str], draws: int = 400, seed: int = 7
-) -> tuple[float, float] | None:
-    """Return the 90 % interval of :func:`held_out_gain`, by a bootstrap over blocks of spectral lines; None where that is None.
-
-    Blocks of BLOCK neighbouring lines of all channels are drawn with replacement (Kuensch 1989, doi:10.1214/aos/1176347265).
-    """
-    if validation_gain(base, fit) is None:
-        return None
-    parts = []
-    for name in validation_runs:
-        before, after = base.spectra[name], fit.spectra[name]
-        for lines in np.array_split(np.arange(len(before)), max(1, len(before) // BLOCK_LINES)):
-            parts.append((before[lines].sum(), after[lines].sum(), before[lines].size))
-    blocks = np.array(parts)
-    random = np.random.Generator(np.random.PCG64(seed))
-    old, new, count = blocks[random.integers(len(blocks), size=(draws, len(blocks)))].sum(axis=1).T
-    least = 0.1 * (base.validation - 1)  # a draw may miss the lines that hold the gap
-    shares = 1 - np.maximum(new / count - 1, 0.0) / np.maximum(old / count - 1, least)
-    low, high = np.percentile(shares, [5, 95])
-    return float(low), float(high)
 
 
 def p_value(base: ModelFit, other: ModelFit, extra: int) -> float:
