@@ -16,7 +16,7 @@ from vehgen.diagnose.fits.model_fit import refine
 from vehgen.fit.alignment import MOST_SIGMAS, align
 from vehgen.fit.least_squares import LeastSquaresFit
 
-AT_BOUND = 0.99
+STRAINED_SHARE = 0.99
 """An error of more than this share of what it may be at most stands at its bound."""
 
 
@@ -30,7 +30,7 @@ def without_strain(fit: LeastSquaresFit, effects: Sequence[Candidate]) -> LeastS
     effects
         Its effects, whose parameters are the last of its unknowns.
     """
-    if not any(abs(item.sigmas) > AT_BOUND * MOST_SIGMAS for item in fit.conditions()):
+    if not any(abs(item.sigmas) > STRAINED_SHARE * MOST_SIGMAS for item in fit.conditions()):
         return fit
     misfit, n = fit.misfit, fit.misfit.n_parameters
     begun = fit.x[n : n + len(misfit.shared)]
