@@ -85,7 +85,7 @@ class Misfit:
         self._weights = [self._weight(trial, problem.best_values(reference)) for trial in problem.trials]
 
     def alone(self, number: int, x: Array, band: tuple[float, float] | None = None) -> Misfit:
-        """Return the misfit of one trial by its own errors only, all else as at x; within another band [Hz] by long steps, to begin fits."""
+        """Return the misfit of one trial by its own errors only, at x; within another band [Hz], to begin a fit, with long steps."""
         values = self.problem.best_values(self.problem.space.values(self.split(x)[0]))
         trial = self.problem.trials[number]
         problem = self.problem.with_trials([trial if band is None else trial.for_slow_motions(band[1])]).searching((), values)
