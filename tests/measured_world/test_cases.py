@@ -22,6 +22,7 @@ from benchmarks.measured_world.world import drive_past, record_run, strength
 import vehgen
 
 SOLVERS = {"solve.py"}
+TELLING = "telling"
 
 
 @pytest.fixture(scope="module")
@@ -43,10 +44,14 @@ def recordings(healthy):
 
 
 def test_only_the_solver_imports_vehgen():
+    """And what asks, with the truth at hand, whether a miss could have been told: the generators import neither."""
     for path in Path(measured_world.__file__).parent.rglob("*.py"):
         nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
         names = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
         names |= {node.module or "" for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, ast.ImportFrom)}
+        assert path.name == "__main__.py" or path.parent.name == TELLING or not any(TELLING in name for name in names), path
+        if path.parent.name == TELLING:
+            continue
         found = {name for name in names if name.split(".")[0] == "vehgen"}
         assert found <= ({"vehgen"} if path.name in SOLVERS else set()), path
 

@@ -117,7 +117,7 @@ def test_the_page_names_everything(name, pages):
     assert (m.vehicle.title or m.vehicle.name) in text
     assert m.vehicle.source.strip() in text
     assert "a warning of <b>2 & 3</b>" in text
-    assert "def advance(" in text
+    assert "def run(" in text
 
 
 def check_that_nothing_is_fetched(source, links=()):

@@ -60,10 +60,10 @@ def align(misfit: Misfit, unit: Array, begun: Sequence[float] = (), bands: Seque
 def _laid_over(misfit: Misfit, x: Array, number: int, bands: Sequence[float]) -> Array:
     """Return the own errors of one run, `shape (n_own,)`."""
     trial = misfit.problem.trials[number]
-    top = min(misfit.band[1], BANDS_HZ[1])
-    alone = misfit.alone(number, x, (misfit.band[0], top))
+    alone = misfit.alone(number, x)
     names = [item.name for item in alone.errors[0].own]
     sigma = alone.errors[0].own[names.index("delay")].sigma
+    top = min(misfit.band[1], BANDS_HZ[1])
     best, start = -np.inf, np.zeros(len(names))
     guessed = any(item.name == "length" and item.sigma > GUESSED for item in alone.errors[0].own)
     ways = {"speed": SPEED_SIGMAS, "length": LENGTH_SIGMAS if guessed else (0.0,)}

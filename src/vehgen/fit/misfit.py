@@ -85,10 +85,9 @@ class Misfit:
         self._weights = [self._weight(trial, problem.best_values(reference)) for trial in problem.trials]
 
     def alone(self, number: int, x: Array, band: tuple[float, float] | None = None) -> Misfit:
-        """Return the misfit of one trial by its own errors only, at x; within another band [Hz], to begin a fit, with long steps."""
+        """Return the misfit of one trial by its own errors only, all else as the unknowns x have it, within another band [Hz]."""
         values = self.problem.best_values(self.problem.space.values(self.split(x)[0]))
-        trial = self.problem.trials[number]
-        problem = self.problem.with_trials([trial if band is None else trial.for_slow_motions(band[1])]).searching((), values)
+        problem = self.problem.with_trials([self.problem.trials[number]]).searching((), values)
         shared = [replace(item, neutral=float(value), scale=0.0) for item, value in zip(self.shared, self.adjusted(x), strict=True)]
         return Misfit(problem, self.noises, np.zeros(0), self.nuisances, band or self.band, shared, self.sensor_errors(x))
 

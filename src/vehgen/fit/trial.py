@@ -37,9 +37,9 @@ MOST_SKIPPED = 0.5
 """No more than this share of a recording is left out."""
 LONGEST_STEP_S = 1e-3
 """Longest internal step [s]: through 10 ms steps a stiffness comes out 17 % wrong at 15 Hz (Newmark's period error)."""
-SLOW_PERIOD_ERROR = 2.1e-3
+SLOW_PERIOD_ERROR = 1e-3
 """Where only slow motions are compared, to begin a fit, steps may be so long that Newmark's scheme errs by this share of their period."""
-WORTH_LONGER = 2.0
+WORTH_LONGER = 1.5
 """They are made longer by this factor at least, or not at all."""
 
 
