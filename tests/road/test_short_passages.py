@@ -45,3 +45,19 @@ def test_a_track_says_where_its_humps_reach():
     (reach,) = Track((ONE,), footprint=0.2).reaches
     assert reach[0] <= 3.9
     assert reach[1] >= 4.6
+
+
+@pytest.mark.parametrize("footprint", [0.0, 0.24])
+def test_a_hump_that_no_wheel_reaches_moves_none(footprint):
+    far = Track((Hump.from_shape("versine", 400.0, 0.9, 0.01),), footprint)
+    assert not wheel_inputs(far, SPEED, OFFSETS, TIME).heights.any()
+    for found in nearby_inputs(far, SPEED, [far], [SPEED], OFFSETS, TIME):
+        assert not found.heights.any()
+        assert not found.rates.any()
+
+
+def test_a_way_that_turns_back_is_looked_at_as_a_whole():
+    back = AdjustedSpeed(ConstantSpeed(2.0), scale=-0.4, anchor=4.0)
+    found = wheel_inputs(Track((ONE,)), back, OFFSETS, TIME)
+    assert found.heights[:, 0] == pytest.approx(Track((ONE,)).height(back.distance(TIME)), abs=1e-12)
+    assert found.heights.max() > 0.02

@@ -19,7 +19,7 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.criteria import p_value_of, passes, tied
 from vehgen.diagnose.select.placebo_laws import compare_with_placebo_laws
 from vehgen.diagnose.select.search import SearchRound, merit, search_round
-from vehgen.diagnose.select.validation import gain_interval
+from vehgen.diagnose.select.validation import gain_interval, seen_again
 from vehgen.effects import library
 from vehgen.fit.trial import load_trials
 from vehgen.vehicle import as_vehicle
@@ -62,14 +62,15 @@ def judged_fit(detection: Detection, found: SearchRound, fit: ModelFit, tried: i
     """Return what the diagnosis's criteria say of one fit."""
     base = detection.base
     good, p = passes(fit, base), p_value_of(found, fit, tried)
-    interval = gain_interval(base, fit, [trial.name for trial in detection.validation_runs])
+    runs = [trial.name for trial in detection.validation_runs]
+    interval = gain_interval(base, fit, runs)
     rivals = compare_with_placebo_laws(found, fit, detection)
     weak = [
         name
         for name, fails in (
             ("passes", not good),
             ("chance", p > limit.SIGNIFICANT),
-            ("validation", interval is None or interval[0] <= 0),
+            ("validation", not seen_again(base, fit, runs)),
             ("placebo laws", rivals is not None and rivals[1] >= rivals[0] - limit.DECOY),
         )
         if fails

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from vehgen.codegen.cache import cache_folder, import_kernel, is_compiled, kernel_name
 from vehgen.codegen.excitation import Excitation
 from vehgen.codegen.kernel_source import KernelSource, Precision, write_kernel
-from vehgen.codegen.population_run import PopulationRun, own_drives
+from vehgen.codegen.population_run import PopulationRun, compile_time_loop, own_drives
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
@@ -93,7 +93,7 @@ class Kernel:
 
     @property
     def is_compiled(self) -> bool:
-        """Whether its compiled code is at hand, so that the first run need not wait."""
+        """Whether its own code is at hand; the loop over time, which all kernels share, may yet have to be compiled once."""
         return is_compiled(self.source.text, self.folder)
 
     @cached_property
@@ -116,8 +116,9 @@ class Kernel:
         return self._variants[moving, own_drives]
 
     def compile(self) -> None:
-        """Compile now, or load what an earlier process compiled."""
+        """Compile now, or load what an earlier process compiled, the loop over time included."""
         _ = self._module
+        compile_time_loop(self.source.single)
 
     def reduce(
         self,

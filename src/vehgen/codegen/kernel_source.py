@@ -32,7 +32,7 @@ SINGLE_LANES = 32
 VECTOR = 64
 """Bytes of what a lane's instructions compute at once, in the numbers of the loops: 8 lanes, or 16 in single precision."""
 NONLINEAR_LANES = 16
-"""The same with force laws, whose many constants would not stay in the first cache otherwise."""
+"""Individuals side by side with force laws, whose many constants would not stay in the first cache otherwise."""
 MOST_REWRITTEN = 2500
 """A step of more operations is not tried in residual form: long chains of hinges couple all with all, and take seconds to write."""
 STEPS_PER_SAMPLE = 10

@@ -34,6 +34,13 @@ def aligned(size: int, number: type[np.floating[Any]] = np.float64) -> NDArray[A
     return raw[start : start + size]
 
 
+def compile_time_loop(single: bool) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """Return the loop over time and what reads shared drives, in single or double precision: compiled, or loaded from the cache."""
+    f = "f4" if single else "f8"
+    loop = compile_loops(advance_block, LOOP_SIGNATURE.format(f=f), LOOP_IMPORTS)
+    return loop, compile_loops(read_shared, SHARED_SIGNATURE.format(f=f))
+
+
 def own_drives(excitation: Excitation) -> bool:
     """Whether individuals have drives of their own."""
     return any(item.ndim == 3 for item in (excitation.inputs, excitation.rates, excitation.forces))
@@ -90,7 +97,7 @@ class PopulationRun:
         reads, n_steps = self.source.reads, self.excitation.n_steps
         number = self.source.number
         rows = [np.empty((n_steps + 1, reads.step_row), number), np.empty((n_steps // self.decimation + 1, reads.sample_row), number)]
-        read = compile_loops(read_shared, SHARED_SIGNATURE.format(f=self._f))
+        read = compile_time_loop(self.source.single)[1]
         for group, columns in enumerate(reads.columns):
             target, every, before = (rows[1], self.decimation, reads.step_row) if group else (rows[0], 1, 0)
             for array, (start, end, place, pattern) in zip(drives, columns, strict=True):
@@ -101,17 +108,14 @@ class PopulationRun:
     def _space(self) -> list[NDArray[Any]]:
         """Return space for some rows of steps' and of samples' drives where each lane has its own."""
         reads, lanes, samples = self.source.reads, self.source.lanes, max(1, OWN_ROWS // self.decimation)
-        shapes = ((samples * self.decimation, reads.step_row * lanes), (samples, reads.sample_row * lanes))
+        steps = min(samples * self.decimation, self.excitation.n_steps + 1)
+        shapes = ((steps, reads.step_row * lanes), (samples, reads.sample_row * lanes))
         return [aligned(rows * width, self.source.number).reshape(rows, width) for rows, width in shapes]
 
     @property
     def own_drives(self) -> bool:
         """Whether individuals have drives of their own."""
         return own_drives(self.excitation)
-
-    @property
-    def _f(self) -> str:
-        return "f4" if self.source.single else "f8"
 
     def _advance_block(
         self, first: int, drives: list[NDArray[Any]], shared: list[NDArray[Any]], consume: Consume, into: NDArray[Any] | None
@@ -131,7 +135,7 @@ class PopulationRun:
         else:
             target = into[first:last]
         own = (item if len(item) == 1 else item[first:last] for item in drives)
-        loop = compile_loops(advance_block, LOOP_SIGNATURE.format(f=self._f), LOOP_IMPORTS)
+        loop = compile_time_loop(self.source.single)[0]
         kernel: Any = module.run.address if compiles() else module.run
         places, shares = shared or self._space(), int(bool(shared))
         reads, ends = source.reads.array(), int(source.from_rest)

@@ -89,12 +89,13 @@ class Trial:
         """Return the trial as it serves for motions up to a frequency [Hz]: with the longest step, and no filter that leaves them as is.
 
         Its samples are at the same times. The period error of the scheme is (omega dt)^2 / 12 to the first order; see SLOW_PERIOD_ERROR.
-        A run over anything but humps stays as it is: what a rough road shakes fast folds onto slow motions.
+        A run with forces, or over anything but humps, stays as it is: what shakes it fast folds onto slow motions.
         """
         scenario, dt = self.scenario, self.recording.dt
         longest = math.sqrt(12 * SLOW_PERIOD_ERROR) / (2 * math.pi * highest)
         decimation = math.ceil(dt / longest * (1 - 1e-9))
-        if not scenario.over_humps_alone or decimation * WORTH_LONGER > scenario.decimation:
+        driven = bool(scenario.forces) or any(item is not None for item in scenario.ground)
+        if driven or not scenario.over_humps_alone or decimation * WORTH_LONGER > scenario.decimation:
             return self
         chains = {name: scenario.chain(name).for_slow_motions(highest, 1 / dt) for name in self.channels}
         step = scenario.dt * scenario.decimation / decimation

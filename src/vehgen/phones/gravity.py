@@ -27,7 +27,8 @@ def is_gravity(magnitude: float) -> bool:
 
 def no_gravity(magnitude: float, otherwise: str) -> str:
     """Return in which unit a reading at rest that is not gravity [m/s^2] seems to be, and what to do; `otherwise` where it fits none."""
-    units = [unit for unit, worth in OTHER_UNITS.items() if abs(magnitude / worth - 1) <= UNIT_WITHIN]
+    off = {unit: abs(magnitude / worth - 1) for unit, worth in OTHER_UNITS.items()}
+    units = sorted((unit for unit in off if off[unit] <= UNIT_WITHIN), key=off.__getitem__)
     if not units:
         return otherwise
     return (

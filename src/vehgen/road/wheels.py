@@ -98,13 +98,13 @@ class _Passage:
 
     @classmethod
     def of(cls, tracks: Sequence[Track], way: Array, offsets: Array) -> _Passage:
-        """Return the passage of an ascending way `shape (n_moments,)` [m] over any of some tracks."""
+        """Return the passage of a way `shape (n_moments,)` [m] over any of some tracks; one that turns back is looked at as a whole."""
         offsets, shape = np.asarray(offsets, dtype=np.float64), (len(offsets), len(way))
         spans = _spans(tracks)
         if spans is not None:
             ends = np.searchsorted(way, spans[None] + offsets[:, None, None])
             counts = (ends[..., 1] - ends[..., 0]).sum(axis=1)
-            if counts.sum() < SHORT_PASSAGE * len(offsets) * len(way):
+            if 0 < counts.sum() < SHORT_PASSAGE * len(offsets) * len(way) and np.all(way[1:] >= way[:-1]):
                 moments = np.concatenate([np.arange(first, last) for first, last in ends.reshape(-1, 2)])
                 axles = np.repeat(np.arange(len(offsets)), counts)
                 return cls(way[moments] - offsets[axles], moments, axles, shape)

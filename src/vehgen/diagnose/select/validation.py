@@ -25,9 +25,9 @@ def validation_gain(base: ModelFit, fit: ModelFit) -> float | None:
 def gain_interval(
     base: ModelFit, fit: ModelFit, validation_runs: Sequence[str], draws: int = 400, seed: int = 7
 ) -> tuple[float, float] | None:
-    """Return the 90 % interval of :func:`held_out_gain`, by a bootstrap over blocks of spectral lines; None where that is None.
+    """Return the 90 % interval of :func:`validation_gain`, by a bootstrap over blocks of spectral lines; None where that is None.
 
-    Blocks of BLOCK neighbouring lines of all channels are drawn with replacement (Kuensch 1989, doi:10.1214/aos/1176347265).
+    Blocks of BLOCK_LINES neighbouring lines of all channels are drawn with replacement (Kuensch 1989, doi:10.1214/aos/1176347265).
     """
     if validation_gain(base, fit) is None:
         return None
