@@ -311,6 +311,19 @@ def test_a_road_elsewhere_is_told_beside_starts_that_speeds_explain():
     assert moved_roads(moved, {"road": 10.0}, arrivals) == (), "their starts scatter, if speeds say nothing of them"
 
 
+def test_a_start_that_speeds_alone_put_elsewhere_is_no_finding():
+    """Of a healthy truck: by the clock its road's start lies among the others, which by the way happen to agree."""
+    delays = {"road": -0.0116, "low_fast": 0.05, "high_fast": -0.0151, "low_slow": 0.0222}
+    faster = {"road": -0.0163, "low_fast": -0.0118, "high_fast": 0.0141, "low_slow": -0.0047}
+    arrivals = {"road": 2.5, "low_fast": 2.9, "high_fast": 2.7, "low_slow": 2.0}
+    conditions = [Condition(run, "delay", "", value, "s", 0.2) for run, value in delays.items()]
+    conditions += [Condition(run, "speed", "", value, "", 0.01) for run, value in faster.items()]
+    assert moved_roads(conditions, {"road": 7.4}, arrivals) == ()
+    off = [replace(item, value=item.value - 0.1) if (item.run, item.name) == ("road", "delay") else item for item in conditions]
+    (fault,) = moved_roads(off, {"road": 7.4}, arrivals)
+    assert fault.value < -1.0
+
+
 def test_a_near_copy_of_a_pass_is_no_run_of_its_own(plain):
     low = next(trial for trial in plain if trial.name == "low")
     random = np.random.default_rng(5)

@@ -20,6 +20,8 @@ LEAST_OTHERS = 2
 """A run's start is compared with those of so many others at least."""
 STANDS_OUT, CLOCKS_SPREAD_S, LEAST_SHIFT_M = 6.0, 0.01, 0.3
 """A start off by so many times the others' spread, which is no less than this [s], and a road off by so much [m], are findings."""
+EITHER_WAY = 2.0
+"""Whether a clock tells the starts or the way does, a start that is a finding is off by so many times the others' spread."""
 _FAULT_OF = {
     "delay": ("clock", "the recording {where} starts {amount} {early} than the file says, or the road lies elsewhere along the way"),
     "speed": ("speed", "the speed {where} was {amount} {more} than stated"),
@@ -129,9 +131,10 @@ def moved_roads(
     for run in (name for name in speeds if name in delays):
         if len(delays) <= LEAST_OTHERS:
             continue
-        late, spread = min((_stands_out(run, starts) for starts in (delays, after_the_way)), key=lambda item: item[1])
+        (late, spread), other = sorted((_stands_out(run, starts) for starts in (delays, after_the_way)), key=lambda item: item[1])
         shift = late * speeds[run]
-        if abs(late) < STANDS_OUT * spread or abs(shift) < LEAST_SHIFT_M:
+        clear = abs(late) >= STANDS_OUT * spread and abs(other[0]) >= EITHER_WAY * other[1]
+        if not clear or abs(shift) < LEAST_SHIFT_M:
             continue
         message = (
             f"the road of {run} seems to lie {abs(shift):.2f} m {'further along' if late > 0 else 'nearer'} than the file says, or its "
