@@ -9,8 +9,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from threadpoolctl import threadpool_limits
-
 from benchmarks.measured_world.solve import imported, vehicle_file, workplace
 from benchmarks.measured_world.telling.falls import Falls, price
 from benchmarks.measured_world.telling.gains import first_order_gains
@@ -21,6 +19,7 @@ from vehgen.diagnose.detect.detection import Detection, detect
 from vehgen.diagnose.detect.splitting import kind_of_run
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.effects import library
+from vehgen.fit.one_thread import one_blas_thread
 from vehgen.fit.trial import load_trials
 from vehgen.vehicle import as_vehicle
 
@@ -47,7 +46,7 @@ def measure_set(
     for name in names:
         if (root.name, name) in known:
             continue
-        asked = None if twins_of is None else _truth(twins_of, name)["effects"][0]
+        asked = None if twins_of is None else next(iter(_truth(twins_of, name)["effects"]), None)
         record = measure_case(root, name, asked) | ({"judged": judged[name]} if judged and name in judged else {})
         if with_steps and record["hidden"] is not None and "failed" not in record:
             record["steps"] = steps_of_case(root, name, record["hidden"])
@@ -64,7 +63,7 @@ def measure_case(root: Path, name: str, asked: Data | None = None) -> Data:
     record |= {"asked": asked, "strength": truth.get("strength"), "fits": []}
     begun = time.perf_counter()
     try:
-        with workplace(root / "cases" / name) as folder, threadpool_limits(1, user_api="blas"):
+        with workplace(root / "cases" / name) as folder, one_blas_thread():
             record |= _measured(folder, truth, hidden or asked, FITTED if hidden is None else BESIDE)
     except Exception as error:  # a case that cannot be measured is a result
         record["failed"] = f"{error}\n{traceback.format_exc()[-1500:]}"
