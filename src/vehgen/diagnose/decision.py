@@ -2,41 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
-
-import numpy as np
 
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose import wording
-from vehgen.diagnose.collecting import run_chis
 from vehgen.diagnose.combining import Combiner
 from vehgen.diagnose.design.experiment import VISIBLE, propose_stronger
-from vehgen.diagnose.detect.detection import Detection, believable, look_again, run_gaps
+from vehgen.diagnose.detect.detection import believable, look_again, run_gaps
 from vehgen.diagnose.detect.odd_run import OddChannel, disagreement
-from vehgen.diagnose.fits.candidate import Candidate, list_candidates
+from vehgen.diagnose.ending import Ending
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.checks import variety_notes
 from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.judging import explain_gap, moved_axles, odd_mistake, plain_mistakes, recorded_mistakes, supposed_mistakes
-from vehgen.diagnose.localise.free_form import FreeForm, fit_free_form, recover, strongest
 from vehgen.diagnose.localise.localisation import localise
-from vehgen.diagnose.naming import Naming
-from vehgen.diagnose.result import Decided, DiagnosisModels
-from vehgen.diagnose.select.criteria import explained_shares, freed_instead, p_value_of, passes, unfinished
+from vehgen.diagnose.result import Decided
+from vehgen.diagnose.select.criteria import freed_instead, p_value_of, passes, unfinished
 from vehgen.diagnose.select.estimates import excluded
 from vehgen.diagnose.select.fitter import Fitter
-from vehgen.diagnose.select.freed_base import freed_ratios, split_idle
+from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.diagnose.select.group_members import with_members
 from vehgen.diagnose.select.one_error import explains_easily, one_error
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
-from vehgen.diagnose.select.search import LEADING, DiagnosisProgress, SearchRound, fit_leading_again, search_round
+from vehgen.diagnose.select.search import LEADING, SearchRound, fit_leading_again, search_round
 from vehgen.diagnose.select.validation import seen_again
-from vehgen.diagnose.verdict import Gap, PlaceChi, Verdict, VerdictName
-from vehgen.effects import Effect
 from vehgen.errors import InputError
-from vehgen.fit.parallel import HERE, Runner
 
 LOOK_AGAIN_SHARE = 0.5
 """Where the best candidate leaves no more than this share of the excess, recorder and profiles are judged by it."""
@@ -45,30 +36,8 @@ MUCH_QUIETER = 2.0
 """Where noise is found to be less by so much than what candidates were last weighed by, all of them are weighed anew."""
 
 
-class Decision:
+class Decision(Ending):
     """One diagnosis on its way: what was detected, the library, and the rounds so far."""
-
-    def __init__(
-        self, detection: Detection, effects: Sequence[Effect], everything: bool, progress: DiagnosisProgress, runner: Runner = HERE
-    ) -> None:
-        self.detection = detection
-        self.base = detection.base
-        self.weighed_by = detection.base.training
-        self.everything = everything
-        self.progress = progress
-        self.runner = runner
-        self.effects = effects
-        self.rounds: list[SearchRound] = []
-        self.chain: list[ModelFit] = []
-        self.parts = False
-        self.notes: list[str] = []
-        self.interrupted = False
-        self.tried = len(self._candidates(self.base))
-
-    @property
-    def validation_runs(self) -> list[str]:
-        """Their names."""
-        return [trial.name for trial in self.detection.validation_runs]
 
     def decide(self) -> Decided:
         """Return the verdict with the fitted models; after Ctrl-C what was found until then."""
@@ -224,11 +193,6 @@ class Decision:
         louder = propose_stronger(self.detection, best)
         return self._end("too_weak", reason, louder.text if louder and louder.separates else "no run within reach would show it clearly")
 
-    def _candidates(self, current: ModelFit) -> list[Candidate]:
-        """Return what may live on the vehicle of a fit: a walking beam leaves its axles no suspension."""
-        vehicle = current.least_squares.misfit.problem.trials[0].run.vehicle
-        return list_candidates(vehicle, self.detection.trials, self.effects, self.detection.floor.noises)
-
     def _search_round(self, current: ModelFit) -> SearchRound:
         found = search_round(self.detection, current, self._candidates(current), self.everything, self.progress, self.runner)
         self.rounds.append(found)
@@ -246,55 +210,3 @@ class Decision:
         if not self.chain and not self.interrupted:
             self.chain = self._combiner().together(first)
             self.parts = bool(self.chain)
-
-    def _gap(self, fit: ModelFit | None = None) -> Gap:
-        last = fit or self.base
-        return Gap(self.base.chi, last.chi, 1.0, run_chis(self.base, last, self.validation_runs))
-
-    def _places(self) -> tuple[PlaceChi, ...]:
-        return tuple(PlaceChi(item.place.label, item.chi) for item in self.rounds[0].passed[:5]) if self.rounds else ()
-
-    def _mistaken(self, mistakes: tuple[MeasurementFault, ...]) -> Decided:
-        ended = self._end("measurement_fault", wording.mistaken([item.message for item in mistakes]))
-        return replace(ended, verdict=replace(ended.verdict, faults=mistakes))
-
-    def _end(self, verdict: VerdictName, reason: str, next_experiment: str | None = None) -> Decided:
-        found = Verdict(verdict, reason, (), self._gap(), self._places(), next_experiment=next_experiment, notes=tuple(self.notes))
-        return self._decided(found, ())
-
-    def _decided(self, verdict: Verdict, chain: Sequence[ModelFit], law: FreeForm | None = None) -> Decided:
-        libraries = tuple(dict.fromkeys(effect.file for effect in self.effects if effect.file))
-        return Decided(DiagnosisModels(self.detection, tuple(self.rounds), tuple(chain), law, libraries), verdict, self.interrupted)
-
-    def _stopped(self) -> Decided:
-        self.interrupted = True
-        fits = self.rounds[0].fits if self.rounds else ()
-        best = (self._words(fits[0].last), float(np.sqrt(fits[0].training))) if fits else None
-        return self._end("insufficient_data", wording.stopped(len(fits), best), "let the diagnosis run to its end")
-
-    def _out_of_range(self, freed: ModelFit) -> Decided:
-        return self._end("insufficient_data", wording.out_of_range(freed_ratios(freed)), "check the file, or calibrate first")
-
-    def _unknown(self, first: SearchRound, reason: str = "") -> Decided:
-        best = (len(first.fits), self._words(first.fits[0].last), float(np.sqrt(first.fits[0].training))) if first.fits else None
-        self.notes += [wording.at_the_edge(edge)] if (edge := self.base.least_squares.on_bound) else []
-        if strained := [item.message for item in supposed_mistakes(self.detection)]:
-            self.notes.append(wording.supposed(strained))
-        if first.fits:
-            self.notes.append(wording.ranked([(self._words(fit.last), share) for fit, share in explained_shares(first, self.base)]))
-        causes = [wording.force_words(item.place.kind, item.place.name) for item in first.passed[:3]]
-        ended = self._end("not_in_library", reason or wording.not_in_library(best, causes))
-        law = None if (shown := strongest(first.passed)) is None else fit_free_form(recover(self.detection, shown))
-        if law is None:
-            return ended
-        verdict = replace(ended.verdict, free_form=law.to_dict(), notes=(*ended.verdict.notes, law.describe()))
-        return self._decided(verdict, (), law)
-
-    def _name(self, chain: list[ModelFit]) -> Decided:
-        naming = Naming(self.detection, self.rounds, self.tried, self.progress, self.interrupted)
-        named = naming.parts(chain) if self.parts else naming.verdict(chain)
-        verdict = replace(named, gap=self._gap(chain[-1]), places=self._places(), notes=(*self.notes, *named.notes))
-        return self._decided(verdict, chain)
-
-    def _words(self, candidate: Candidate) -> str:
-        return wording.candidate_words(self.detection.trials[0].run.vehicle, candidate)
