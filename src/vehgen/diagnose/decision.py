@@ -17,8 +17,9 @@ from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.judging import explain_gap, moved_axles, odd_mistake, plain_mistakes, recorded_mistakes, supposed_mistakes
 from vehgen.diagnose.localise.localisation import localise
 from vehgen.diagnose.result import Decided
-from vehgen.diagnose.select.criteria import freed_instead, p_value_of, passes, unfinished
+from vehgen.diagnose.select.criteria import fall, freed_instead, p_value_of, passes, unfinished
 from vehgen.diagnose.select.estimates import excluded
+from vehgen.diagnose.select.faint import faint_look_again, faint_round, faintly_told
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.diagnose.select.group_members import with_members
@@ -26,7 +27,7 @@ from vehgen.diagnose.select.one_error import explains_easily, one_error
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
 from vehgen.diagnose.select.search import LEADING, SearchRound, fit_leading_again, search_round
-from vehgen.diagnose.select.validation import seen_again
+from vehgen.diagnose.select.validation import seen_again, validation_fall
 from vehgen.errors import InputError
 
 LOOK_AGAIN_SHARE = 0.5
@@ -55,7 +56,7 @@ class Decision(Ending):
         if detection.is_quiet:
             if mistakes := supposed_mistakes(detection):
                 return self._strained(mistakes)
-            return self._disagreement() or self._nothing()
+            return self._quiet()
         mistakes = plain_mistakes(detection)
         return self._mistaken(mistakes) if mistakes else self._explain_gap()
 
@@ -65,7 +66,7 @@ class Decision(Ending):
         other = Decision(believed, self.effects, self.everything, self.progress, self.runner)
         other.notes += self.notes
         if believed.is_quiet:
-            return self._mistaken(left) if (left := supposed_mistakes(believed)) else other._disagreement() or other._nothing()
+            return self._mistaken(left) if (left := supposed_mistakes(believed)) else other._quiet()
         found = other._explain_gap()
         single = one_error(self.detection, believed, found, self._candidates(believed.base), self.runner)
         self.interrupted = single.stopped
@@ -74,6 +75,28 @@ class Decision(Ending):
             other.notes, other.rounds = list(self.notes), [single]
             return other._name([single.fits[0]])
         return found if explains_easily(found) else self._mistaken(mistakes)
+
+    def _quiet(self) -> Decided:
+        """Return the verdict where chi shows no gap: a faint effect, runs that do not agree, or that nothing is missing."""
+        return self._faint() or self._disagreement() or self._nothing()
+
+    def _faint(self, found: SearchRound | None = None) -> Decided | None:
+        """Return the verdict where an effect too small for chi is told by how far -2 ln of the likelihood falls with it.
+
+        `found` are fits of a search that chi asked for (default: none were made).
+        """
+        if not self.validation_runs:
+            return None
+        self.progress("look for faint effects", 0, 1, "")
+        found = faint_round(self.detection, self._candidates(self.base), self.runner) if found is None else replace(found, faint=True)
+        found, detection = faint_look_again(found, self.detection, self.runner)
+        best = faintly_told(found, detection)
+        if best is None:
+            return None
+        self.notes.append(wording.faint(self.detection.chi, fall(found, best), validation_fall(found.current, best)))
+        self.detection, self.base = detection, detection.base
+        self.rounds[:], self.chain = [found], [best]
+        return self._name(self.chain)
 
     def _explain_gap(self) -> Decided:
         detection = self.detection
@@ -123,6 +146,8 @@ class Decision(Ending):
         best = first.fits[0]
         good = passes(best, self.base)
         weak = self._too_weak(first, best, good)
+        if weak is not None and (faint := self._faint(first)) is not None:
+            return faint
         if weak is None and good and (told := excluded(best)):
             return self._unknown(first, wording.runs_exclude_one_another(self._words(best.last), told))
         if weak is None and good:

@@ -230,6 +230,14 @@ def best_random_law(count: int, share: float) -> str:
     return f"the best of {count} random laws at the same place explains {share_words(share)} of what the model missed"
 
 
+def faint(chi: float, on_training: float, on_validation: float) -> str:
+    """Return the note on an effect that is told where chi shows no gap."""
+    return (
+        f"chi hardly shows a gap ({chi:.3f}, where 1 is noise alone); the effect is told by -2 ln of the likelihood, which falls by "
+        f"{on_training:.0f} on the runs for fitting and by {on_validation:.0f} on the others with it"
+    )
+
+
 def too_few_runs(chi: float, count: int) -> str:
     """Return the verdict `insufficient_data` where no run is left for validation."""
     needed = f"at least three runs are needed, one of them for checking ({count} given)"

@@ -18,6 +18,7 @@ from vehgen.diagnose.fits.first_order import ProbeMotion
 from vehgen.diagnose.fits.model_fit import NUISANCES, CurrentModel, ModelFit
 from vehgen.diagnose.fits.projection import Projection
 from vehgen.effects import EffectLocator
+from vehgen.effects.evidence import Residual
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.simulate import SimulatorPool
 
@@ -53,33 +54,67 @@ def screen(
     most = MAX_BESIDE if base.effects else MAX_CANDIDATES
     if len(forces) <= most:
         return list(candidates)
-    misfit, x = base.least_squares.misfit, base.least_squares.x
-    projection, motion = Projection.of(misfit, x, base.effects), ProbeMotion(misfit, x)
-    lines = np.concatenate([flatten(item) for item in misfit.whitened_spectrum(x)])
-    gains = []
-    for candidate in forces:
-        problem = build_problem(candidate, current.problem, locator, simulators)
-        begun = carried(current.unit, current.problem.space, problem.space)
-        exact: Misfit | None = None
-        best = 0.0
-        starts = [np.array(item[: len(candidate.parameters)]) for item in candidate.effect.starts(candidate.place, locator)]
-        for number, start in enumerate([*starts, _smaller(starts, problem.space.lower[len(current.unit) :])]):
-            point = problem.space.start.copy()
-            point[len(current.unit) :] = start
-            unit = np.concatenate([begun, problem.space.unit(point)[len(current.unit) :]])
-            moved = motion.moved(problem, problem.space.values(unit)) if exact is None else None
-            if moved is not None and number == len(starts):
-                break  # it would be the same
-            if moved is None:
-                exact = exact or Misfit(problem, misfit.noises, problem.space.start, NUISANCES, misfit.band, current.shared)
-                own = exact.whitened_spectrum(np.concatenate([unit, np.zeros(len(current.shared)), current.errors]))
-                moved = np.concatenate([flatten(item) for item in own]) - lines
-            if np.all(np.isfinite(moved)):
-                best = max(best, _gain(projection, moved))
-        gains.append((best, candidate))
+    found = FirstOrderGains(base, current, locator, simulators)
+    gains = [(found.of(candidate), candidate) for candidate in forces]
     gains.sort(key=lambda item: -item[0])
     placed = [item for item in forces if item.place == kept_at]
     return chosen_with_holders(candidates, [*always, *placed, *(candidate for _, candidate in gains[:most])])
+
+
+class FirstOrderGains:
+    """What -2 ln of the likelihood of the training runs would fall by with each of several candidates, to the first order.
+
+    Parameters
+    ----------
+    base, current
+        The fit they are added to, and the same fit as the current model.
+    locator, simulators
+        As for :func:`vehgen.diagnose.fits.candidate.build_problem`.
+    residual
+        What the fit leaves, for candidates whose starts are read from it.
+    """
+
+    def __init__(
+        self, base: ModelFit, current: CurrentModel, locator: EffectLocator, simulators: SimulatorPool, residual: Residual | None = None
+    ) -> None:
+        self.current, self.locator, self.simulators, self.residual = current, locator, simulators, residual
+        self.misfit, x = base.least_squares.misfit, base.least_squares.x
+        self.projection, self.motion = Projection.of(self.misfit, x, base.effects), ProbeMotion(self.misfit, x)
+        self.lines = np.concatenate([flatten(item) for item in self.misfit.whitened_spectrum(x)])
+
+    def of(self, candidate: Candidate) -> float:
+        """Return a candidate's gain: the largest over its starts and, of a force, over a smaller one."""
+        current = self.current
+        problem = build_problem(candidate, current.problem, self.locator, self.simulators)
+        begun, n, own = carried(current.unit, current.problem.space, problem.space), len(current.unit), len(candidate.parameters)
+        exact: Misfit | None = None
+        best = 0.0
+        starts = [np.array(item) for item in candidate.effect.starts(candidate.place, self.locator, self.residual)]
+        smaller = [_smaller(starts, problem.space.lower[n:])] if _is_scaled(candidate) and starts else []
+        for number, start in enumerate([*starts, *smaller]):
+            point = problem.space.start.copy()
+            point[n:] = start[:own]
+            unit = np.concatenate([begun, problem.space.unit(point)[n:]])
+            moved = self.motion.moved(problem, problem.space.values(unit)) if exact is None and not candidate.shared else None
+            if moved is not None and number == len(starts):
+                break  # it would be the same
+            if moved is None:
+                shared = (*current.shared, *candidate.shared)
+                exact = exact or Misfit(problem, self.misfit.noises, problem.space.start, NUISANCES, self.misfit.band, shared)
+                numbers = [(value - item.neutral) / item.scale for item, value in zip(candidate.shared, start, strict=False)]
+                own_lines = exact.whitened_spectrum(np.concatenate([unit, np.zeros(len(current.shared)), numbers, current.errors]))
+                moved = np.concatenate([flatten(item) for item in own_lines]) - self.lines
+            if np.all(np.isfinite(moved)):
+                best = max(best, self._gain(moved, bool(own or candidate.shared)))
+        return best
+
+    def _gain(self, moved: Array, scaled: bool) -> float:
+        """Return the gain along a change of the residuals, scaled freely, or as it is where a candidate has no number of its own."""
+        free = self.projection.remainder(moved)
+        along, squared = float(self.projection.left @ free), max(float(free @ free), 1e-12)
+        if along >= 0:
+            return 0.0
+        return along**2 / squared if scaled else max(-2 * along - squared, 0.0)
 
 
 def _is_scaled(candidate: Candidate) -> bool:
@@ -100,9 +135,3 @@ def chosen_with_holders(candidates: Sequence[Candidate], chosen: Sequence[Candid
     """Return the candidates, in their order, that are chosen or hold a chosen one as a special case."""
     kept = {id(item) for item in chosen}
     return [item for item in candidates if id(item) in kept or any(map(item.holds, chosen))]
-
-
-def _gain(base: Projection, moved: Array) -> float:
-    free = base.remainder(moved)
-    along = float(base.left @ free)
-    return along**2 / max(float(free @ free), 1e-12) if along < 0 else 0.0

@@ -12,6 +12,7 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.estimates import estimate, excluded, p_value
 from vehgen.diagnose.select.search import SearchRound, merit, own_numbers
 from vehgen.diagnose.select.special_cases import does_as_well
+from vehgen.diagnose.select.validation import validation_fall
 from vehgen.effects import RunEffect
 
 NEAREST = 4
@@ -69,14 +70,25 @@ def is_told(fit: ModelFit) -> bool:
     return interval is None or not interval[0] <= effect.neutral <= interval[1]
 
 
+def fall(found: SearchRound, fit: ModelFit) -> float:
+    """Return by how much -2 ln of the likelihood falls on the training runs, beyond the price of an effect's numbers."""
+    return found.current.squares - merit(fit)
+
+
+def falls_as_far(found: SearchRound, fit: ModelFit, best: ModelFit) -> bool:
+    """Return whether -2 ln L falls with a fit nearly as far as with the best one, on the training runs and on validation runs."""
+    base = found.current
+    on_training = fall(found, fit) >= limit.FAINT_TIE * fall(found, best)
+    return on_training and validation_fall(base, fit) >= limit.FAINT_TIE * validation_fall(base, best)
+
+
 def tied(found: SearchRound, best: ModelFit) -> list[ModelFit]:
-    """Return the fits of a round that do as well as the best within the slack of TIE."""
+    """Return the fits of a round that do as well as the best: within the slack of TIE, or of FAINT_TIE where chi shows no gap."""
     before = excess(found.current.training)
-    return [
-        item
-        for item in found.fits
-        if item.key != best.key and not same(item.last, best.last) and does_as_well(item.training, best.training, before)
-    ]
+    others = [item for item in found.fits if item.key != best.key and not same(item.last, best.last)]
+    if found.faint:
+        return [item for item in others if falls_as_far(found, item, best)]
+    return [item for item in others if does_as_well(item.training, best.training, before)]
 
 
 def same(one: Candidate, other: Candidate) -> bool:

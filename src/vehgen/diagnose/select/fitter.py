@@ -121,6 +121,10 @@ class Fitter:
         """Fit one candidate from its own starts, to the training runs alone."""
         return self.fit(candidate, checked=False)
 
+    def fit_at_once(self, candidate: Candidate) -> ModelFit | None:
+        """Fit one candidate from its own starts, all motions at once, to the training runs alone."""
+        return self.fit(candidate, checked=False, slow_first=False)
+
 
 def _origins(base: ModelFit, current: CurrentModel, passed: Sequence[PlaceResult]) -> Origins:
     """Return where base parameters and nuisances may begin: at the file's values, where the place test leaves them, where they are."""

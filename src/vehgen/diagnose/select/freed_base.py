@@ -56,7 +56,7 @@ def split_idle(fits: Sequence[ModelFit], fit_one: FitOne, count: int, edge: tupl
         does_nothing = False
         for names in dict.fromkeys((fit.last.freed, edge)) if len(kept) < count else ():
             if names and names not in alone:
-                alone[names] = fit_one(Candidate(FREED_BASE, ", ".join(names), (), (), names))
+                alone[names] = fitted_freed(names, fit_one)
             freed = alone.get(names)
             if freed is not None and _does_as_well(freed, fit):
                 idle[names] = freed
@@ -64,6 +64,11 @@ def split_idle(fits: Sequence[ModelFit], fit_one: FitOne, count: int, edge: tupl
         if not does_nothing:
             kept.append(fit)
     return kept, sorted(idle.values(), key=_price)
+
+
+def fitted_freed(names: tuple[str, ...], fit_one: FitOne) -> ModelFit | None:
+    """Return the fit of base parameters that are set free, without an effect."""
+    return fit_one(Candidate(FREED_BASE, ", ".join(names), (), (), names))
 
 
 def freed_ratios(freed: ModelFit) -> dict[str, float]:

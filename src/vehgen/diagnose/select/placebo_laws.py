@@ -7,11 +7,12 @@ the named effect, the data do not ask for that effect.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.fits.projection import Projection
@@ -27,10 +28,10 @@ COUNT = 40
 SEED = 20240
 
 
-def decoy_shares(
+def decoy_mean_squares(
     base: ModelFit, place: PlaceResult, motion: Mapping[str, tuple[Array, Array]], numbers: int, count: int = COUNT, seed: int = SEED
 ) -> Array:
-    """Return the share of the base's excess on the training runs that each of `count` placebo laws closes, `shape (count,)`.
+    """Return the mean square on the training runs that each of `count` placebo laws leaves, `shape (count,)`.
 
     Parameters
     ----------
@@ -49,7 +50,6 @@ def decoy_shares(
     scales = [float(np.sqrt(np.mean(np.concatenate([item[i] for item in motion.values()]) ** 2))) for i in (0, 1)]
     responses = _responses(base, place)
     random = np.random.Generator(np.random.PCG64(seed))
-    excess = max(float(left @ left) / size - 1, 1e-9)
     found = []
     for _ in range(count):
         columns = []
@@ -67,7 +67,7 @@ def decoy_shares(
             columns.append(np.concatenate(parts))
         own = projection.remainder(np.array(columns).T)
         remaining = left - own @ np.linalg.lstsq(own, left, rcond=None)[0]
-        found.append(1 - max(float(remaining @ remaining) / size - 1, 0.0) / excess)
+        found.append(float(remaining @ remaining) / size)
     return np.array(found)
 
 
@@ -81,17 +81,33 @@ def _responses(base: ModelFit, place: PlaceResult) -> list[NDArray[np.complex128
     return [force_response(model, known[t], rows, misfit.frequency(t), number)[:, :, 0] for t, model in enumerate(models)]
 
 
-def compare_with_placebo_laws(found: SearchRound, fit: ModelFit, detection: Detection) -> tuple[float, float] | None:
-    """Return the shares of the excess on the training runs that an effect and the best decoy close.
+def left_by_placebo_laws(places: Sequence[PlaceResult], base: ModelFit, fit: ModelFit, detection: Detection) -> Array | None:
+    """Return the mean square on the training runs that each of COUNT decoys leaves at the place of a fit's last effect, `shape (COUNT,)`.
 
-    None where the effect is no law at the place that the place test found with one force.
+    None where that effect is no law at one of the `places` of a single force.
     """
-    forces = [item for item in found.passed if item.unknowns == 1 and item.place.kind != "body" and item.place.rows]
+    forces = [item for item in places if item.unknowns == 1 and item.place.kind != "body" and item.place.rows]
     here = [item for item in forces if item.place.name == fit.last.place]
     place = next((item for item in here if item.place.kind == fit.last.effect.attaches), here[0] if here else None)
     if place is None or not fit.last.effect.changes_vehicle:
         return None
     motion = {run.run: (run.travel, run.rate) for run in recover(detection, place) if not run.validation}
-    shares = decoy_shares(found.current, place, motion, max(len(fit.last.parameters), 1))
+    return decoy_mean_squares(base, place, motion, max(len(fit.last.parameters), 1))
+
+
+def compare_with_placebo_laws(found: SearchRound, fit: ModelFit, detection: Detection) -> tuple[float, float] | None:
+    """Return the shares of the excess on the training runs that an effect and the best decoy close.
+
+    None where the effect is no law at the place that the place test found with one force.
+    """
+    left = left_by_placebo_laws(found.passed, found.current, fit, detection)
+    if left is None:
+        return None
     before = max(found.current.training - 1, 1e-9)
-    return 1 - max(fit.training - 1, 0.0) / before, float(shares.max())
+    return 1 - max(fit.training - 1, 0.0) / before, 1 - max(float(left.min()) - 1, 0.0) / before
+
+
+def like_a_placebo_law(places: Sequence[PlaceResult], base: ModelFit, fit: ModelFit, detection: Detection) -> bool:
+    """Return whether the best decoy lets the squares fall as far as an effect does, but for DECOY of that."""
+    left = left_by_placebo_laws(places, base, fit, detection)
+    return left is not None and base.training - float(left.min()) >= (1 - limit.DECOY) * (base.training - fit.training)

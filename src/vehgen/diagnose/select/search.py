@@ -36,7 +36,7 @@ class SearchRound:
     """One search for one effect: what the `current` model leaves, the places tested and passed, and the candidates fitted, best first.
 
     `idle` are fits of freed base parameters alone that do as well as an effect whose fit freed them, and which is left out. `stopped` tells
-    that Ctrl-C ended it before all candidates were fitted.
+    that Ctrl-C ended it before all candidates were fitted, `faint` that candidates are judged by falls of -2 ln L, as chi shows no gap.
     """
 
     current: ModelFit
@@ -45,6 +45,7 @@ class SearchRound:
     fits: tuple[ModelFit, ...]
     idle: tuple[ModelFit, ...] = ()
     stopped: bool = False
+    faint: bool = False
 
 
 def search_round(

@@ -1,0 +1,105 @@
+"""Effects too faint for chi: found by what they take off -2 ln of the likelihood, of the training runs and of validation runs.
+
+A fall of some hundreds is far beyond chance, but spread over thousands of lines it is a few hundredths of chi, which noise that was told a
+little too large hides. Here laws are ranked, and held against one another and against random laws, by how far they let -2 ln L fall.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from vehgen.diagnose import thresholds as limit
+from vehgen.diagnose.detect.detection import Detection, look_again
+from vehgen.diagnose.fits.candidate import Candidate, has_room
+from vehgen.diagnose.fits.model_fit import ModelFit
+from vehgen.diagnose.fits.screening import FirstOrderGains
+from vehgen.diagnose.localise.localisation import localise
+from vehgen.diagnose.select.criteria import fall, falls_as_far, is_told
+from vehgen.diagnose.select.fitter import Fitter
+from vehgen.diagnose.select.freed_base import fitted_freed
+from vehgen.diagnose.select.placebo_laws import like_a_placebo_law
+from vehgen.diagnose.select.search import SearchRound, fit_leading_again, merit
+from vehgen.diagnose.select.validation import surely_falls, validation_fall
+from vehgen.fit.parallel import HERE, Runner
+
+FIRST_ORDER, MOST_LAWS = 60.0, 4
+"""Laws of the vehicle are fitted that gain so much to the first order, and so many of them at most, the largest gains first ..."""
+FIRST_ORDER_OF_ERRORS, MOST_ERRORS = 25.0, 4
+"""... and errors of all runs or of a sensor, of which the base's own errors take in the most."""
+LOOKS_AGAIN = 2
+
+
+def faint_round(detection: Detection, candidates: Sequence[Candidate], runner: Runner = HERE) -> SearchRound:
+    """Fit the candidates that gain most to the first order beside the base; return them, largest fall first.
+
+    As little is missing, fits begin where the base's ended, with all motions at once.
+    """
+    base = detection.base
+    fitter = Fitter(detection, base, ())
+    gains = FirstOrderGains(base, fitter.current, fitter.locator, fitter.simulators, fitter.residual)
+    ranked = [(gains.of(item), item) for item in candidates if has_room(item, fitter.locator)]
+    ranked.sort(key=lambda pair: -pair[0])
+    laws = [item for gain, item in ranked if item.effect.changes_vehicle and gain > FIRST_ORDER]
+    errors = [item for gain, item in ranked if not item.effect.changes_vehicle and gain > FIRST_ORDER_OF_ERRORS]
+    chosen = [*laws[:MOST_LAWS], *errors[:MOST_ERRORS]]
+    found = SearchRound(base, (), (), (), faint=True)
+    fits = [fit for fit in fitter.fit_all(chosen, runner, slow_first=False) if fit is not None]
+    clear = [fit for fit in fits if fall(found, fit) >= limit.FAINT_FALL]
+    checked = {id(fit): fitter.fit_again(fit) for fit in clear if not np.isfinite(fit.validation)}
+    fits = sorted((checked.get(id(fit), fit) for fit in fits), key=merit)
+    return replace(found, fits=tuple(_simplest_first(found, fits)))
+
+
+def faint_look_again(found: SearchRound, detection: Detection, runner: Runner = HERE) -> tuple[SearchRound, Detection]:
+    """Return a round with noise and recorders as its best fit tells them, and what is detected then; both as they are where none is clear.
+
+    What is missing passes in part for roughness of the road, by which noise is told too large for chi to show a gap.
+    """
+    for _ in range(LOOKS_AGAIN):
+        best = next(iter(found.fits), None)
+        if best is None or not _falls(found, best) or (again := look_again(detection, best)) is None:
+            break
+        detection = again
+        fits = fit_leading_again(Fitter(detection, detection.base, ()), found.fits, weigh=True, runner=runner)
+        found = replace(found, current=detection.base, fits=tuple(fits))
+        found = replace(found, fits=tuple(_simplest_first(found, sorted(fits, key=merit))))
+    return found, detection
+
+
+def faintly_told(found: SearchRound, detection: Detection) -> ModelFit | None:
+    """Return the best fit of a round if the recordings ask for its effect; None where they do not.
+
+    -2 ln L falls by FAINT_FALL on the training runs, beyond the price of its numbers, and by FAINT_VALIDATION on the validation runs, on
+    which the squares surely fall; not by what its freed base parameters alone do, nor as with one of many random laws at its place. The
+    runs tell its size, and it leaves noise.
+    """
+    best = next(iter(found.fits), None)
+    runs = [trial.name for trial in detection.validation_runs]
+    if best is None or not _falls(found, best) or not surely_falls(found.current, best, runs) or not is_told(best):
+        return None
+    if not replace(detection, base=best).is_quiet or not _beats_freed_base(found, best, detection):
+        return None
+    places, _ = localise(found.current)
+    return None if like_a_placebo_law(places, found.current, best, detection) else best
+
+
+def _falls(found: SearchRound, fit: ModelFit) -> bool:
+    return fall(found, fit) >= limit.FAINT_FALL and validation_fall(found.current, fit) >= limit.FAINT_VALIDATION
+
+
+def _simplest_first(found: SearchRound, fits: Sequence[ModelFit]) -> list[ModelFit]:
+    """Return fits in their order, but a special case of the best one first where it falls as far."""
+    for fit in fits[1:]:
+        if fits[0].last.holds(fit.last) and falls_as_far(found, fit, fits[0]):
+            return [fit, *(item for item in fits if item is not fit)]
+    return list(fits)
+
+
+def _beats_freed_base(found: SearchRound, best: ModelFit, detection: Detection) -> bool:
+    """Return whether an effect does more than the base parameters that it frees, and those at the edge of their bounds."""
+    names = tuple(dict.fromkeys((*best.last.freed, *found.current.least_squares.on_bound)))
+    freed = fitted_freed(names, Fitter(detection, found.current, ()).fit_at_once) if names else None
+    return freed is None or merit(freed) - merit(best) >= limit.FAINT_FALL
