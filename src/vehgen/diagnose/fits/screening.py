@@ -17,14 +17,18 @@ from vehgen.diagnose.fits.candidate import Candidate, build_problem, carried
 from vehgen.diagnose.fits.first_order import ProbeMotion
 from vehgen.diagnose.fits.model_fit import NUISANCES, CurrentModel, ModelFit
 from vehgen.diagnose.fits.projection import Projection
-from vehgen.effects import EffectLocator
+from vehgen.effects import EffectLocator, RunEffect
 from vehgen.effects.evidence import Residual
 from vehgen.fit.misfit import Misfit, flatten
+from vehgen.fit.problem import Problem
 from vehgen.simulate import SimulatorPool
 
 Array = NDArray[np.float64]
 MAX_CANDIDATES, MAX_BESIDE = 14, 8
 """So many candidates that are forces are kept; so many beside effects that were found before."""
+
+INSIDE = 0.01
+"""A number begins so far within its range, of 1."""
 
 
 def screen(
@@ -55,7 +59,7 @@ def screen(
     if len(forces) <= most:
         return list(candidates)
     found = FirstOrderGains(base, current, locator, simulators)
-    gains = [(found.of(candidate), candidate) for candidate in forces]
+    gains = [(found.of(candidate)[0], candidate) for candidate in forces]
     gains.sort(key=lambda item: -item[0])
     placed = [item for item in forces if item.place == kept_at]
     return chosen_with_holders(candidates, [*always, *placed, *(candidate for _, candidate in gains[:most])])
@@ -82,15 +86,18 @@ class FirstOrderGains:
         self.projection, self.motion = Projection.of(self.misfit, x, base.effects), ProbeMotion(self.misfit, x)
         self.lines = np.concatenate([flatten(item) for item in self.misfit.whitened_spectrum(x)])
 
-    def of(self, candidate: Candidate) -> float:
-        """Return a candidate's gain: the largest over its starts and, of a force, over a smaller one."""
+    def of(self, candidate: Candidate) -> tuple[float, tuple[float, ...]]:
+        """Return a candidate's gain, the largest over its starts and, of a force, over a smaller one, and where its numbers end by it.
+
+        Along its first number, which says how large it is: that is the start, scaled, as it is or as it differs from what changes nothing.
+        """
         current = self.current
         problem = build_problem(candidate, current.problem, self.locator, self.simulators)
         begun, n, own = carried(current.unit, current.problem.space, problem.space), len(current.unit), len(candidate.parameters)
         exact: Misfit | None = None
-        best = 0.0
         starts = [np.array(item) for item in candidate.effect.starts(candidate.place, self.locator, self.residual)]
         smaller = [_smaller(starts, problem.space.lower[n:])] if _is_scaled(candidate) and starts else []
+        best, end = 0.0, tuple(starts[0].tolist()) if starts else ()
         for number, start in enumerate([*starts, *smaller]):
             point = problem.space.start.copy()
             point[n:] = start[:own]
@@ -104,17 +111,32 @@ class FirstOrderGains:
                 numbers = [(value - item.neutral) / item.scale for item, value in zip(candidate.shared, start, strict=False)]
                 own_lines = exact.whitened_spectrum(np.concatenate([unit, np.zeros(len(current.shared)), numbers, current.errors]))
                 moved = np.concatenate([flatten(item) for item in own_lines]) - self.lines
-            if np.all(np.isfinite(moved)):
-                best = max(best, self._gain(moved, bool(own or candidate.shared)))
-        return best
+            if not np.all(np.isfinite(moved)):
+                continue
+            gain, scale = self._gain(moved, bool(own or candidate.shared))
+            if gain > best:
+                best, end = gain, self._scaled(candidate, problem, start, scale)
+        return best, end
 
-    def _gain(self, moved: Array, scaled: bool) -> float:
-        """Return the gain along a change of the residuals, scaled freely, or as it is where a candidate has no number of its own."""
+    def _scaled(self, candidate: Candidate, problem: Problem, start: Array, scale: float) -> tuple[float, ...]:
+        """Return a start whose first number is scaled, within its bounds."""
+        found = start.tolist()
+        if candidate.parameters:
+            n, point = len(self.current.unit), problem.space.start.copy()
+            point[n] = np.clip(scale * found[0], problem.space.lower[n], problem.space.upper[n])
+            found[0] = float(problem.space.values(np.clip(problem.space.unit(point), INSIDE, 1 - INSIDE))[n])
+        elif isinstance(candidate.effect, RunEffect):
+            neutral = candidate.effect.neutral
+            found[0] = neutral + scale * (found[0] - neutral)
+        return tuple(found)
+
+    def _gain(self, moved: Array, scaled: bool) -> tuple[float, float]:
+        """Return the gain along a change of the residuals, and the scale of the change: free, or 1 of a candidate without a number."""
         free = self.projection.remainder(moved)
         along, squared = float(self.projection.left @ free), max(float(free @ free), 1e-12)
         if along >= 0:
-            return 0.0
-        return along**2 / squared if scaled else max(-2 * along - squared, 0.0)
+            return 0.0, 1.0
+        return (along**2 / squared, -along / squared) if scaled else (max(-2 * along - squared, 0.0), 1.0)
 
 
 def _is_scaled(candidate: Candidate) -> bool:

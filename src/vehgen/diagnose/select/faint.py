@@ -35,18 +35,17 @@ LOOKS_AGAIN = 2
 def faint_round(detection: Detection, candidates: Sequence[Candidate], runner: Runner = HERE) -> SearchRound:
     """Fit the candidates that gain most to the first order beside the base; return them, largest fall first.
 
-    As little is missing, fits begin where the base's ended, with all motions at once.
+    As little is missing, fits begin where the base's ended, with numbers as the first order has them, all motions at once.
     """
     base = detection.base
     fitter = Fitter(detection, base, ())
     gains = FirstOrderGains(base, fitter.current, fitter.locator, fitter.simulators, fitter.residual)
-    ranked = [(gains.of(item), item) for item in candidates if has_room(item, fitter.locator)]
-    ranked.sort(key=lambda pair: -pair[0])
-    laws = [item for gain, item in ranked if item.effect.changes_vehicle and gain > FIRST_ORDER]
-    errors = [item for gain, item in ranked if not item.effect.changes_vehicle and gain > FIRST_ORDER_OF_ERRORS]
-    chosen = [*laws[:MOST_LAWS], *errors[:MOST_ERRORS]]
+    ranked = [(*gains.of(item), item) for item in candidates if has_room(item, fitter.locator)]
+    ranked.sort(key=lambda known: -known[0])
+    laws = [(item, begin) for gain, begin, item in ranked if item.effect.changes_vehicle and gain > FIRST_ORDER]
+    errors = [(item, begin) for gain, begin, item in ranked if not item.effect.changes_vehicle and gain > FIRST_ORDER_OF_ERRORS]
+    fits = fitter.fit_all_begun([*laws[:MOST_LAWS], *errors[:MOST_ERRORS]], runner)
     found = SearchRound(base, (), (), (), faint=True)
-    fits = [fit for fit in fitter.fit_all(chosen, runner, slow_first=False) if fit is not None]
     clear = [fit for fit in fits if fall(found, fit) >= limit.FAINT_FALL]
     checked = {id(fit): fitter.fit_again(fit) for fit in clear if not np.isfinite(fit.validation)}
     fits = sorted((checked.get(id(fit), fit) for fit in fits), key=merit)

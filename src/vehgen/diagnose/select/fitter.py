@@ -52,6 +52,10 @@ class Fitter:
         laid = self.laid if slow_first and candidate.effect.shows_in_slow_motions else None
         return self._fit(candidate, candidate.effect.origins(self.origins), starts, checked, laid, slow_first)
 
+    def fit_begun(self, begun: tuple[Candidate, tuple[float, ...]]) -> ModelFit | None:
+        """Fit one candidate, all motions at once, from numbers of its own, too."""
+        return self.fit(begun[0], [begun[1]] if begun[1] else [], slow_first=False)
+
     def fit_within(self, candidate: Candidate, general: ModelFit) -> ModelFit | None:
         """Fit a special case of the last effect of a fit, all motions at once, from where that fit ended."""
         found, space = general.least_squares, self.current.problem.space
@@ -107,6 +111,11 @@ class Fitter:
         """Yield what :meth:`fit` returns for each of some candidates, fitted wherever a runner works."""
         for candidate, fit in zip(candidates, runner.map(partial(self.fit, slow_first=slow_first), candidates), strict=True):
             yield None if fit is None else _as_here(fit, (*self.current.effects, candidate))
+
+    def fit_all_begun(self, begun: Sequence[tuple[Candidate, tuple[float, ...]]], runner: Runner) -> list[ModelFit]:
+        """Return what :meth:`fit_begun` returns for each of some candidates, but for failures, fitted wherever a runner works."""
+        fits = zip(begun, runner.map(self.fit_begun, begun), strict=True)
+        return [_as_here(fit, (*self.current.effects, item[0])) for item, fit in fits if fit is not None]
 
     def fit_all_again(self, fits: Sequence[ModelFit], runner: Runner) -> list[ModelFit]:
         """Return what :meth:`fit_again` returns for each of some fits, fitted wherever a runner works."""
