@@ -9,7 +9,7 @@ from vehgen.diagnose import wording
 from vehgen.diagnose.combining import Combiner
 from vehgen.diagnose.design.experiment import VISIBLE, propose_stronger
 from vehgen.diagnose.detect.detection import believable, look_again, run_gaps
-from vehgen.diagnose.detect.odd_run import OddChannel, disagreement
+from vehgen.diagnose.detect.odd_run import OddChannel, OddRun, disagreement
 from vehgen.diagnose.ending import Ending
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.checks import variety_notes
@@ -78,7 +78,9 @@ class Decision(Ending):
 
     def _quiet(self) -> Decided:
         """Return the verdict where chi shows no gap: a faint effect, runs that do not agree, or that nothing is missing."""
-        return self._faint() or self._disagreement() or self._nothing()
+        if isinstance(odd := disagreement(self.detection), OddChannel):
+            return self._mistaken((odd_mistake(odd),))
+        return self._faint() or self._disagreeing(odd) or self._nothing()
 
     def _faint(self, found: SearchRound | None = None) -> Decided | None:
         """Return the verdict where an effect too small for chi is told by how far -2 ln of the likelihood falls with it.
@@ -146,7 +148,7 @@ class Decision(Ending):
         best = first.fits[0]
         good = passes(best, self.base)
         weak = self._too_weak(first, best, good)
-        if weak is not None and (faint := self._faint(first)) is not None:
+        if weak is not None and weak.verdict.verdict != "measurement_fault" and (faint := self._faint(first)) is not None:
             return faint
         if weak is None and good and (told := excluded(best)):
             return self._unknown(first, wording.runs_exclude_one_another(self._words(best.last), told))
@@ -165,7 +167,10 @@ class Decision(Ending):
 
     def _disagreement(self) -> Decided | None:
         """Return the verdict where little seems to be missing, but a run or one of its channels does not agree with the others."""
-        if (odd := disagreement(self.detection)) is None:
+        return self._disagreeing(disagreement(self.detection))
+
+    def _disagreeing(self, odd: OddRun | OddChannel | None) -> Decided | None:
+        if odd is None:
             return None
         if isinstance(odd, OddChannel) or (odd.others_agree and self._no_effect_passes()):
             return self._mistaken((odd_mistake(odd),))

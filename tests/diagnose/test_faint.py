@@ -1,0 +1,86 @@
+"""Effects that chi does not show: told by the likelihood, on runs that no fit has seen, too; and none where nothing is hidden."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+from benchmarks.hidden_effects.generator import Effect
+
+from tests.diagnose.conftest import HUMPS
+from vehgen.diagnose import thresholds as limit
+from vehgen.diagnose.fits.candidate import list_candidates
+from vehgen.diagnose.pipeline import diagnose_trials
+from vehgen.diagnose.select import criteria, faint
+from vehgen.diagnose.select.criteria import tied
+from vehgen.diagnose.select.faint import faint_look_again, faint_round, faintly_told
+from vehgen.effects import EFFECTS
+
+UNLIKE = Effect("asymmetric_damping", "rear", {"ratio": 0.975})
+"""A damper that resists compression a fortieth less than extension."""
+NAMES = ("asymmetric_damping", "quadratic_damping", "sensor_gain")
+
+
+def candidates_of(detection):
+    return list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS[name] for name in NAMES], detection.floor.noises)
+
+
+def test_an_effect_that_chi_does_not_show_is_named(trials_of, detection_of):
+    detection = detection_of(UNLIKE, runs=HUMPS)
+    assert detection.is_quiet
+    found = diagnose_trials(trials_of(UNLIKE, runs=HUMPS), [EFFECTS[name] for name in NAMES])
+    (told,) = found.verdict.effects
+    assert (found.verdict.verdict, told.name, told.place) == ("named", "asymmetric_damping", "rear")
+    low, high = told.parameters["ratio"].interval
+    assert low < 0.975 < high
+    assert any("chi hardly shows a gap" in note for note in found.verdict.notes)
+    assert len(found.evidence.rounds) == 1
+
+
+def test_none_is_told_where_nothing_is_hidden(detection_of):
+    detection = detection_of(runs=HUMPS)
+    found, again = faint_look_again(faint_round(detection, candidates_of(detection)), detection)
+    assert again is detection
+    assert faintly_told(found, again) is None
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda monkeypatch: monkeypatch.setattr(limit, "FAINT_FALL", 1e9),
+        lambda monkeypatch: monkeypatch.setattr(limit, "FAINT_VALIDATION", 1e9),
+        lambda monkeypatch: monkeypatch.setattr(faint, "surely_falls", lambda *_: False),
+        lambda monkeypatch: monkeypatch.setattr(faint, "is_told", lambda _: False),
+        lambda monkeypatch: monkeypatch.setattr(faint, "like_a_placebo_law", lambda *_: True),
+        lambda monkeypatch: monkeypatch.setattr(faint, "fitted_freed", lambda names, fit: SimpleNamespace(**MUCH_LOWER)),
+    ],
+    ids=["small fall", "not on validation runs", "by chance there", "size unknown", "as a random law", "as its freed damping"],
+)
+def test_none_is_told_unless_all_speaks_for_it(detection_of, found_of, monkeypatch, spoil):
+    detection, found = detection_of(UNLIKE, runs=HUMPS), found_of
+    assert faintly_told(found, detection).last.label == "asymmetric_damping at rear"
+    spoil(monkeypatch)
+    assert faintly_told(found, detection) is None
+
+
+MUCH_LOWER = {"squares": -1e9, "n_residuals": 1, "last": SimpleNamespace(effect=SimpleNamespace(n_numbers=lambda runs: 0))}
+MUCH_LOWER["least_squares"] = SimpleNamespace(misfit=SimpleNamespace(problem=SimpleNamespace(trials=())))
+
+
+@pytest.fixture(scope="module")
+def found_of(detection_of):
+    """The fits beside a base that chi calls quiet."""
+    detection = detection_of(UNLIKE, runs=HUMPS)
+    return faint_round(detection, candidates_of(detection))
+
+
+def test_a_tie_falls_nearly_as_far_on_both_kinds_of_runs(found_of, monkeypatch):
+    best = found_of.fits[0]
+    rival = replace(best, effects=(replace(best.last, effect=EFFECTS["quadratic_damping"]),))
+    falls = {id(best): (1000.0, 300.0), id(rival): (850.0, 260.0)}
+    monkeypatch.setattr(criteria, "fall", lambda found, fit: falls[id(fit)][0])
+    monkeypatch.setattr(criteria, "validation_fall", lambda base, fit: falls[id(fit)][1])
+    both = replace(found_of, fits=(best, rival))
+    assert tied(both, best) == [rival]
+    for numbers in ((750.0, 260.0), (850.0, 200.0)):
+        falls[id(rival)] = numbers
+        assert tied(both, best) == []
