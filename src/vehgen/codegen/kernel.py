@@ -73,9 +73,14 @@ class Kernel:
         if precision not in get_args(Precision):
             raise InputError(f"unknown precision {shown(precision)}; {did_you_mean(precision, get_args(Precision))}")
         self.model = model
-        self.source: KernelSource = write_kernel(model, sweeps=sweeps, precision=precision)
         self._options: tuple[int | None, Precision] = sweeps, precision
         self._folder = folder
+
+    @cached_property
+    def source(self) -> KernelSource:
+        """What it is compiled from: written when first asked for, as many models are only looked at."""
+        sweeps, precision = self._options
+        return write_kernel(self.model, sweeps=sweeps, precision=precision)
 
     @property
     def name(self) -> str:

@@ -45,6 +45,7 @@ class ProbeMotion:
         self.values = [misfit.problem.values_of(values, trial) for trial in misfit.problem.trials]
         self.motions: list[Array] = []
         self._responses: dict[tuple[int, int], Complex] = {}
+        self._added: dict[int, tuple[EquationsOfMotion, dict[int, sp.Expr] | None]] = {}
         for t, (trial, known) in enumerate(zip(misfit.problem.trials, self.values, strict=True)):
             model = trial.simulator.model
             if id(model) not in kernels:
@@ -86,23 +87,19 @@ class ProbeMotion:
     def _forces(self, t: int, model: EquationsOfMotion, values: Mapping[str, float]) -> dict[int, Array] | None:
         """Return what a model adds at the elements of the fit's model, by number, each `shape (n_samples,)`."""
         own = self.misfit.problem.trials[t].simulator.model
-        alike = len(model.elements) == len(own.elements) and model.mass_entries == own.mass_entries and not model.is_preloaded
-        if not alike or not all(_extends(new, old) for new, old in zip(model.elements, own.elements, strict=True)):
+        if id(model) not in self._added:
+            self._added[id(model)] = model, _added_forces(model, own)
+        added = self._added[id(model)][1]
+        if added is None:
             return None
         found = {}
-        for number, (new, old) in enumerate(zip(model.elements, own.elements, strict=True)):
-            added = new.laws[len(old.laws) :]
-            steps = [term.step(new.k, new.c) for term in added]
-            if any(term.law.states for term in added) or any(step.friction != 0 for step in steps):
-                return None
-            force = (new.k - old.k) * TRAVEL + (new.c - old.c) * RATE + sp.Add(*(step.now for step in steps))
-            if force == 0:
-                continue
+        for number, force in added.items():
             symbols = sorted(force.free_symbols - {TRAVEL, RATE, STATIC}, key=str)
             known = {symbol: np.array(value) for symbol, value in zip(symbols, model.evaluate_list(symbols, values), strict=True)}
             travel, rate = self.motions[t][number]
             known |= {TRAVEL: travel, RATE: rate}
             if STATIC in force.free_symbols:
+                new = model.elements[number]
                 known[STATIC] = np.array(static_loads(model, values).elements[new.kind, new.name])
             found[number] = np.broadcast_to(evaluate_array(force, known), travel.shape)
         return found
@@ -115,6 +112,28 @@ class ProbeMotion:
             answer = force_response(model, self.values[t], (model.elements[number].row,), frequency, number)[:, :, 0]
             self._responses[t, number] = answer * trial.channel_factors(frequency)
         return self._responses[t, number]
+
+
+def _added_forces(model: EquationsOfMotion, own: EquationsOfMotion) -> dict[int, sp.Expr] | None:
+    """Return what a model adds at the elements of another one, as forces of travel and rate, by number; None if it adds more."""
+    alike = len(model.elements) == len(own.elements) and model.mass_entries == own.mass_entries and not model.is_preloaded
+    if not alike:
+        return None
+    pairs = list(zip(model.elements, own.elements, strict=True))
+    if any(term.law.states for new, old in pairs for term in new.laws[len(old.laws) :]) or not all(
+        _extends(new, old) for new, old in pairs
+    ):
+        return None
+    found = {}
+    for number, (new, old) in enumerate(pairs):
+        added = new.laws[len(old.laws) :]
+        steps = [term.step(new.k, new.c) for term in added]
+        if any(step.friction != 0 for step in steps):
+            return None
+        force = (new.k - old.k) * TRAVEL + (new.c - old.c) * RATE + sp.Add(*(step.now for step in steps))
+        if force != 0:
+            found[number] = force
+    return found
 
 
 def _probe(model: EquationsOfMotion) -> EquationsOfMotion:
