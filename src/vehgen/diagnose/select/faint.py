@@ -44,7 +44,7 @@ def faint_round(detection: Detection, candidates: Sequence[Candidate], runner: R
     ranked.sort(key=lambda known: -known[0])
     laws = [(item, begin) for gain, begin, item in ranked if item.effect.changes_vehicle and gain > FIRST_ORDER]
     errors = [(item, begin) for gain, begin, item in ranked if not item.effect.changes_vehicle and gain > FIRST_ORDER_OF_ERRORS]
-    fits = fitter.fit_all_begun([*laws[:MOST_LAWS], *errors[:MOST_ERRORS]], runner)
+    fits = list(fitter.fit_all_begun([*laws[:MOST_LAWS], *errors[:MOST_ERRORS]], runner))
     found = SearchRound(base, (), (), (), faint=True)
     clear = [fit for fit in fits if fall(found, fit) >= limit.FAINT_FALL]
     checked = {id(fit): fitter.fit_again(fit) for fit in clear if not np.isfinite(fit.validation)}

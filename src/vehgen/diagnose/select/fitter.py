@@ -112,10 +112,11 @@ class Fitter:
         for candidate, fit in zip(candidates, runner.map(partial(self.fit, slow_first=slow_first), candidates), strict=True):
             yield None if fit is None else _as_here(fit, (*self.current.effects, candidate))
 
-    def fit_all_begun(self, begun: Sequence[tuple[Candidate, tuple[float, ...]]], runner: Runner) -> list[ModelFit]:
-        """Return what :meth:`fit_begun` returns for each of some candidates, but for failures, fitted wherever a runner works."""
-        fits = zip(begun, runner.map(self.fit_begun, begun), strict=True)
-        return [_as_here(fit, (*self.current.effects, item[0])) for item, fit in fits if fit is not None]
+    def fit_all_begun(self, begun: Sequence[tuple[Candidate, tuple[float, ...]]], runner: Runner) -> Iterator[ModelFit]:
+        """Yield what :meth:`fit_begun` returns for each of some candidates, but for failures, fitted wherever a runner works."""
+        for item, fit in zip(begun, runner.map(self.fit_begun, begun), strict=True):
+            if fit is not None:
+                yield _as_here(fit, (*self.current.effects, item[0]))
 
     def fit_all_again(self, fits: Sequence[ModelFit], runner: Runner) -> list[ModelFit]:
         """Return what :meth:`fit_again` returns for each of some fits, fitted wherever a runner works."""

@@ -16,6 +16,7 @@ from vehgen.diagnose.localise.localisation import localise, owner, shortlist
 from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
+from vehgen.diagnose.select.settling import settle
 from vehgen.diagnose.select.special_cases import does_as_well, simplest_first
 from vehgen.fit.parallel import HERE, Runner
 
@@ -111,7 +112,8 @@ def fit_candidates(
 ) -> tuple[list[ModelFit], bool]:
     """Fit every candidate on top of a fit; return the fits, best first, and whether Ctrl-C ended this early.
 
-    The candidates are screened first, but for those at the place `kept_at`, unless `everything` is to be tried.
+    Unless `everything` is to be tried, those that are likeliest to the first order are tried first, and where one of them settles the gap
+    only its rivals beside it; else the candidates are screened, but for those at the place `kept_at`.
     """
     fitter = Fitter(detection, base, passed)
     current, locator, simulators = fitter.current, fitter.locator, fitter.simulators
@@ -120,6 +122,8 @@ def fit_candidates(
     try:
         if not everything:
             progress("screen", 0, 1, "")
+            if not base.effects:
+                fits, candidates = settle(fitter, base, candidates, runner, kept_at)
             candidates = screen(candidates, base, current, locator, simulators, kept_at)
             progress("screen", 1, 1, f"{len(candidates)} candidates")
         for slow_first in (True, False):
@@ -198,7 +202,7 @@ def fit_leading_again(fitter: Fitter, fits: Sequence[ModelFit], weigh: bool, run
 
     Where noise is much less than they were ranked by (`weigh`), all are weighed by it, and contenders fitted again, too.
     """
-    leading = [fit for fit in fits[:LOOKED_AT_AGAIN] if np.isfinite(fit.validation)]
+    leading = [fit for fit in fits[:LOOKED_AT_AGAIN] if np.isfinite(fit.validation) and fit.training <= MAY_STILL_WIN * fits[0].training]
     rest = [fit for fit in fits if all(fit is not other for other in leading)]
     found = fitter.fit_all_again(leading, runner)
     if weigh and found:

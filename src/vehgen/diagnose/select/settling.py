@@ -1,0 +1,57 @@
+"""Ends a search early: beside a candidate that explains everything, without strain, only what may explain as much has to be fitted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from vehgen.diagnose import thresholds as limit
+from vehgen.diagnose.fits.candidate import Candidate
+from vehgen.diagnose.fits.model_fit import ModelFit
+from vehgen.diagnose.fits.screening import FirstOrderGains
+from vehgen.diagnose.select.fitter import Fitter
+from vehgen.fit.parallel import HERE, Runner
+
+MOST_AT_ONCE = 4
+"""So many candidates are fitted, all motions at once, until one settles a gap."""
+RIVAL = 0.3
+"""Beside one that does, candidates are fitted whose first-order gain is this share of its own, or more."""
+UNSTRAINED = 3.0
+"""It supposes errors of runs and sensors of no more than so many standard deviations."""
+
+
+def settle(
+    fitter: Fitter, base: ModelFit, candidates: Sequence[Candidate], runner: Runner = HERE, kept_at: str = ""
+) -> tuple[list[ModelFit], list[Candidate]]:
+    """Fit the candidates of the largest first-order gains until one settles the gap of the base; those at `kept_at` stay its rivals.
+
+    Returns
+    -------
+    Those fits, and the candidates that are left to be fitted: all where none settles the gap.
+    """
+    gains = FirstOrderGains(base, fitter.current, fitter.locator, fitter.simulators, fitter.residual)
+    ranked = [(*gains.of(item), item) for item in candidates]
+    ranked.sort(key=lambda known: -known[0])
+    fits: list[ModelFit] = []
+    for fit in fitter.fit_all_begun([(item, begin) for _, begin, item in ranked[:MOST_AT_ONCE]], runner):
+        fits.append(fit)
+        if _settles(fit):
+            own = next(gain for gain, _, item in ranked if (item.effect.name, item.place) == fit.key[-1])
+            tried = {known.key[-1] for known in fits}
+            rest = [(gain, item) for gain, _, item in ranked if (item.effect.name, item.place) not in tried]
+            return fits, [item for gain, item in rest if gain >= RIVAL * own or item.place == kept_at or _is_kin(item, fit.last)]
+    return fits, list(candidates)
+
+
+def _settles(fit: ModelFit) -> bool:
+    """Return whether a fit leaves noise, on validation runs, too, and supposes nothing of runs and sensors that has to be explained."""
+    noise = limit.NOISE_FLOOR**2
+    quiet = bool(np.isfinite(fit.validation)) and max(fit.training, fit.validation) <= noise
+    return quiet and all(abs(item.sigmas) <= UNSTRAINED for part in fit.parts for item in part.conditions())
+
+
+def _is_kin(item: Candidate, best: Candidate) -> bool:
+    """Return whether a candidate is a special case of the best one or holds it, or no run tells the two apart."""
+    alike = bool(best.effect.tie_advice) and item.effect.tie_advice == best.effect.tie_advice
+    return item.holds(best) or best.holds(item) or alike
