@@ -17,6 +17,7 @@ from vehgen.diagnose.detect.rig_noise import rig_noises
 from vehgen.diagnose.detect.road_error import measured_profiles, road_noises
 from vehgen.diagnose.detect.splitting import hump_height, split_by_gap, split_runs
 from vehgen.diagnose.detect.steady_lines import steady_lines, without_lines
+from vehgen.diagnose.fits.base_anew import base_anew
 from vehgen.diagnose.fits.model_fit import ModelFit, fit_base, mean_square_as_filed, narrow
 from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.errors import InputError
@@ -102,7 +103,7 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
     band = band or compared_band(trials)
     floor = find_noise_floor(trials, band)
     problem = narrow(make_problem(training))
-    base = fit_base(problem, validation_runs, floor.noises, band)
+    base = base_anew(fit_base(problem, validation_runs, floor.noises, band), validation_runs, floor.noises, band, NOISE_FLOOR)
     if lines := steady_lines(base):  # they were taken for noise
         problem, validation_runs = problem.with_trials(without_lines(training, lines)), list(without_lines(validation_runs, lines))
         floor = find_noise_floor((*problem.trials, *validation_runs), band)

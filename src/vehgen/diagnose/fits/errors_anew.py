@@ -20,6 +20,11 @@ STRAINED_SHARE = 0.99
 """An error of more than this share of what it may be at most stands at its bound."""
 
 
+def is_strained(fit: LeastSquaresFit) -> bool:
+    """Return whether an error of a run or a sensor stands at its bound."""
+    return any(abs(item.sigmas) > STRAINED_SHARE * MOST_SIGMAS for item in fit.conditions())
+
+
 def without_strain(fit: LeastSquaresFit, effects: Sequence[Candidate]) -> LeastSquaresFit:
     """Return a fit, or where its errors stand at bounds and it ends lower with errors begun anew, that one.
 
@@ -30,7 +35,7 @@ def without_strain(fit: LeastSquaresFit, effects: Sequence[Candidate]) -> LeastS
     effects
         Its effects, whose parameters are the last of its unknowns.
     """
-    if not any(abs(item.sigmas) > STRAINED_SHARE * MOST_SIGMAS for item in fit.conditions()):
+    if not is_strained(fit):
         return fit
     misfit, n = fit.misfit, fit.misfit.n_parameters
     begun = fit.x[n : n + len(misfit.shared)]

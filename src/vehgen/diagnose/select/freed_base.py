@@ -8,31 +8,17 @@ refit ends at the edge with: a stiffness that the file has wrong by a factor loo
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import Candidate
+from vehgen.diagnose.fits.freedom import FREED_BASE
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.estimates import p_value
-from vehgen.effects import Effect
-from vehgen.effects.places import nowhere
 
 FitOne = Callable[[Candidate], ModelFit | None]
 """Fits one candidate on top of the current model."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class FreedBase(Effect):
-    """No effect at all, but the freedom that another one gives the base parameters at its place."""
-
-    def n_numbers(self, n_runs: int) -> int:
-        """Return 0: it adds no parameter."""
-        return 0
-
-
-FREED_BASE = FreedBase(name="freed_base", title="Base parameters beyond the file's", attaches="base", places=nowhere)
 
 
 def split_idle(fits: Sequence[ModelFit], fit_one: FitOne, count: int, edge: tuple[str, ...] = ()) -> tuple[list[ModelFit], list[ModelFit]]:
