@@ -23,7 +23,7 @@ from vehgen.fit.misfit import Noises
 from vehgen.fit.trial import Trial
 from vehgen.simulate import SimulatorPool
 
-NOTHING = Candidate(FREED_BASE, "", ())
+NO_EFFECT = Candidate(FREED_BASE, "", ())
 
 
 def base_anew(base: ModelFit, validation_runs: Sequence[Trial], noises: Noises, band: tuple[float, float], floor: float) -> ModelFit:
@@ -37,6 +37,6 @@ def base_anew(base: ModelFit, validation_runs: Sequence[Trial], noises: Noises, 
     laid = align(misfit, filed, bands=())
     locator = EffectLocator(trial.run.vehicle, dict(trial.values))
     again = fit_candidate(
-        NOTHING, current, validation_runs, noises, band, locator, SimulatorPool(), [(filed, current.errors)], [()], laid, slow_first=True
+        NO_EFFECT, current, validation_runs, noises, band, locator, SimulatorPool(), [(filed, current.errors)], [()], laid, slow_first=True
     )
     return base if again is None or not np.isfinite(again.validation) or again.squares >= base.squares else replace(again, effects=())

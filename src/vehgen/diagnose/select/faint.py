@@ -29,7 +29,8 @@ FIRST_ORDER, MOST_LAWS = 60.0, 4
 """Laws of the vehicle are fitted that gain so much to the first order, and so many of them at most, the largest gains first ..."""
 FIRST_ORDER_OF_ERRORS, MOST_ERRORS = 25.0, 4
 """... and errors of all runs or of a sensor, of which the base's own errors take in the most."""
-LOOKS_AGAIN = 2
+FAINT_LOOKS_AGAIN = 2
+"""So often at most are noise and recorders found anew from the best fit."""
 
 
 def faint_round(detection: Detection, candidates: Sequence[Candidate], runner: Runner = HERE) -> SearchRound:
@@ -57,7 +58,7 @@ def faint_look_again(found: SearchRound, detection: Detection, runner: Runner = 
 
     What is missing passes in part for roughness of the road, by which noise is told too large for chi to show a gap.
     """
-    for _ in range(LOOKS_AGAIN):
+    for _ in range(FAINT_LOOKS_AGAIN):
         best = next(iter(found.fits), None)
         if best is None or not _falls(found, best) or (again := look_again(detection, best)) is None:
             break

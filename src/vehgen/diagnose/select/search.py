@@ -14,9 +14,9 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.fits.screening import screen
 from vehgen.diagnose.localise.localisation import localise, owner, shortlist
 from vehgen.diagnose.localise.unknown_force import PlaceResult
+from vehgen.diagnose.select.early_end import settle
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
-from vehgen.diagnose.select.settling import settle
 from vehgen.diagnose.select.special_cases import does_as_well, simplest_first
 from vehgen.fit.parallel import HERE, Runner
 

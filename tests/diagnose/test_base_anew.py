@@ -1,0 +1,48 @@
+"""A base that locked in a wrong minimum is fitted anew; one that is good, without strain, or no better anew, stays as it is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.diagnose.conftest import HUMPS
+from vehgen.diagnose.fits import base_anew as module
+from vehgen.diagnose.fits.base_anew import base_anew
+from vehgen.diagnose.fits.model_fit import evaluate_fit
+
+
+@pytest.fixture(scope="module")
+def detection(detection_of):
+    """Of a sedan that hides nothing."""
+    return detection_of(runs=HUMPS)
+
+
+@pytest.fixture(scope="module")
+def astray(detection):
+    """The base with the speed of every run at its bound, as a fit that locked in a cycle off leaves it."""
+    fit = detection.base.least_squares
+    at = [4.0 if item.name == "speed" else number for item, number in zip(fit.conditions(), fit.misfit.split(fit.x)[1], strict=True)]
+    moved = replace(fit, x=np.concatenate([fit.x[: fit.misfit.n_parameters], at]), linearisation=None)
+    return evaluate_fit((), moved, detection.validation_runs, detection.floor.noises)
+
+
+def again(base, detection):
+    return base_anew(base, detection.validation_runs, detection.floor.noises, detection.band, 1.06)
+
+
+def test_a_base_that_is_astray_comes_back(detection, astray):
+    assert astray.training > 10
+    found = again(astray, detection)
+    assert found.effects == ()
+    assert found.training == pytest.approx(detection.base.training, rel=0.02)
+    np.testing.assert_allclose(found.least_squares.values, detection.base.least_squares.values, rtol=0.01)
+
+
+@pytest.mark.parametrize("kind", ["good", "without strain", "no better"])
+def test_any_other_base_stays_as_it_is(detection, astray, monkeypatch, kind):
+    tried = []
+    monkeypatch.setattr(module, "fit_candidate", lambda *_, **__: tried.append(1))
+    monkeypatch.setattr(module, "is_strained", lambda _: kind != "without strain")
+    base = detection.base if kind == "good" else astray
+    assert again(base, detection) is base
+    assert len(tried) == (kind == "no better")

@@ -1,0 +1,52 @@
+"""A search ends early where one candidate settles the gap, and not where none does."""
+
+import pytest
+
+from tests.diagnose.conftest import CUBIC, HUMPS
+from vehgen.diagnose.fits.candidate import list_candidates
+from vehgen.diagnose.select import early_end
+from vehgen.diagnose.select.early_end import settle
+from vehgen.diagnose.select.fitter import Fitter
+from vehgen.effects import EFFECTS
+
+NAMES = ("cubic_stiffness", "quadratic_damping", "hysteresis", "progressive_stiffness", "sensor_gain")
+
+
+def settled(detection, names=NAMES, kept_at=""):
+    candidates = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS[name] for name in names])
+    return candidates, *settle(Fitter(detection, detection.base, ()), detection.base, candidates, kept_at=kept_at)
+
+
+def test_the_law_that_was_hidden_settles_and_leaves_only_its_rivals(detection_of):
+    candidates, fits, rivals = settled(detection_of(CUBIC, runs=HUMPS))
+    assert fits[-1].last.label == "cubic_stiffness at rear"
+    assert fits[-1].training < 1.06**2
+    assert fits[-1].last not in rivals
+    assert len(fits) + len(rivals) < len(candidates) / 2
+
+
+def test_laws_at_a_place_that_is_kept_stay_rivals(detection_of):
+    candidates, fits, rivals = settled(detection_of(CUBIC, runs=HUMPS), kept_at="front")
+    assert {item.label for item in candidates if item.place == "front"} <= {item.label for item in rivals}
+    assert fits[-1].last.place == "rear"
+
+
+def test_special_cases_and_candidates_that_no_run_tells_apart_are_kin(detection_of):
+    detection = detection_of(CUBIC, runs=HUMPS)
+    names = ("sensor_delay", "dry_friction", "asymmetric_friction")
+    listed = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS[name] for name in names])
+    known = {item.label: item for item in listed}
+    pairs = [("sensor_delay at F", "sensor_delay at R"), ("asymmetric_friction at rear", "dry_friction at rear")]
+    assert all(early_end._is_kin(known[one], known[other]) and early_end._is_kin(known[other], known[one]) for one, other in pairs)
+    assert not early_end._is_kin(known["dry_friction at front"], known["dry_friction at rear"])
+    assert not early_end._is_kin(known["dry_friction at front"], known["sensor_delay at F"])
+
+
+@pytest.mark.parametrize("limit", ["most", "strain"])
+def test_nothing_is_left_out_where_none_settles(detection_of, monkeypatch, limit):
+    if limit == "strain":
+        monkeypatch.setattr(early_end, "UNSTRAINED", -1.0)
+    names = NAMES if limit == "strain" else ("quadratic_damping", "sensor_gain")
+    candidates, fits, rivals = settled(detection_of(CUBIC, runs=HUMPS), names)
+    assert rivals == candidates
+    assert len(fits) <= early_end.MOST_AT_ONCE
