@@ -51,7 +51,7 @@ def candidates(detection, effects):
 def known(detection):
     """Return the fits of the library's effect of each kind, by name."""
     listed = candidates(detection, [EFFECTS[name] for name in TWINS])
-    fits, _ = fit_candidates(detection, detection.base, [], [item for item in listed if TWINS[item.effect.name] == item.place], quiet)
+    fits, _ = fit_candidates(detection, detection.base, [], [item for item in listed if TWINS[item.effect.name] == item.place], quiet, True)
     return {fit.last.effect.name: fit for fit in fits}
 
 
@@ -75,7 +75,7 @@ def test_a_file_may_add_effects_of_every_kind(detection, known, tmp_path):
     assert {effect.file for effect in effects.values()} == {str(tmp_path / "own.yaml")}
     names = dict(zip(effects, TWINS, strict=True))
     listed = [item for item in candidates(detection, list(effects.values())) if TWINS[names[item.effect.name]] == item.place]
-    check(fit_candidates(detection, detection.base, [], listed, quiet)[0], known, names)
+    check(fit_candidates(detection, detection.base, [], listed, quiet, True)[0], known, names)
 
 
 def test_packages_may_add_effects_of_every_kind(detection, known, monkeypatch):
@@ -84,7 +84,7 @@ def test_packages_may_add_effects_of_every_kind(detection, known, monkeypatch):
     monkeypatch.setattr(registry, "entry_points", lambda group: points)
     effects = [registry.library()[own] for own in names]
     listed = [item for item in candidates(detection, effects) if TWINS[names[item.effect.name]] == item.place]
-    check(fit_candidates(detection, detection.base, [], listed, quiet)[0], known, names)
+    check(fit_candidates(detection, detection.base, [], listed, quiet, True)[0], known, names)
 
 
 def test_a_global_effect_of_ones_own_is_tried_where_no_single_force_suffices(detection):

@@ -87,8 +87,8 @@ def test_ctrl_c_leaves_what_was_found(trials_of):
     found = diagnose_trials(trials_of(*PAIR), FEW, progress=tell)
     assert found.stopped
     assert found.verdict.verdict == "insufficient_data"
-    assert "stopped by hand after 2 candidates" in found.verdict.reason
-    assert len(found.fits) == 2
+    assert 2 <= len(found.fits) < len(FEW) * 2
+    assert f"stopped by hand after {len(found.fits)} candidates" in found.verdict.reason
     assert found.places
 
 

@@ -31,7 +31,7 @@ def test_a_special_case_that_does_as_well_goes_first_and_is_no_tie():
     ranked = simplest_first([general, other, plain], BASE)
     assert ranked == [plain, general, other]
     assert same(plain.last, general.last)
-    assert tied(SimpleNamespace(current=BASE, fits=ranked), plain) == []
+    assert tied(SimpleNamespace(faint=False, current=BASE, fits=ranked), plain) == []
     assert holding(ranked, plain, BASE) == [general]
 
 
@@ -44,7 +44,7 @@ def test_a_special_case_that_leaves_more_stays_where_it_is():
 def test_friction_elsewhere_is_no_special_case():
     fits = [fit("asymmetric_friction", "rear", 1.02), fit("dry_friction", "front", 1.02)]
     assert simplest_first(fits, BASE) == fits
-    assert len(tied(SimpleNamespace(current=BASE, fits=fits), fits[0])) == 1
+    assert len(tied(SimpleNamespace(faint=False, current=BASE, fits=fits), fits[0])) == 1
 
 
 def test_what_holds_an_effect_is_not_looked_for_beside_it():

@@ -144,7 +144,7 @@ def fit_candidates(
             for i, fit in zip(contenders, fitter.restart_all([fits[i] for i in contenders], runner), strict=True):
                 fits[i] = fit
     except KeyboardInterrupt:
-        return simplest_first(sorted(fits, key=merit), base), True
+        return simplest_first(_best_of_each(fits), base), True
     return simplest_first(sorted(fits, key=merit), base), False
 
 
