@@ -11,13 +11,13 @@ from typing import Any
 
 from benchmarks.measured_world.solve import imported, vehicle_file, workplace
 from benchmarks.measured_world.telling.falls import Falls, price
-from benchmarks.measured_world.telling.gains import first_order_gains
 from benchmarks.measured_world.telling.rule import BESIDE, FITTED
 from benchmarks.measured_world.telling.steps import steps_of_case
 from benchmarks.measured_world.telling.true_law import true_candidate, true_start
 from vehgen.diagnose.detect.detection import Detection, detect
 from vehgen.diagnose.detect.splitting import kind_of_run
-from vehgen.diagnose.fits.candidate import Candidate, list_candidates
+from vehgen.diagnose.fits.candidate import Candidate, has_room, list_candidates
+from vehgen.diagnose.fits.screening import FirstOrderGains
 from vehgen.effects import library
 from vehgen.fit.one_thread import one_blas_thread
 from vehgen.fit.trial import load_trials
@@ -105,7 +105,9 @@ def detected(detection: Detection) -> Data:
 def laws_measured(detection: Detection, candidates: Sequence[Candidate], parameters: Data, asked: Data | None, fitted: int) -> Data:
     """Return the first-order gains of all laws, and fits of the one asked for and of the `fitted` ones that gain most."""
     falls = Falls(detection, len(candidates), parameters)
-    gains = first_order_gains(falls.fitter, candidates)
+    fitter = falls.fitter
+    measured = FirstOrderGains(detection.base, fitter.current, fitter.locator, fitter.simulators, fitter.residual)
+    gains = sorted(((measured.of(item)[0], item) for item in candidates if has_room(item, fitter.locator)), key=lambda item: -item[0])
     runs, n = len(detection.problem.trials), detection.base.n_residuals
     hopeful = [item for item in gains if item[0] > 1.0]
     chosen = sorted(hopeful, key=lambda item: price(item[1].effect.n_numbers(runs), n) - item[0])[:fitted]
