@@ -5,6 +5,7 @@ import pytest
 
 from tests.fit.profile_world import FINE, fine_channels, misfit_of, read_run, rough_road
 from tests.fit.recordings import sedan_truth, write_run
+from vehgen.fit import linearisation as module
 from vehgen.fit.alignment import MOST_SHARPENED, MOST_SIGMAS, error_bounds
 from vehgen.fit.linearisation import Lineariser, linearise
 from vehgen.fit.nuisances import Nuisances
@@ -67,6 +68,39 @@ def test_derivatives_by_errors_of_runs_are_taken_anew_when_asked(late):
     assert np.array_equal(kept.slopes[0][0], first.slopes[0][0])
     assert not np.array_equal(anew.slopes[0][0], first.slopes[0][0])
     assert anew.spectra[0][own] == pytest.approx(linearise(misfit, moved, one_sided=True).spectra[0][own])
+
+
+def test_derivatives_that_follow_from_a_step_foretell_it_and_are_computed_after_so_many(late, monkeypatch):
+    misfit, x = late
+    computed = []
+    monkeypatch.setattr(module, "linearise", lambda *known, **how: computed.append(1) or linearise(*known, **how))
+    derive = Lineariser(misfit, 5, secants=2)
+    lines = misfit.whitened_spectrum(x)
+    derive(x, lines)
+    points = [x + 0.01 * np.random.default_rng(number).normal(size=len(x)) for number in range(3)]
+    at, before = x, lines
+    for number, point in enumerate(points):
+        after = misfit.whitened_spectrum(point)
+        found = derive(point, after)
+        assert len(computed) == (1 if number < 2 else 2)
+        if number < 2:
+            step = point - at
+            np.testing.assert_allclose(np.tensordot(step, found.spectra[0], axes=1), after[0] - before[0], rtol=1e-9, atol=1e-9)
+        at, before = point, after
+    anew = derive.linearise_anew(points[0], misfit.whitened_spectrum(points[0]))
+    assert len(computed) == 3
+    np.testing.assert_allclose(anew.spectra[0], linearise(misfit, points[0], one_sided=True).spectra[0])
+
+
+def test_a_step_says_nothing_of_directions_that_it_does_not_take(late):
+    misfit, x = late
+    first = linearise(misfit, x)
+    weights = (np.abs(first.spectra[0]) ** 2).sum(axis=(1, 2))
+    step, other = np.zeros(len(x)), np.zeros(len(x))
+    step[0], other[1] = 0.01, 1.0
+    assert weights[0] > 0
+    found = first.moved(step, misfit.whitened_spectrum(x), misfit.whitened_spectrum(x + step))
+    np.testing.assert_array_equal(np.tensordot(other, found.spectra[0], axes=1), np.tensordot(other, first.spectra[0], axes=1))
 
 
 def test_a_hump_may_be_worn_more_than_it_may_be_sharpened(tmp_path):

@@ -66,6 +66,10 @@ class LeastSquaresFit:
         return tuple(name for name, u in zip(self.misfit.problem.space.names, unit, strict=True) if min(u, 1 - u) < AT_BOUND)
 
 
+SECANTS = 2
+"""Of a fit whose derivatives by errors of runs serve again, all follow from the step for so many steps between computed ones."""
+
+
 @dataclass(frozen=True)
 class FitOptions:
     """How a least-squares fit is done.
@@ -158,7 +162,7 @@ def _fit(
 ) -> tuple[Array, Linearisation]:
     n, space = misfit.n_parameters, misfit.problem.space
     middle, weights = space.unit(space.start), options.priors(n) ** -2.0
-    derive = Lineariser(misfit, options.jacobian_refresh, nearby)
+    derive = Lineariser(misfit, options.jacobian_refresh, nearby, SECANTS if options.jacobian_refresh > 1 else 0)
     last: list[tuple[Array, list[Complex]]] = []
     kept: list[Linearisation] = []
 
@@ -169,9 +173,9 @@ def _fit(
         total = sum(float(np.vdot(line, line).real) * 2 for line in lines) + float(errors @ errors + weights @ (x[:n] - middle) ** 2)
         return total if prior_data is None else total + float((prior_data.residuals(space.values(x[:n])) ** 2).sum())
 
-    def linearised(x: Array, how: Callable[[Array], Linearisation] = derive) -> LinearisedPoint:
+    def linearised(x: Array, how: Callable[[Array, list[Complex]], Linearisation] = derive) -> LinearisedPoint:
         lines = next((own for at, own in last if at is x), None) or misfit.whitened_spectrum(x)
-        kept[:] = [how(x)]
+        kept[:] = [how(x, lines)]
         information, gradient = kept[0].normal(lines, x)
         information[:n, :n] += np.diag(weights)
         gradient[:n] += weights * (x[:n] - middle)

@@ -6,7 +6,8 @@ little along a fit, so that one linearisation may take them from another; those 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,6 +57,26 @@ class Linearisation:
     def rows(self, number: int) -> Array:
         """Return a trial's derivatives by the unknowns that it depends on as real numbers, `shape (n_columns, 2 n_lines n_channels)`."""
         return real_rows(self.blocks[number])
+
+    def moved(self, step: Array, before: Sequence[Complex], after: Sequence[Complex]) -> Linearisation:
+        """Return the linearisation after a step, by what the step did: the least change with which the derivatives foretell it.
+
+        Unknowns count by how much they move the residuals (C. G. Broyden, Math. Comp. 19, 1965, doi:10.1090/S0025-5718-1965-0198670-6).
+
+        Parameters
+        ----------
+        step
+            Of the unknowns, `shape (n_unknowns,)`.
+        before, after
+            Each trial's whitened residuals before and after it.
+        """
+        blocks = []
+        for block, columns, old, new in zip(self.blocks, self.columns, before, after, strict=True):
+            own = step[columns]
+            pull = own * (np.abs(block) ** 2).sum(axis=(1, 2))
+            missed = new - old - np.tensordot(own, block, axes=1)
+            blocks.append(block + pull[:, None, None] * (missed / max(float(own @ pull), 1e-300)))
+        return replace(self, blocks=tuple(blocks))
 
     def normal(self, lines: list[Complex], x: Array) -> tuple[Array, Array]:
         """Return J'J `shape (n_unknowns, n_unknowns)` and J'r `shape (n_unknowns,)`, priors of the errors included.
@@ -164,20 +185,27 @@ class Lineariser:
         Every how many linearisations the derivatives by the runs' errors are computed anew; beyond 1 all derivatives are one-sided, too.
     nearby
         A linearisation whose derivatives by the runs' errors serve first.
+    secants
+        So many linearisations between computed ones follow from the step that led there (:meth:`Linearisation.moved`).
     """
 
-    def __init__(self, misfit: Misfit, refresh: int = 1, nearby: Linearisation | None = None) -> None:
-        self.misfit, self.refresh = misfit, refresh
-        self._last, self._age = nearby, 1 if nearby is not None else 0
+    def __init__(self, misfit: Misfit, refresh: int = 1, nearby: Linearisation | None = None, secants: int = 0) -> None:
+        self.misfit, self.refresh, self.secants = misfit, refresh, secants
+        self._last, self._age, self._moves = nearby, 1 if nearby is not None else 0, 0
+        self._begun: tuple[Array, list[Complex]] | None = None
 
-    def __call__(self, x: Array) -> Linearisation:
-        """Return the linearisation at unknowns x `shape (n_unknowns,)`."""
-        known = self._last if self._age % self.refresh else None
-        self._last = linearise(self.misfit, x, one_sided=self.refresh > 1, slopes_of=known)
-        self._age += 1
+    def __call__(self, x: Array, lines: list[Complex] | None = None) -> Linearisation:
+        """Return the linearisation at unknowns x `shape (n_unknowns,)`; without the whitened residuals `lines` there it is computed."""
+        if self._last is not None and self._begun is not None and lines is not None and self._moves < self.secants:
+            self._last, self._moves = self._last.moved(x - self._begun[0], self._begun[1], lines), self._moves + 1
+        else:
+            known = self._last if self._age % self.refresh else None
+            self._last = linearise(self.misfit, x, one_sided=self.refresh > 1, slopes_of=known)
+            self._age, self._moves = self._age + 1, 0
+        self._begun = None if lines is None else (x, lines)
         return self._last
 
-    def linearise_anew(self, x: Array) -> Linearisation:
+    def linearise_anew(self, x: Array, lines: list[Complex] | None = None) -> Linearisation:
         """Return the linearisation at unknowns x with all derivatives computed there."""
-        self._age = 0
-        return self(x)
+        self._age, self._begun = 0, None
+        return self(x, lines)
