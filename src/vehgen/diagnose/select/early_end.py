@@ -17,7 +17,7 @@ MOST_AT_ONCE = 4
 """So many candidates are fitted, all motions at once, until one settles a gap."""
 RIVAL = 0.3
 """Beside one that does, candidates are fitted whose first-order gain is this share of its own, or more."""
-UNSTRAINED = 3.0
+UNSTRAINED = 3.5
 """It supposes errors of runs and sensors of no more than so many standard deviations."""
 
 
