@@ -14,6 +14,7 @@ from vehgen.diagnose.select import criteria, faint
 from vehgen.diagnose.select.criteria import tied
 from vehgen.diagnose.select.faint import faint_look_again, faint_round, faintly_told
 from vehgen.effects import EFFECTS
+from vehgen.report.pages.diagnosis_page import diagnosis_page
 
 UNLIKE = Effect("asymmetric_damping", "rear", {"ratio": 0.975})
 """A damper that resists compression a fortieth less than extension."""
@@ -34,6 +35,7 @@ def test_an_effect_that_chi_does_not_show_is_named(trials_of, detection_of):
     assert low < 0.975 < high
     assert any("chi hardly shows a gap" in note for note in found.verdict.notes)
     assert len(found.evidence.rounds) == 1
+    assert "No place was tested" in diagnosis_page(found)
 
 
 def test_none_is_told_where_nothing_is_hidden(detection_of):

@@ -54,6 +54,7 @@ def diagnosis_page(diagnosis: Diagnosis) -> str:
         bands=_bands(evidence),
         distortions=evidence.distortions,
         rounds=[_round(item) for item in evidence.rounds],
+        tested=bool(evidence.places),
         alone=_alone(evidence),
         meanings=evidence.meanings,
         version=evidence.made_by,
