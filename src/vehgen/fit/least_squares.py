@@ -67,7 +67,7 @@ class LeastSquaresFit:
 
 
 SECANTS = 2
-"""Of a fit whose derivatives by errors of runs serve again, all follow from the step for so many steps between computed ones."""
+"""Of a fit that ends with computed derivatives, all follow from the step for so many steps before; others would end too early by them."""
 
 
 @dataclass(frozen=True)
@@ -162,7 +162,8 @@ def _fit(
 ) -> tuple[Array, Linearisation]:
     n, space = misfit.n_parameters, misfit.problem.space
     middle, weights = space.unit(space.start), options.priors(n) ** -2.0
-    derive = Lineariser(misfit, options.jacobian_refresh, nearby, SECANTS if options.jacobian_refresh > 1 else 0)
+    renewed = options.jacobian_refresh > 1 and tolerance < COARSE_TOLERANCE
+    derive = Lineariser(misfit, options.jacobian_refresh, nearby, SECANTS if renewed else 0)
     last: list[tuple[Array, list[Complex]]] = []
     kept: list[Linearisation] = []
 
@@ -187,7 +188,7 @@ def _fit(
         return LinearisedPoint(information, gradient)
 
     with one_blas_thread():  # small matrices: more threads only wait for one another
-        renew = (lambda x: linearised(x, derive.linearise_anew)) if options.jacobian_refresh > 1 and tolerance < COARSE_TOLERANCE else None
+        renew = (lambda x: linearised(x, derive.linearise_anew)) if renewed else None
         found = minimise(square, linearised, x, unknown_bounds(misfit, options.most_sigmas), tolerance, options.max_steps, renew)
     return found, kept[0]
 
