@@ -17,7 +17,8 @@ from vehgen.fit.transmissibility_result import Transmissibility
 from vehgen.phones import PhoneSensor
 from vehgen.phones.rough_road import read_drive
 
-SHARED = Path(__file__).parents[2] / "shared" / "data" / "phone-roads"
+DATA = "shared/data/phone-roads"
+SHARED = next((parent / DATA for parent in Path(__file__).parents if (parent / DATA).is_dir()), Path(DATA))
 SENSORS = tuple(PhoneSensor(name, "body", x=x) for name, x in PLACES.items())
 
 
