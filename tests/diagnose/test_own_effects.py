@@ -10,6 +10,7 @@ from tests.diagnose.conftest import CUBIC, HUMPS
 from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.localise.localisation import shortlist
 from vehgen.diagnose.localise.unknown_force import Place, PlaceResult
+from vehgen.diagnose.select import early_end
 from vehgen.diagnose.select.search import fit_candidates, own_numbers
 from vehgen.effects import EFFECTS, load_effects, registry
 
@@ -47,11 +48,19 @@ def candidates(detection, effects):
     return [item for item in listed if item.place in TWINS.values()]
 
 
+@pytest.fixture(scope="module", autouse=True)
+def every_candidate():
+    """No candidate ends the search before the others are fitted."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(early_end, "MOST_AT_ONCE", 0)
+        yield
+
+
 @pytest.fixture(scope="module")
 def known(detection):
     """Return the fits of the library's effect of each kind, by name."""
     listed = candidates(detection, [EFFECTS[name] for name in TWINS])
-    fits, _ = fit_candidates(detection, detection.base, [], [item for item in listed if TWINS[item.effect.name] == item.place], quiet, True)
+    fits, _ = fit_candidates(detection, detection.base, [], [item for item in listed if TWINS[item.effect.name] == item.place], quiet)
     return {fit.last.effect.name: fit for fit in fits}
 
 
@@ -75,7 +84,7 @@ def test_a_file_may_add_effects_of_every_kind(detection, known, tmp_path):
     assert {effect.file for effect in effects.values()} == {str(tmp_path / "own.yaml")}
     names = dict(zip(effects, TWINS, strict=True))
     listed = [item for item in candidates(detection, list(effects.values())) if TWINS[names[item.effect.name]] == item.place]
-    check(fit_candidates(detection, detection.base, [], listed, quiet, True)[0], known, names)
+    check(fit_candidates(detection, detection.base, [], listed, quiet)[0], known, names)
 
 
 def test_packages_may_add_effects_of_every_kind(detection, known, monkeypatch):
@@ -84,7 +93,7 @@ def test_packages_may_add_effects_of_every_kind(detection, known, monkeypatch):
     monkeypatch.setattr(registry, "entry_points", lambda group: points)
     effects = [registry.library()[own] for own in names]
     listed = [item for item in candidates(detection, effects) if TWINS[names[item.effect.name]] == item.place]
-    check(fit_candidates(detection, detection.base, [], listed, quiet, True)[0], known, names)
+    check(fit_candidates(detection, detection.base, [], listed, quiet)[0], known, names)
 
 
 def test_a_global_effect_of_ones_own_is_tried_where_no_single_force_suffices(detection):

@@ -66,8 +66,8 @@ class LeastSquaresFit:
         return tuple(name for name, u in zip(self.misfit.problem.space.names, unit, strict=True) if min(u, 1 - u) < AT_BOUND)
 
 
-SECANTS = 2
-"""Of a fit that ends with computed derivatives, all follow from the step for so many steps before; others would end too early by them."""
+SECANTS = 1
+"""In fits that end with computed derivatives so many between these follow from the step; others would end too early by them."""
 
 
 @dataclass(frozen=True)
