@@ -27,7 +27,7 @@ def astray(detection):
 
 
 def again(base, detection):
-    return base_anew(base, detection.validation_runs, detection.floor.noises, detection.band, 1.06)
+    return base_anew(base, detection.validation_runs, detection.floor.noises, detection.band)
 
 
 def test_a_base_that_is_astray_comes_back(detection, astray):

@@ -18,6 +18,9 @@ from vehgen.report.pages.diagnosis_page import diagnosis_page
 
 UNLIKE = Effect("asymmetric_damping", "rear", {"ratio": 0.975})
 """A damper that resists compression a fortieth less than extension."""
+MUCH_LOWER = {"squares": -1e9, "n_residuals": 1, "last": SimpleNamespace(effect=SimpleNamespace(n_numbers=lambda runs: 0))}
+MUCH_LOWER["least_squares"] = SimpleNamespace(misfit=SimpleNamespace(problem=SimpleNamespace(trials=())))
+"""What stands for a fit of freed base parameters alone that lets -2 ln L fall without end."""
 NAMES = ("asymmetric_damping", "quadratic_damping", "sensor_gain")
 
 
@@ -62,10 +65,6 @@ def test_none_is_told_unless_all_speaks_for_it(detection_of, found_of, monkeypat
     assert faintly_told(found, detection).last.label == "asymmetric_damping at rear"
     spoil(monkeypatch)
     assert faintly_told(found, detection) is None
-
-
-MUCH_LOWER = {"squares": -1e9, "n_residuals": 1, "last": SimpleNamespace(effect=SimpleNamespace(n_numbers=lambda runs: 0))}
-MUCH_LOWER["least_squares"] = SimpleNamespace(misfit=SimpleNamespace(problem=SimpleNamespace(trials=())))
 
 
 @pytest.fixture(scope="module")

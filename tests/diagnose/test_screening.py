@@ -25,7 +25,8 @@ def test_friction_far_below_where_its_search_begins_is_worth_a_fit(detection_of,
     trial = detection.trials[0]
     candidates = list_candidates(trial.run.vehicle, detection.trials, LAWS)
     locator = EffectLocator(trial.run.vehicle, dict(trial.values))
-    found = screening.screen(candidates, detection.base, CurrentModel.of(detection.base), locator, SimulatorPool())
+    gains = screening.FirstOrderGains(detection.base, CurrentModel.of(detection.base), locator, SimulatorPool())
+    found = screening.screen(candidates, gains)
     assert any(item.effect.name == "dry_friction" and item.place in ("front", "all suspensions") for item in found)
     assert len(found) < len(candidates)
 
@@ -36,7 +37,8 @@ def test_every_law_at_a_place_that_is_kept_is_worth_a_fit(detection_of, monkeypa
     trial = detection.trials[0]
     candidates = list_candidates(trial.run.vehicle, detection.trials, LAWS)
     locator = EffectLocator(trial.run.vehicle, dict(trial.values))
-    found = screening.screen(candidates, detection.base, CurrentModel.of(detection.base), locator, SimulatorPool(), "rear")
+    gains = screening.FirstOrderGains(detection.base, CurrentModel.of(detection.base), locator, SimulatorPool())
+    found = screening.screen(candidates, gains, "rear")
     assert {item.effect.name for item in found if item.place == "rear"} == {effect.name for effect in LAWS}
     assert len(found) < len(candidates)
 

@@ -17,7 +17,6 @@ from benchmarks.measured_world.telling.true_law import true_candidate, true_star
 from vehgen.diagnose.detect.detection import Detection, detect
 from vehgen.diagnose.detect.splitting import kind_of_run
 from vehgen.diagnose.fits.candidate import Candidate, has_room, list_candidates
-from vehgen.diagnose.fits.screening import FirstOrderGains
 from vehgen.effects import library
 from vehgen.fit.one_thread import one_blas_thread
 from vehgen.fit.trial import load_trials
@@ -106,7 +105,7 @@ def laws_measured(detection: Detection, candidates: Sequence[Candidate], paramet
     """Return the first-order gains of all laws, and fits of the one asked for and of the `fitted` ones that gain most."""
     falls = Falls(detection, len(candidates), parameters)
     fitter = falls.fitter
-    measured = FirstOrderGains(detection.base, fitter.current, fitter.locator, fitter.simulators, fitter.residual)
+    measured = fitter.first_order_gains()
     gains = sorted(((measured.of(item)[0], item) for item in candidates if has_room(item, fitter.locator)), key=lambda item: -item[0])
     runs, n = len(detection.problem.trials), detection.base.n_residuals
     hopeful = [item for item in gains if item[0] > 1.0]

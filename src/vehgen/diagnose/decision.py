@@ -26,13 +26,12 @@ from vehgen.diagnose.select.group_members import with_members
 from vehgen.diagnose.select.one_error import explains_easily, one_error
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
-from vehgen.diagnose.select.search import LEADING, SearchRound, fit_leading_again, search_round
+from vehgen.diagnose.select.search import LEADING, LOOKS_AGAIN, SearchRound, fit_leading_again, search_round
 from vehgen.diagnose.select.validation import seen_again, validation_fall
 from vehgen.errors import InputError
 
 LOOK_AGAIN_SHARE = 0.5
 """Where the best candidate leaves no more than this share of the excess, recorder and profiles are judged by it."""
-LOOKS_AGAIN = 2
 MUCH_QUIETER = 2.0
 """Where noise is found to be less by so much than what candidates were last weighed by, all of them are weighed anew."""
 

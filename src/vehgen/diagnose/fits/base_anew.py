@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.errors_anew import is_strained
 from vehgen.diagnose.fits.freedom import FREED_BASE
@@ -26,10 +27,10 @@ from vehgen.simulate import SimulatorPool
 NO_EFFECT = Candidate(FREED_BASE, "", ())
 
 
-def base_anew(base: ModelFit, validation_runs: Sequence[Trial], noises: Noises, band: tuple[float, float], floor: float) -> ModelFit:
-    """Return a base or, where it leaves more than the chi `floor` with errors at their bounds, one fitted anew that leaves half at most."""
+def base_anew(base: ModelFit, validation_runs: Sequence[Trial], noises: Noises, band: tuple[float, float]) -> ModelFit:
+    """Return a base or, where it leaves more than noise with errors at their bounds, one fitted anew that leaves half of that at most."""
     on_road = any(trial.scenario.track.parts for trial in base.least_squares.misfit.problem.trials)
-    if base.chi <= floor or not on_road or not is_strained(base.least_squares):
+    if base.chi <= limit.NOISE_FLOOR or not on_road or not is_strained(base.least_squares):
         return base
     current, misfit = CurrentModel.of(base), base.least_squares.misfit
     trial, space = current.problem.trials[0], current.problem.space

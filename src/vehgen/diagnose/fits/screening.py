@@ -9,6 +9,7 @@ is simulated.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,14 +32,7 @@ INSIDE = 0.01
 """A number begins so far within its range, of 1."""
 
 
-def screen(
-    candidates: Sequence[Candidate],
-    base: ModelFit,
-    current: CurrentModel,
-    locator: EffectLocator,
-    simulators: SimulatorPool,
-    kept_at: str = "",
-) -> list[Candidate]:
+def screen(candidates: Sequence[Candidate], gains: FirstOrderGains, kept_at: str = "") -> list[Candidate]:
     """Return the candidates worth fitting: all that leave the vehicle alone, of the others those with the largest first-order gain.
 
     A first order scales what it moves: it says nothing of candidates without a number of their own, which are kept. What holds another
@@ -46,23 +40,19 @@ def screen(
 
     Parameters
     ----------
-    candidates, base, current
-        What to choose from, the fit they are added to, and the same fit as the current model.
-    locator, simulators
-        As for :func:`vehgen.diagnose.fits.candidate.pose`.
+    candidates, gains
+        What to choose from, and what each gains beside a fit.
     kept_at
         A place all of whose candidates are kept, whatever their first order says.
     """
     always = [item for item in candidates if not _is_scaled(item)]
     forces = [item for item in candidates if _is_scaled(item) and not any(map(item.holds, candidates))]
-    most = MAX_BESIDE if base.effects else MAX_CANDIDATES
+    most = MAX_BESIDE if gains.base.effects else MAX_CANDIDATES
     if len(forces) <= most:
         return list(candidates)
-    found = FirstOrderGains(base, current, locator, simulators)
-    gains = [(found.of(candidate)[0], candidate) for candidate in forces]
-    gains.sort(key=lambda item: -item[0])
+    ranked = sorted(forces, key=lambda item: -gains.of(item)[0])
     placed = [item for item in forces if item.place == kept_at]
-    return chosen_with_holders(candidates, [*always, *placed, *(candidate for _, candidate in gains[:most])])
+    return chosen_with_holders(candidates, [*always, *placed, *ranked[:most]])
 
 
 class FirstOrderGains:
@@ -81,16 +71,37 @@ class FirstOrderGains:
     def __init__(
         self, base: ModelFit, current: CurrentModel, locator: EffectLocator, simulators: SimulatorPool, residual: Residual | None = None
     ) -> None:
-        self.current, self.locator, self.simulators, self.residual = current, locator, simulators, residual
-        self.misfit, x = base.least_squares.misfit, base.least_squares.x
-        self.projection, self.motion = Projection.of(self.misfit, x, base.effects), ProbeMotion(self.misfit, x)
-        self.lines = np.concatenate([flatten(item) for item in self.misfit.whitened_spectrum(x)])
+        self.base, self.current, self.locator, self.simulators, self.residual = base, current, locator, simulators, residual
+        self.misfit = base.least_squares.misfit
+        self._known: dict[tuple[str, str], tuple[float, tuple[float, ...]]] = {}
+
+    @cached_property
+    def projection(self) -> Projection:
+        """The residuals of the fit, without what its unknowns can do about them."""
+        return Projection.of(self.misfit, self.base.least_squares.x, self.base.effects)
+
+    @cached_property
+    def motion(self) -> ProbeMotion:
+        """How springs and dampers move under the fit."""
+        return ProbeMotion(self.misfit, self.base.least_squares.x)
+
+    @cached_property
+    def residuals(self) -> Array:
+        """The whitened residuals of the fit, `shape (n_residuals,)`."""
+        return np.concatenate([flatten(item) for item in self.misfit.whitened_spectrum(self.base.least_squares.x)])
 
     def of(self, candidate: Candidate) -> tuple[float, tuple[float, ...]]:
         """Return a candidate's gain, the largest over its starts and, of a force, over a smaller one, and where its numbers end by it.
 
         Along its first number, which says how large it is: that is the start, scaled, as it is or as it differs from what changes nothing.
+        What was found of a candidate is remembered.
         """
+        key = candidate.effect.name, candidate.place
+        if key not in self._known:
+            self._known[key] = self._found(candidate)
+        return self._known[key]
+
+    def _found(self, candidate: Candidate) -> tuple[float, tuple[float, ...]]:
         current = self.current
         problem = build_problem(candidate, current.problem, self.locator, self.simulators)
         begun, n, own = carried(current.unit, current.problem.space, problem.space), len(current.unit), len(candidate.parameters)
@@ -110,7 +121,7 @@ class FirstOrderGains:
                 exact = exact or Misfit(problem, self.misfit.noises, problem.space.start, NUISANCES, self.misfit.band, shared)
                 numbers = [(value - item.neutral) / item.scale for item, value in zip(candidate.shared, start, strict=False)]
                 own_lines = exact.whitened_spectrum(np.concatenate([unit, np.zeros(len(current.shared)), numbers, current.errors]))
-                moved = np.concatenate([flatten(item) for item in own_lines]) - self.lines
+                moved = np.concatenate([flatten(item) for item in own_lines]) - self.residuals
             if not np.all(np.isfinite(moved)):
                 continue
             gain, scale = self._gain(moved, bool(own or candidate.shared))

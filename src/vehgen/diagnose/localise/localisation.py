@@ -33,6 +33,14 @@ def localise(fit: ModelFit, runner: Runner = HERE) -> tuple[list[PlaceResult], l
     return results, [item for item in reached if item.unknowns == fewest]
 
 
+def localise_at(fit: ModelFit, name: str) -> list[PlaceResult]:
+    """Test the places of one part alone, such as an axle's suspension and tyre, on what a fit leaves; return the results, best first."""
+    misfit = fit.least_squares.misfit
+    places = [place for place in list_places(misfit) if place.name == name]
+    results = score_locations(misfit, fit.least_squares.x, places, Lineariser(misfit, ONCE)) if places else []
+    return sorted(results, key=lambda item: (item.chi, item.unknowns))
+
+
 def _reaches(item: PlaceResult, excess: float) -> bool:
     return item.chi <= limit.PLACE_PASSES or item.chi**2 - 1 <= limit.PLACE_SHARE * excess
 

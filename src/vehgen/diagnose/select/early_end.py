@@ -22,7 +22,7 @@ UNSTRAINED = 3.5
 
 
 def settle(
-    fitter: Fitter, base: ModelFit, candidates: Sequence[Candidate], runner: Runner = HERE, kept_at: str = ""
+    fitter: Fitter, gains: FirstOrderGains, candidates: Sequence[Candidate], runner: Runner = HERE, kept_at: str = ""
 ) -> tuple[list[ModelFit], list[Candidate]]:
     """Fit the candidates of the largest first-order gains until one settles the gap of the base; those at `kept_at` stay its rivals.
 
@@ -30,7 +30,6 @@ def settle(
     -------
     Those fits, and the candidates that are left to be fitted: all where none settles the gap.
     """
-    gains = FirstOrderGains(base, fitter.current, fitter.locator, fitter.simulators, fitter.residual)
     ranked = [(*gains.of(item), item) for item in candidates]
     ranked.sort(key=lambda known: -known[0])
     fits: list[ModelFit] = []
@@ -40,7 +39,7 @@ def settle(
             own = next(gain for gain, _, item in ranked if (item.effect.name, item.place) == fit.key[-1])
             tried = {known.key[-1] for known in fits}
             rest = [(gain, item) for gain, _, item in ranked if (item.effect.name, item.place) not in tried]
-            return fits, [item for gain, item in rest if gain >= RIVAL * own or item.place == kept_at or _is_kin(item, fit.last)]
+            return fits, [item for gain, item in rest if gain >= RIVAL * own or item.place == kept_at or _is_inseparable(item, fit.last)]
     return fits, list(candidates)
 
 
@@ -51,7 +50,7 @@ def _settles(fit: ModelFit) -> bool:
     return quiet and all(abs(item.sigmas) <= UNSTRAINED for part in fit.parts for item in part.conditions())
 
 
-def _is_kin(item: Candidate, best: Candidate) -> bool:
-    """Return whether a candidate is a special case of the best one or holds it, or no run tells the two apart."""
+def _is_inseparable(item: Candidate, best: Candidate) -> bool:
+    """Return whether one candidate is a special case of the other, or no run tells the two apart."""
     alike = bool(best.effect.tie_advice) and item.effect.tie_advice == best.effect.tie_advice
     return item.holds(best) or best.holds(item) or alike

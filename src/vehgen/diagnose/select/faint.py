@@ -15,13 +15,12 @@ from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.detect.detection import Detection, look_again
 from vehgen.diagnose.fits.candidate import Candidate, has_room
 from vehgen.diagnose.fits.model_fit import ModelFit
-from vehgen.diagnose.fits.screening import FirstOrderGains
-from vehgen.diagnose.localise.localisation import localise
+from vehgen.diagnose.localise.localisation import localise_at
 from vehgen.diagnose.select.criteria import fall, falls_as_far, is_told
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import fitted_freed
 from vehgen.diagnose.select.placebo_laws import like_a_placebo_law
-from vehgen.diagnose.select.search import SearchRound, fit_leading_again, merit
+from vehgen.diagnose.select.search import LOOKS_AGAIN, SearchRound, fit_leading_again, merit
 from vehgen.diagnose.select.validation import surely_falls, validation_fall
 from vehgen.fit.parallel import HERE, Runner
 
@@ -29,8 +28,6 @@ FIRST_ORDER, MOST_LAWS = 60.0, 4
 """Laws of the vehicle are fitted that gain so much to the first order, and so many of them at most, the largest gains first ..."""
 FIRST_ORDER_OF_ERRORS, MOST_ERRORS = 25.0, 4
 """... and errors of all runs or of a sensor, of which the base's own errors take in the most."""
-FAINT_LOOKS_AGAIN = 2
-"""So often at most are noise and recorders found anew from the best fit."""
 
 
 def faint_round(detection: Detection, candidates: Sequence[Candidate], runner: Runner = HERE) -> SearchRound:
@@ -40,7 +37,7 @@ def faint_round(detection: Detection, candidates: Sequence[Candidate], runner: R
     """
     base = detection.base
     fitter = Fitter(detection, base, ())
-    gains = FirstOrderGains(base, fitter.current, fitter.locator, fitter.simulators, fitter.residual)
+    gains = fitter.first_order_gains()
     ranked = [(*gains.of(item), item) for item in candidates if has_room(item, fitter.locator)]
     ranked.sort(key=lambda known: -known[0])
     laws = [(item, begin) for gain, begin, item in ranked if item.effect.changes_vehicle and gain > FIRST_ORDER]
@@ -58,7 +55,7 @@ def faint_look_again(found: SearchRound, detection: Detection, runner: Runner = 
 
     What is missing passes in part for roughness of the road, by which noise is told too large for chi to show a gap.
     """
-    for _ in range(FAINT_LOOKS_AGAIN):
+    for _ in range(LOOKS_AGAIN):
         best = next(iter(found.fits), None)
         if best is None or not _falls(found, best) or (again := look_again(detection, best)) is None:
             break
@@ -82,7 +79,7 @@ def faintly_told(found: SearchRound, detection: Detection) -> ModelFit | None:
         return None
     if not replace(detection, base=best).is_quiet or not _beats_freed_base(found, best, detection):
         return None
-    places, _ = localise(found.current)
+    places = localise_at(found.current, best.last.place)
     return None if like_a_placebo_law(places, found.current, best, detection) else best
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from vehgen.diagnose.fits.multi_start import fit_candidate
 from vehgen.diagnose.fits.occurring import occurring
 from vehgen.diagnose.fits.released import release
 from vehgen.diagnose.fits.restarts import restart
+from vehgen.diagnose.fits.screening import FirstOrderGains
 from vehgen.diagnose.localise.localisation import one_force
 from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.effects import EffectLocator
@@ -36,9 +37,17 @@ class Fitter:
         trial = self.current.problem.trials[0]
         self.locator = EffectLocator(trial.run.vehicle, dict(trial.values), occurring(base))
         self.origins = _origins(base, self.current, passed)
-        self.residual = Residual(base.least_squares.misfit, base.least_squares.x)
+        self.base, self.residual = base, Residual(base.least_squares.misfit, base.least_squares.x)
+
+    @cached_property
+    def laid(self) -> Array | None:
+        """Errors at which runs lie over their recordings, `shape (n_errors,)`; None beside effects that were found before."""
         space = self.current.problem.space
-        self.laid = None if base.effects else align(base.least_squares.misfit, space.unit(space.start), bands=())
+        return None if self.base.effects else align(self.base.least_squares.misfit, space.unit(space.start), bands=())
+
+    def first_order_gains(self) -> FirstOrderGains:
+        """Return what candidates gain beside the fit, to the first order."""
+        return FirstOrderGains(self.base, self.current, self.locator, self.simulators, self.residual)
 
     def fit(
         self, candidate: Candidate, begin: Sequence[tuple[float, ...]] = (), checked: bool = True, slow_first: bool = True
@@ -109,6 +118,7 @@ class Fitter:
 
     def fit_all(self, candidates: Sequence[Candidate], runner: Runner, slow_first: bool = True) -> Iterator[ModelFit | None]:
         """Yield what :meth:`fit` returns for each of some candidates, fitted wherever a runner works."""
+        _ = self.laid if slow_first else None  # once, before it is sent to where candidates are fitted
         for candidate, fit in zip(candidates, runner.map(partial(self.fit, slow_first=slow_first), candidates), strict=True):
             yield None if fit is None else _as_here(fit, (*self.current.effects, candidate))
 

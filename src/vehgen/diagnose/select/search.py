@@ -22,6 +22,8 @@ from vehgen.fit.parallel import HERE, Runner
 
 DiagnosisProgress = Callable[[str, int, int, str], None]
 """Called with the stage, how many of how many, and the best so far."""
+LOOKS_AGAIN = 2
+"""So often at most are noise and recorders found anew from the best fit."""
 LOOKED_AT_AGAIN = 4
 """So many candidates are fitted again, from where they are, when recorder or noise turn out to be others."""
 CONTENDER = 1.5
@@ -116,15 +118,15 @@ def fit_candidates(
     only its rivals beside it; else the candidates are screened, but for those at the place `kept_at`.
     """
     fitter = Fitter(detection, base, passed)
-    current, locator, simulators = fitter.current, fitter.locator, fitter.simulators
     fits: list[ModelFit] = []
-    candidates = [item for item in candidates if has_room(item, locator)]
+    candidates = [item for item in candidates if has_room(item, fitter.locator)]
     try:
         if not everything:
             progress("screen", 0, 1, "")
+            gains = fitter.first_order_gains()
             if not base.effects:
-                fits, candidates = settle(fitter, base, candidates, runner, kept_at)
-            candidates = screen(candidates, base, current, locator, simulators, kept_at)
+                fits, candidates = settle(fitter, gains, candidates, runner, kept_at)
+            candidates = screen(candidates, gains, kept_at)
             progress("screen", 1, 1, f"{len(candidates)} candidates")
         for slow_first in (True, False):
             chosen = [item for item in candidates if slow_first or (fitter.laid is not None and item.effect.shows_in_slow_motions)]
