@@ -7,7 +7,7 @@ from tests.fit.profile_world import FINE, fine_channels, misfit_of, read_run, ro
 from tests.fit.recordings import sedan_truth, write_run
 from vehgen.fit import linearisation as module
 from vehgen.fit.alignment import MOST_SHARPENED, MOST_SIGMAS, error_bounds
-from vehgen.fit.linearisation import Lineariser, linearise
+from vehgen.fit.linearisation import MOST_MISSED, Lineariser, linearise
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.trial import load_trials
 
@@ -90,6 +90,19 @@ def test_derivatives_that_follow_from_a_step_foretell_it_and_are_computed_after_
     anew = derive.linearise_anew(points[0], misfit.whitened_spectrum(points[0]))
     assert len(computed) == 3
     np.testing.assert_allclose(anew.spectra[0], linearise(misfit, points[0], one_sided=True).spectra[0])
+
+
+def test_derivatives_that_foretold_little_of_a_step_are_computed_anew(late):
+    misfit, x = late
+    own = misfit.own_columns(0).start
+    derive, lines = Lineariser(misfit, 5, secants=2), misfit.whitened_spectrum(x)
+    derive(x, lines)
+    far = x.copy()
+    far[own] += 8.0
+    after = misfit.whitened_spectrum(far)
+    told = np.linalg.norm(after[0] - lines[0] - 8.0 * linearise(misfit, x, one_sided=True).spectra[0][own])
+    assert told > MOST_MISSED * np.linalg.norm(after[0] - lines[0])
+    np.testing.assert_allclose(derive(far, after).spectra[0][:own], linearise(misfit, far, one_sided=True).spectra[0][:own])
 
 
 def test_a_step_says_nothing_of_directions_that_it_does_not_take(late):

@@ -19,6 +19,8 @@ UNIT_DIFFERENCE = 1e-6
 seldom cross a sample."""
 WINDOW_SHIFT_S = 1e-5
 """The same for the windows of channels that are late [s]."""
+MOST_MISSED = 0.25
+"""A share of what a step did; derivatives that miss more of it are computed anew, not corrected by it."""
 Slopes = dict[int, Array]
 """Derivatives of a run's motions `shape (n_samples, n_channels)` by its own errors, by their number."""
 
@@ -58,10 +60,11 @@ class Linearisation:
         """Return a trial's derivatives by the unknowns that it depends on as real numbers, `shape (n_columns, 2 n_lines n_channels)`."""
         return real_rows(self.blocks[number])
 
-    def moved(self, step: Array, before: Sequence[Complex], after: Sequence[Complex]) -> Linearisation:
+    def moved(self, step: Array, before: Sequence[Complex], after: Sequence[Complex]) -> Linearisation | None:
         """Return the linearisation after a step, by what the step did: the least change with which the derivatives foretell it.
 
         Unknowns count by how much they move the residuals (C. G. Broyden, Math. Comp. 19, 1965, doi:10.1090/S0025-5718-1965-0198670-6).
+        None where the derivatives missed more than MOST_MISSED of what the step did: they say little about the next one.
 
         Parameters
         ----------
@@ -70,13 +73,14 @@ class Linearisation:
         before, after
             Each trial's whitened residuals before and after it.
         """
-        blocks = []
+        blocks, missing, moving = [], 0.0, 0.0
         for block, columns, old, new in zip(self.blocks, self.columns, before, after, strict=True):
             own = step[columns]
             pull = own * (np.abs(block) ** 2).sum(axis=(1, 2))
             missed = new - old - np.tensordot(own, block, axes=1)
+            missing, moving = missing + float(np.linalg.norm(missed)) ** 2, moving + float(np.linalg.norm(new - old)) ** 2
             blocks.append(block + pull[:, None, None] * (missed / max(float(own @ pull), 1e-300)))
-        return replace(self, blocks=tuple(blocks))
+        return replace(self, blocks=tuple(blocks)) if missing <= MOST_MISSED**2 * moving else None
 
     def normal(self, lines: list[Complex], x: Array) -> tuple[Array, Array]:
         """Return J'J `shape (n_unknowns, n_unknowns)` and J'r `shape (n_unknowns,)`, priors of the errors included.
@@ -196,8 +200,11 @@ class Lineariser:
 
     def __call__(self, x: Array, lines: list[Complex] | None = None) -> Linearisation:
         """Return the linearisation at unknowns x `shape (n_unknowns,)`; without the whitened residuals `lines` there it is computed."""
+        moved = None
         if self._last is not None and self._begun is not None and lines is not None and self._moves < self.secants:
-            self._last, self._moves = self._last.moved(x - self._begun[0], self._begun[1], lines), self._moves + 1
+            moved = self._last.moved(x - self._begun[0], self._begun[1], lines)
+        if moved is not None:
+            self._last, self._moves = moved, self._moves + 1
         else:
             known = self._last if self._age % self.refresh else None
             self._last = linearise(self.misfit, x, one_sided=self.refresh > 1, slopes_of=known)
