@@ -1,6 +1,7 @@
 """Free-form laws against the generator's true law, and against laws written by hand."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -170,3 +171,15 @@ def test_damping_that_hangs_on_travel_is_told_from_memory():
     found = fit_free_form(runs_of(delayed))
     assert found.hysteresis > 0.8
     assert "no matter of travel and rate" in found.describe()
+
+
+def test_a_law_that_runs_away_beyond_its_runs_leaves_their_motion_as_recovered():
+    def law(d, v):
+        return 4e7 * d**3 + 3e7 * d**2 * v
+
+    near, far = by_hand(law, "a", 1), by_hand(law, "b", 2, untouched=True)
+    soft = np.where(far.lines, 0.0, 1e-4)[:, None] * np.ones((1, 2))
+    far = replace(far, travel=4 * far.travel, rate=4 * far.rate, answer=soft.astype(complex))
+    found = fit_free_form([near, far])
+    judged = next(run for run in found.runs if run.validation)
+    assert np.std(judged.travel) < 2 * np.std(far.travel)

@@ -183,7 +183,12 @@ def fit_law(recovered: Sequence[RecoveredForce], basis: Basis, penalties: Sequen
 
 
 def _relaxed(run: RecoveredForce, first: RecoveredForce, travel: Array, rate: Array) -> RecoveredForce:
-    """Return a run a share of the way to the motion with what the band hides: a whole step may overshoot where a law is stiff."""
+    """Return a run a share of the way to the motion with what the band hides: a whole step may overshoot where a law is stiff.
+
+    A law that would move a run more than it moves reaches beyond what it was fitted to; the run is then as it was recovered.
+    """
+    if any(np.std(more) > np.std(own) for more, own in ((travel, first.travel), (rate, first.rate))):
+        return first
     return replace(
         run,
         travel=run.travel + RELAX * (first.travel + travel - run.travel),
