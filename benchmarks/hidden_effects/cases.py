@@ -85,7 +85,7 @@ def draw_cases(
     return cases
 
 
-def _draw(name: str, kind: str, vehicle: str, groups: list[list], random: np.random.Generator, strength: str) -> HiddenCase:  # type: ignore[type-arg]
+def _draw(name: str, kind: str, vehicle: str, groups: list[list], random: np.random.Generator, strength: str) -> HiddenCase:
     wrong = 0.03 if random.random() < 0.2 else 0.0
     colour = 0.5 if random.random() < 0.2 else 0.0
     variety = str(random.choice(list(VARIETY), p=list(VARIETY.values())))

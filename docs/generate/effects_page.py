@@ -199,7 +199,7 @@ def draw() -> None:
         save_figure(_figure(effect, trial.recording.time, base, changed, list(trial.channels)), IMAGES / f"{effect.name}.svg")
 
 
-def _figure(effect: Effect, t: np.ndarray, base: np.ndarray, changed: np.ndarray, channels: list[str]):  # type: ignore[no-untyped-def]
+def _figure(effect: Effect, t: np.ndarray, base: np.ndarray, changed: np.ndarray, channels: list[str]):
     from vehgen.measure import record_psd
     from vehgen.measure.curves import ChannelCurves
     from vehgen.report.plots.comparison import plot_pair

@@ -127,7 +127,7 @@ class Audit:
                 return True
             if name.startswith(("vehgen", "sympy")):
                 return False
-            frame = frame.f_back  # type: ignore[assignment]
+            frame = frame.f_back
         return False
 
 

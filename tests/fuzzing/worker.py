@@ -63,7 +63,7 @@ def by_command(job: dict[str, Any]) -> dict[str, Any]:
             stream.flush()
     finally:
         sys.stdout, sys.stderr = sys.__stdout__, sys.__stderr__
-    printed, told = (stream.buffer.getvalue().decode("utf-8", "surrogatepass") for stream in outputs)  # type: ignore[attr-defined]
+    printed, told = (stream.buffer.getvalue().decode("utf-8", "surrogatepass") for stream in outputs)
     if code == 0:
         return {"output": printed + told}
     lines = [line for line in told.removesuffix("\n").split("\n") if not line.startswith("warning: ")]

@@ -114,7 +114,8 @@ class _Writer:
         if isinstance(item, ast.Name):
             return self.known[item.id]
         if isinstance(item, ast.Constant):
-            return _Value(_literal(float(item.value)), "double", False)  # type: ignore[arg-type]
+            assert isinstance(item.value, int | float), ast.dump(item)
+            return _Value(_literal(float(item.value)), "double", False)
         if isinstance(item, ast.Subscript):
             if isinstance(item.slice, ast.Constant):
                 return self._new(f"load {self.number}, {self._address('%drives', item.slice.value)}", self.number, False)
@@ -129,7 +130,8 @@ class _Writer:
                 return self._function("pow", [left, right])
             return self._new(f"{_OPERATIONS[type(item.op)]} {_FUSED} {self._kind(left)} {left.text}, {right.text}", left.number, left.wide)
         assert isinstance(item, ast.Call), ast.dump(item)
-        name = item.func.attr if isinstance(item.func, ast.Attribute) else item.func.id  # type: ignore[attr-defined]
+        assert isinstance(item.func, ast.Attribute | ast.Name), ast.dump(item)
+        name = item.func.attr if isinstance(item.func, ast.Attribute) else item.func.id
         return self._call(name, [self.value(argument) for argument in item.args])
 
     def _call(self, name: str, arguments: list[_Value]) -> _Value:

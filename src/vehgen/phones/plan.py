@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from pydantic import ValidationError
 
@@ -186,7 +186,7 @@ def hump_road(hump: Mapping[str, Any]) -> RoadOption:
     """
     found = _known_keys(hump, "hump", HUMP_KEYS)
     shape = found.pop("shape", "")
-    shapes = HumpEntry.model_fields["shape"].annotation.__args__  # type: ignore[union-attr]
+    shapes = get_args(HumpEntry.model_fields["shape"].annotation)
     if shape not in shapes:
         raise ArgumentError(f"`hump`: unknown shape {shown(shape)}; {did_you_mean(str(shape), shapes)}", "hump")
     for key in ("length", "height", "radius"):
