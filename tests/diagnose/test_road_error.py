@@ -1,5 +1,6 @@
 """What roads add to the noise: errors of measured profiles against drawn ones, and roads under humps rougher than before them."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -107,7 +108,8 @@ def under_hump(folder, lead_level):
     trial = load_trials([recordings.write_run(folder, "run", TRUTH, 2.5, noise=0.0, rough=STEP)])[0]
     lead = {"run": Noise(np.full_like(EVEN, lead_level), 0.1 * SIGMA)}
     problem = make_problem([trial], SEARCHED)
-    misfit = Misfit(problem, lead, np.array([TRUTH[name] for name in SEARCHED]), QUIET, STEADY_WALK_HZ)
+    steady = replace(QUIET, speed=0.0, wander=0.0)
+    misfit = Misfit(problem, lead, np.array([TRUTH[name] for name in SEARCHED]), steady, STEADY_WALK_HZ)
     fit = SimpleNamespace(misfit=misfit, x=np.concatenate([problem.space.unit(problem.space.start), np.zeros(misfit.n_errors)]))
     return road_noises(SimpleNamespace(least_squares=fit, validation_fit=None, parts=(fit,)), lead, lead)["run"], lead["run"]
 

@@ -5,7 +5,9 @@ import pytest
 import scipy.optimize
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from vehgen.fit.noise import EVEN, KNOT_WAVENUMBERS, LOUDER_HZ, Noise, RoadAnswer, estimate_noise
+from tests.fit.recordings import sedan_truth, write_run
+from vehgen.fit.noise import EVEN, KNOT_WAVENUMBERS, LOUDER_HZ, Noise, RoadAnswer, estimate_noise, road_answer
+from vehgen.fit.trial import load_trials
 from vehgen.fit.window import taper, transform
 
 
@@ -145,3 +147,22 @@ def test_coloured_noise_has_the_density_of_white_noise_at_44_hz_and_more_below()
     answer = RoadAnswer(np.array([11.0, 44.0]), np.array([5.5, 22.0]), np.zeros((2, 1, 1), dtype=complex), 0.01)
     density = Noise(EVEN, np.array([0.3]), 0.5).density(answer)[:, 0, 0].real
     assert density == pytest.approx(2 * 0.01 * 0.3**2 * np.array([2.0, 1.0]))
+
+
+def test_axles_agree_as_their_average_over_speeds_that_a_run_may_have_had(tmp_path):
+    (trial,) = load_trials([write_run(tmp_path, "hump", sedan_truth(), 2.5)])
+    frequency, spread = np.linspace(1.0, 20.0, 40), 0.014
+    steps, weights = np.polynomial.hermite_e.hermegauss(31)
+    shared = 0.0
+    for step, weight in zip(steps, weights / weights.sum(), strict=True):
+        other = replace(trial, scenario=trial.scenario.adjusted(speed=1 + spread * step))
+        gain = road_answer(other, frequency, trial.values).gain
+        shared = shared + weight * gain @ gain.conj().transpose(0, 2, 1)
+    gain = road_answer(trial, frequency, trial.values, spread).gain
+    found = gain @ gain.conj().transpose(0, 2, 1)
+    size = np.sqrt(np.abs(found[:, 0, 0] * found[:, 2, 2]))
+    assert np.abs(found[:, 0, 2] - shared[:, 0, 2]).max() < 0.02 * size.max()
+    np.testing.assert_allclose(np.abs(found[:, 0, 2] - shared[:, 0, 2]) / size, 0.0, atol=0.03)
+    exact = road_answer(trial, frequency, trial.values).gain
+    certain = exact @ exact.conj().transpose(0, 2, 1)
+    assert np.max(np.abs(certain[:, 0, 2] - shared[:, 0, 2]) / size) > 0.2

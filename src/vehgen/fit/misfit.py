@@ -96,7 +96,7 @@ class Misfit:
         frequency = np.asarray(np.fft.rfftfreq(len(trial.recording.time), dt), dtype=np.float64)
         inside = (frequency >= self.band[0]) & (frequency <= self.band[1])
         own = {name: value for name, value in reference.items() if name not in trial.fixed}
-        answer = road_answer(trial, frequency[inside], trial.values | own)
+        answer = road_answer(trial, frequency[inside], trial.values | own, self.nuisances.speed_spread(trial))
         measured = transform(trial.recording.values, dt, inside, seen=trial.window)
         return _Weight(inside, measured, answer, self.noises[trial.name].whitener(answer))
 

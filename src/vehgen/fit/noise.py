@@ -2,13 +2,14 @@
 
     S(f) = L(f/v) G(f) H(f) R(f) H(f)* + diag(2 dt sigma^2)
 
-is the one-sided cross spectral density of the channels: noise of standard deviation sigma in each, white or with a density that falls
-as (f/COLOUR_AT)^-slope (phones' noise is a little red), and the answer H(f) to a road
-of displacement spectrum L G(f), G = n0^2 v/f^2 (ISO 8608 with w = 2, n0 = 0.1 cycles/m, at v [m/s]), that all axles follow one after the
-other. L is Gd(n0) [m^3] where the road keeps to w = 2; real roads do not, so L may vary with wavenumber, straight lines between KNOTS on
-log-log paper. R_ij = exp(-2 pi i f (t_i - t_j)) rho(t_i - t_j), with rho the autocorrelation of the record's taper: in a record of finite
-length two axles share only the road that both have passed. The road's part is what a white-noise model misses: it is coloured, common
-to all channels, and stronger than a phone's own noise even on a very good road. White errors of applied forces, where a run file states
+is the one-sided cross spectral density of the channels: noise of standard deviation sigma in each, white or with a density that falls as
+(f/COLOUR_AT)^-slope (phones' noise is a little red), and the answer H(f) to a road of displacement spectrum L G(f), G = n0^2 v/f^2 (ISO
+8608 with w = 2, n0 = 0.1 cycles/m, at v [m/s]), that all axles follow one after the other. L is Gd(n0) [m^3] where the road keeps to w =
+2; real roads do not, so L may vary with wavenumber, straight lines between KNOTS on log-log paper. R_ij = exp(-2 pi i f (t_i - t_j))
+rho(t_i - t_j) exp(-(2 pi f (t_i - t_j) e)^2/2), with rho the autocorrelation of the record's taper: in a record of finite length two
+axles share only the road that both have passed. A speed that is known within a share e, or strays by it, leaves unsure when the one axle
+follows the other, and fast motions of both no longer agree. The road's part is what a white-noise model misses: it is coloured, common to
+all channels, and stronger than a phone's own noise even on a very good road. White errors of applied forces, where a run file states
 them, come to the channels in the same way: H_F(f) diag(2 dt sigma_F^2) H_F(f)* is added.
 """
 
@@ -197,8 +198,11 @@ def _adjoint(matrices: Complex) -> Complex:
     return np.asarray(matrices.conj().transpose(0, 2, 1))
 
 
-def road_answer(trial: Trial, frequency: Array, values: dict[str, float]) -> RoadAnswer:
-    """Return the channels' answer to a road of level 1 that all axles follow, at frequencies `shape (n,)` [Hz]."""
+def road_answer(trial: Trial, frequency: Array, values: dict[str, float], speed_spread: float = 0.0) -> RoadAnswer:
+    """Return the channels' answer to a road of level 1 that all axles follow, at frequencies `shape (n,)` [Hz].
+
+    `speed_spread` is the standard deviation of the run's speed, relative.
+    """
     model = trial.simulator.model
     acquired = trial.channel_factors(frequency)[:, :, None]
     displaced, pushed = (item * acquired for item in transfer_functions(model.numeric(values), frequency, maxwell_branches(model, values)))
@@ -206,7 +210,9 @@ def road_answer(trial: Trial, frequency: Array, values: dict[str, float]) -> Roa
     late = model.wheel_offsets(values) / speed
     window = taper(len(trial.recording.time), dt, trial.fade_in)
     correlation = np.correlate(window, window, "full")[len(window) - 1 :] / (window**2).sum()
-    shared = np.interp(np.abs(late[:, None] - late[None, :]), np.arange(len(window)) * dt, correlation)
+    between = np.abs(late[:, None] - late[None, :])
+    agree = np.exp(-((2 * np.pi * speed_spread * frequency[:, None, None] * between) ** 2) / 2)
+    shared = np.interp(between, np.arange(len(window)) * dt, correlation) * agree
     root = np.linalg.cholesky(shared + 1e-9 * np.eye(len(late)))
     delayed = np.exp(-2j * np.pi * frequency[:, None] * late)
     gain = (displaced[..., : len(late)] * delayed[:, None] * (REFERENCE_CYCLES_PER_M * np.sqrt(speed) / frequency)[:, None, None]) @ root

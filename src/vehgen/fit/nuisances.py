@@ -143,6 +143,11 @@ class Nuisances:
                 names.setdefault(("displacement_gain", link), Nuisance("displacement_gain", link, self._stated(trial)["displacement_gain"]))
         return tuple(item for item in names.values() if item.sigma > 0)
 
+    def speed_spread(self, trial: Trial) -> float:
+        """Return the standard deviation of a run's speed at any moment, relative: the driver's wander is part of it."""
+        spread = self._stated(trial)
+        return math.hypot(spread["speed"], spread["wander"])
+
     def _stated(self, trial: Trial) -> dict[str, float]:
         """Return the standard deviations by name: those asked for, else those that the run file states, else these; 0 stays out."""
         own = trial.run.file.uncertainty

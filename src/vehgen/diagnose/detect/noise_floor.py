@@ -29,6 +29,7 @@ from vehgen.fit.noise import (
     estimate_noise,
     road_answer,
 )
+from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.trial import Trial
 from vehgen.fit.window import transform
 from vehgen.measure import record_psd
@@ -199,7 +200,7 @@ def lead_in_lines(part: Trial, band: tuple[float, float]) -> tuple[Complex, Road
     for line in part.lines:
         inside &= np.abs(frequency - line) > max(LINE_WIDTH * line, LINE_LEAKS * frequency[1])
     lines = transform(part.recording.values - part.recording.values.mean(axis=0), part.recording.dt, inside)
-    return lines, road_answer(part, frequency[inside], part.values)
+    return lines, road_answer(part, frequency[inside], part.values, Nuisances().speed_spread(part))
 
 
 def _smooth(variance: Array, weight: Array, power: Array) -> Array:
