@@ -42,6 +42,17 @@ def test_a_resolved_simulation_adds_next_to_nothing_to_the_noise(detection_of, f
     assert 1.06 <= detection_of().nothing_missing < 1.08
 
 
+def test_what_one_run_may_err_by_excuses_no_other_run(detection_of):
+    found = detection_of()
+    base = replace(found.base, mean_squares=dict.fromkeys(found.base.mean_squares, 1.2))
+    one = next(iter(base.mean_squares))
+    rough = replace(found, base=base, numerical=dict.fromkeys(base.mean_squares, 0.0) | {one: 0.3})
+    share = base.counts[one] / sum(base.counts.values())
+    assert rough.nothing_missing**2 == pytest.approx(1.06**2 + 0.2 * share)
+    noise = replace(rough, base=replace(base, mean_squares=base.mean_squares | {one: 0.9}))
+    assert noise.nothing_missing == pytest.approx(1.06)
+
+
 def test_the_error_told_of_a_coarse_step_is_its_distance_from_a_fine_one(fit):
     rough = with_trials(fit, coarser)
     told = numerical_floor(rough, fit.x)

@@ -58,9 +58,13 @@ class Detection:
 
     @property
     def nothing_missing(self) -> float:
-        """The chi at or below which nothing is missing: that of the noise floor and of the simulation's own error together."""
+        """The chi at or below which nothing is missing: that of the noise floor and of the simulation's own error together.
+
+        What the simulation of one run may err by does not excuse what another run shows.
+        """
         counts = {name: self.base.counts[name] for name in self.numerical}
-        added = sum(self.numerical[name] * count for name, count in counts.items()) / max(sum(counts.values()), 1)
+        excused = {name: min(self.numerical[name], max(self.base.mean_squares[name] - 1, 0.0)) for name in counts}
+        added = sum(excused[name] * count for name, count in counts.items()) / max(sum(counts.values()), 1)
         return float(np.sqrt(NOISE_FLOOR**2 + added))
 
     @cached_property
