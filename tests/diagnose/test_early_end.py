@@ -1,5 +1,7 @@
 """A search ends early where one candidate settles the gap, and not where none does."""
 
+from dataclasses import replace
+
 import pytest
 
 from tests.diagnose.conftest import CUBIC, HUMPS
@@ -8,6 +10,7 @@ from vehgen.diagnose.select import early_end
 from vehgen.diagnose.select.early_end import settle
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.effects import EFFECTS
+from vehgen.fit.misfit import Misfit
 
 NAMES = ("cubic_stiffness", "quadratic_damping", "hysteresis", "progressive_stiffness", "sensor_gain")
 
@@ -53,3 +56,25 @@ def test_nothing_is_left_out_where_none_settles(detection_of, monkeypatch, limit
     candidates, fits, rivals = settled(detection_of(CUBIC, runs=HUMPS), names)
     assert rivals == candidates
     assert len(fits) <= early_end.MOST_AT_ONCE
+
+
+def test_an_effect_at_an_end_of_its_range_settles_nothing(detection_of):
+    detection = detection_of(CUBIC, runs=HUMPS)
+    _, fits, _ = settled(detection)
+    best = fits[-1]
+    assert early_end._settles(best)
+    held = best.least_squares.x.copy()
+    held[best.least_squares.misfit.n_parameters - 1] = 1.0
+    assert not early_end._settles(replace(best, least_squares=replace(best.least_squares, x=held)))
+
+
+def test_an_error_of_a_sensor_at_an_end_of_its_range_settles_nothing(detection_of):
+    detection = detection_of(CUBIC, runs=HUMPS)
+    fitter = Fitter(detection, detection.base, ())
+    listed = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS["sensor_tilt"]])
+    fit = fitter.fit_at_once(next(item for item in listed if item.place == "F"))
+    old = fit.least_squares
+    shared = tuple(replace(item, high=float(value)) for item, value in zip(old.misfit.shared, old.misfit.adjusted(old.x), strict=True))
+    held = Misfit(old.misfit.problem, old.misfit.noises, old.values, old.misfit.nuisances, old.misfit.band, shared)
+    assert not early_end._at_an_end(fit)
+    assert early_end._at_an_end(replace(fit, least_squares=replace(old, misfit=held)))

@@ -11,6 +11,7 @@ from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.fits.screening import FirstOrderGains
 from vehgen.diagnose.select.fitter import Fitter
+from vehgen.fit.least_squares import AT_BOUND
 from vehgen.fit.parallel import HERE, Runner
 
 MOST_AT_ONCE = 4
@@ -44,10 +45,22 @@ def settle(
 
 
 def _settles(fit: ModelFit) -> bool:
-    """Return whether a fit leaves noise, on validation runs, too, and supposes nothing of runs and sensors that has to be explained."""
+    """Return whether a fit leaves noise, on validation runs, too, and supposes nothing of runs and sensors that has to be explained.
+
+    An effect at the end of its range may stand in for another one.
+    """
     noise = limit.NOISE_FLOOR**2
     quiet = bool(np.isfinite(fit.validation)) and max(fit.training, fit.validation) <= noise
-    return quiet and all(abs(item.sigmas) <= UNSTRAINED for part in fit.parts for item in part.conditions())
+    return quiet and not _at_an_end(fit) and all(abs(item.sigmas) <= UNSTRAINED for part in fit.parts for item in part.conditions())
+
+
+def _at_an_end(fit: ModelFit) -> bool:
+    """Return whether a number of the last effect of a fit is at an end of its range."""
+    least_squares = fit.least_squares
+    numbers = least_squares.misfit.adjusted(least_squares.x)
+    pairs = zip(least_squares.misfit.shared, numbers, strict=True)
+    held = any(item.scale > 0 and min(value - item.low, item.high - value) <= AT_BOUND * item.scale for item, value in pairs)
+    return held or not set(fit.last.parameters).isdisjoint(least_squares.on_bound)
 
 
 def _is_inseparable(item: Candidate, best: Candidate) -> bool:
