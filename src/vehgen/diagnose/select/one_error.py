@@ -35,7 +35,8 @@ def one_error(
     None is tried where effects of the vehicle explain them, or Ctrl-C ended the search for these.
 
     One that does leaves noise, with all other errors of BELIEVED_SIGMAS at most and nothing to be supposed of the runs. It is likelier,
-    with the price of its number, than the many errors of the strained base, and the runs tell its size.
+    with the price of its number, than the many errors of the strained base, and the runs tell its size. Fits begin where the believable
+    base ends, all motions at once; if none explains the runs so, slow motions first.
 
     Parameters
     ----------
@@ -55,11 +56,15 @@ def one_error(
     if found.stopped or explains_easily(found):
         return nothing
     alone = [item for item in candidates if isinstance(item.effect, RunEffect)]
+    fitter = Fitter(believed, current, ())
+    gains = fitter.first_order_gains()
     fits: list[ModelFit] = []
     try:
-        for fit in Fitter(believed, current, ()).fit_all(alone, runner):
-            if fit is not None and _explains(fit := _within_belief(fit, believed), strained, believed):
-                fits.append(fit)
+        for tried in (fitter.fit_all_begun([(item, gains.of(item)[1]) for item in alone], runner), fitter.fit_all(alone, runner)):
+            within = (_within_belief(fit, believed) for fit in tried if fit is not None)
+            fits = [fit for fit in within if _explains(fit, strained, believed)]
+            if fits:
+                break
     except KeyboardInterrupt:
         return replace(nothing, stopped=True)
     return replace(nothing, fits=tuple(sorted(fits, key=merit)))
