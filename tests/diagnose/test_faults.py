@@ -12,7 +12,7 @@ from benchmarks.hidden_effects.generator import Effect, Hump, RunSpec, nominal, 
 from vehgen.diagnose.detect.detection import detect
 from vehgen.diagnose.inputs import judging
 from vehgen.diagnose.inputs.amplitudes import hidden_units, unit_hypotheses
-from vehgen.diagnose.inputs.conditions import findings_of_conditions, moved_roads
+from vehgen.diagnose.inputs.conditions import alike_in_all_runs, findings_of_conditions, moved_roads
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always
 from vehgen.diagnose.inputs.judging import explain_gap, plain_mistakes, recorded_mistakes, supposed_mistakes
 from vehgen.diagnose.inputs.recorders import slow_recorder
@@ -383,6 +383,20 @@ def test_heights_that_are_alike_are_not_exchanged():
     conditions = [Condition("low", "height", "", -0.12, "", 0.03), Condition("fast", "height", "", 0.12, "", 0.03)]
     faults = findings_of_conditions(conditions, ["low", "fast"], {"low": 0.05, "fast": 0.05})
     assert [item.kind for item in faults] == ["hump_height", "hump_height"]
+
+
+@pytest.mark.parametrize(
+    ("clocks", "told"),
+    [((0.0136, 0.0139, 0.0132), True), ((-0.015, -0.016, -0.0155), True), ((0.0136, 0.0139), False), ((0.0136, 0.0139, 0.007), False)],
+)
+def test_what_every_run_supposes_as_much_is_told(clocks, told):
+    conditions = [Condition(f"run{i}", "clock", "F", value, "s", 0.01) for i, value in enumerate(clocks)]
+    conditions += [Condition(f"run{i}", "speed", "", (-1) ** i * 0.02, "", 0.01) for i in range(3)]
+    found = alike_in_all_runs(conditions)
+    assert len(found) == told
+    if told:
+        assert "the clock of F in all runs is" in found[0]
+        assert ("later" if clocks[0] > 0 else "earlier") in found[0]
 
 
 def test_conditions_of_any_fit_are_read_by_name_place_and_size():

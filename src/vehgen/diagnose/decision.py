@@ -13,6 +13,7 @@ from vehgen.diagnose.detect.odd_run import OddChannel, OddRun, disagreement
 from vehgen.diagnose.ending import Ending
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.checks import variety_notes
+from vehgen.diagnose.inputs.conditions import alike_in_all_runs
 from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.judging import explain_gap, moved_axles, odd_mistake, plain_mistakes, recorded_mistakes, supposed_mistakes
 from vehgen.diagnose.localise.localisation import localise
@@ -181,6 +182,7 @@ class Decision(Ending):
         return not first.stopped and not any(passes(fit, self.base) for fit in first.fits[:1])
 
     def _nothing(self) -> Decided:
+        self.notes += alike_in_all_runs([item for part in self.base.parts for item in part.conditions()])
         return self._end("no_missing_effect", wording.no_missing_effect(self.detection.chi))
 
     def _other_mistakes(self, first: SearchRound) -> Decided | None:

@@ -20,6 +20,9 @@ LEAST_OTHERS = 2
 """A run's start is compared with those of so many others at least."""
 STANDS_OUT, CLOCKS_SPREAD_S, LEAST_SHIFT_M = 6.0, 0.01, 0.3
 """A start off by so many times the others' spread, which is no less than this [s], and a road off by so much [m], are findings."""
+OF_ALL_RUNS, LEAST_RUNS, ALIKE_SIGMAS, ALIKE_SPREAD = ("clock", "speed", "height", "length"), 3, 1.0, 0.5
+"""Conditions that at least so many runs, and all of them, suppose alike are told: so many standard deviations off at least in each run,
+within so many from the least to the largest."""
 EITHER_WAY = 2.0
 """Whether a clock tells the starts or the way does, a start that is a finding is off by so many times the others' spread."""
 _FAULT_OF = {
@@ -109,6 +112,19 @@ def findings_of_conditions(
     return tuple(found)
 
 
+def alike_in_all_runs(conditions: Sequence[Condition]) -> tuple[str, ...]:
+    """Return what all runs suppose alike, in sentences: no finding, but that they agree says more than each of them."""
+    found = []
+    for name, place in dict.fromkeys((item.name, item.place) for item in conditions if item.name in OF_ALL_RUNS):
+        same = [item for item in conditions if (item.name, item.place) == (name, place)]
+        sigmas = [item.sigmas for item in same]
+        off = min(sigmas) >= ALIKE_SIGMAS or max(sigmas) <= -ALIKE_SIGMAS
+        if len(same) >= LEAST_RUNS and off and max(sigmas) - min(sigmas) <= ALIKE_SPREAD:
+            runs = tuple(item.run for item in same)
+            found.append(f"every run supposes it, and nearly as much: {_sentence(same, runs)[1]}")
+    return tuple(found)
+
+
 def moved_roads(
     conditions: Sequence[Condition], speeds: Mapping[str, float], arrivals: Mapping[str, float]
 ) -> tuple[MeasurementFault, ...]:
@@ -155,9 +171,17 @@ def _stands_out(run: str, starts: Mapping[str, float]) -> tuple[float, float]:
 def _fault(alike: Sequence[Condition], runs: tuple[str, ...]) -> MeasurementFault:
     """Return the fault that conditions of the same name and nearly the same value tell together."""
     item = alike[0]
+    own, message = _sentence(alike, runs)
+    message += f" ({max(abs(other.sigmas) for other in alike):.0f} standard deviations of what was thought possible)"
+    kind, value = _FAULT_OF[item.name][0], float(np.mean([other.value for other in alike]))
+    return MeasurementFault(kind, own, (item.place,) if item.place else (), message, _CURES[item.name], value, item.unit)
+
+
+def _sentence(alike: Sequence[Condition], runs: tuple[str, ...]) -> tuple[tuple[str, ...], str]:
+    """Return the runs of conditions of the same name and nearly the same value, and what these say in words."""
+    item = alike[0]
     value = float(np.mean([other.value for other in alike]))
     own = tuple(dict.fromkeys(run for other in alike for run in ((other.run,) if other.run else runs)))
-    kind, sentence = _FAULT_OF[item.name]
     amount = f"{abs(value):.3g} {item.unit}" if item.unit else f"{100 * abs(value):.3g} %"
     up = value > 0
     words = {
@@ -168,6 +192,4 @@ def _fault(alike: Sequence[Condition], runs: tuple[str, ...]) -> MeasurementFaul
         "longer": "longer" if up else "shorter",
     }
     words |= {"fast": "too fast" if up else "too slow", "place": item.place or "the recorder"}
-    message = sentence.format(where=place_words(own, runs), amount=amount, **words)
-    message += f" ({max(abs(other.sigmas) for other in alike):.0f} standard deviations of what was thought possible)"
-    return MeasurementFault(kind, own, (item.place,) if item.place else (), message, _CURES[item.name], value, item.unit)
+    return own, _FAULT_OF[item.name][1].format(where=place_words(own, runs), amount=amount, **words)
