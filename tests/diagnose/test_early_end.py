@@ -9,6 +9,7 @@ from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.select import early_end
 from vehgen.diagnose.select.early_end import settle
 from vehgen.diagnose.select.fitter import Fitter
+from vehgen.diagnose.select.search import fit_candidates
 from vehgen.effects import EFFECTS
 from vehgen.fit.misfit import Misfit
 
@@ -18,7 +19,8 @@ NAMES = ("cubic_stiffness", "quadratic_damping", "hysteresis", "progressive_stif
 def settled(detection, names=NAMES, kept_at=""):
     candidates = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS[name] for name in names])
     fitter = Fitter(detection, detection.base, ())
-    return candidates, *settle(fitter, fitter.first_order_gains(), candidates, kept_at=kept_at)
+    fits = []
+    return candidates, fits, settle(fitter, fitter.first_order_gains(), candidates, fits.append, kept_at=kept_at)
 
 
 def test_the_law_that_was_hidden_settles_and_leaves_only_its_rivals(detection_of):
@@ -27,6 +29,21 @@ def test_the_law_that_was_hidden_settles_and_leaves_only_its_rivals(detection_of
     assert fits[-1].training < 1.06**2
     assert fits[-1].last not in rivals
     assert len(fits) + len(rivals) < len(candidates) / 2
+
+
+def test_what_was_fitted_until_ctrl_c_is_kept(detection_of, monkeypatch):
+    detection = detection_of(CUBIC, runs=HUMPS)
+    candidates = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS[name] for name in NAMES])
+    seen = []
+
+    def stop(fit):
+        seen.append(fit.label)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(early_end, "_settles", stop)
+    fits, stopped = fit_candidates(detection, detection.base, (), candidates, lambda *told: None)
+    assert stopped
+    assert [fit.label for fit in fits] == seen
 
 
 def test_laws_at_a_place_that_is_kept_stay_rivals(detection_of):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -23,25 +23,32 @@ UNSTRAINED = 3.5
 
 
 def settle(
-    fitter: Fitter, gains: FirstOrderGains, candidates: Sequence[Candidate], runner: Runner = HERE, kept_at: str = ""
-) -> tuple[list[ModelFit], list[Candidate]]:
+    fitter: Fitter,
+    gains: FirstOrderGains,
+    candidates: Sequence[Candidate],
+    each: Callable[[ModelFit], None],
+    runner: Runner = HERE,
+    kept_at: str = "",
+) -> list[Candidate]:
     """Fit the candidates of the largest first-order gains until one settles the gap of the base; those at `kept_at` stay its rivals.
+
+    Every fit is handed to `each` as soon as it is made.
 
     Returns
     -------
-    Those fits, and the candidates that are left to be fitted: all where none settles the gap.
+    The candidates that are left to be fitted: all where none settles the gap.
     """
     ranked = [(*gains.of(item), item) for item in candidates]
     ranked.sort(key=lambda known: -known[0])
-    fits: list[ModelFit] = []
+    tried = set()
     for fit in fitter.fit_all_begun([(item, begin) for _, begin, item in ranked[:MOST_AT_ONCE]], runner):
-        fits.append(fit)
+        each(fit)
+        tried.add(fit.key[-1])
         if _settles(fit):
             own = next(gain for gain, _, item in ranked if (item.effect.name, item.place) == fit.key[-1])
-            tried = {known.key[-1] for known in fits}
             rest = [(gain, item) for gain, _, item in ranked if (item.effect.name, item.place) not in tried]
-            return fits, [item for gain, item in rest if gain >= RIVAL * own or item.place == kept_at or _is_inseparable(item, fit.last)]
-    return fits, list(candidates)
+            return [item for gain, item in rest if gain >= RIVAL * own or item.place == kept_at or _is_inseparable(item, fit.last)]
+    return list(candidates)
 
 
 def _settles(fit: ModelFit) -> bool:

@@ -14,7 +14,7 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.fits.screening import screen
 from vehgen.diagnose.localise.localisation import localise, owner, shortlist
 from vehgen.diagnose.localise.unknown_force import PlaceResult
-from vehgen.diagnose.select.early_end import settle
+from vehgen.diagnose.select.early_end import MOST_AT_ONCE, settle
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.diagnose.select.special_cases import does_as_well, simplest_first
@@ -120,12 +120,17 @@ def fit_candidates(
     fitter = Fitter(detection, base, passed)
     fits: list[ModelFit] = []
     candidates = [item for item in candidates if has_room(item, fitter.locator)]
+
+    def keep(fit: ModelFit) -> None:
+        fits.append(fit)
+        progress("screen", len(fits), MOST_AT_ONCE + 1, fit.label)
+
     try:
         if not everything:
             progress("screen", 0, 1, "")
             gains = fitter.first_order_gains()
             if not base.effects:
-                fits, candidates = settle(fitter, gains, candidates, runner, kept_at)
+                candidates = settle(fitter, gains, candidates, keep, runner, kept_at)
             candidates = screen(candidates, gains, kept_at)
             progress("screen", 1, 1, f"{len(candidates)} candidates")
         for slow_first in (True, False):
