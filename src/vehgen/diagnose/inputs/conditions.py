@@ -20,7 +20,7 @@ LEAST_OTHERS = 2
 """A run's start is compared with those of so many others at least."""
 STANDS_OUT, CLOCKS_SPREAD_S, LEAST_SHIFT_M = 6.0, 0.01, 0.3
 """A start off by so many times the others' spread, which is no less than this [s], and a road off by so much [m], are findings."""
-OF_ALL_RUNS, LEAST_RUNS, ALIKE_SIGMAS, ALIKE_SPREAD = ("clock", "speed", "height", "length"), 3, 1.0, 0.5
+OF_ALL_RUNS, LEAST_ALIKE, ALIKE_SIGMAS, ALIKE_SPREAD = ("clock", "speed", "height", "length"), 3, 1.0, 0.5
 """Conditions that at least so many runs, and all of them, suppose alike are told: so many standard deviations off at least in each run,
 within so many from the least to the largest."""
 EITHER_WAY = 2.0
@@ -119,7 +119,7 @@ def alike_in_all_runs(conditions: Sequence[Condition]) -> tuple[str, ...]:
         same = [item for item in conditions if (item.name, item.place) == (name, place)]
         sigmas = [item.sigmas for item in same]
         off = min(sigmas) >= ALIKE_SIGMAS or max(sigmas) <= -ALIKE_SIGMAS
-        if len(same) >= LEAST_RUNS and off and max(sigmas) - min(sigmas) <= ALIKE_SPREAD:
+        if len(same) >= LEAST_ALIKE and off and max(sigmas) - min(sigmas) <= ALIKE_SPREAD:
             runs = tuple(item.run for item in same)
             found.append(f"every run supposes it, and nearly as much: {_sentence(same, runs)[1]}")
     return tuple(found)

@@ -121,7 +121,7 @@ def fit_candidates(
     fits: list[ModelFit] = []
     candidates = [item for item in candidates if has_room(item, fitter.locator)]
 
-    def keep(fit: ModelFit) -> None:
+    def add(fit: ModelFit) -> None:
         fits.append(fit)
         progress("screen", len(fits), MOST_AT_ONCE + 1, fit.label)
 
@@ -130,7 +130,7 @@ def fit_candidates(
             progress("screen", 0, 1, "")
             gains = fitter.first_order_gains()
             if not base.effects:
-                candidates = settle(fitter, gains, candidates, keep, runner, kept_at)
+                candidates = settle(fitter, gains, candidates, add, runner, kept_at)
             candidates = screen(candidates, gains, kept_at)
             progress("screen", 1, 1, f"{len(candidates)} candidates")
         for slow_first in (True, False):
