@@ -67,6 +67,30 @@ def test_none_is_told_unless_all_speaks_for_it(detection_of, found_of, monkeypat
     assert faintly_told(found, detection) is None
 
 
+def test_none_is_told_that_leaves_a_parameter_at_its_bound(detection_of, found_of):
+    detection, best = detection_of(UNLIKE, runs=HUMPS), found_of.fits[0]
+    held = best.least_squares.x.copy()
+    held[0] = 1.0
+    bent = replace(best, least_squares=replace(best.least_squares, x=held))
+    assert bent.least_squares.on_bound
+    assert faintly_told(replace(found_of, fits=(bent, *found_of.fits[1:])), detection) is None
+
+
+def test_laws_of_tyres_are_fitted_where_their_axles_parameters_are_at_bounds(detection_of, monkeypatch):
+    detection = detection_of(runs=HUMPS)
+    names = ("tyre_damping", "tyre_footprint", "relaxation")
+    candidates = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS[name] for name in names])
+    monkeypatch.setattr(faint, "FIRST_ORDER", 1e9)
+    monkeypatch.setattr(faint, "FIRST_ORDER_OF_ERRORS", 1e9)
+    assert faint_round(detection, candidates).fits == ()
+    fit = detection.base.least_squares
+    x = fit.x.copy()
+    x[fit.misfit.problem.space.names.index("mr")] = 0.0
+    bent = replace(detection, base=replace(detection.base, least_squares=replace(fit, x=x)))
+    found = {item.last.label for item in faint_round(bent, candidates).fits}
+    assert found == {"tyre_damping at rear", "tyre_damping at all tyres", "tyre_damping at each tyre"}
+
+
 @pytest.fixture(scope="module")
 def found_of(detection_of):
     """The fits beside a base that chi calls quiet."""

@@ -14,8 +14,8 @@ from vehgen.mechanics.energies import pitch_inertia
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.parts import Spring
 
-Size = Literal["k", "c", "kt"]
-"""Stiffness and damping of a suspension, link or hinge; stiffness of a tyre."""
+Size = Literal["k", "c", "kt", "m"]
+"""Stiffness and damping of a suspension, link or hinge; stiffness of a tyre; mass of an axle."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class EffectSite:
 
 
 def base_parameters(vehicle: Vehicle, place: str, sizes: Sequence[Size]) -> tuple[str, ...]:
-    """Return the free parameters on which stiffnesses and dampings at a place depend, in the vehicle's order.
+    """Return the free parameters on which stiffnesses, dampings and masses at a place depend, in the vehicle's order.
 
     Parameters
     ----------
@@ -97,6 +97,7 @@ def base_parameters(vehicle: Vehicle, place: str, sizes: Sequence[Size]) -> tupl
         known = {} if spring is None else {"k": spring.k, "c": spring.c}
         if axle is not None:
             known["kt"] = axle.tyre.k
+            known |= {} if axle.mass is None else {"m": axle.mass}
         wanted |= {used for size in sizes if size in known for used in known[size].names}
     while follow := {name for name in wanted if vehicle.parameters[name].equals is not None}:
         wanted = (wanted - follow).union(*(vehicle.parameters[name].definition.names for name in follow))

@@ -22,18 +22,24 @@ from vehgen.diagnose.select.freed_base import fitted_freed
 from vehgen.diagnose.select.placebo_laws import like_a_placebo_law
 from vehgen.diagnose.select.search import LOOKS_AGAIN, SearchRound, fit_leading_again, merit
 from vehgen.diagnose.select.validation import surely_falls, validation_fall
+from vehgen.effects.locator import base_parameters
 from vehgen.fit.parallel import HERE, Runner
+from vehgen.vehicle import Vehicle
 
 FIRST_ORDER, MOST_LAWS = 60.0, 4
 """Laws of the vehicle are fitted that gain so much to the first order, and so many of them at most, the largest gains first ..."""
 FIRST_ORDER_OF_ERRORS, MOST_ERRORS = 25.0, 4
 """... and errors of all runs or of a sensor, of which the base's own errors take in the most."""
+MOST_BEHIND = 8
+"""So many laws of tyres at most are fitted that an axle's parameters at their bounds may stand in for."""
 
 
 def faint_round(detection: Detection, candidates: Sequence[Candidate], runner: Runner = HERE) -> SearchRound:
     """Fit the candidates that gain most to the first order beside the base; return them, largest fall first.
 
-    As little is missing, fits begin where the base's ended, with numbers as the first order has them, all motions at once.
+    Fitted, too, are laws of tyres that the base may hide: an unsprung mass, or a tyre's stiffness, at its bound does part of what
+    these do, so that they gain nothing to the first order. As little is missing, fits begin where the base's ended, with numbers as
+    the first order has them, all motions at once.
     """
     base = detection.base
     fitter = Fitter(detection, base, ())
@@ -41,13 +47,21 @@ def faint_round(detection: Detection, candidates: Sequence[Candidate], runner: R
     ranked = [(*gains.of(item), item) for item in candidates if has_room(item, fitter.locator)]
     ranked.sort(key=lambda known: -known[0])
     laws = [(item, begin) for gain, begin, item in ranked if item.effect.changes_vehicle and gain > FIRST_ORDER]
+    held = set(base.least_squares.on_bound)
+    behind = [(item, begin) for gain, begin, item in ranked if gain <= FIRST_ORDER and _hides_behind(item, held, fitter.locator.vehicle)]
     errors = [(item, begin) for gain, begin, item in ranked if not item.effect.changes_vehicle and gain > FIRST_ORDER_OF_ERRORS]
-    fits = list(fitter.fit_all_begun([*laws[:MOST_LAWS], *errors[:MOST_ERRORS]], runner))
+    fits = list(fitter.fit_all_begun([*laws[:MOST_LAWS], *behind[:MOST_BEHIND], *errors[:MOST_ERRORS]], runner))
     found = SearchRound(base, (), (), (), faint=True)
     clear = [fit for fit in fits if fall(found, fit) >= limit.FAINT_FALL]
     checked = {id(fit): fitter.fit_again(fit) for fit in clear if not np.isfinite(fit.validation)}
     fits = sorted((checked.get(id(fit), fit) for fit in fits), key=merit)
     return replace(found, fits=tuple(_simplest_first(found, fits)))
+
+
+def _hides_behind(item: Candidate, held: set[str], vehicle: Vehicle) -> bool:
+    """Return whether parameters that the base leaves at their bounds may stand in for a law of a tyre."""
+    of_tyre = item.effect.changes_vehicle and item.effect.attaches == "tyre"
+    return of_tyre and not held.isdisjoint(base_parameters(vehicle, item.place, ("m", "kt")))
 
 
 def faint_look_again(found: SearchRound, detection: Detection, runner: Runner = HERE) -> tuple[SearchRound, Detection]:
@@ -71,13 +85,13 @@ def faintly_told(found: SearchRound, detection: Detection) -> ModelFit | None:
 
     -2 ln L falls by FAINT_FALL on the training runs, beyond the price of its numbers, and by FAINT_VALIDATION on the validation runs, on
     which the squares surely fall; not by what its freed base parameters alone do, nor as with one of many random laws at its place. The
-    runs tell its size, and it leaves noise.
+    runs tell its size, and it leaves noise, with no parameter at a bound.
     """
     best = next(iter(found.fits), None)
     runs = [trial.name for trial in detection.validation_runs]
     if best is None or not _falls(found, best) or not surely_falls(found.current, best, runs) or not is_told(best):
         return None
-    if not replace(detection, base=best).is_quiet or not _beats_freed_base(found, best, detection):
+    if best.least_squares.on_bound or not replace(detection, base=best).is_quiet or not _beats_freed_base(found, best, detection):
         return None
     places = localise_at(found.current, best.last.place)
     return None if like_a_placebo_law(places, found.current, best, detection) else best
