@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from benchmarks.hidden_effects.generator import Effect
 
-from tests.diagnose.conftest import CUBIC
+from tests.diagnose.conftest import CUBIC, HUMPS
 from vehgen.diagnose import decision
 from vehgen.diagnose.decision import Decision
 from vehgen.diagnose.detect.detection import Detection, believable
@@ -55,3 +55,14 @@ def test_believable_errors_are_small(detection_of):
     believed = believable(detection_of(CUBIC))
     for part in (believed.base.least_squares, believed.base.validation_fit):
         assert max(abs(item.sigmas) for item in part.conditions()) <= 2.5 + 1e-9
+
+
+def test_a_quiet_refit_at_the_edge_of_its_range_is_told(detection_of):
+    detection = detection_of(runs=HUMPS)
+    fit = detection.base.least_squares
+    x = fit.x.copy()
+    x[fit.misfit.problem.space.names.index("mr")] = 0.0
+    bent = replace(detection, base=replace(detection.base, least_squares=replace(fit, x=x)))
+    told, plain = (Decision(item, [], False, lambda *known: None)._nothing().verdict for item in (bent, detection))
+    assert any("ends at its edge for mr" in note for note in told.notes)
+    assert not any("at its edge" in note for note in plain.notes)

@@ -183,6 +183,7 @@ class Decision(Ending):
 
     def _nothing(self) -> Decided:
         self.notes += alike_in_all_runs([item for part in self.base.parts for item in part.conditions()])
+        self.notes += [wording.at_the_edge(edge)] if (edge := self.base.least_squares.on_bound) else []
         return self._end("no_missing_effect", wording.no_missing_effect(self.detection.chi))
 
     def _other_mistakes(self, first: SearchRound) -> Decided | None:
