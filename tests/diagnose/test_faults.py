@@ -392,8 +392,10 @@ def test_heights_that_are_alike_are_not_exchanged():
 def test_what_every_run_supposes_as_much_is_told(clocks, told):
     conditions = [Condition(f"run{i}", "clock", "F", value, "s", 0.01) for i, value in enumerate(clocks)]
     conditions += [Condition(f"run{i}", "speed", "", (-1) ** i * 0.02, "", 0.01) for i in range(3)]
-    found = alike_in_all_runs(conditions)
+    runs = [f"run{i}" for i in range(len(clocks))]
+    found = alike_in_all_runs(conditions, runs)
     assert len(found) == told
+    assert alike_in_all_runs(conditions, [*runs, "another"]) == ()
     if told:
         assert "the clock of F in all runs is" in found[0]
         assert ("later" if clocks[0] > 0 else "earlier") in found[0]

@@ -182,8 +182,8 @@ class Decision(Ending):
         return not first.stopped and not any(passes(fit, self.base) for fit in first.fits[:1])
 
     def _nothing(self) -> Decided:
-        self.notes += alike_in_all_runs([item for part in self.base.parts for item in part.conditions()])
-        self.notes += [wording.at_the_edge(edge)] if (edge := self.base.least_squares.on_bound) else []
+        conditions = [item for part in self.base.parts for item in part.conditions()]
+        self.notes += [*alike_in_all_runs(conditions, [trial.name for trial in self.detection.trials]), *self._edge()]
         return self._end("no_missing_effect", wording.no_missing_effect(self.detection.chi))
 
     def _other_mistakes(self, first: SearchRound) -> Decided | None:

@@ -74,6 +74,10 @@ class Ending:
         libraries = tuple(dict.fromkeys(effect.file for effect in self.effects if effect.file))
         return Decided(DiagnosisModels(self.detection, tuple(self.rounds), tuple(chain), law, libraries), verdict, self.interrupted)
 
+    def _edge(self) -> list[str]:
+        """Return the note on base parameters that the refit leaves at the edge of their bounds, if there are any."""
+        return [wording.at_the_edge(edge)] if (edge := self.base.least_squares.on_bound) else []
+
     def _stopped(self) -> Decided:
         self.interrupted = True
         fits = self.rounds[0].fits if self.rounds else ()
@@ -85,7 +89,7 @@ class Ending:
 
     def _unknown(self, first: SearchRound, reason: str = "") -> Decided:
         best = (len(first.fits), self._words(first.fits[0].last), float(np.sqrt(first.fits[0].training))) if first.fits else None
-        self.notes += [wording.at_the_edge(edge)] if (edge := self.base.least_squares.on_bound) else []
+        self.notes += self._edge()
         if strained := [item.message for item in supposed_mistakes(self.detection)]:
             self.notes.append(wording.supposed(strained))
         if first.fits:

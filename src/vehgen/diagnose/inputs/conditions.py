@@ -21,7 +21,7 @@ LEAST_OTHERS = 2
 STANDS_OUT, CLOCKS_SPREAD_S, LEAST_SHIFT_M = 6.0, 0.01, 0.3
 """A start off by so many times the others' spread, which is no less than this [s], and a road off by so much [m], are findings."""
 OF_ALL_RUNS, LEAST_ALIKE, ALIKE_SIGMAS, ALIKE_SPREAD = ("clock", "speed", "height", "length"), 3, 1.0, 0.5
-"""Conditions that at least so many runs, and all of them, suppose alike are told: so many standard deviations off at least in each run,
+"""Conditions that all runs, so many at least, suppose alike are told: so many standard deviations off at least in each run,
 within so many from the least to the largest."""
 EITHER_WAY = 2.0
 """Whether a clock tells the starts or the way does, a start that is a finding is off by so many times the others' spread."""
@@ -112,16 +112,16 @@ def findings_of_conditions(
     return tuple(found)
 
 
-def alike_in_all_runs(conditions: Sequence[Condition]) -> tuple[str, ...]:
-    """Return what all runs suppose alike, in sentences: no finding, but that they agree says more than each of them."""
+def alike_in_all_runs(conditions: Sequence[Condition], runs: Sequence[str]) -> tuple[str, ...]:
+    """Return what all `runs` suppose alike, in sentences: no finding, but that they agree says more than each of them."""
     found = []
     for name, place in dict.fromkeys((item.name, item.place) for item in conditions if item.name in OF_ALL_RUNS):
         same = [item for item in conditions if (item.name, item.place) == (name, place)]
         sigmas = [item.sigmas for item in same]
         off = min(sigmas) >= ALIKE_SIGMAS or max(sigmas) <= -ALIKE_SIGMAS
-        if len(same) >= LEAST_ALIKE and off and max(sigmas) - min(sigmas) <= ALIKE_SPREAD:
-            runs = tuple(item.run for item in same)
-            found.append(f"every run supposes it, and nearly as much: {_sentence(same, runs)[1]}")
+        every = len(same) >= LEAST_ALIKE and {item.run for item in same} == set(runs)
+        if every and off and max(sigmas) - min(sigmas) <= ALIKE_SPREAD:
+            found.append(f"every run supposes it, and nearly as much: {_sentence(same, tuple(runs))[1]}")
     return tuple(found)
 
 
