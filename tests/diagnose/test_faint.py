@@ -76,6 +76,12 @@ def test_none_is_told_that_leaves_a_parameter_at_its_bound(detection_of, found_o
     assert faintly_told(replace(found_of, fits=(bent, *found_of.fits[1:])), detection) is None
 
 
+def test_none_is_told_whose_number_ends_its_range(detection_of, found_of, monkeypatch):
+    detection = detection_of(UNLIKE, runs=HUMPS)
+    monkeypatch.setattr(type(found_of.fits[0].least_squares), "adjusted_to_a_bound", property(lambda self: True))
+    assert faintly_told(found_of, detection) is None
+
+
 def test_laws_of_tyres_are_fitted_where_their_axles_parameters_are_at_bounds(detection_of, monkeypatch):
     detection = detection_of(runs=HUMPS)
     names = ("tyre_damping", "tyre_footprint", "relaxation")

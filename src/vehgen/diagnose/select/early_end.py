@@ -11,7 +11,6 @@ from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.fits.screening import FirstOrderGains
 from vehgen.diagnose.select.fitter import Fitter
-from vehgen.fit.least_squares import AT_BOUND
 from vehgen.fit.parallel import HERE, Runner
 
 MOST_AT_ONCE = 4
@@ -63,11 +62,8 @@ def _settles(fit: ModelFit) -> bool:
 
 def _at_an_end(fit: ModelFit) -> bool:
     """Return whether a number of the last effect of a fit is at an end of its range."""
-    least_squares = fit.least_squares
-    numbers = least_squares.misfit.adjusted(least_squares.x)
-    pairs = zip(least_squares.misfit.shared, numbers, strict=True)
-    held = any(item.scale > 0 and min(value - item.low, item.high - value) <= AT_BOUND * item.scale for item, value in pairs)
-    return held or not set(fit.last.parameters).isdisjoint(least_squares.on_bound)
+    found = fit.least_squares
+    return found.adjusted_to_a_bound or not set(fit.last.parameters).isdisjoint(found.on_bound)
 
 
 def _is_inseparable(item: Candidate, best: Candidate) -> bool:

@@ -91,7 +91,8 @@ def faintly_told(found: SearchRound, detection: Detection) -> ModelFit | None:
     runs = [trial.name for trial in detection.validation_runs]
     if best is None or not _falls(found, best) or not surely_falls(found.current, best, runs) or not is_told(best):
         return None
-    if best.least_squares.on_bound or not replace(detection, base=best).is_quiet or not _beats_freed_base(found, best, detection):
+    held = best.least_squares.on_bound or best.least_squares.adjusted_to_a_bound
+    if held or not replace(detection, base=best).is_quiet or not _beats_freed_base(found, best, detection):
         return None
     places = localise_at(found.current, best.last.place)
     return None if like_a_placebo_law(places, found.current, best, detection) else best
