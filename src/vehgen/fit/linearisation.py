@@ -73,14 +73,16 @@ class Linearisation:
         before, after
             Each trial's whitened residuals before and after it.
         """
-        blocks, missing, moving = [], 0.0, 0.0
-        for block, columns, old, new in zip(self.blocks, self.columns, before, after, strict=True):
-            own = step[columns]
+        did = [new - old for old, new in zip(before, after, strict=True)]
+        steps = [step[columns] for columns in self.columns]
+        missed = [change - np.tensordot(own, block, axes=1) for change, own, block in zip(did, steps, self.blocks, strict=True)]
+        if sum(np.linalg.norm(part) ** 2 for part in missed) > MOST_MISSED**2 * sum(np.linalg.norm(part) ** 2 for part in did):
+            return None
+        blocks = []
+        for block, own, left in zip(self.blocks, steps, missed, strict=True):
             pull = own * (np.abs(block) ** 2).sum(axis=(1, 2))
-            missed = new - old - np.tensordot(own, block, axes=1)
-            missing, moving = missing + float(np.linalg.norm(missed)) ** 2, moving + float(np.linalg.norm(new - old)) ** 2
-            blocks.append(block + pull[:, None, None] * (missed / max(float(own @ pull), 1e-300)))
-        return replace(self, blocks=tuple(blocks)) if missing <= MOST_MISSED**2 * moving else None
+            blocks.append(block + pull[:, None, None] * (left / max(float(own @ pull), 1e-300)))
+        return replace(self, blocks=tuple(blocks))
 
     def normal(self, lines: list[Complex], x: Array) -> tuple[Array, Array]:
         """Return J'J `shape (n_unknowns, n_unknowns)` and J'r `shape (n_unknowns,)`, priors of the errors included.

@@ -17,6 +17,7 @@ import scipy.optimize
 import scipy.signal
 from numpy.typing import NDArray
 
+from vehgen.diagnose.fits.model_fit import NUISANCES
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.misfit import Noises
 from vehgen.fit.noise import (
@@ -29,7 +30,6 @@ from vehgen.fit.noise import (
     estimate_noise,
     road_answer,
 )
-from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.trial import Trial
 from vehgen.fit.window import transform
 from vehgen.measure import record_psd
@@ -200,7 +200,7 @@ def lead_in_lines(part: Trial, band: tuple[float, float]) -> tuple[Complex, Road
     for line in part.lines:
         inside &= np.abs(frequency - line) > max(LINE_WIDTH * line, LINE_LEAKS * frequency[1])
     lines = transform(part.recording.values - part.recording.values.mean(axis=0), part.recording.dt, inside)
-    return lines, road_answer(part, frequency[inside], part.values, Nuisances().speed_spread(part))
+    return lines, road_answer(part, frequency[inside], part.values, NUISANCES.speed_spread(part))
 
 
 def _smooth(variance: Array, weight: Array, power: Array) -> Array:
