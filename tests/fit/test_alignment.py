@@ -59,7 +59,7 @@ def test_a_speed_that_turns_fast_motions_by_whole_cycles_is_found(tmp_path):
     found = {item.name: item.value for item in misfit.conditions(begun) if item.run}
     assert found["speed"] == pytest.approx(11.75 / 12 - 1, abs=2e-3)
     assert found["delay"] == pytest.approx(0.13, abs=0.01)
-    assert not errors[: len(misfit.sensors)].any()
+    assert not errors[: len(misfit.common)].any()
     unaligned = np.sum(misfit.residuals(x) ** 2)
     assert np.sum(misfit.residuals(begun) ** 2) < 0.1 * unaligned
 

@@ -89,7 +89,7 @@ def test_what_an_unknown_low_pass_takes_off_is_found_and_a_declared_one_takes_no
         assert found["dispersion", sensor] == pytest.approx(1.0, abs=0.5)
     assert fit.chi2 == pytest.approx(1.0, abs=0.1)
     declared = changed(tmp_path, lambda v: v, text=lambda text: text + "acquisition: none\n")
-    assert not {item.name for item in Nuisances().of_sensors([declared])} & {"roll_off", "dispersion"}
+    assert not {item.name for item in Nuisances().of_all_runs([declared])} & {"roll_off", "dispersion"}
 
 
 def test_a_gain_is_found(tmp_path):
@@ -132,7 +132,7 @@ def test_no_error_exceeds_its_bound(tmp_path):
 def test_a_run_file_says_how_well_it_knows_itself(tmp_path):
     stated = "uncertainty: {speed: 0.05 m/s, clock: 0 s, gain: 0.03, position: 5 cm}\n"
     trial = changed(tmp_path, lambda v: v, text=lambda text: text + stated)
-    sigmas = {(item.name, item.place): item.sigma for item in (*Nuisances().of_run(trial), *Nuisances().of_sensors([trial]))}
+    sigmas = {(item.name, item.place): item.sigma for item in (*Nuisances().of_run(trial), *Nuisances().of_all_runs([trial]))}
     assert sigmas["speed", ""] == pytest.approx(0.05 / 2.5)
     assert ("clock", "R") not in sigmas
     asked = {item.name: item.sigma for item in asked_nuisances(speed=0.04, height=None).of_run(trial)}

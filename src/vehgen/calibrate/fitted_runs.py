@@ -55,7 +55,7 @@ def fitted_responses(calibration: Calibration) -> list[Array]:
             x, t = step.fits[0].x, _number(step, trial)
             errors = misfit.errors[t]
             motion = misfit.respond(t, own[None], misfit.adjusted(x), misfit.errors_of(x, t), solved)[0]
-            every = RunErrors.of(solved, errors.sensors, errors.own, errors.known)
+            every = RunErrors.of(solved, errors.common, errors.own, errors.known)
             response = np.where(used, every.read(motion, trial.recording.dt, misfit.errors_of(x, t)), response)
         found.append(response)
     return found

@@ -22,7 +22,7 @@ WINDOW_SHIFT_S = 1e-5
 MOST_MISSED = 0.25
 """A share of what a step did; derivatives that miss more of it are computed anew, not corrected by it."""
 Slopes = dict[int, Array]
-"""Derivatives of a run's motions `shape (n_samples, n_channels)` by its own errors, by their number."""
+"""Derivatives of a run's motions `shape (n_samples, n_channels)` by its errors, by their number: its own from 0 on."""
 
 
 @dataclass(frozen=True)
@@ -142,12 +142,12 @@ class _Trial:
 
     def block(self, known: Slopes | None) -> tuple[Complex, Slopes]:
         """Return the trial's whitened derivatives by its columns, and those of its motions by its own errors."""
-        misfit, shared, sensors = self.misfit, self.misfit.shared, self.misfit.sensors
+        misfit, shared, common = self.misfit, self.misfit.shared, self.misfit.common
         items = misfit.errors[self.number].items
         steps = UNIT_DIFFERENCE * np.eye(len(shared))
         by_shared = [self._by_shared(step * item.scale) for item, step in zip(shared, steps, strict=True)]
-        wanted = [i for i, item in enumerate(items) if item.moves_vehicle and i - len(sensors) not in (known or {})]
-        slopes: Slopes = {**(known or {}), **{i - len(sensors): own for i, own in self._by_errors(wanted).items()}}
+        wanted = [i for i, item in enumerate(items) if item.moves_vehicle and i - len(common) not in (known or {})]
+        slopes: Slopes = {**(known or {}), **{i - len(common): own for i, own in self._by_errors(wanted).items()}}
         motions = np.concatenate(
             [self.centre[None], self.by_parameter, np.reshape(by_shared, (-1, *self.centre.shape)), *(own[None] for own in slopes.values())]
         )
@@ -157,7 +157,7 @@ class _Trial:
         by_error = dict(zip(slopes, lines[n:], strict=True))
         ahead, behind = (misfit.unread(self.number, self.centre, self.error, later) for later in (WINDOW_SHIFT_S, -WINDOW_SHIFT_S))
         read = misfit.read_slopes(self.number, unread[0], self.error, (ahead - behind) / (2 * WINDOW_SHIFT_S))
-        rows = [by_error[i - len(sensors)] if item.moves_vehicle else read[i] for i, item in enumerate(items)]
+        rows = [by_error[i - len(common)] if item.moves_vehicle else read[i] for i, item in enumerate(items)]
         return -misfit.whiten(self.number, np.concatenate([lines[:n], np.reshape(rows, (-1, *lines.shape[1:]))])), slopes
 
     def _by_shared(self, step: Array) -> Array:

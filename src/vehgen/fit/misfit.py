@@ -61,7 +61,7 @@ class Misfit:
     shared
         What may be wrong with runs or sensors, fitted along.
     known
-        Errors of sensors that stand, by name and place.
+        Errors of all runs that stand, by name and place.
     """
 
     def __init__(
@@ -80,8 +80,8 @@ class Misfit:
         self.band = band
         self.shared = tuple(shared)
         self.known = dict(known or {})
-        self.sensors = tuple(item for item in self.nuisances.of_sensors(problem.trials) if (item.name, item.place) not in self.known)
-        self.errors = tuple(RunErrors.of(trial, self.sensors, self.nuisances.of_run(trial), self.known) for trial in problem.trials)
+        self.common = tuple(item for item in self.nuisances.of_all_runs(problem.trials) if (item.name, item.place) not in self.known)
+        self.errors = tuple(RunErrors.of(trial, self.common, self.nuisances.of_run(trial), self.known) for trial in problem.trials)
         self._weights = [self._weight(trial, problem.best_values(reference)) for trial in problem.trials]
 
     def alone(self, number: int, x: Array, band: tuple[float, float] | None = None) -> Misfit:
@@ -89,7 +89,7 @@ class Misfit:
         values = self.problem.best_values(self.problem.space.values(self.split(x)[0]))
         problem = self.problem.with_trials([self.problem.trials[number]]).searching((), values)
         shared = [replace(item, neutral=float(value), scale=0.0) for item, value in zip(self.shared, self.adjusted(x), strict=True)]
-        return Misfit(problem, self.noises, np.zeros(0), self.nuisances, band or self.band, shared, self.sensor_errors(x))
+        return Misfit(problem, self.noises, np.zeros(0), self.nuisances, band or self.band, shared, self.common_errors(x))
 
     def _weight(self, trial: Trial, reference: Mapping[str, float]) -> _Weight:
         dt = trial.recording.dt
@@ -107,8 +107,8 @@ class Misfit:
 
     @property
     def n_errors(self) -> int:
-        """Number of errors of sensors and runs."""
-        return len(self.sensors) + sum(len(item.own) for item in self.errors)
+        """Number of errors of all runs and of each."""
+        return len(self.common) + sum(len(item.own) for item in self.errors)
 
     @property
     def n_unknowns(self) -> int:
@@ -121,16 +121,16 @@ class Misfit:
 
     def own_columns(self, number: int) -> slice:
         """Return where the errors of trial `number` alone stand among the unknowns."""
-        start = self.n_parameters + len(self.shared) + len(self.sensors) + sum(len(item.own) for item in self.errors[:number])
+        start = self.n_parameters + len(self.shared) + len(self.common) + sum(len(item.own) for item in self.errors[:number])
         return slice(start, start + len(self.errors[number].own))
 
     def columns(self, number: int) -> NDArray[np.intp]:
-        """Return which unknowns trial `number` depends on: parameters, adjustments, errors of the sensors, its own."""
+        """Return which unknowns trial `number` depends on: parameters, adjustments, errors of all runs, its own."""
         own = self.own_columns(number)
-        return np.concatenate([np.arange(self.n_parameters + len(self.shared) + len(self.sensors)), np.arange(own.start, own.stop)])
+        return np.concatenate([np.arange(self.n_parameters + len(self.shared) + len(self.common)), np.arange(own.start, own.stop)])
 
     def errors_of(self, x: Array, number: int) -> Array:
-        """Return the errors of trial `number`, the sensors' first, `shape (n_sensors + n_own,)`."""
+        """Return the errors of trial `number`, those of all runs first, `shape (n_common + n_own,)`."""
         return np.asarray(x[self.columns(number)[self.n_parameters + len(self.shared) :]])
 
     def error_position(self, number: int, name: str) -> int | None:
@@ -146,15 +146,15 @@ class Misfit:
     def conditions(self, x: Array) -> tuple[Condition, ...]:
         """Return what the unknowns say of sensors and runs."""
         start = self.n_parameters + len(self.shared)
-        found = [("", item) for item in self.sensors]
+        found = [("", item) for item in self.common]
         found += [(trial.name, item) for trial, errors in zip(self.problem.trials, self.errors, strict=True) for item in errors.own]
         return tuple(
             Condition(run, item.name, item.place, float(number) * item.sigma, item.unit, item.sigma)
             for (run, item), number in zip(found, x[start:], strict=True)
         )
 
-    def sensor_errors(self, x: Array) -> dict[tuple[str, str], float]:
-        """Return the errors of sensors that hold in all runs, by name and place, those that stand included."""
+    def common_errors(self, x: Array) -> dict[tuple[str, str], float]:
+        """Return the errors that hold in all runs, by name and place, those that stand included."""
         found = {(item.name, item.place): item.value for item in self.conditions(x) if not item.run}
         return {**self.known, **found}
 

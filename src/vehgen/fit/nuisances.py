@@ -1,7 +1,7 @@
 """What runs and recorders do not know of themselves exactly: small errors with priors, fitted along with the parameters.
 
 Of a run: when its recording began, its speed and how the driver strayed about it, height and form of its hump, and how it was released
-where the file gives that a tolerance. Of the sensors: each one's clock in each run, and, the same in all runs, gains, tilts, places, how
+where the file gives that a tolerance. Of the vehicle: where its axles are along it. Of the sensors: each one's clock in each run, and, the same in all runs, gains, tilts, places, how
 late a gyroscope is behind the accelerometer beside it, and what an unknown low-pass takes off. Of what drives a rig: gains and offsets.
 Every error counts in units of its standard deviation: the run file's (`uncertainty`, `tolerance`), or the default.
 """
@@ -32,13 +32,13 @@ SHORTEST_WANDER_S = 1.0
 ON_ROAD_MARGIN_S = 0.3
 """The speed matters from so long before the first wheel meets the hump until so long after the last has left it [s]."""
 OF_TIME = ("clock", "lag")
-READING = (*OF_TIME, "gain", "tilt", "position", "roll_off", "dispersion")
+LOW_PASS = ("roll_off", "edge", "dispersion", "edge_dispersion")
+"""Errors of what stands for an unknown recorder's low-pass."""
+READING = (*OF_TIME, "gain", "tilt", "position", *LOW_PASS)
 """Errors that change what a sensor reads, not what the vehicle does; the first two say how late a channel is."""
 OF_INPUTS = ("force_gain", "force_offset", "displacement_gain")
 """Errors of measured forces and displacements that drive a run."""
-LOW_PASS = ("roll_off", "dispersion")
-"""Errors of what stands for an unknown recorder's low-pass."""
-ERROR_UNITS = {"delay": "s", "wear": "mm^2", "clock": "s", "lag": "s", "tilt": "rad", "position": "m", "force_offset": "N"}
+ERROR_UNITS = {"delay": "s", "wear": "mm^2", "clock": "s", "lag": "s", "tilt": "rad", "position": "m", "axle_position": "m", "force_offset": "N"}
 ERROR_UNITS |= {"initial_displacement": "m", "initial_velocity": "m/s", "initial_pitch": "rad", "initial_pitch_rate": "rad/s"}
 """Units of the errors; all others are relative."""
 
@@ -61,9 +61,12 @@ class Nuisances:
         Of each sensor's clock against the first's, run by run [s].
     lag
         Of each gyroscope's delay against the accelerometer beside it [s]: chips filter the two in different ways.
-    roll_off, dispersion
-        Of how an unknown recorder's low-pass differs from the one that stands for it: at half the rate of the recording a part r of
-        exp(-r - i d) (see :meth:`RunErrors.reading`). Declared recorders have neither.
+    axle_position
+        Of how far each axle runs behind the first to arrive [m], where no parameter with a range says it: a tape measures between hubs
+        that nobody sees both of. The way its road is late counts, not the lever at which it pushes, of which this is next to nothing.
+    roll_off, edge, dispersion, edge_dispersion
+        Of how an unknown recorder's low-pass differs from the one that stands for it: at half the rate of the recording a factor of
+        exp(-r - s - i (d + e)) (see :mod:`vehgen.fit.reading`). Declared recorders have none.
     gain, tilt, position
         Of each channel's gain (relative), of each sensor's nose-down tilt [rad] and place along its body [m].
     force_gain, force_offset
@@ -89,8 +92,11 @@ class Nuisances:
     gain: float = 0.01
     tilt: float = 0.02
     position: float = 0.02
+    axle_position: float = 0.005
     roll_off: float = 0.3
+    edge: float = 1.0
     dispersion: float = 1.5
+    edge_dispersion: float = 1.0
     force_gain: float = 0.01
     force_offset: float = 0.1
     displacement_gain: float = 0.01
@@ -116,9 +122,12 @@ class Nuisances:
         names += [Nuisance(f"initial_{item.key}", item.owner, item.tolerance) for item in stated]
         return tuple(item for item in names if item.sigma > 0)
 
-    def of_sensors(self, trials: Sequence[Trial]) -> tuple[Nuisance, ...]:
-        """Return the errors of channels and sensors that are the same in all runs."""
+    def of_all_runs(self, trials: Sequence[Trial]) -> tuple[Nuisance, ...]:
+        """Return the errors of axles, channels and sensors that are the same in all runs."""
         names: dict[tuple[str, str], Nuisance] = {}
+        for trial in trials:
+            for axle in stated_axles(trial):
+                names.setdefault(("axle_position", axle), Nuisance("axle_position", axle, self._stated(trial)["axle_position"]))
         for trial in trials:
             spread = self._stated(trial)
             quantities = {(channel.sensor, channel.quantity) for channel in trial.recording.channels}
@@ -221,6 +230,16 @@ def measured_displacements(trial: Trial) -> tuple[str, ...]:
     """Return the links to the ground whose ground ends move as was measured in a run."""
     named = zip(ground_links(trial.simulator.model), trial.scenario.ground, strict=True)
     return tuple(name for name, item in named if item is not None and item.values is not None)
+
+
+def stated_axles(trial: Trial) -> tuple[str, ...]:
+    """Return the axles that follow the first over a run's road, at distances that no parameter with a range decides."""
+    if not trial.scenario.track.parts:
+        return ()
+    decided, searched = trial.simulator.distance_parameters, trial.run.vehicle.ranges().keys()
+    offsets = dict(zip(decided, trial.simulator.model.wheel_offsets(trial.values).tolist(), strict=True))
+    first = min(offsets, key=lambda axle: offsets[axle])
+    return tuple(axle for axle in offsets if axle != first and not (decided[axle] | decided[first]) & searched)
 
 
 def _size(trial: Trial, name: str) -> float:

@@ -23,37 +23,39 @@ Complex = NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class RunErrors:
-    """The errors of one run: those of the sensors in all runs (`sensors`), then its own (`own`).
+    """The errors of one run: those that are the same in all runs (`common`), then its own (`own`).
 
-    Numbers of errors `shape (size,)` count in standard deviations, the sensors' first. `channels` holds name, sensor and quantity of every
-    channel; `known` errors of sensors [units], by name and place, that stand; `rate` is the recording's [Hz]; `forces` names the forces
-    that act, and `ground` the links whose ground ends move, in the model's order; `begin` tells the place
+    Numbers of errors `shape (size,)` count in standard deviations, the common ones first. `channels` holds name, sensor and quantity of every
+    channel; `known` common errors [units], by name and place, that stand; `rate` is the recording's [Hz]; `forces` names the forces
+    that act, `ground` the links whose ground ends move, and `axles` the axles, in the model's order; `begin` tells the place
     of an initial displacement or velocity in the state, by its error's name and place.
     """
 
-    sensors: tuple[Nuisance, ...]
+    common: tuple[Nuisance, ...]
     own: tuple[Nuisance, ...]
     channels: tuple[tuple[str, str, str], ...]
     known: Mapping[tuple[str, str], float] = field(default_factory=dict)
     rate: float = 100.0
     forces: tuple[str, ...] = ()
     ground: tuple[str, ...] = ()
+    axles: tuple[str, ...] = ()
     begin: Mapping[tuple[str, str], int] = field(default_factory=dict)
 
     @classmethod
     def of(
-        cls, trial: Trial, sensors: tuple[Nuisance, ...], own: tuple[Nuisance, ...], known: Mapping[tuple[str, str], float]
+        cls, trial: Trial, common: tuple[Nuisance, ...], own: tuple[Nuisance, ...], known: Mapping[tuple[str, str], float]
     ) -> RunErrors:
         """Return the errors of a trial."""
         channels = tuple((item.name, item.sensor, item.quantity) for item in trial.recording.channels)
         model = trial.simulator.model
         begin = {(f"initial_{item.key}", item.owner): item.place for item in initial_values(trial.run, model)}
-        return cls(sensors, own, channels, known, 1 / trial.recording.dt, model.forces, ground_links(model), begin)
+        axles = tuple(model.layout.axles)
+        return cls(common, own, channels, known, 1 / trial.recording.dt, model.forces, ground_links(model), axles, begin)
 
     @property
     def items(self) -> tuple[Nuisance, ...]:
-        """All errors, the sensors' first."""
-        return (*self.sensors, *self.own)
+        """All errors, the common ones first."""
+        return (*self.common, *self.own)
 
     def scenario(self, scenario: Scenario, numbers: Array) -> Scenario:
         """Return the scenario with the errors."""
@@ -77,7 +79,14 @@ class RunErrors:
             deformation=form if scenario.humps else None,
             forces=self._forces(numbers),
             displacements=self._displacements(numbers),
+            farther=self._farther(numbers),
         )
+
+    def _farther(self, numbers: Array) -> tuple[float, ...]:
+        """Return how much farther behind the first each axle runs [m]; nothing where all run as the vehicle file says."""
+        values = self._values(numbers)
+        found = tuple(values.get(("axle_position", axle), 0.0) for axle in self.axles)
+        return found if any(found) else ()
 
     def _begun(self, scenario: Scenario, numbers: Array) -> Scenario:
         """Return the scenario released with the errors of its initial state."""

@@ -52,35 +52,36 @@ def wheel_inputs(track: Track, speed: SpeedLaw, offsets: Array, time: Array) -> 
 
 
 def nearby_inputs(
-    track: Track, speed: SpeedLaw, tracks: Sequence[Track], speeds: Sequence[SpeedLaw], offsets: Array, time: Array
+    track: Track, speed: SpeedLaw, tracks: Sequence[Track], ways: Sequence[tuple[SpeedLaw, Array]], offsets: Array, time: Array
 ) -> Iterator[WheelInputs]:
     """Return the road under every axle in drives that hardly differ from another one.
 
-    Over other tracks the ways are the same. At other speeds heights change as the road slopes where the wheels are: exact to the first
-    order in how far the ways differ, which derivatives by differences need, at the price of two looks at the road for all of them.
+    Over other tracks the ways are the same. At other speeds, or with axles at other distances, heights change as the road slopes where
+    the wheels are: exact to the first order in how far the ways differ, which derivatives by differences need, at the price of two looks at the road for all of them.
 
     Parameters
     ----------
     track, speed, offsets, time
         As in :func:`wheel_inputs`.
-    tracks, speeds
-        Other tracks at this speed, and speeds that hardly differ over this track.
+    tracks, ways
+        Other tracks at this speed; speeds with distances `shape (n_axles,)`, both hardly different, over this track.
 
     Returns
     -------
-    Heights and rates over the tracks, then at the speeds, each in turn.
+    Heights and rates over the tracks, then by the other ways, each in turn.
     """
     moments = _moments(time)
     way, step = speed.distance(moments), _step(time)
     found = _Passage.of([track, *tracks], way, offsets)
     for other in tracks:
         yield _inputs(found.spread(other.height(found.under)), step)
-    if speeds:
+    if ways:
         heights = track.height(found.under)
         slopes = (track.height(found.under + _SLOPE_STEP_M) - heights) / _SLOPE_STEP_M
         at, own = moments[found.moments], way[found.moments]
-        for law in speeds:
-            yield _inputs(found.spread(heights + slopes * (law.distance(at) - own)), step)
+        for law, behind in ways:
+            ahead = law.distance(at) - own - found.of_axles(np.asarray(behind - offsets))
+            yield _inputs(found.spread(heights + slopes * ahead), step)
 
 
 @dataclass(frozen=True)
@@ -109,6 +110,10 @@ class _Passage:
                 axles = np.repeat(np.arange(len(offsets)), counts)
                 return cls(way[moments] - offsets[axles], moments, axles, shape)
         return cls(np.asarray(way[None, :] - offsets[:, None]), slice(None), None, shape)
+
+    def of_axles(self, values: Array) -> Array:
+        """Return each axle's value `shape (n_axles,)` where that axle is under way, to be used with `under`."""
+        return values[:, None] if self.axles is None else values[self.axles]
 
     def spread(self, heights: Array) -> Array:
         """Return heights at `under` as those of all axles at all moments, `shape (n_axles, n_moments)`."""

@@ -14,7 +14,7 @@ from vehgen.simulate.scenario import Array, Scenario
 def nearby_excitation(scenario: Scenario, others: Sequence[Scenario], offsets: Array) -> Excitation:
     """Return the excitation of a scenario and of others nearby, in this order, each individual's own.
 
-    Those that differ in speed alone are found to the first order, all at once (see :func:`vehgen.road.nearby_inputs`); those that differ in
+    Those that differ in speed, or in where axles run, alone are found to the first order, all at once (see :func:`vehgen.road.nearby_inputs`); those that differ in
     the road alone share the way, and those that differ in its height alone are multiples.
 
     Parameters
@@ -29,21 +29,23 @@ def nearby_excitation(scenario: Scenario, others: Sequence[Scenario], offsets: A
     forces = np.repeat(centre.forces[None], 1 + len(others), axis=0)
     for own, item in ((inputs, centre.inputs), (rates, centre.rates)):
         own[0], own[1:, :, n_axles:] = item, item[:, n_axles:]
-    by_road, by_speed = [], []
+    by_road, by_way = [], []
     for i, other in enumerate(others, start=1):
         same = other.ground is scenario.ground and other.forces is scenario.forces
+        same_way = other.same_speed(scenario) and other.farther == scenario.farther
         if same and other.same_road(scenario):
-            by_speed.append(i)
-        elif same and other.same_speed(scenario) and other.same_road(scenario, but_height=True) and scenario.track.scale != 0:
+            by_way.append(i)
+        elif same and same_way and other.same_road(scenario, but_height=True) and scenario.track.scale != 0:
             factor = other.track.scale / scenario.track.scale
             inputs[i, :, :n_axles], rates[i, :, :n_axles] = factor * centre.inputs[:, :n_axles], factor * centre.rates[:, :n_axles]
-        elif same and other.same_speed(scenario):
+        elif same and same_way:
             by_road.append(i)
         else:
             found = other.new_excitation(offsets)
             inputs[i], rates[i], forces[i] = found.inputs, found.rates, found.forces
-    tracks, speeds = [others[i - 1].track for i in by_road], [others[i - 1].speed for i in by_speed]
-    near = nearby_inputs(scenario.track, scenario.speed, tracks, speeds, offsets, scenario.time)
-    for i, wheels in zip((*by_road, *by_speed), near, strict=True):
+    tracks = [others[i - 1].track for i in by_road]
+    ways = [(others[i - 1].speed, others[i - 1].axle_offsets(offsets)) for i in by_way]
+    near = nearby_inputs(scenario.track, scenario.speed, tracks, ways, scenario.axle_offsets(offsets), scenario.time)
+    for i, wheels in zip((*by_road, *by_way), near, strict=True):
         inputs[i, :, :n_axles], rates[i, :, :n_axles] = wheels.heights, wheels.rates
     return Excitation(centre.dt, inputs, rates, forces)

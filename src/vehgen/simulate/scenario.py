@@ -37,7 +37,8 @@ class Scenario:
 
     `ground` and `forces` are in the order of the model's inputs and forces; `chains` says by a channel's name what acquires it: channels
     without one are sampled at their instants. The first `skipped` samples are simulated but not kept. `initial` are displacements, then
-    velocities, at the start, `shape (2 n_dof,)` (default: at rest).
+    velocities, at the start, `shape (2 n_dof,)` (default: at rest). `farther` says how much farther behind the first axle to arrive each
+    axle runs than the vehicle's layout has it [m] (default: not at all).
     """
 
     track: Track
@@ -51,6 +52,7 @@ class Scenario:
     chains: Mapping[str, AcquisitionChain] = field(default_factory=dict)
     skipped: int = 0
     initial: Array | None = None
+    farther: tuple[float, ...] = ()
     time: Array = field(init=False)
 
     def __post_init__(self) -> None:
@@ -103,18 +105,19 @@ class Scenario:
         deformation: tuple[float, float, float, float] | None = None,
         forces: Sequence[tuple[float, float]] = (),
         displacements: Sequence[float] = (),
+        farther: tuple[float, ...] = (),
     ) -> Scenario:
         """Return the same run, `delay` [s] later, at `speed` times the speed, on a road `height` times as high.
 
         Speed and `wander` are seen from where the vehicle is at the time `anchor` [s]; `deformation` is that of the humps
         (length, form, skew, rounding; default: as it is). `forces` are gains and offsets [N] of the forces, `displacements` gains of
-        those of the ground; on a rig without a road both come `delay` later.
+        those of the ground; on a rig without a road both come `delay` later. `farther` is each axle's (default: as before).
         """
         late = delay if not self.track.parts else 0.0
         same = (delay, speed, wander) == (0.0, 1.0, None)
         law = self.speed if same else AdjustedSpeed(self.speed, delay, speed, anchor, wander)
         track = replace(self.track, scale=self.track.scale * height, deformation=deformation or self.track.deformation)
-        found = replace(self, speed=law, track=track)
+        found = replace(self, speed=law, track=track, farther=farther or self.farther)
         if not (forces or displacements or late):
             return found
         errors = forces or [(1.0, 0.0)] * len(self.forces)
@@ -145,7 +148,7 @@ class Scenario:
     @property
     def _drive_key(self) -> tuple[object, ...]:
         road = (*self._road_key, self.track.scale, *self._speed_key)
-        return (*road, self.start, self.dt, len(self.time), id(self.ground), id(self.forces))
+        return (*road, self.start, self.dt, len(self.time), id(self.ground), id(self.forces), self.farther)
 
     @property
     def _road_key(self) -> tuple[object, ...]:
@@ -168,9 +171,13 @@ class Scenario:
         """Whether the vehicle of another scenario is always where this one is."""
         return self._speed_key == other._speed_key
 
+    def axle_offsets(self, offsets: Array) -> Array:
+        """Return how far each axle runs behind the first [m], where the layout has `offsets shape (n_axles,)`."""
+        return np.asarray(offsets + np.array(self.farther)) if self.farther else offsets
+
     def new_excitation(self, offsets: Array) -> Excitation:
         """Return what :meth:`excitation` does, neither looked up nor remembered."""
-        wheels = wheel_inputs(self.track, self.speed, offsets, self.time)
+        wheels = wheel_inputs(self.track, self.speed, self.axle_offsets(offsets), self.time)
         n_axles, half = wheels.heights.shape[1], self.dt / 2
         inputs, rates = (np.zeros((len(self.time), n_axles + len(self.ground))) for _ in range(2))
         inputs[:, :n_axles], rates[:, :n_axles] = wheels.heights, wheels.rates

@@ -177,16 +177,21 @@ class Simulator:
         return self._known_offsets[layout]
 
     @cached_property
-    def _layout_columns(self) -> list[int]:
-        """Columns of the parameters that the distances between axles depend on."""
+    def distance_parameters(self) -> dict[str, frozenset[str]]:
+        """By axle, the names of the parameters that its distance from the layout's first axle depends on."""
         given = dict(self.model.definitions)
-        places = list(self.model.layout.axles.values())
-        names: set[str] = set()
-        for x in places[1:]:
-            distance = x - places[0]
+        found: dict[str, frozenset[str]] = {}
+        for axle, x in self.model.layout.axles.items():
+            distance = x - next(iter(self.model.layout.axles.values()))
             while distance.free_symbols & given.keys():
                 distance = distance.xreplace(given)
-            names |= {symbol.name for symbol in sp.expand(distance).free_symbols}
+            found[axle] = frozenset(symbol.name for symbol in sp.expand(distance).free_symbols)
+        return found
+
+    @cached_property
+    def _layout_columns(self) -> list[int]:
+        """Columns of the parameters that the distances between axles depend on."""
+        names = frozenset().union(*self.distance_parameters.values())
         return [i for i, name in enumerate(self.model.parameters) if name in names]
 
     def _add_static(self, parameters: Array, responses: Array, failures: Mapping[int, str]) -> Array:

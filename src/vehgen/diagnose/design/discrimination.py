@@ -47,7 +47,7 @@ ABSENT = 1e6
 
 OF_NEW_RUNS = Nuisances(
     delay=0.05, speed=0.005, height=0.02, wander=0, length=0, form=0, skew=0, wear=0, clock=0, lag=0, gain=0, tilt=0, position=0,
-    roll_off=0, dispersion=0,
+    axle_position=0, roll_off=0, edge=0, dispersion=0, edge_dispersion=0,
 )  # fmt: skip
 """What a new run, driven with care, does not know of itself."""
 PHONE = {"acceleration": 0.0125, "pitch_rate": 5e-4}
@@ -116,7 +116,7 @@ class FittedModel:
         scenario = replace(run.scenario, chains=self.trial.scenario.chains)
         trial = replace(self.trial, name=run.name, scenario=scenario, recording=measurement)
         problem = Problem((trial,), fitted.problem.space)
-        noises, known = {run.name: noise or self.noise}, fitted.sensor_errors(self.fit.least_squares.x)
+        noises, known = {run.name: noise or self.noise}, fitted.common_errors(self.fit.least_squares.x)
         return Misfit(problem, noises, self.fit.least_squares.values, OF_NEW_RUNS, fitted.band, fitted.shared, known)
 
     def local(self, run: CandidateRun, channels: tuple[str, ...]) -> tuple[Misfit, Array]:

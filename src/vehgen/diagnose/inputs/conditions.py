@@ -39,6 +39,7 @@ _FAULT_OF = {
     "lag": ("clocks_apart", "the pitch rate of {place} comes {amount} {late} than its acceleration"),
     "tilt": ("tilt", "{place} sits tilted by {amount} {where}"),
     "position": ("position", "{place} sits {amount} off {where}"),
+    "axle_position": ("axle_position", "{place} runs {amount} {farther} behind the first axle than the vehicle file says"),
     "force_gain": ("gain", "the force {place} is {amount} {more} {where} than recorded"),
     "displacement_gain": ("gain", "the displacement {place} is {amount} {more} {where} than recorded"),
     "initial_displacement": ("initial", "{place} begins {amount} {higher} {where} than stated"),
@@ -62,6 +63,7 @@ _CURES = {
     "lag": "state what both recorders do (`acquisition`), or record both by one clock",
     "tilt": "mount the sensor level, or import the recording so that its axes are turned upright",
     "position": "measure where the sensor sits and put the run file right",
+    "axle_position": "measure the distance between the axles and put the vehicle file right",
     "force_gain": "check the force sensor's calibration and the column's unit",
     "displacement_gain": "check the displacement sensor's calibration and the column's unit",
     "force_offset": "take the force sensor's zero while nothing pushes, or state how well it is known (`uncertainty: {force_offset: 5 N}`)",
@@ -190,6 +192,7 @@ def _sentence(alike: Sequence[Condition], runs: tuple[str, ...]) -> tuple[tuple[
         "more": "more" if up else "less",
         "higher": "higher" if up else "lower",
         "longer": "longer" if up else "shorter",
+        "farther": "farther" if up else "less far",
     }
     words |= {"fast": "too fast" if up else "too slow", "place": item.place or "the recorder"}
     return own, _FAULT_OF[item.name][1].format(where=place_words(own, runs), amount=amount, **words)

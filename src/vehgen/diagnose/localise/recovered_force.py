@@ -136,7 +136,7 @@ def recover(detection: Detection, result: PlaceResult, component: int = 0) -> tu
     misfit = detection.base.least_squares.misfit
     directions = np.asarray(np.linalg.cholesky(posterior(misfit, result)), dtype=np.float64)
     found = _recover(misfit, result, directions, component, False)
-    n, known = misfit.n_parameters, misfit.sensor_errors(result.x)
+    n, known = misfit.n_parameters, misfit.common_errors(result.x)
     values = misfit.problem.space.values(result.x[:n])
     for trial in detection.validation_runs:
         alone = misfit.problem.with_trials([trial])

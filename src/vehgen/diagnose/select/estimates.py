@@ -204,7 +204,7 @@ def estimates_by_run(fit: ModelFit, candidate: Candidate | None = None) -> list[
     pulls = {t: jacobian.T @ flatten(lines[t]) for t, jacobian in jacobians.items()}
     blocks = misfit.n_parameters + len(misfit.shared)
     gradient = np.concatenate([np.zeros(blocks), x[blocks:]]) + sum(pulls.values())
-    seen, shared = _seen(misfit), blocks + len(misfit.sensors)
+    seen, shared = _seen(misfit), blocks + len(misfit.common)
     found = []
     for t, jacobian in jacobians.items():
         trial, slope = misfit.problem.trials[t], pulls[t]

@@ -28,7 +28,8 @@ class UncertaintyEntry(FileModel):
     """How well a run knows itself and its sensors: standard deviations, those of a fit's errors (docs/measurement.md).
 
     Of the recording's begin (`delay`), the speed and how it changes along the run, the height of the road, the form of the hump and
-    the wear of its edges, the sensors' clocks against the first one's, their gyroscopes' lags, gains, tilts and places, gain and offset of
+    the wear of its edges, the sensors' clocks against the first one's, their gyroscopes' lags, gains, tilts and places, how far each axle runs behind the
+    first, gain and offset of
     measured forces, gain of measured displacements.
     """
 
@@ -45,6 +46,7 @@ class UncertaintyEntry(FileModel):
     gain: ShareSpread | None = None
     tilt: AngleDeviation | None = None
     position: LengthDeviation | None = None
+    axle_position: LengthDeviation | None = None
     force_gain: ShareSpread | None = None
     force_offset: ForceSpread | None = None
     displacement_gain: ShareSpread | None = None
