@@ -65,4 +65,4 @@ def test_a_stop_that_no_run_meets_is_not_taken_for_known(problem, structure):
     known = Uncertainty(fit_at(problem, problem.space.start), structure)
     found = {item.name: item for item in known.parameters()}
     assert found["gap"].low < 0.05 < 0.13 < found["gap"].high
-    assert 0 < found["time"].low < 0.02 < found["time"].high < 0.1
+    assert 0 < found["time"].low < 0.02 < found["time"].high < 0.12

@@ -12,8 +12,9 @@ from vehgen.diagnose.fits.candidate import build_problem, list_candidates
 from vehgen.effects import EFFECTS, EffectLocator
 from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.misfit import Misfit
-from vehgen.fit.noise import KNOT_WAVENUMBERS, SMALLEST_LEVEL, DrawnDensity, Noise, road_answer
+from vehgen.fit.noise import SMALLEST_LEVEL, DrawnDensity, Noise
 from vehgen.fit.problem import make_problem
+from vehgen.fit.road_answer import KNOT_WAVENUMBERS, road_answer
 from vehgen.fit.trial import load_trials
 from vehgen.simulate import SimulatorPool
 

@@ -11,9 +11,10 @@ from tests.fit import recordings
 from tests.fit.profile_world import FINE, SEARCHED, SIGMA, TRUTH, fine_channels, misfit_of, read_run, rough_road
 from vehgen.diagnose.detect.road_error import MOST_ERROR_M, ProfileError, find_profile_error, road_noises
 from vehgen.fit.misfit import Misfit
-from vehgen.fit.noise import EVEN, KNOT_WAVENUMBERS, Noise
+from vehgen.fit.noise import EVEN, Noise
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.problem import make_problem
+from vehgen.fit.road_answer import KNOT_WAVENUMBERS
 from vehgen.fit.trial import load_trials
 
 POINTS, SPEED = 0.05, 12.0

@@ -11,7 +11,7 @@ from vehgen.diagnose.detect.noise_floor import find_noise_floor
 from vehgen.diagnose.pipeline import detect, diagnose_trials
 from vehgen.effects import EFFECTS
 from vehgen.errors import InputError
-from vehgen.fit.noise import road_answer
+from vehgen.fit.road_answer import road_answer
 from vehgen.fit.trial import load_trials
 from vehgen.simulate import load_run
 from vehgen.vehicle import load_vehicle

@@ -6,7 +6,8 @@ import scipy.optimize
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from tests.fit.recordings import sedan_truth, write_run
-from vehgen.fit.noise import EVEN, KNOT_WAVENUMBERS, LOUDER_HZ, Noise, RoadAnswer, estimate_noise, road_answer
+from vehgen.fit.noise import EVEN, LOUDER_HZ, Noise, estimate_noise
+from vehgen.fit.road_answer import KNOT_WAVENUMBERS, RoadAnswer, road_answer
 from vehgen.fit.trial import load_trials
 from vehgen.fit.window import taper, transform
 

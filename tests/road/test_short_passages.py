@@ -34,9 +34,12 @@ def test_every_wheel_is_where_the_road_is(parts, deformation, footprint):
 def test_drives_nearby_are_those_drives_to_the_first_order(parts, footprint):
     track, near = Track(parts, footprint), Track(parts, footprint, deformation=(1 + 1e-6, 1.0, 0.0, 0.0))
     faster = AdjustedSpeed(SPEED.law, SPEED.delay, SPEED.scale + 1e-7, SPEED.anchor, SPEED.wander)
-    over_near, at_faster = nearby_inputs(track, SPEED, [near], [faster], OFFSETS, TIME)
+    farther = OFFSETS + np.array([0.0, 1e-7, 0.0, -1e-7])
+    ways = [(faster, OFFSETS), (SPEED, farther)]
+    over_near, at_faster, behind = nearby_inputs(track, SPEED, [near], ways, OFFSETS, TIME)
     assert over_near.heights == pytest.approx(wheel_inputs(near, SPEED, OFFSETS, TIME).heights, abs=1e-12)
     assert at_faster.heights == pytest.approx(wheel_inputs(track, faster, OFFSETS, TIME).heights, abs=1e-8)
+    assert behind.heights == pytest.approx(wheel_inputs(track, SPEED, farther, TIME).heights, abs=1e-9)
 
 
 def test_a_track_says_where_its_humps_reach():
@@ -51,7 +54,7 @@ def test_a_track_says_where_its_humps_reach():
 def test_a_hump_that_no_wheel_reaches_moves_none(footprint):
     far = Track((Hump.from_shape("versine", 400.0, 0.9, 0.01),), footprint)
     assert not wheel_inputs(far, SPEED, OFFSETS, TIME).heights.any()
-    for found in nearby_inputs(far, SPEED, [far], [SPEED], OFFSETS, TIME):
+    for found in nearby_inputs(far, SPEED, [far], [(SPEED, OFFSETS)], OFFSETS, TIME):
         assert not found.heights.any()
         assert not found.rates.any()
 

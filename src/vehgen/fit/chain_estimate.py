@@ -18,9 +18,10 @@ from vehgen.codegen.decimation import Phases, decimate
 from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
-from vehgen.fit.noise import Noise, road_answer
+from vehgen.fit.noise import Noise
 from vehgen.fit.nuisances import LOW_PASS
 from vehgen.fit.one_thread import one_blas_thread
+from vehgen.fit.road_answer import road_answer
 from vehgen.fit.trial import Trial
 from vehgen.fit.window import taper
 from vehgen.measure.acquisition import POINT_SAMPLES, UNKNOWN, AcquisitionChain, FilterKind

@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.band import CALIBRATION_BAND_HZ
-from vehgen.fit.noise import Noise, RoadAnswer, road_answer
+from vehgen.fit.noise import Noise
 from vehgen.fit.nuisances import Condition, Nuisances
 from vehgen.fit.problem import Problem
+from vehgen.fit.road_answer import RoadAnswer, as_read, road_answer
 from vehgen.fit.run_errors import RunErrors
 from vehgen.fit.trial import Trial
 from vehgen.fit.window import transform
@@ -62,6 +63,8 @@ class Misfit:
         What may be wrong with runs or sensors, fitted along.
     known
         Errors of all runs that stand, by name and place.
+    supposed
+        Errors at which the road's part of the noise is computed, too, as another misfit's :meth:`conditions` (default: none).
     """
 
     def __init__(
@@ -73,6 +76,7 @@ class Misfit:
         band: tuple[float, float] = CALIBRATION_BAND_HZ,
         shared: Sequence[Adjustment] = (),
         known: Mapping[tuple[str, str], float] | None = None,
+        supposed: Sequence[Condition] = (),
     ) -> None:
         self.problem = problem
         self.noises = noises
@@ -82,7 +86,7 @@ class Misfit:
         self.known = dict(known or {})
         self.common = tuple(item for item in self.nuisances.of_all_runs(problem.trials) if (item.name, item.place) not in self.known)
         self.errors = tuple(RunErrors.of(trial, self.common, self.nuisances.of_run(trial), self.known) for trial in problem.trials)
-        self._weights = [self._weight(trial, problem.best_values(reference)) for trial in problem.trials]
+        self._weights = [self._weight(t, problem.best_values(reference), supposed) for t in range(len(problem.trials))]
 
     def alone(self, number: int, x: Array, band: tuple[float, float] | None = None) -> Misfit:
         """Return the misfit of one trial by its own errors only, all else as the unknowns x have it, within another band [Hz]."""
@@ -91,12 +95,13 @@ class Misfit:
         shared = [replace(item, neutral=float(value), scale=0.0) for item, value in zip(self.shared, self.adjusted(x), strict=True)]
         return Misfit(problem, self.noises, np.zeros(0), self.nuisances, band or self.band, shared, self.common_errors(x))
 
-    def _weight(self, trial: Trial, reference: Mapping[str, float]) -> _Weight:
-        dt = trial.recording.dt
+    def _weight(self, number: int, reference: Mapping[str, float], supposed: Sequence[Condition]) -> _Weight:
+        trial, errors, dt = self.problem.trials[number], self.errors[number], self.problem.trials[number].recording.dt
         frequency = np.asarray(np.fft.rfftfreq(len(trial.recording.time), dt), dtype=np.float64)
         inside = (frequency >= self.band[0]) & (frequency <= self.band[1])
         own = {name: value for name, value in reference.items() if name not in trial.fixed}
         answer = road_answer(trial, frequency[inside], trial.values | own, self.nuisances.speed_spread(trial))
+        answer = as_read(answer, errors.reading(answer.frequency, errors.numbers_of(trial.name, supposed)))
         measured = transform(trial.recording.values, dt, inside, seen=trial.window)
         return _Weight(inside, measured, answer, self.noises[trial.name].whitener(answer))
 
@@ -116,7 +121,7 @@ class Misfit:
         return self.n_parameters + len(self.shared) + self.n_errors
 
     def split(self, x: Array) -> tuple[Array, Array]:
-        """Return the parameters `shape (n_parameters,)` in the unit cube and the errors `shape (n_errors,)`."""
+        """Return the parameters in the unit cube `shape (n_parameters,)` and the errors `shape (n_errors,)`."""
         return x[: self.n_parameters], x[self.n_parameters + len(self.shared) :]
 
     def own_columns(self, number: int) -> slice:
@@ -145,12 +150,11 @@ class Misfit:
 
     def conditions(self, x: Array) -> tuple[Condition, ...]:
         """Return what the unknowns say of sensors and runs."""
-        start = self.n_parameters + len(self.shared)
         found = [("", item) for item in self.common]
         found += [(trial.name, item) for trial, errors in zip(self.problem.trials, self.errors, strict=True) for item in errors.own]
         return tuple(
             Condition(run, item.name, item.place, float(number) * item.sigma, item.unit, item.sigma)
-            for (run, item), number in zip(found, x[start:], strict=True)
+            for (run, item), number in zip(found, self.split(x)[1], strict=True)
         )
 
     def common_errors(self, x: Array) -> dict[tuple[str, str], float]:
@@ -160,9 +164,8 @@ class Misfit:
 
     def errors_like(self, other: Misfit, x: Array) -> Array:
         """Return errors `shape (n_errors,)` as another misfit's unknowns x have them; those that it leaves out are 0."""
-        known = {(item.run, item.name, item.place): item.sigmas for item in other.conditions(x)}
-        own = self.conditions(np.zeros(self.n_unknowns))
-        return np.array([known.get((item.run, item.name, item.place), 0.0) for item in own])
+        known = {item.key: item.sigmas for item in other.conditions(x)}
+        return np.array([known.get(item.key, 0.0) for item in self.conditions(np.zeros(self.n_unknowns))])
 
     def without(self, x: Array, names: Sequence[str]) -> Array:
         """Return the unknowns x with all errors of some names at 0."""

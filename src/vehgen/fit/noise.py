@@ -3,12 +3,9 @@
     S(f) = L(f/v) G(f) H(f) R(f) H(f)* + diag(2 dt sigma^2)
 
 is the one-sided cross spectral density of the channels: noise of standard deviation sigma in each, white or with a density that falls as
-(f/COLOUR_AT)^-slope (phones' noise is a little red), and the answer H(f) to a road of displacement spectrum L G(f), G = n0^2 v/f^2 (ISO
-8608 with w = 2, n0 = 0.1 cycles/m, at v [m/s]), that all axles follow one after the other. L is Gd(n0) [m^3] where the road keeps to w =
-2; real roads do not, so L may vary with wavenumber, straight lines between KNOTS on log-log paper. R_ij = exp(-2 pi i f (t_i - t_j))
-rho(t_i - t_j) exp(-(2 pi f (t_i - t_j) e)^2/2), with rho the autocorrelation of the record's taper: in a record of finite length two
-axles share only the road that both have passed. A speed that is known within a share e, or strays by it, leaves unsure when the one axle
-follows the other, and fast motions of both no longer agree. The road's part is what a white-noise model misses: it is coloured, common to
+(f/COLOUR_AT)^-slope (phones' noise is a little red), and the answer to a road of displacement spectrum L G(f), as a record shows it
+(:mod:`vehgen.fit.road_answer`). L is Gd(n0) [m^3] where the road keeps to ISO 8608's w = 2; real roads do not, so L may vary with
+wavenumber, straight lines between KNOTS on log-log paper. The road's part is what a white-noise model misses: it is coloured, common to
 all channels, and stronger than a phone's own noise even on a very good road. White errors of applied forces, where a run file states
 them, come to the channels in the same way: H_F(f) diag(2 dt sigma_F^2) H_F(f)* is added.
 """
@@ -17,26 +14,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
 
 from vehgen.fit.one_thread import one_blas_thread
+from vehgen.fit.road_answer import KNOT_WAVENUMBERS, RoadAnswer, adjoint, knot_weights
 from vehgen.fit.whittle import loss_and_slopes
-from vehgen.fit.window import taper
-from vehgen.road.iso8608 import REFERENCE_CYCLES_PER_M
-from vehgen.simulate.frequency import maxwell_branches, transfer_functions
-
-if TYPE_CHECKING:
-    from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-KNOT_WAVENUMBERS = 0.1 * 2.0 ** np.arange(9)
-"""Wavenumbers between which the road's level is interpolated [cycles/m]."""
 SMALLEST_LEVEL, LARGEST_LEVEL = 1e-10, 1e-2
 """A road smoother than this Gd(n0) [m^3] counts as even (class A begins at 16e-6); none is rougher."""
 ROUGHEST_LEVEL = 3.0
@@ -51,28 +39,6 @@ LOUDER_HZ = (0.0, 3.0, 8.0, 15.0, 25.0)
 """Where the bands begin in which noise may be louder than sensors and a linear vehicle make it [Hz]."""
 COLOUR_AT = 44.0
 """Frequency at which coloured noise has the density of white noise of its sigma [Hz]: the top of the band, where it is measured."""
-
-
-@dataclass(frozen=True)
-class RoadAnswer:
-    """The channels' answer to roughness in one trial, at spectral lines.
-
-    `frequency shape (n,)` [Hz]; `wavenumber shape (n,)` [cycles/m]; `gain shape (n, n_channels, n_axles)` with gain gain* = G H R H*; `dt`
-    the samples' spacing [s]; `forced shape (n, n_channels, n_forces)` likewise for stated errors of applied forces, levels apart, and
-    `unstated shape (n, n_channels, n_unstated)` for errors of 1 N of the measured forces that state none.
-    """
-
-    frequency: Array
-    wavenumber: Array
-    gain: Complex
-    dt: float
-    forced: Complex | None = None
-    unstated: Complex | None = None
-
-    @cached_property
-    def weights(self) -> Array:
-        """:func:`knot_weights` of the lines, which a search of the likeliest noise asks for hundreds of times."""
-        return knot_weights(self.wavenumber)
 
 
 @dataclass(frozen=True)
@@ -129,11 +95,11 @@ class Noise:
         """Return d `shape (n, n_channels)` and T with S = diag(d) T diag(d), which is well conditioned however small sigma is."""
         if self.drawn is None:
             scale, b = self._scaled(answer)
-            return scale, np.asarray(np.eye(len(self.sigma)) + b @ _adjoint(b))
+            return scale, np.asarray(np.eye(len(self.sigma)) + b @ adjoint(b))
         scale = self._scale(answer)
         drawn = self.drawn.at(answer.frequency)
         for part in self._forced(answer):
-            drawn = drawn + part @ _adjoint(part)
+            drawn = drawn + part @ adjoint(part)
         return scale, np.asarray(np.eye(len(self.sigma)) + drawn / scale[:, :, None] / scale[:, None, :])
 
     def loss(self, lines: Complex, answer: RoadAnswer) -> float:
@@ -186,48 +152,6 @@ class Noise:
         spectrum = np.zeros((n_samples // 2 + 1, len(self.sigma)), dtype=np.complex128)
         spectrum[lines] = scale * (np.linalg.cholesky(shared) @ unit)[:, :, 0] * np.sqrt(n_samples / (2 * answer.dt))
         return np.asarray(np.fft.irfft(spectrum, n_samples, axis=0))
-
-
-def knot_weights(wavenumber: Array) -> Array:
-    """Return the weights of ln(levels) at wavenumbers [cycles/m], `shape (n, len(KNOTS))`."""
-    hats = np.eye(len(KNOT_WAVENUMBERS))
-    return np.column_stack([np.interp(np.log(wavenumber), np.log(KNOT_WAVENUMBERS), hat) for hat in hats])
-
-
-def _adjoint(matrices: Complex) -> Complex:
-    return np.asarray(matrices.conj().transpose(0, 2, 1))
-
-
-def road_answer(trial: Trial, frequency: Array, values: dict[str, float], speed_spread: float = 0.0) -> RoadAnswer:
-    """Return the channels' answer to a road of level 1 that all axles follow, at frequencies `shape (n,)` [Hz].
-
-    `speed_spread` is the standard deviation of the run's speed, relative.
-    """
-    model = trial.simulator.model
-    acquired = trial.channel_factors(frequency)[:, :, None]
-    displaced, pushed = (item * acquired for item in transfer_functions(model.numeric(values), frequency, maxwell_branches(model, values)))
-    speed, dt = trial.scenario.top_speed, trial.recording.dt
-    late = model.wheel_offsets(values) / speed
-    window = taper(len(trial.recording.time), dt, trial.fade_in)
-    correlation = np.correlate(window, window, "full")[len(window) - 1 :] / (window**2).sum()
-    between = np.abs(late[:, None] - late[None, :])
-    agree = np.exp(-((2 * np.pi * speed_spread * frequency[:, None, None] * between) ** 2) / 2)
-    shared = np.interp(between, np.arange(len(window)) * dt, correlation) * agree
-    root = np.linalg.cholesky(shared + 1e-9 * np.eye(len(late)))
-    delayed = np.exp(-2j * np.pi * frequency[:, None] * late)
-    gain = (displaced[..., : len(late)] * delayed[:, None] * (REFERENCE_CYCLES_PER_M * np.sqrt(speed) / frequency)[:, None, None]) @ root
-    errors = np.array([entry.noise or 0.0 for entry in trial.run.file.forces.values()])
-    forced = np.asarray(pushed * errors * np.sqrt(2 * dt)) if errors.any() else None
-    open_ones = unstated_forces(trial) > 0
-    unstated = np.asarray(pushed[..., open_ones] * np.sqrt(2 * dt)) if open_ones.any() else None
-    return RoadAnswer(frequency, frequency / speed, np.asarray(gain), dt, forced, unstated)
-
-
-def unstated_forces(trial: Trial) -> Array:
-    """Return the standard deviation of each measured force whose error the run file does not state [N]; 0 of the others."""
-    errors = np.array([entry.noise or 0.0 for entry in trial.run.file.forces.values()])
-    sizes = np.array([0.0 if item.values is None else np.std(item.values) for item in trial.scenario.forces])
-    return np.asarray(sizes * (errors == 0))
 
 
 def estimate_noise(residuals: Sequence[tuple[Complex, RoadAnswer]], start: Noise, *, same_road: bool = False) -> tuple[Noise, ...]:

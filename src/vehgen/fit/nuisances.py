@@ -1,8 +1,9 @@
 """What runs and recorders do not know of themselves exactly: small errors with priors, fitted along with the parameters.
 
 Of a run: when its recording began, its speed and how the driver strayed about it, height and form of its hump, and how it was released
-where the file gives that a tolerance. Of the vehicle: where its axles are along it. Of the sensors: each one's clock in each run, and, the same in all runs, gains, tilts, places, how
-late a gyroscope is behind the accelerometer beside it, and what an unknown low-pass takes off. Of what drives a rig: gains and offsets.
+where the file gives that a tolerance. Of the vehicle: where its axles are along it. Of the sensors: each one's clock in each run, and, the
+same in all runs, gains, tilts, places, how late a gyroscope is behind the accelerometer beside it, and what an unknown low-pass takes off.
+Of what drives a rig: gains and offsets.
 Every error counts in units of its standard deviation: the run file's (`uncertainty`, `tolerance`), or the default.
 """
 
@@ -38,7 +39,16 @@ READING = (*OF_TIME, "gain", "tilt", "position", *LOW_PASS)
 """Errors that change what a sensor reads, not what the vehicle does; the first two say how late a channel is."""
 OF_INPUTS = ("force_gain", "force_offset", "displacement_gain")
 """Errors of measured forces and displacements that drive a run."""
-ERROR_UNITS = {"delay": "s", "wear": "mm^2", "clock": "s", "lag": "s", "tilt": "rad", "position": "m", "axle_position": "m", "force_offset": "N"}
+ERROR_UNITS = {
+    "delay": "s",
+    "wear": "mm^2",
+    "clock": "s",
+    "lag": "s",
+    "tilt": "rad",
+    "position": "m",
+    "axle_position": "m",
+    "force_offset": "N",
+}
 ERROR_UNITS |= {"initial_displacement": "m", "initial_velocity": "m/s", "initial_pitch": "rad", "initial_pitch_rate": "rad/s"}
 """Units of the errors; all others are relative."""
 
@@ -123,11 +133,8 @@ class Nuisances:
         return tuple(item for item in names if item.sigma > 0)
 
     def of_all_runs(self, trials: Sequence[Trial]) -> tuple[Nuisance, ...]:
-        """Return the errors of axles, channels and sensors that are the same in all runs."""
+        """Return the errors that are the same in all runs: those of readings first, then those of axles and of what drives a rig."""
         names: dict[tuple[str, str], Nuisance] = {}
-        for trial in trials:
-            for axle in stated_axles(trial):
-                names.setdefault(("axle_position", axle), Nuisance("axle_position", axle, self._stated(trial)["axle_position"]))
         for trial in trials:
             spread = self._stated(trial)
             quantities = {(channel.sensor, channel.quantity) for channel in trial.recording.channels}
@@ -142,15 +149,18 @@ class Nuisances:
                     for name in ("lag", "tilt", "position"):
                         names.setdefault((name, channel.sensor), Nuisance(name, channel.sensor, spread[name]))
         for trial in trials:
+            spread = self._stated(trial)
             for force, rms in measured_forces(trial).items():
-                spread = self._stated(trial)
                 names.setdefault(("force_gain", force), Nuisance("force_gain", force, spread["force_gain"]))
                 known = names.get(("force_offset", force))
                 sigma = max(rms * spread["force_offset"], 0.0 if known is None else known.sigma)  # of the loudest run
                 names["force_offset", force] = Nuisance("force_offset", force, sigma)
             for link in measured_displacements(trial):
-                names.setdefault(("displacement_gain", link), Nuisance("displacement_gain", link, self._stated(trial)["displacement_gain"]))
-        return tuple(item for item in names.values() if item.sigma > 0)
+                names.setdefault(("displacement_gain", link), Nuisance("displacement_gain", link, spread["displacement_gain"]))
+            for axle in stated_axles(trial):
+                names.setdefault(("axle_position", axle), Nuisance("axle_position", axle, spread["axle_position"]))
+        found = [item for item in names.values() if item.sigma > 0]
+        return (*(item for item in found if not item.moves_vehicle), *(item for item in found if item.moves_vehicle))
 
     def speed_spread(self, trial: Trial) -> float:
         """Return the standard deviation of a run's speed at any moment, relative: the driver's wander is part of it."""
@@ -213,6 +223,11 @@ class Condition:
     value: float
     unit: str
     sigma: float
+
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """Run, name and place, by which conditions of several fits are compared."""
+        return self.run, self.name, self.place
 
     @property
     def sigmas(self) -> float:

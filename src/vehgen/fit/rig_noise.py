@@ -13,7 +13,8 @@ import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
 
-from vehgen.fit.noise import EVEN, Noise, RoadAnswer, unstated_forces
+from vehgen.fit.noise import EVEN, Noise
+from vehgen.fit.road_answer import RoadAnswer, unstated_forces
 from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.fit.nuisances import OF_INPUTS, OF_TIME, READING, Nuisance
+from vehgen.fit.nuisances import OF_INPUTS, OF_TIME, READING, Condition, Nuisance
 from vehgen.fit.reading import Reading
 from vehgen.fit.trial import Trial
 from vehgen.road import Wander
@@ -25,8 +25,8 @@ Complex = NDArray[np.complex128]
 class RunErrors:
     """The errors of one run: those that are the same in all runs (`common`), then its own (`own`).
 
-    Numbers of errors `shape (size,)` count in standard deviations, the common ones first. `channels` holds name, sensor and quantity of every
-    channel; `known` common errors [units], by name and place, that stand; `rate` is the recording's [Hz]; `forces` names the forces
+    Numbers of errors `shape (size,)` count in standard deviations, the common ones first. `channels` holds name, sensor and quantity of
+    every channel; `known` common errors [units], by name and place, that stand; `rate` is the recording's [Hz]; `forces` names the forces
     that act, `ground` the links whose ground ends move, and `axles` the axles, in the model's order; `begin` tells the place
     of an initial displacement or velocity in the state, by its error's name and place.
     """
@@ -42,9 +42,7 @@ class RunErrors:
     begin: Mapping[tuple[str, str], int] = field(default_factory=dict)
 
     @classmethod
-    def of(
-        cls, trial: Trial, common: tuple[Nuisance, ...], own: tuple[Nuisance, ...], known: Mapping[tuple[str, str], float]
-    ) -> RunErrors:
+    def of(cls, trial: Trial, common: tuple[Nuisance, ...], own: tuple[Nuisance, ...], known: Mapping[tuple[str, str], float]) -> RunErrors:
         """Return the errors of a trial."""
         channels = tuple((item.name, item.sensor, item.quantity) for item in trial.recording.channels)
         model = trial.simulator.model
@@ -56,6 +54,12 @@ class RunErrors:
     def items(self) -> tuple[Nuisance, ...]:
         """All errors, the common ones first."""
         return (*self.common, *self.own)
+
+    def numbers_of(self, run: str, conditions: Sequence[Condition]) -> Array:
+        """Return the numbers `shape (size,)` of the errors as conditions of this run and of all runs have them; else 0."""
+        known = {item.key: item.sigmas for item in conditions if item.run in ("", run)}
+        places = [(item.name, item.place) for item in self.items]
+        return np.array([known.get((run, *place), known.get(("", *place), 0.0)) for place in places])
 
     def scenario(self, scenario: Scenario, numbers: Array) -> Scenario:
         """Return the scenario with the errors."""

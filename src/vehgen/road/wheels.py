@@ -57,7 +57,8 @@ def nearby_inputs(
     """Return the road under every axle in drives that hardly differ from another one.
 
     Over other tracks the ways are the same. At other speeds, or with axles at other distances, heights change as the road slopes where
-    the wheels are: exact to the first order in how far the ways differ, which derivatives by differences need, at the price of two looks at the road for all of them.
+    the wheels are: exact to the first order in how far the ways differ, which derivatives by differences need, at the price of two looks
+    at the road for all of them.
 
     Parameters
     ----------

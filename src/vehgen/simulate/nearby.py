@@ -14,8 +14,9 @@ from vehgen.simulate.scenario import Array, Scenario
 def nearby_excitation(scenario: Scenario, others: Sequence[Scenario], offsets: Array) -> Excitation:
     """Return the excitation of a scenario and of others nearby, in this order, each individual's own.
 
-    Those that differ in speed, or in where axles run, alone are found to the first order, all at once (see :func:`vehgen.road.nearby_inputs`); those that differ in
-    the road alone share the way, and those that differ in its height alone are multiples.
+    Those that differ in speed, or in where axles run, alone are found to the first order, all at once (see
+    :func:`vehgen.road.nearby_inputs`); those that differ in the road alone share the way, and those that differ in its height alone are
+    multiples.
 
     Parameters
     ----------

@@ -20,7 +20,8 @@ from vehgen.diagnose.detect.road_error import under_hump
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.misfit import Misfit, Noises
-from vehgen.fit.noise import EVEN, KNOT_WAVENUMBERS, LARGEST_LEVEL, SMALLEST_LEVEL, DrawnDensity, Noise, RoadAnswer
+from vehgen.fit.noise import EVEN, LARGEST_LEVEL, SMALLEST_LEVEL, DrawnDensity, Noise
+from vehgen.fit.road_answer import KNOT_WAVENUMBERS, RoadAnswer
 from vehgen.fit.trial import Trial
 from vehgen.road import MeasuredProfile
 from vehgen.road.iso8608 import REFERENCE_CYCLES_PER_M

@@ -20,16 +20,8 @@ from numpy.typing import NDArray
 from vehgen.diagnose.fits.model_fit import NUISANCES
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.misfit import Noises
-from vehgen.fit.noise import (
-    COLOUR_AT,
-    EVEN,
-    LOUDER_HZ,
-    SMALLEST_LEVEL,
-    Noise,
-    RoadAnswer,
-    estimate_noise,
-    road_answer,
-)
+from vehgen.fit.noise import COLOUR_AT, EVEN, LOUDER_HZ, SMALLEST_LEVEL, Noise, estimate_noise
+from vehgen.fit.road_answer import RoadAnswer, road_answer
 from vehgen.fit.trial import Trial
 from vehgen.fit.window import transform
 from vehgen.measure import record_psd

@@ -21,8 +21,9 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.fit.misfit import Noises
-from vehgen.fit.noise import EVEN, KNOT_WAVENUMBERS, LARGEST_LEVEL, SMALLEST_LEVEL, Noise, RoadAnswer
+from vehgen.fit.noise import EVEN, LARGEST_LEVEL, SMALLEST_LEVEL, Noise
 from vehgen.fit.one_thread import one_blas_thread
+from vehgen.fit.road_answer import KNOT_WAVENUMBERS, RoadAnswer
 from vehgen.fit.trial import Trial
 from vehgen.road import MeasuredProfile
 from vehgen.road.iso8608 import REFERENCE_CYCLES_PER_M

@@ -14,7 +14,7 @@ from vehgen.fit.alignment import MOST_SIGMAS
 from vehgen.fit.least_squares import COARSE_TOLERANCE, WEAK_PRIOR_SIGMA, FitOptions, LeastSquaresFit, fit_least_squares
 from vehgen.fit.linearisation import Linearisation
 from vehgen.fit.misfit import Misfit, Noises
-from vehgen.fit.nuisances import LOW_PASS, Nuisances
+from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.problem import Problem
 from vehgen.fit.resolution import resolve
 from vehgen.fit.space import SearchSpace
@@ -22,7 +22,7 @@ from vehgen.fit.trial import Trial
 from vehgen.simulate import SimulatorPool
 
 Array = NDArray[np.float64]
-NUISANCES = replace(Nuisances(), **dict.fromkeys(LOW_PASS, 0.0))
+NUISANCES = Nuisances(roll_off=0.0, edge=0.0, dispersion=0.0, edge_dispersion=0.0)
 """What runs and sensors may not know of themselves."""
 BASE_RANGE = 0.3
 """The base may move its parameters by this share of a logarithm about the file's values: looser, it absorbs the effect."""

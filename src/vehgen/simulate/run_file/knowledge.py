@@ -28,9 +28,8 @@ class UncertaintyEntry(FileModel):
     """How well a run knows itself and its sensors: standard deviations, those of a fit's errors (docs/measurement.md).
 
     Of the recording's begin (`delay`), the speed and how it changes along the run, the height of the road, the form of the hump and
-    the wear of its edges, the sensors' clocks against the first one's, their gyroscopes' lags, gains, tilts and places, how far each axle runs behind the
-    first, gain and offset of
-    measured forces, gain of measured displacements.
+    the wear of its edges, how far each axle runs behind the first, the sensors' clocks against the first one's, their gyroscopes' lags,
+    gains, tilts and places, gain and offset of measured forces, gain of measured displacements.
     """
 
     delay: TimeDeviation | None = None

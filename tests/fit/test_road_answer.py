@@ -1,0 +1,61 @@
+"""The road's part of the noise against roads that were drawn and driven over by scipy's integrator."""
+
+import numpy as np
+import pytest
+
+from tests.fit.profile_world import FINE, RATE, fine_channels, read_run, rough_road
+from vehgen.fit import road_answer as module
+from vehgen.fit.noise import Noise
+from vehgen.fit.reading import Reading
+from vehgen.fit.road_answer import KNOT_WAVENUMBERS, RoadAnswer, as_read, road_answer
+from vehgen.fit.window import transform
+
+SPEED, SIGMA = 2.5, np.array([2e-3, 5e-5, 2e-3, 5e-5])
+PER_METRE = 1.5e-3**2
+"""Variance that the heights of rough_road gain in a metre [m^2/m]: a random walk, Gd(n) = 2 PER_METRE/(2 pi n)^2."""
+
+
+@pytest.fixture(scope="module")
+def driven(tmp_path_factory):
+    """A trial of 8 s, and the spectral lines of 56 such records of the same vehicle over roads that were drawn."""
+    drives = [fine_channels(rough_road(seed), SPEED, 62.0)[::FINE] for seed in range(8)]
+    trial = read_run(tmp_path_factory.mktemp("rough"), drives[0], SPEED, rough_road(0))
+    n = len(trial.recording.time)
+    frequency = np.fft.rfftfreq(n, 1 / RATE)
+    inside = (frequency >= 0.5) & (frequency <= 6.0)
+    random = np.random.default_rng(1)
+    starts = range(int(4 * RATE), len(drives[0]) - n, n)
+    pieces = np.array([drive[start : start + n] for drive in drives for start in starts])
+    lines = transform(pieces + SIGMA * random.standard_normal(pieces.shape), 1 / RATE, inside)
+    return trial, frequency[inside], lines
+
+
+def whitened_powers(driven):
+    """Return the mean square of the channels' whitened lines by band: 0.5 to 1.5, 1.5 to 3 and 3 to 6 Hz, `shape (3, 4)`."""
+    trial, frequency, lines = driven
+    noise = Noise(np.full(len(KNOT_WAVENUMBERS), 2 * PER_METRE / (2 * np.pi * 0.1) ** 2), SIGMA)
+    white = np.einsum("nij,pnj->pni", noise.whitener(road_answer(trial, frequency, trial.values)), lines)
+    bands = [(0.5, 1.5), (1.5, 3.0), (3.0, 6.1)]
+    return np.array([(np.abs(white[:, (frequency >= low) & (frequency < high)]) ** 2).mean(axis=(0, 1)) for low, high in bands])
+
+
+def test_records_of_a_rough_road_hold_what_the_window_shows_of_it(driven):
+    np.testing.assert_allclose(whitened_powers(driven), 1.0, atol=0.25)
+
+
+def test_without_the_windows_spread_channels_would_have_to_agree_as_they_do_not(driven, monkeypatch):
+    monkeypatch.setattr(module, "LINES_BESIDE", 0)
+    assert whitened_powers(driven).max() > 5.0
+
+
+def test_sensors_that_read_wrong_read_the_rough_road_wrong_too():
+    random = np.random.default_rng(2)
+    frequency = np.linspace(1.0, 20.0, 5)
+    gain = random.standard_normal((5, 2, 2)) + 1j * random.standard_normal((5, 2, 2))
+    channels = (("F_az", "F", "acceleration"), ("F_q", "F", "pitch_rate"))
+    reading = Reading.of(frequency, RATE, channels, {("gain", "F_az"): 0.05, ("tilt", "F"): 0.02}, np.zeros(2))
+    answer = RoadAnswer(frequency, frequency / SPEED, gain, 1 / RATE)
+    unit = random.standard_normal((5, 2)) + 1j * random.standard_normal((5, 2))
+    expected = reading.apply(np.einsum("nij,nj->ni", gain, unit))
+    np.testing.assert_allclose(np.einsum("nij,nj->ni", as_read(answer, reading).gain, unit), expected)
+    assert as_read(answer, None) is answer
