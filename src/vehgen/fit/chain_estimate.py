@@ -41,8 +41,6 @@ REFINED_SHARE = 0.01
 """A cut-off is refined to this share of itself."""
 SAME_GAIN = 0.05
 """Chains whose gains differ by less throughout the band are the same."""
-EXACT = 1e6
-"""Weight of a prior that leaves no freedom."""
 UNSEEN = 1e-12
 """A direction of the unknowns whose scaled curvature is below this share of the largest is left alone."""
 LOOK_AHEAD_S = 0.6
@@ -194,32 +192,36 @@ def trusted_band(trial: Trial, fine: FineResponse, noise: Noise) -> float:
 
 @dataclass(frozen=True)
 class _Search:
-    """What the trial of a chain needs: stored responses, derivatives without whitening, whiteners and priors."""
+    """What the trial of a chain needs: stored responses, derivatives by the `free` unknowns without whitening, and these unknowns' priors.
+
+    What stands for an unknown low-pass is not free: another chain is tried in its place.
+    """
 
     misfit: Misfit
     x: Array
     channels: tuple[str, ...]
     responses: tuple[FineResponse, ...]
     slopes: tuple[Complex, ...]
+    free: NDArray[np.bool_]
     priors: Array
 
     @classmethod
     def of(cls, misfit: Misfit, x: Array, channels: tuple[str, ...], prior_sigma: float) -> _Search:
         """Return what the trials of chains share at the unknowns `x shape (n_unknowns,)`; `prior_sigma` is that of a parameter."""
         n, shared = misfit.n_parameters, len(misfit.shared)
-        held = np.array([item.name in LOW_PASS for item in misfit.conditions(x)], dtype=bool)
+        of_errors = np.array([item.name not in LOW_PASS for item in misfit.conditions(x)], dtype=bool)
+        free = np.concatenate([np.ones(n + shared, dtype=bool), of_errors])
         x = misfit.without(x, LOW_PASS)  # what stood for other chains than the one that the fit was made through
         weights = np.concatenate([np.full(n, 1 / prior_sigma), np.zeros(shared), np.ones(misfit.n_unknowns - n - shared)])
-        weights[n + shared :][held] = EXACT
         spectra = linearise(misfit, x).spectra
         slopes = []
         for t, (trial, white) in enumerate(zip(misfit.problem.trials, spectra, strict=True)):
             inverse = np.linalg.inv(_whitener(misfit, t))
             assumed = trial.channel_factors(misfit.frequency(t))
             gain = np.where(np.abs(assumed) > SAME_GAIN, assumed, 1.0)
-            slopes.append(np.asarray((inverse @ white[..., None])[..., 0] / gain))
+            slopes.append(np.asarray((inverse @ white[free][..., None])[..., 0] / gain))
         responses = tuple(fine_response(misfit, x, t) for t in range(len(misfit.problem.trials)))
-        return cls(misfit, x, channels, responses, tuple(slopes), np.diag(weights))
+        return cls(misfit, x, channels, responses, tuple(slopes), free, np.diag(weights[free]))
 
     @property
     def size(self) -> int:
@@ -244,7 +246,7 @@ class _Search:
             slopes.append(flatten(self.misfit.whiten(t, self.slopes[t] * factors), first=1).T)
         errors = self.misfit.split(self.x)[1]
         supposed = np.concatenate([np.zeros(len(self.x) - len(errors)), errors])  # errors are held about none, not about the fit's
-        return ChainFit(chain, _projected(np.concatenate([*residuals, supposed]), np.vstack([*slopes, self.priors])))
+        return ChainFit(chain, _projected(np.concatenate([*residuals, supposed[self.free]]), np.vstack([*slopes, self.priors])))
 
 
 def _projected(residual: Array, slopes: Array) -> float:
