@@ -92,6 +92,26 @@ def test_what_an_unknown_low_pass_takes_off_is_found_and_a_declared_one_takes_no
     assert not {item.name for item in Nuisances().of_all_runs([declared])} & {"roll_off", "dispersion"}
 
 
+def test_an_axle_that_runs_elsewhere_is_found(tmp_path):
+    """The recording is of a wheelbase of 2.8 m; of two axles another speed would do as well."""
+    trial = changed(tmp_path, lambda v: v)
+    believed = replace(trial, values={**trial.values, "wheelbase": 2.808})
+    fit, found = fitted(believed, speed=0.0, wander=0.0)
+    assert found["axle_position", "rear"] == pytest.approx(-0.008, abs=2e-3)
+    assert fit.chi2 == pytest.approx(1.0, abs=0.1)
+    exact, _ = fitted(believed, speed=0.0, wander=0.0, axle_position=0.0)
+    assert exact.loss > fit.loss + 10
+
+
+def test_a_distance_that_is_searched_has_no_error_beside(tmp_path):
+    path = write_run(tmp_path, "run", TRUTH)
+    assert "axle_position" in {item.name for item in Nuisances().of_all_runs(load_trials([path]))}
+    searched = tmp_path / "searched.yaml"
+    searched.write_text("extends: sedan2.yaml\nparameters: {wheelbase: {range: [2.7 m, 2.9 m]}}\n", encoding="utf-8")
+    path.write_text(path.read_text(encoding="utf-8").replace("sedan2.yaml", "searched.yaml"), encoding="utf-8")
+    assert "axle_position" not in {item.name for item in Nuisances().of_all_runs(load_trials([path]))}
+
+
 def test_a_gain_is_found(tmp_path):
     _, found = fitted(changed(tmp_path, lambda v: v * [1.0, 1.0, 1.025, 1.0]))
     assert found["gain", "R_az"] == pytest.approx(0.025, abs=8e-3)
@@ -130,7 +150,7 @@ def test_no_error_exceeds_its_bound(tmp_path):
 
 
 def test_a_run_file_says_how_well_it_knows_itself(tmp_path):
-    stated = "uncertainty: {speed: 0.05 m/s, clock: 0 s, gain: 0.03, position: 5 cm}\n"
+    stated = "uncertainty: {speed: 0.05 m/s, clock: 0 s, gain: 0.03, position: 5 cm, axle_position: 2 mm}\n"
     trial = changed(tmp_path, lambda v: v, text=lambda text: text + stated)
     sigmas = {(item.name, item.place): item.sigma for item in (*Nuisances().of_run(trial), *Nuisances().of_all_runs([trial]))}
     assert sigmas["speed", ""] == pytest.approx(0.05 / 2.5)
@@ -140,6 +160,7 @@ def test_a_run_file_says_how_well_it_knows_itself(tmp_path):
     assert asked["height"] == Nuisances().height
     assert sigmas["gain", "F_q"] == 0.03
     assert sigmas["position", "F"] == pytest.approx(0.05)
+    assert sigmas["axle_position", "rear"] == pytest.approx(0.002)
 
 
 def test_a_wander_has_knots_while_wheels_are_on_the_hump(tmp_path):

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy.signal
 
-from vehgen.fit.reading import Reading
+from vehgen.fit.reading import LOW_PASS_POWERS, Reading
 
-FREQUENCY, RATE = np.linspace(0.5, 20.0, 40), 100.0
+FREQUENCY, RATE = np.linspace(0.5, 38.0, 40), 100.0
 CHANNELS = (("a1", "a", "acceleration"), ("q1", "a", "pitch_rate"), ("a2", "b", "acceleration"))
 ERRORS = {
     ("gain", "a1"): 0.02,
@@ -15,7 +16,9 @@ ERRORS = {
     ("tilt", "a"): 0.05,
     ("position", "a"): 0.03,
     ("roll_off", "a"): 0.2,
+    ("edge", "a"): 0.5,
     ("dispersion", "a"): 0.4,
+    ("edge_dispersion", "b"): 20.0,
     ("dispersion", "b"): 0.1,
     ("lag", "a"): 0.002,
     ("clock", "b"): 0.004,
@@ -56,3 +59,22 @@ def test_derivatives_are_those_of_differences(error: tuple[str, str]) -> None:
     found = middle.slope(*error, lines, middle.apply(lines))
     assert np.abs(found).max() > 0.01
     assert np.allclose(found, (ahead - behind) / (2 * step), rtol=1e-5, atol=1e-5)
+
+
+@pytest.mark.parametrize("share", [0.41, 0.46])
+@pytest.mark.parametrize("kind", ["butterworth", "bessel"])
+@pytest.mark.parametrize("order", [2, 4, 6, 8])
+def test_errors_of_a_low_pass_follow_the_usual_ones(kind: str, order: int, share: float) -> None:
+    """Within 1.5 % up to a quarter of the rate, whatever delay and gain a fit finds; compared is up to 0.4 of it, as by scipy.signal."""
+    frequency = np.linspace(0.01, 0.4, 200)
+    design = scipy.signal.butter if kind == "butterworth" else scipy.signal.bessel
+    more = {} if kind == "butterworth" else {"norm": "mag"}
+    _, factor = scipy.signal.freqs_zpk(*design(order, 2 * np.pi * share, analog=True, output="zpk", **more), 2 * np.pi * frequency)
+    x = 2 * frequency
+    off = np.ones(len(x))
+    for turns, exponent in ((False, np.log(np.abs(factor))), (True, np.unwrap(np.angle(factor)))):
+        own = [power for power, way in LOW_PASS_POWERS.values() if (way == 1j) == turns]
+        columns = np.column_stack([x**power for power in [turns * 1, *own]])  # beside them a gain, or a delay
+        left = exponent - columns @ np.linalg.lstsq(columns, exponent, rcond=None)[0]
+        off = off * np.exp(1j * left if turns else left)
+    assert np.abs(off - 1)[x < 0.5].max() < 0.015
