@@ -151,8 +151,8 @@ def fit_least_squares(
     result, last = _fit(misfit, x, prior_data, options, options.tolerance if given else COARSE_TOLERANCE, nearby)
     for left in reversed(range(0 if given else options.noise_rounds - 1)):
         noises = estimate_noises(misfit, result)
-        reference, supposed = problem.space.values(misfit.split(result)[0]), misfit.conditions(result)
-        misfit = Misfit(problem, noises, reference, options.nuisances, options.band, shared, known, supposed)
+        found, supposed = misfit.split(result)
+        misfit = Misfit(problem, noises, problem.space.values(found), options.nuisances, options.band, shared, known, supposed)
         result, last = _fit(misfit, result, prior_data, options, COARSE_TOLERANCE if left else options.tolerance, last)
     values, errors = problem.space.values(misfit.split(result)[0]), misfit.split(result)[1]
     spectrum = misfit.residual_spectrum(result)

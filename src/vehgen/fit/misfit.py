@@ -64,7 +64,7 @@ class Misfit:
     known
         Errors of all runs that stand, by name and place.
     supposed
-        Errors at which the road's part of the noise is computed, too, as another misfit's :meth:`conditions` (default: none).
+        Errors `shape (n_errors,)` at which the road's part of the noise is computed, too (default: none).
     """
 
     def __init__(
@@ -76,7 +76,7 @@ class Misfit:
         band: tuple[float, float] = CALIBRATION_BAND_HZ,
         shared: Sequence[Adjustment] = (),
         known: Mapping[tuple[str, str], float] | None = None,
-        supposed: Sequence[Condition] = (),
+        supposed: Array | None = None,
     ) -> None:
         self.problem = problem
         self.noises = noises
@@ -86,7 +86,8 @@ class Misfit:
         self.known = dict(known or {})
         self.common = tuple(item for item in self.nuisances.of_all_runs(problem.trials) if (item.name, item.place) not in self.known)
         self.errors = tuple(RunErrors.of(trial, self.common, self.nuisances.of_run(trial), self.known) for trial in problem.trials)
-        self._weights = [self._weight(t, problem.best_values(reference), supposed) for t in range(len(problem.trials))]
+        at = np.concatenate([np.zeros(self.n_unknowns - self.n_errors), np.zeros(self.n_errors) if supposed is None else supposed])
+        self._weights = [self._weight(t, problem.best_values(reference), at) for t in range(len(problem.trials))]
 
     def alone(self, number: int, x: Array, band: tuple[float, float] | None = None) -> Misfit:
         """Return the misfit of one trial by its own errors only, all else as the unknowns x have it, within another band [Hz]."""
@@ -95,13 +96,13 @@ class Misfit:
         shared = [replace(item, neutral=float(value), scale=0.0) for item, value in zip(self.shared, self.adjusted(x), strict=True)]
         return Misfit(problem, self.noises, np.zeros(0), self.nuisances, band or self.band, shared, self.common_errors(x))
 
-    def _weight(self, number: int, reference: Mapping[str, float], supposed: Sequence[Condition]) -> _Weight:
-        trial, errors, dt = self.problem.trials[number], self.errors[number], self.problem.trials[number].recording.dt
+    def _weight(self, number: int, reference: Mapping[str, float], x: Array) -> _Weight:
+        trial, dt = self.problem.trials[number], self.problem.trials[number].recording.dt
         frequency = np.asarray(np.fft.rfftfreq(len(trial.recording.time), dt), dtype=np.float64)
         inside = (frequency >= self.band[0]) & (frequency <= self.band[1])
         own = {name: value for name, value in reference.items() if name not in trial.fixed}
-        answer = road_answer(trial, frequency[inside], trial.values | own, self.nuisances.speed_spread(trial))
-        answer = as_read(answer, errors.reading(answer.frequency, errors.numbers_of(trial.name, supposed)))
+        reading = self.errors[number].reading(frequency[inside], self.errors_of(x, number))
+        answer = as_read(road_answer(trial, frequency[inside], trial.values | own, self.nuisances.speed_spread(trial)), reading)
         measured = transform(trial.recording.values, dt, inside, seen=trial.window)
         return _Weight(inside, measured, answer, self.noises[trial.name].whitener(answer))
 
@@ -141,8 +142,7 @@ class Misfit:
     def error_position(self, number: int, name: str) -> int | None:
         """Return where an error of trial `number` stands among all `n_errors`; None where it is left out."""
         names = [item.name for item in self.errors[number].own]
-        before = self.n_parameters + len(self.shared)
-        return self.own_columns(number).start - before + names.index(name) if name in names else None
+        return self.own_columns(number).start - self.n_unknowns + self.n_errors + names.index(name) if name in names else None
 
     def scenario(self, x: Array, number: int) -> Scenario:
         """Return what trial `number` drives through, with its errors and the adjustments."""

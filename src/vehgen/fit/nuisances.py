@@ -73,7 +73,7 @@ class Nuisances:
         Of each gyroscope's delay against the accelerometer beside it [s]: chips filter the two in different ways.
     axle_position
         Of how far each axle runs behind the first to arrive [m], where no parameter with a range says it: a tape measures between hubs
-        that nobody sees both of. The way its road is late counts, not the lever at which it pushes, of which this is next to nothing.
+        that nobody sees both of. The way its road is late counts, not the lever at which it pushes, of which this is a few thousandths.
     roll_off, edge, dispersion, edge_dispersion
         Of how an unknown recorder's low-pass differs from the one that stands for it: at half the rate of the recording a factor of
         exp(-r - s - i (d + e)) (see :mod:`vehgen.fit.reading`). Declared recorders have none.

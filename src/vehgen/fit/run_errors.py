@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.fit.nuisances import OF_INPUTS, OF_TIME, READING, Condition, Nuisance
+from vehgen.fit.nuisances import OF_INPUTS, OF_TIME, READING, Nuisance
 from vehgen.fit.reading import Reading
 from vehgen.fit.trial import Trial
 from vehgen.road import Wander
@@ -54,12 +54,6 @@ class RunErrors:
     def items(self) -> tuple[Nuisance, ...]:
         """All errors, the common ones first."""
         return (*self.common, *self.own)
-
-    def numbers_of(self, run: str, conditions: Sequence[Condition]) -> Array:
-        """Return the numbers `shape (size,)` of the errors as conditions of this run and of all runs have them; else 0."""
-        known = {item.key: item.sigmas for item in conditions if item.run in ("", run)}
-        places = [(item.name, item.place) for item in self.items]
-        return np.array([known.get((run, *place), known.get(("", *place), 0.0)) for place in places])
 
     def scenario(self, scenario: Scenario, numbers: Array) -> Scenario:
         """Return the scenario with the errors."""
