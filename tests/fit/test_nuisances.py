@@ -13,7 +13,7 @@ from vehgen.fit.least_squares import FitOptions, fit_least_squares
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import EVEN, Noise
-from vehgen.fit.nuisances import Nuisances, asked_nuisances, wander_knots
+from vehgen.fit.nuisances import LOW_PASS, Nuisances, asked_nuisances, wander_knots
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
 from vehgen.road import Hump
@@ -89,7 +89,7 @@ def test_what_an_unknown_low_pass_takes_off_is_found_and_a_declared_one_takes_no
         assert found["dispersion", sensor] == pytest.approx(1.0, abs=0.5)
     assert fit.chi2 == pytest.approx(1.0, abs=0.1)
     declared = changed(tmp_path, lambda v: v, text=lambda text: text + "acquisition: none\n")
-    assert not {item.name for item in Nuisances().of_all_runs([declared])} & {"roll_off", "dispersion"}
+    assert not {item.name for item in Nuisances().of_all_runs([declared])} & set(LOW_PASS)
 
 
 def test_an_axle_that_runs_elsewhere_is_found(tmp_path):
