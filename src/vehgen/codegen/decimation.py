@@ -32,7 +32,8 @@ def filter_phases(fine: Array, weights: Array, last: int, found: Array) -> None:
     total = np.empty(n_samples)
     for a in range(fine.shape[0]):
         for c in range(fine.shape[2]):
-            total[:] = 0.0
+            for i in range(n_samples):
+                total[i] = 0.0
             for p in range(ratio):
                 for m in range(n_samples + n_shifts):
                     r = (m - last) * ratio - p
@@ -44,7 +45,8 @@ def filter_phases(fine: Array, weights: Array, last: int, found: Array) -> None:
                     s2, s3 = phase[q + 2 : q + 2 + n_samples], phase[q + 3 : q + 3 + n_samples]
                     for i in range(n_samples):  # over slices that begin at 0: an index that might be negative is no vector's
                         total[i] += w0 * s0[i] + w1 * s1[i] + w2 * s2[i] + w3 * s3[i]
-            found[a, :, c] = total
+            for i in range(n_samples):  # assigned as a whole, its errors would take most of the time to compile
+                found[a, i, c] = total[i]
 
 
 @dataclass(frozen=True)
