@@ -64,7 +64,7 @@ def judged_fit(detection: Detection, found: SearchRound, fit: ModelFit, tried: i
     good, p = passes(fit, base), p_value_of(found, fit, tried)
     runs = [trial.name for trial in detection.validation_runs]
     interval = gain_interval(base, fit, runs)
-    rivals = compare_with_placebo_laws(found, fit, detection)
+    rivals = compare_with_placebo_laws(found, fit)
     weak = [
         name
         for name, fails in (

@@ -213,7 +213,7 @@ class Decision(Ending):
             if shown and chi > VISIBLE:
                 return self._end("insufficient_data", *wording.seen_once(self._words(best.last), chi, shown))
             return self._propose(wording.not_seen_again(self._words(best.last)), best)
-        rivals = compare_with_placebo_laws(first, best, self.detection)
+        rivals = compare_with_placebo_laws(first, best)
         if rivals is not None and rivals[1] >= rivals[0] - limit.DECOY:
             return self._propose(wording.like_a_random_law(self._words(best.last), *rivals), best)
         if rivals is not None:

@@ -150,6 +150,12 @@ def recover(detection: Detection, result: PlaceResult, component: int = 0) -> tu
     return tuple(found)
 
 
+def motions(misfit: Misfit, result: PlaceResult) -> dict[str, tuple[Array, Array]]:
+    """Return travel and rate of a hypothesis's place in a misfit's runs, by name, each `shape (n,)`, as :func:`recover` does."""
+    still = np.zeros((len(result.x), 0))
+    return {run.run: (run.travel, run.rate) for run in _recover(misfit, result, still, 0, False)}
+
+
 @dataclass(frozen=True, eq=False)
 class _Raw:
     """A force as spectral lines of the band with their variance, the motion without it, and the element's stiffness and damping."""
@@ -192,7 +198,7 @@ def _recover(misfit: Misfit, result: PlaceResult, directions: Array, component: 
             np.zeros((0, 3, n)),
         )
         changes = [_change(central, history, item[t].element) for history, item in zip(histories[1:], moved, strict=True)]
-        found.append(replace(central, variants=np.array(changes)))
+        found.append(replace(central, variants=np.reshape(changes, (-1, 3, n))))
     return found
 
 

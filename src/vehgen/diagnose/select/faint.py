@@ -95,7 +95,7 @@ def faintly_told(found: SearchRound, detection: Detection) -> ModelFit | None:
     if held or not replace(detection, base=best).is_quiet or not _beats_freed_base(found, best, detection):
         return None
     places = localise_at(found.current, best.last.place)
-    return None if like_a_placebo_law(places, found.current, best, detection) else best
+    return None if like_a_placebo_law(places, found.current, best) else best
 
 
 def _falls(found: SearchRound, fit: ModelFit) -> bool:

@@ -13,10 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose import thresholds as limit
-from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.fits.projection import Projection
-from vehgen.diagnose.localise.recovered_force import recover
+from vehgen.diagnose.localise.recovered_force import motions
 from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.diagnose.select.search import SearchRound
 from vehgen.fit.misfit import flatten
@@ -81,7 +80,7 @@ def _responses(base: ModelFit, place: PlaceResult) -> list[NDArray[np.complex128
     return [force_response(model, known[t], rows, misfit.frequency(t), number)[:, :, 0] for t, model in enumerate(models)]
 
 
-def left_by_placebo_laws(places: Sequence[PlaceResult], base: ModelFit, fit: ModelFit, detection: Detection) -> Array | None:
+def left_by_placebo_laws(places: Sequence[PlaceResult], base: ModelFit, fit: ModelFit) -> Array | None:
     """Return the mean square on the training runs that each of COUNT decoys leaves at the place of a fit's last effect, `shape (COUNT,)`.
 
     None where that effect is no law at one of the `places` of a single force.
@@ -91,23 +90,22 @@ def left_by_placebo_laws(places: Sequence[PlaceResult], base: ModelFit, fit: Mod
     place = next((item for item in here if item.place.kind == fit.last.effect.attaches), here[0] if here else None)
     if place is None or not fit.last.effect.changes_vehicle:
         return None
-    motion = {run.run: (run.travel, run.rate) for run in recover(detection, place) if not run.validation}
-    return decoy_mean_squares(base, place, motion, max(len(fit.last.parameters), 1))
+    return decoy_mean_squares(base, place, motions(base.least_squares.misfit, place), max(len(fit.last.parameters), 1))
 
 
-def compare_with_placebo_laws(found: SearchRound, fit: ModelFit, detection: Detection) -> tuple[float, float] | None:
+def compare_with_placebo_laws(found: SearchRound, fit: ModelFit) -> tuple[float, float] | None:
     """Return the shares of the excess on the training runs that an effect and the best decoy close.
 
     None where the effect is no law at the place that the place test found with one force.
     """
-    left = left_by_placebo_laws(found.passed, found.current, fit, detection)
+    left = left_by_placebo_laws(found.passed, found.current, fit)
     if left is None:
         return None
     before = max(found.current.training - 1, 1e-9)
     return 1 - max(fit.training - 1, 0.0) / before, 1 - max(float(left.min()) - 1, 0.0) / before
 
 
-def like_a_placebo_law(places: Sequence[PlaceResult], base: ModelFit, fit: ModelFit, detection: Detection) -> bool:
+def like_a_placebo_law(places: Sequence[PlaceResult], base: ModelFit, fit: ModelFit) -> bool:
     """Return whether the best decoy lets the squares fall as far as an effect does, but for DECOY of that."""
-    left = left_by_placebo_laws(places, base, fit, detection)
+    left = left_by_placebo_laws(places, base, fit)
     return left is not None and base.training - float(left.min()) >= (1 - limit.DECOY) * (base.training - fit.training)
