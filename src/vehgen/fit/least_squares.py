@@ -110,7 +110,7 @@ def fit_least_squares(
     *,
     noises: Noises | None = None,
     first: Noises | None = None,
-    start: Array | None = None,
+    start: Array | Callable[[Misfit], Array] | None = None,
     prior_data: PriorData | None = None,
     shared: Sequence[Adjustment] = (),
     numbers: Sequence[float] = (),
@@ -132,7 +132,7 @@ def fit_least_squares(
     first
         Noise from which its estimation starts (default: :func:`first_noises`).
     start
-        Where the errors begin, `shape (n_errors,)`; by default every run is laid over its recording.
+        Where the errors begin, `shape (n_errors,)`, or what tells that of the misfit; by default every run is laid over its recording.
     prior_data
         What is known from elsewhere.
     shared, numbers
@@ -147,7 +147,8 @@ def fit_least_squares(
     noises = noises or first or first_noises(problem)
     misfit = Misfit(problem, noises, problem.space.values(unit), options.nuisances, options.band, shared, known)
     begun = [(value - item.neutral) / item.scale for item, value in zip(shared, numbers, strict=True)] if numbers else [0.0] * len(shared)
-    x = np.concatenate([np.clip(unit, 0.0, 1.0), begun, align(misfit, unit, begun) if start is None else start])
+    errors = align(misfit, unit, begun) if start is None else start(misfit) if callable(start) else start
+    x = np.concatenate([np.clip(unit, 0.0, 1.0), begun, errors])
     result, last = _fit(misfit, x, prior_data, options, options.tolerance if given else COARSE_TOLERANCE, nearby)
     for left in reversed(range(0 if given else options.noise_rounds - 1)):
         noises = estimate_noises(misfit, result)

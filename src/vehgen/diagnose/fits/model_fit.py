@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,7 +104,8 @@ class CurrentModel:
 
     `problem` begins at that fit's parameters, of which the last `free` are the effects'; `shared` are its adjustments, whose neutral
     numbers are the fitted ones; `unit` and `errors` are where parameters and errors begin; `training` is the mean square it leaves;
-    `nearby` the last linearisation of the fit, `squares` the lines' frequencies [Hz] and squares, run by run.
+    `nearby` the last linearisation of the fit, `squares` the lines' frequencies [Hz] and squares, run by run; `validation_fits` the fit, if
+    there is one, to the validation runs.
     """
 
     effects: tuple[Candidate, ...]
@@ -115,6 +117,7 @@ class CurrentModel:
     training: float
     nearby: Linearisation | None = None
     squares: tuple[tuple[Array, Array], ...] = ()
+    validation_fits: tuple[LeastSquaresFit, ...] = ()
 
     def slow(self, top: float) -> float:
         """Return the mean square that it leaves of motions up to a frequency [Hz]."""
@@ -135,7 +138,8 @@ class CurrentModel:
             space = replace(space, start=start)
         nearby = fit.least_squares.linearisation
         squares = tuple((misfit.frequency(t), fit.spectra[trial.name]) for t, trial in enumerate(misfit.problem.trials))
-        return cls(fit.effects, Problem(misfit.problem.trials, space), shared, free, unit, errors, fit.training, nearby, squares)
+        problem = Problem(misfit.problem.trials, space)
+        return cls(fit.effects, problem, shared, free, unit, errors, fit.training, nearby, squares, fit.parts[1:])
 
 
 def narrow(problem: Problem) -> Problem:
@@ -214,20 +218,22 @@ def refine(
     options = replace(OPTIONS, band=band or misfit.band, max_steps=40, n_effect_parameters=n_effect_parameters)
     options = replace(options, prior_sigma=base_priors(names, effects), most_sigmas=most_sigmas)
     numbers = tuple(misfit.adjusted(x))
-    if known_errors:
-        begun = Misfit(problem, noises or misfit.noises, problem.space.start, NUISANCES, options.band, misfit.shared, misfit.known)
-        errors = np.sum([begun.errors_like(item.misfit, item.x) for item in known_errors], axis=0)
     return fit_least_squares(
         problem,
         unit,
         options,
         noises=noises or misfit.noises,
-        start=errors,
+        start=partial(_errors_as_in, known_errors) if known_errors else errors,
         shared=misfit.shared,
         numbers=numbers,
         known=misfit.known,
         nearby=None if noises else fit.linearisation,
     )
+
+
+def _errors_as_in(fits: Sequence[LeastSquaresFit], misfit: Misfit) -> Array:
+    """Return the errors of a misfit as fits to parts of its runs have them, `shape (n_errors,)`."""
+    return np.asarray(np.sum([misfit.errors_like(item.misfit, item.x) for item in fits], axis=0))
 
 
 def evaluate_fit(
@@ -236,36 +242,35 @@ def evaluate_fit(
     validation_runs: Sequence[Trial],
     noises: Noises,
     most_sigmas: float = MOST_SIGMAS,
+    near: Sequence[LeastSquaresFit] = (),
 ) -> ModelFit:
-    """Simulate a fitted model on validation runs, of which only the clock, speed and road height are fitted, and the phase of a line."""
+    """Simulate a fitted model on validation runs, of which only the clock, speed and road height are fitted, and the phase of a line.
+
+    These errors begin as other models' fits to the same runs, `near`, have them (default: runs are laid over their recordings).
+    """
     powers = _powers(fit)
     runs, counts = _by_run(powers)
-    train = _pooled(runs, counts)
-    later = float("nan")
+    train, later = _pooled(runs, counts), float("nan")
     again: LeastSquaresFit | None = None
     if validation_runs:
         problem = fit.misfit.problem
-        fixed = problem.best_values(fit.values)
-        vehicle = problem.trials[0].run.vehicle
+        vehicle, fixed = problem.trials[0].run.vehicle, problem.best_values(fit.values)
         shared = SimulatorPool()
         for trial in problem.trials:
             shared.add(vehicle, [channel.output for channel in trial.recording.channels], trial.run.forces(), trial.simulator)
         trials = [trial.with_vehicle(vehicle, shared) for trial in validation_runs]
-        numbers = fit.misfit.adjusted(fit.x)
-        frozen = Problem(
-            tuple(replace(t, values=t.values | {k: v for k, v in fixed.items() if k not in t.fixed}) for t in trials), _nothing()
-        )
-        frozen_shared = tuple(
-            replace(item, neutral=float(value), scale=0.0) for item, value in zip(fit.misfit.shared, numbers, strict=True)
-        )
+        own_values = (t.values | {k: v for k, v in fixed.items() if k not in t.fixed} for t in trials)
+        frozen = Problem(tuple(replace(t, values=values) for t, values in zip(trials, own_values, strict=True)), _nothing())
+        numbers = zip(fit.misfit.shared, fit.misfit.adjusted(fit.x), strict=True)
+        frozen_shared = tuple(replace(item, neutral=float(at), scale=0.0) for item, at in numbers)
         frozen = resolve(*_begin(frozen, noises, fit.misfit.band, frozen_shared))
         options = replace(OPTIONS, band=fit.misfit.band, most_sigmas=most_sigmas)
         known = fit.misfit.common_errors(fit.x)
-        again = fit_least_squares(frozen, np.zeros(0), options, noises=noises, shared=frozen_shared, known=known)
+        laid = partial(_errors_as_in, near) if near else None
+        again = fit_least_squares(frozen, np.zeros(0), options, noises=noises, start=laid, shared=frozen_shared, known=known)
         checked = _powers(again)
         own, own_counts = _by_run(checked)
-        later = _pooled(own, own_counts)
-        runs, counts, powers = runs | own, counts | own_counts, powers | checked
+        later, runs, counts, powers = _pooled(own, own_counts), runs | own, counts | own_counts, powers | checked
     return ModelFit(effects, fit, train, later, runs, counts, powers, again)
 
 
@@ -282,8 +287,8 @@ def _nothing() -> SearchSpace:
 
 def _powers(fit: LeastSquaresFit) -> dict[str, Array]:
     """Return the squares of a fit's whitened lines by run, `shape (n_lines, n_channels)`."""
-    names = [trial.name for trial in fit.misfit.problem.trials]
-    return {name: np.abs(item) ** 2 for name, item in zip(names, fit.misfit.whitened_spectrum(fit.x), strict=True)}
+    lines = fit.misfit.whitened_spectrum(fit.x)
+    return {trial.name: np.abs(item) ** 2 for trial, item in zip(fit.misfit.problem.trials, lines, strict=True)}
 
 
 def _by_run(powers: dict[str, Array]) -> tuple[dict[str, float], dict[str, int]]:

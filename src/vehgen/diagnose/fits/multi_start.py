@@ -94,7 +94,8 @@ def fit_candidate(
         return evaluate_fit(effects, best, (), noises)
     fit = without_strain(refine(resolve(best.misfit, best.x), best, best.x, effects), effects)
     candidate, fit = release(candidate, current, fit, locator, simulators)
-    return evaluate_fit((*current.effects, candidate), fit, validation_runs, noises)
+    near = () if candidate.shared else current.validation_fits  # what changes runs changes what their errors must be
+    return evaluate_fit((*current.effects, candidate), fit, validation_runs, noises, near=near)
 
 
 class _Rough:

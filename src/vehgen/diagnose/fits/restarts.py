@@ -31,4 +31,4 @@ def restart(fit: ModelFit, validation_runs: Sequence[Trial], noises: Noises, see
         found.append(refine(misfit.problem, fit.least_squares, begin, fit.effects))
     best = min(found, key=lambda item: item.loss)
     equals = tuple(item.x for item in found if item.chi2 <= best.chi2 + AS_GOOD)
-    return replace(evaluate_fit(fit.effects, best, validation_runs, noises), equivalent_minima=equals)
+    return replace(evaluate_fit(fit.effects, best, validation_runs, noises, near=fit.parts[1:]), equivalent_minima=equals)

@@ -106,7 +106,8 @@ class Fitter:
         noises, runs = self.detection.floor.noises, self.detection.validation_runs
         found = refine(problem, fit.least_squares, fit.least_squares.x, fit.effects, noises, self.detection.band, fit.parts)
         last, found = release(fit.last, self.current, found, self.locator, self.simulators)
-        return replace(evaluate_fit((*fit.effects[:-1], last), found, runs, noises), equivalent_minima=fit.equivalent_minima)
+        again = evaluate_fit((*fit.effects[:-1], last), found, runs, noises, near=fit.parts)
+        return replace(again, equivalent_minima=fit.equivalent_minima)
 
     def weigh_again(self, fit: ModelFit) -> ModelFit:
         """Return a first effect's fit to the training runs as it is, by the noise that is now known."""
