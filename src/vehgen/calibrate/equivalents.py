@@ -14,7 +14,7 @@ import scipy.linalg
 import scipy.optimize
 from numpy.typing import NDArray
 
-from vehgen.calibrate.identifiability import answer_derivatives, answers, distinct_trials, null_space, remaining_directions
+from vehgen.calibrate.identifiability import answer_derivatives, answers, distinct_trials, driven, null_space, remaining_directions
 from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.prior_data import PriorData
 
@@ -77,7 +77,7 @@ class _Surface:
         self.start = fit.misfit.split(fit.x)[0]
         values = self.space.values(self.start)
         self.responses = self._responses(values)
-        self.scales = [np.linalg.norm(response, axis=(0, 2), keepdims=True) for response in self.responses]
+        self.scales = [_scale(response) for response in self.responses]
         self.known = self._known(values)
 
     def null(self, unit: Array) -> Array:
@@ -128,8 +128,9 @@ class _Surface:
         return remaining_directions(null, derivatives[len(derivatives) - n_known :])
 
     def _responses(self, values: Array) -> list[Complex]:
-        """Return the frequency responses of all sensors, `shape (n, n_channels, n_inputs)`, a trial each; one at each travel of laws."""
-        return [answers(trial.simulator.model, self.problem.values_of(values, trial)) for trial in distinct_trials(self.problem)]
+        """Return the frequency responses of all sensors, `shape (n, n_channels, n_drives)`, a trial each; one at each travel of laws."""
+        trials = distinct_trials(self.problem)
+        return [answers(trial.simulator.model, self.problem.values_of(values, trial), driven(trial)) for trial in trials]
 
     def _known(self, values: Array) -> Array:
         return np.zeros(0) if self.facts is None else FACT_WEIGHT * self.facts.residuals(values)
@@ -146,9 +147,15 @@ class _Surface:
         """Return the derivatives of :meth:`_off` by the unit cube's coordinates, those of the facts last."""
         names, parts = self.space.names, []
         for trial, scale in zip(distinct_trials(self.problem), self.scales, strict=True):
-            derived = answer_derivatives(trial.simulator.model, self.problem.values_of(values, trial), names) / scale
+            derived = answer_derivatives(trial.simulator.model, self.problem.values_of(values, trial), names, driven(trial)) / scale
             derived[[i for i, name in enumerate(names) if name in trial.fixed]] = 0.0
             parts.append(derived.reshape(len(names), -1))
         flat = np.concatenate(parts, axis=1)
         known = np.zeros((0, len(names))) if self.facts is None else FACT_WEIGHT * self.facts.jacobian(values)
         return np.vstack([flat.real.T, flat.imag.T, known]) * self.space.slopes(values)
+
+
+def _scale(response: Complex) -> Array:
+    """Return the size of a channel's answers `shape (n, n_channels, n_drives)` to each drive, 1 where there are none."""
+    found = np.linalg.norm(response, axis=0, keepdims=True)
+    return np.where(found > 0, found, 1.0)

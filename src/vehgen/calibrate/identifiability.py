@@ -1,9 +1,9 @@
 """Structural identifiability: which parameters and combinations recordings can determine at all, for any vehicle.
 
-Frequency responses from the road to the sensors and their derivatives by every searched parameter are exact. Directions in parameter space
-along which no response changes, at any frequency, from any axle, are unidentifiable: no run over any road determines them, whatever the
-noise. They are found as the null space of the stacked derivatives; as these are exact, many decades separate its singular values from
-those of a parameter that the responses hardly depend on.
+Frequency responses from the road, or what else drives a run, to the sensors and their derivatives by every searched parameter are exact.
+Directions in parameter space along which no response changes, at any frequency, from any axle, are unidentifiable: no run over any road
+determines them, whatever the noise. They are found as the null space of the stacked derivatives; as these are exact, many decades
+separate its singular values from those of a parameter that the responses hardly depend on.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ def find_structure(problem: Problem, values: Array) -> Structure:
     """
     found = []
     for trial in distinct_trials(problem):
-        found.append(_scaled_derivatives(problem, trial.simulator.model, problem.values_of(values, trial), trial.fixed, values))
+        found.append(_scaled_derivatives(problem, trial, values))
     null, singular = null_space(np.concatenate(found, axis=0))
     if not len(null):
         return Structure(problem.space, null, (), singular)
@@ -103,8 +103,25 @@ def _weighable(problem: Problem) -> Array:
 
 
 def distinct_trials(problem: Problem) -> list[Trial]:
-    """Return one trial of all those whose sensors and fixed parameters are the same: they show the same responses."""
-    return list({(repr(item.simulator.model.channels), item.fixed): item for item in problem.trials}.values())
+    """Return one trial of all those whose sensors, fixed parameters and drives are the same: they show the same responses."""
+    return list({_shown_by(item): item for item in problem.trials}.values())
+
+
+def _shown_by(trial: Trial) -> tuple[object, ...]:
+    model = trial.simulator.model
+    fixed = tuple((name, trial.values.get(name)) for name in trial.fixed)
+    return repr(model.channels), repr(model.matrix_entries()["F"]), fixed, tuple(driven(trial).tolist())
+
+
+def driven(trial: Trial) -> NDArray[np.bool_]:
+    """Return which displacement inputs and forces drive a trial, `shape (n_inputs + n_forces,)`.
+
+    A vehicle that is released answers as to its inputs, in what of it that tells: all of them count.
+    """
+    model, scenario = trial.simulator.model, trial.scenario
+    roads = [bool(scenario.track.parts)] * (len(model.inputs) - len(scenario.ground))
+    found = np.array([*roads, *(item is not None for item in scenario.ground), *(True for _ in model.forces)], dtype=bool)
+    return found if found.any() else np.ones_like(found)
 
 
 def remaining_directions(null: Array, known: Array) -> Array:
@@ -145,33 +162,43 @@ def null_space(derivatives: Array) -> tuple[Array, Array]:
     return np.asarray(null / np.linalg.norm(null, axis=1, keepdims=True)), singular
 
 
-def _scaled_derivatives(
-    problem: Problem, model: EquationsOfMotion, values: Mapping[str, float], fixed: tuple[str, ...], searched: Array
-) -> Array:
+def _scaled_derivatives(problem: Problem, trial: Trial, searched: Array) -> Array:
     names = problem.space.names
-    flat = stacked_derivatives(model, values, names) * problem.space.slopes(searched)
-    flat[:, [i for i, name in enumerate(names) if name in fixed]] = 0.0
+    flat = stacked_derivatives(trial.simulator.model, problem.values_of(searched, trial), names, driven(trial))
+    flat *= problem.space.slopes(searched)
+    flat[:, [i for i, name in enumerate(names) if name in trial.fixed]] = 0.0
     return flat
 
 
-def stacked_derivatives(model: EquationsOfMotion, values: Mapping[str, float], names: tuple[str, ...]) -> Array:
-    """Return the derivatives of all channels' frequency responses by parameters, each channel scaled to 1, `shape (m, len(names))`."""
-    derived = answer_derivatives(model, values, names)
+def stacked_derivatives(
+    model: EquationsOfMotion, values: Mapping[str, float], names: tuple[str, ...], drives: NDArray[np.bool_] | None = None
+) -> Array:
+    """Return the derivatives of all channels' frequency responses by parameters, `shape (m, len(names))`.
+
+    To the inputs and forces `drives shape (n_inputs + n_forces,)` (default: to all), each channel's answer to each scaled to 1.
+    """
+    derived = answer_derivatives(model, values, names, drives)
     scale = np.linalg.norm(derived, axis=(0, 1), keepdims=True)
     flat = (derived / np.where(scale > 0, scale, 1.0)).reshape(len(names), -1)
     return np.concatenate([flat.real, flat.imag], axis=1).T
 
 
-def answers(model: EquationsOfMotion, values: Mapping[str, float]) -> Complex:
-    """Return the frequency responses of all channels to the road, `shape (n, n_channels, n_inputs)`, at FREQUENCIES.
+def answers(model: EquationsOfMotion, values: Mapping[str, float], drives: NDArray[np.bool_] | None = None) -> Complex:
+    """Return the frequency responses of all channels, `shape (n, n_channels, n_drives)`, at FREQUENCIES.
 
-    Force laws are in them as what they are to harmonic travels: FREQUENCIES come again for every amplitude.
+    To the inputs and forces `drives shape (n_inputs + n_forces,)` (default: to all). Force laws are in them as what they are to harmonic
+    travels: FREQUENCIES come again for every amplitude.
     """
     numeric, looks = model.numeric(values), harmonic_laws(model, values, FREQUENCIES)
-    return np.concatenate([transfer_functions(numeric, FREQUENCIES, [item.law for item in laws])[0] for laws in looks])
+    each = (transfer_functions(numeric, FREQUENCIES, [item.law for item in laws]) for laws in looks)
+    found = np.concatenate([np.concatenate(pair, axis=2) for pair in each])
+    return found if drives is None else found[:, :, drives]
 
 
-def answer_derivatives(model: EquationsOfMotion, values: Mapping[str, float], names: tuple[str, ...]) -> Complex:
-    """Return the derivatives of :func:`answers` by parameters, exact, `shape (len(names), n, n_channels, n_inputs)`."""
+def answer_derivatives(
+    model: EquationsOfMotion, values: Mapping[str, float], names: tuple[str, ...], drives: NDArray[np.bool_] | None = None
+) -> Complex:
+    """Return the derivatives of :func:`answers` by parameters, exact, `shape (len(names), n, n_channels, n_drives)`."""
     looks = harmonic_laws(model, values, FREQUENCIES, names)
-    return np.concatenate([response_derivatives(model, values, names, FREQUENCIES, laws) for laws in looks], axis=1)
+    found = np.concatenate([response_derivatives(model, values, names, FREQUENCIES, laws) for laws in looks], axis=1)
+    return found if drives is None else found[..., drives]

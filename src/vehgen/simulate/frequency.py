@@ -188,23 +188,25 @@ def _loads(numeric: NumericModel, omega: Array) -> tuple[Complex, Complex]:
 def response_derivatives(
     model: EquationsOfMotion, values: Mapping[str, float], names: tuple[str, ...], frequency: Array, laws: Sequence[LawResponse] = ()
 ) -> Complex:
-    """Return the derivatives of the road part of :func:`transfer_functions` by parameters, exact.
+    """Return the derivatives of :func:`transfer_functions` by parameters, exact: by displacement inputs, then by forces.
 
     With D X = E and H = R X + W, a parameter moves H by dR X + R D^-1 (dE - dD X) + dW. `laws` are those of
     :func:`vehgen.simulate.harmonic_laws.harmonic_laws` at one amplitude, for the same parameters.
 
     Returns
     -------
-    `shape (len(names), n, n_channels, n_inputs)` per SI unit of each parameter.
+    `shape (len(names), n, n_channels, n_inputs + n_forces)` per SI unit of each parameter.
     """
     omega = 2 * np.pi * frequency
     w = omega[:, None, None]
     numeric = model.numeric(values)
+    width = numeric.P.shape[1]
     stiffness = dynamic_stiffness(numeric, omega, [item.law for item in laws])
-    load, (rows, _) = _loads(numeric, omega)[0], output_rows(numeric.outputs, omega)
+    load, (rows, _) = np.concatenate(_loads(numeric, omega), axis=2), output_rows(numeric.outputs, omega)
     for item in laws:
         _, pulled, read, _ = _quarters(item.law.stiffness(omega) * _block(item.law), model.n_dof)
-        load, rows = load - pulled, rows + read
+        load[:, :, :width] -= pulled
+        rows = rows + read
     states = np.linalg.solve(stiffness, load)
     adjoint = np.linalg.solve(stiffness.transpose(0, 2, 1), rows.transpose(0, 2, 1)).transpose(0, 2, 1)
     found = np.empty((len(names), len(frequency), rows.shape[1], states.shape[2]), dtype=np.complex128)
@@ -213,11 +215,13 @@ def response_derivatives(
         moved_rows, moved_direct = output_rows(d, omega)
         moved_stiffness = np.asarray(d["K"] + 1j * w * d["C"] - w * w * d["M"], dtype=np.complex128)
         moved_load = np.asarray(d["P"] + 1j * w * d["Q"], dtype=np.complex128)
+        pushed = np.repeat(d["F"][None].astype(np.complex128), len(omega), axis=0)
         for item in laws:
             moved = item.derivatives[i]
             block = moved.stiffness(omega) * _block(item.law) + item.law.stiffness(omega) * _moved_block(item.law, moved)
             stiffer, pulled, read, reaching = _quarters(block, model.n_dof)
             moved_stiffness, moved_load = moved_stiffness + stiffer, moved_load - pulled
             moved_rows, moved_direct = moved_rows + read, moved_direct + reaching
-        found[i] = moved_rows @ states + adjoint @ (moved_load - moved_stiffness @ states) + moved_direct
+        direct = np.concatenate([moved_direct, np.repeat(d["force"][None], len(omega), axis=0)], axis=2)
+        found[i] = moved_rows @ states + adjoint @ (np.concatenate([moved_load, pushed], axis=2) - moved_stiffness @ states) + direct
     return found
