@@ -6,8 +6,11 @@ import scipy.signal
 
 from tests.fit.profile_world import FINE, fine_channels, misfit_of, read_run, rough_road
 from tests.fit.recordings import sedan_truth, write_run
-from vehgen.fit.alignment import LATEST, align, best_delay
+from vehgen.fit.alignment import LATEST, align, best_delay, error_bounds
+from vehgen.fit.least_squares import first_noises
+from vehgen.fit.misfit import Misfit
 from vehgen.fit.nuisances import Nuisances
+from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
 
 DT, BAND = 0.01, (0.5, 8.0)
@@ -68,3 +71,23 @@ def test_a_run_whose_begin_is_known_is_left_as_it_is(tmp_path):
     trial = load_trials([write_run(tmp_path, "run", sedan_truth())])[0]
     misfit, x = misfit_of(trial, Nuisances(delay=0.0))
     assert not align(misfit, x[: misfit.n_parameters]).any()
+
+
+def test_a_hump_of_which_little_is_known_does_not_vanish(tmp_path):
+    run = write_run(tmp_path, "run", sedan_truth(), 2.5)
+    run.write_text(run.read_text(encoding="utf-8") + "uncertainty: {height: 0.5, length: 0.9, speed: 0.3}\n", encoding="utf-8")
+    problem = make_problem(load_trials([run]))
+    misfit = Misfit(problem, first_noises(problem), problem.space.start)
+    low, _ = error_bounds(misfit)
+    least = {item.name: 1 + item.sigma * bound for item, bound in zip(misfit.conditions(np.zeros(misfit.n_unknowns)), low, strict=True)}
+    assert [least[name] for name in ("height", "length", "speed")] == pytest.approx([0.1, 0.1, 0.1])
+    assert (align(misfit, problem.space.unit(problem.space.start)) >= low).all()
+
+
+@pytest.mark.parametrize("band", [(3.0, 40.0), (9.0, 40.0), (0.3, 2.0)])
+def test_runs_are_laid_over_their_recordings_in_any_band(tmp_path, band):
+    problem = make_problem(load_trials([write_run(tmp_path, "run", sedan_truth(), 2.5)]))
+    misfit = Misfit(problem, first_noises(problem), problem.space.start, band=band)
+    laid = dict(zip((item.name for item in misfit.errors[0].own), align(misfit, problem.space.unit(problem.space.start)), strict=False))
+    assert abs(laid["delay"]) < 0.25
+    assert abs(laid["speed"]) < 3.0

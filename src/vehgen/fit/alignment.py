@@ -25,10 +25,14 @@ GUESSED, LENGTH_SIGMAS = 0.1, (-1.0, -0.5, 0.0, 0.5, 1.0)
 """Of a hump whose length has a larger standard deviation than this share, errors of the length that are tried, in standard deviations."""
 BANDS_HZ = (3.0, 8.0, 20.0)
 """Highest frequencies of the motions that are laid over one another, the slow ones first [Hz]."""
+WIDER = 1.2
+"""A band is left out that does not reach so many times as high as it begins."""
 MOST_SIGMAS = 4.0
 """No error of a run or a sensor is larger than so many standard deviations: what needs more is no small error."""
 MOST_SHARPENED = 1.0
 """Edges of a hump are drawn sharp: they may be sharper still by so many standard deviations of their wear, no more."""
+LEAST_SHARE = 0.1
+"""No speed, and no height or length of a hump, is less than this share of what was stated, however little is known of it."""
 LATEST = 1.0
 """Largest delay of a recording looked for [s]."""
 STEPS = 10
@@ -63,31 +67,38 @@ def _laid_over(misfit: Misfit, x: Array, number: int, bands: Sequence[float]) ->
     alone = misfit.alone(number, x)
     names = [item.name for item in alone.errors[0].own]
     sigma = alone.errors[0].own[names.index("delay")].sigma
-    top = min(misfit.band[1], BANDS_HZ[1])
+    low, high = misfit.band
+    top = BANDS_HZ[1] if WIDER * low < BANDS_HZ[1] < high else high
     best, start = -np.inf, np.zeros(len(names))
     guessed = any(item.name == "length" and item.sigma > GUESSED for item in alone.errors[0].own)
     ways = {"speed": SPEED_SIGMAS, "length": LENGTH_SIGMAS if guessed else (0.0,)}
     known = [name for name in ways if name in names]
-    for errors in product(*(ways[name] for name in known)):
+    least = dict(zip(names, error_bounds(alone)[0], strict=True))
+    for errors in product(*(sorted({max(error, least[name]) for error in ways[name]}) for name in known)):
         tried = np.zeros(len(names))
         tried[[names.index(name) for name in known]] = errors
         simulated = alone.motions(np.concatenate([np.zeros(len(alone.shared)), tried]))[0]
-        late, likeness = best_delay(trial.recording.values, simulated, trial.recording.dt, (misfit.band[0], top))
+        late, likeness = best_delay(trial.recording.values, simulated, trial.recording.dt, (low, top))
         if likeness > best:
             tried[names.index("delay")] = np.clip(late / sigma, -MOST_SIGMAS, MOST_SIGMAS)
             best, start = likeness, tried
     if "speed" not in names:
         return start
     for highest in bands:
-        if highest < misfit.band[1]:
-            start = _fitted(misfit.alone(number, x, (misfit.band[0], highest)), start)
+        if WIDER * low < highest < high:
+            start = _fitted(misfit.alone(number, x, (low, highest)), start)
     return start
 
 
 def error_bounds(misfit: Misfit, most: float = MOST_SIGMAS) -> tuple[Array, Array]:
     """Return the least and the largest errors, `shape (n_errors,)` each, of `most` standard deviations where nothing else is known."""
-    sharp = [item.name == "wear" for item in misfit.conditions(np.zeros(misfit.n_unknowns))]
-    return np.where(sharp, -MOST_SHARPENED, -most), np.full(misfit.n_errors, most)
+    low = np.full(misfit.n_errors, -most)
+    for i, item in enumerate(misfit.conditions(np.zeros(misfit.n_unknowns))):
+        if item.name == "wear":
+            low[i] = -MOST_SHARPENED
+        elif item.name in ("speed", "height", "length"):
+            low[i] = max(-most, (LEAST_SHARE - 1) / item.sigma)
+    return low, np.full(misfit.n_errors, most)
 
 
 def _fitted(alone: Misfit, start: Array) -> Array:

@@ -22,6 +22,7 @@ from vehgen.diagnose.fits.model_fit import (
 from vehgen.diagnose.fits.released import release
 from vehgen.effects import EffectLocator
 from vehgen.effects.evidence import StartingPoint
+from vehgen.fit.alignment import WIDER
 from vehgen.fit.least_squares import COARSE_TOLERANCE, FitOptions, LeastSquaresFit, fit_least_squares
 from vehgen.fit.misfit import Misfit, Noises
 from vehgen.fit.problem import Problem
@@ -41,8 +42,6 @@ SLOW_HZ = 10.0
 FEW_NUISANCES = replace(NUISANCES, length=0, form=0, skew=0, wear=0, wander=0, lag=0, gain=0, tilt=0, position=0)
 LEAST_HOPELESS = 2.0
 """An excess of slow motions below this may be due to the errors left out."""
-WIDER = 1.2
-"""A stage is left out that does not reach so many times as high as the band begins, or lower than it ends."""
 CLOSED_SHARE = 0.01
 """Share of the excess at which no other start is needed."""
 Start = tuple[Array, Array, tuple[float, ...]]
