@@ -9,6 +9,7 @@ from benchmarks.hidden_effects.generator import Effect, Hump, RunSpec, nominal, 
 
 from vehgen.diagnose.inputs.checks import check_inputs, variety_notes
 from vehgen.diagnose.inputs.comparison import compare
+from vehgen.diagnose.inputs.exchanges import exchanged
 from vehgen.diagnose.inputs.judging import explain_gap
 from vehgen.diagnose.pipeline import detect, split_runs
 
@@ -102,6 +103,14 @@ def test_correlation_is_that_of_numpy_at_the_lag_of_a_delayed_copy(plain):
         trial.recording.values.T @ moved / np.outer(*(np.linalg.norm(item, axis=0) for item in (trial.recording.values, moved))),
         abs=1e-9,
     )
+
+
+def test_recordings_change_places_with_the_samples_that_are_not_kept(plain):
+    one, other = plain[0], replace(plain[1], scenario=replace(plain[1].scenario, skipped=7))
+    again = exchanged(one, other, "recording")
+    assert again.recording is other.recording
+    assert again.scenario.skipped == 7
+    assert again.scenario.track is one.scenario.track
 
 
 def test_exchanged_phones_are_named(plain):

@@ -52,7 +52,7 @@ def exchange_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
             continue
         before = case.comparisons[i].unexplained + case.comparisons[j].unexplained
         for kind in _WHAT:
-            pair = _exchanged(one, other, kind), _exchanged(other, one, kind)
+            pair = exchanged(one, other, kind), exchanged(other, one, kind)
             own = [compare(trial, case.predict(trial), case.band) for trial in pair]
             after = sum(item.unexplained for item in own)
             if after < BETTER * before:
@@ -157,12 +157,12 @@ def _placed(trial: Trial, item: Comparison) -> Trial:
     return replace(trial, scenario=trial.scenario.adjusted(delay=item.lag))
 
 
-def _exchanged(trial: Trial, other: Trial, kind: str) -> Trial:
+def exchanged(trial: Trial, other: Trial, kind: str) -> Trial:
     """Return a trial with another's recording, speed or road."""
     if kind == "recording":
         times = other.scenario
         scenario = replace(trial.scenario, duration=times.duration, start=times.start, dt=times.dt, decimation=times.decimation)
-        return replace(trial, recording=other.recording, scenario=scenario)
+        return replace(trial, recording=other.recording, scenario=replace(scenario, skipped=times.skipped))
     if kind == "speed":
         return replace(trial, scenario=replace(trial.scenario, speed=other.scenario.speed))
     return replace(trial, scenario=replace(trial.scenario, track=other.scenario.track))
