@@ -1,5 +1,7 @@
 """An engine's line: what sensors show of it, and how it is found."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -81,3 +83,10 @@ def test_a_line_is_found_where_it_is_and_taken_out(shaken):
     after = np.mean(lined.residuals(np.concatenate([x[: plain.n_parameters], numbers, x[plain.n_parameters :]])) ** 2)
     assert before > 20
     assert after < 2.5
+
+
+def test_a_line_drifts_from_where_the_recording_begins(shaken):
+    _, (trial,) = shaken
+    later = replace(trial, recording=replace(trial.recording, time=trial.recording.time + 20.0))
+    here, there = (Harmonic("body", sigma={trial.name: SIGMA}).columns(item, 21.0, 0.02, trial.values) for item in (trial, later))
+    np.testing.assert_allclose(there, here, atol=1e-9 * np.abs(here).max())

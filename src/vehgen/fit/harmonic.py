@@ -58,7 +58,7 @@ class Harmonic(Adjustment):
 
     def columns(self, trial: Trial, frequency: float, drift: float, values: Mapping[str, float]) -> Array:
         """Return what the sensors read of unit forces, `shape (2 n_forces, n_samples, n_channels)`: heave in two phases, then pitch."""
-        time = trial.recording.time
+        time = trial.recording.time - trial.recording.time[0]
         duration = max(float(time[-1]), 1e-9)
         ends = np.array([frequency, frequency * (1.0 + drift)])
         answers = force_response(trial.simulator.model, values, _rows(trial, self.place), ends) * trial.channel_factors(ends)[:, :, None]
@@ -113,7 +113,7 @@ def _refine(misfit: Misfit, x: Array, about: float) -> tuple[float, float]:
     frequencies = np.arange(about - 1.2, about + 1.2, 0.02)
     energy = np.zeros((len(DRIFTS), len(frequencies)))
     for trial, simulated in zip(misfit.problem.trials, misfit.simulate(x), strict=True):
-        time = trial.recording.time
+        time = trial.recording.time - trial.recording.time[0]
         left = (trial.recording.values - simulated) / misfit.noises[trial.name].sigma
         duration = max(float(time[-1]), 1e-9)
         turning = np.exp(-2j * np.pi * np.outer(frequencies, time))
