@@ -13,7 +13,9 @@ from tests.phones.rough_phones import write_phone
 from vehgen.commands import main
 from vehgen.errors import InputError
 from vehgen.fit import rough_drives
+from vehgen.fit.ratio_bands import GAIN_RATIO_SIGMA, compared_ratio
 from vehgen.fit.transmissibility_result import Transmissibility
+from vehgen.measure.transmissibility import estimate_ratio, segment_transforms
 from vehgen.phones import PhoneSensor
 from vehgen.phones.rough_road import read_drive
 
@@ -239,3 +241,18 @@ def test_two_real_roads_give_one_ratio():
     assert found[0].ratios[0].bands[0].coherence > 0.7
     with pytest.raises(InputError, match="one channel only"):
         vehgen.transmissibility([SHARED / "rsq_q1_00.zip"])
+
+
+def test_gains_that_are_off_as_sensors_may_be_are_no_difference_to_a_model():
+    random, dt, found = np.random.default_rng(0), 0.01, 0
+    bands = ((0.5, 2.0), (2.0, 5.0), (5.0, 8.0), (8.0, 12.0), (12.0, 15.0), (15.0, 20.0))
+    for _ in range(40):
+        shaken = random.standard_normal(round(300 / dt))
+        pair = np.column_stack([shaken, (1 + GAIN_RATIO_SIGMA * random.standard_normal()) * shaken])
+        lines = segment_transforms(pair + 0.03 * random.standard_normal(pair.shape), dt, 8.0).between(0.5, 20.0)
+        estimate = estimate_ratio(lines.spectra(), lines.averages(), 0, 1)
+        model = np.ones((len(lines.frequency), 2, 2), dtype=complex)
+        found += any(band.is_apart for band in compared_ratio("y", "1", lines.frequency, estimate, bands, model, 1, len(bands)).bands)
+        other = compared_ratio("y", "1", lines.frequency, estimate, bands, model * [[1, 1.25], [1.25, 1.25**2]], 1, len(bands))
+        assert all(band.is_apart for band in other.bands)
+    assert found == 0

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+import scipy.optimize
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
@@ -68,10 +69,20 @@ def compared_ratio(
     )
 
 
-def outside(estimate: RatioEstimate, model: tuple[Array, Array]) -> Array:
-    """Return how far a model's H1 lies below the measured one, or its H2 above, in standard errors, `shape (n,)`; 0 between the two."""
-    beyond = np.maximum(np.log(estimate.h1 / model[0]), np.log(model[1] / estimate.h2))
-    return np.asarray(np.where(estimate.common, np.maximum(beyond, 0.0) / np.hypot(estimate.error, GAIN_RATIO_SIGMA), 0.0))
+def squares_outside(estimate: RatioEstimate, model: tuple[Array, Array], used: NDArray[np.bool_]) -> float:
+    """Return the sum of squares, in standard errors, by which a model's H1 lies below the measured one, or its H2 above; 0 between the two.
+
+    Of the lines `used shape (n,)`, as many as are independent. What both sensors' gains may be off is the same at all of them: the
+    likeliest such factor is taken out, at its price.
+    """
+    below, above, error = (item[used] for item in (np.log(estimate.h1 / model[0]), np.log(model[1] / estimate.h2), estimate.error))
+
+    def squares(gain: float) -> float:
+        beyond = np.maximum(np.maximum(below - gain, above + gain), 0.0) / error
+        return float((beyond**2).sum()) / NEIGHBOUR_INFLATION + (gain / GAIN_RATIO_SIGMA) ** 2
+
+    most = max(float(np.abs(np.concatenate([below, above])).max(initial=0.0)), GAIN_RATIO_SIGMA)
+    return float(scipy.optimize.minimize_scalar(squares, bounds=(-most, most), method="bounded").fun)
 
 
 def _band(
@@ -103,5 +114,5 @@ def _band(
     own = mean(np.sqrt(model[0] * model[1]))
     freedom = max(lines / NEIGHBOUR_INFLATION, 1.0)
     limit = float(np.sqrt(chi2.isf(FALSE_ALARMS / n_comparisons, freedom) / freedom))
-    distance = float(np.sqrt((outside(estimate, model)[used] ** 2).mean()))
+    distance = float(np.sqrt(squares_outside(estimate, model, used) * NEIGHBOUR_INFLATION / lines))
     return replace(measured, model=float(np.exp(own)) / measured.ratio, distance=distance, limit=limit)

@@ -14,13 +14,12 @@ from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
 from vehgen.files.result_fields import rounded
-from vehgen.fit.ratio_bands import compared_ratio, outside
+from vehgen.fit.ratio_bands import compared_ratio, squares_outside
 from vehgen.fit.rough_drives import Recordings, RoughDrive, as_exports, drive_of_phones, drive_of_run
 from vehgen.fit.transmissibility_result import ChannelRatio, Resonance, Transmissibility
 from vehgen.measure.shared_peaks import WIDTH_LINES, shared_peaks
 from vehgen.measure.transmissibility import (
     FEWEST_AVERAGES,
-    NEIGHBOUR_INFLATION,
     RatioEstimate,
     SegmentTransforms,
     estimate_ratio,
@@ -179,8 +178,9 @@ def _expected(
 
     def misfit(scale: float) -> tuple[float, Complex]:
         expected = rough_road_spectra(model, lines, speeds=scale * shares, segment=segment, values=drive.values, delays=delays)
-        squares = [(outside(estimate, model_ratio(expected, 0, i)) ** 2).sum() for i, estimate in enumerate(estimates, start=1)]
-        return float(np.sum(squares)) / NEIGHBOUR_INFLATION + ((scale - 1) / TOLD_SPEED_SIGMA) ** 2, expected
+        pairs = [(estimate, model_ratio(expected, 0, i)) for i, estimate in enumerate(estimates, start=1)]
+        squares = [squares_outside(estimate, model, estimate.common) for estimate, model in pairs]
+        return float(np.sum(squares)) + ((scale - 1) / TOLD_SPEED_SIGMA) ** 2, expected
 
     found = {float(scale): misfit(float(scale)) for scale in DRIVE_SPEED_SCALES}
     best = min(found, key=lambda scale: found[scale][0])
