@@ -7,7 +7,7 @@ import pytest
 import scipy.stats
 
 from vehgen.diagnose.select import estimates
-from vehgen.diagnose.select.estimates import RunEstimate, excluded, p_value
+from vehgen.diagnose.select.estimates import RunEstimate, _median_error, excluded, p_value
 from vehgen.diagnose.select.validation import gain_interval, seen_again, validation_gain
 from vehgen.diagnose.verdict import NamedParameter
 
@@ -96,3 +96,10 @@ def test_runs_without_a_gap_speak_by_their_squares():
 def test_runs_with_a_gap_speak_by_the_share_of_it_that_is_closed():
     assert seen_again(fit(noise(1, 5.0)), fit(noise(2, 2.0)), ["new"])
     assert not seen_again(fit(noise(1, 5.0)), fit(noise(2, 5.2)), ["new"])
+
+
+@pytest.mark.parametrize("runs", [2, 3, 4, 6])
+def test_a_median_of_few_runs_is_as_sure_as_it_says(runs):
+    drawn = np.random.default_rng(runs).standard_normal((runs, 4000))
+    held = np.mean(np.abs(np.median(drawn, axis=0)) <= 1.645 * _median_error(drawn))
+    assert held == pytest.approx(0.9, abs=0.04)

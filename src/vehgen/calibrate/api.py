@@ -8,6 +8,7 @@ from pathlib import Path
 
 from vehgen.calibrate.calibration import CalibrationProgress, Settings, calibrate_problem
 from vehgen.calibrate.genetic import GeneticSearch
+from vehgen.calibrate.intervals import check_combination
 from vehgen.calibrate.result import CalibrationSummary
 from vehgen.calibrate.summary import summarise
 from vehgen.errors import ArgumentError, did_you_mean
@@ -116,9 +117,12 @@ def calibrate(
     problem = make_problem(load_trials(runs, as_vehicle(vehicle)))
     prior_data = None if facts is None else load_prior_data(Path(facts), problem)
     path = None if checkpoint is None else Path(checkpoint)
+    asked = _names(combinations, "combinations")
+    for text in asked:  # before the search, not after it
+        check_combination(problem, text)
     with runner_at(scheduler, workers) as runner, one_blas_thread():  # small matrices: more threads only wait
         found = calibrate_problem(problem, settings, prior_data, progress, path, resume, runner)
-        return summarise(found, prior_data, _names(combinations, "combinations"), 0 if found.stopped else bootstrap, runner)
+        return summarise(found, prior_data, asked, 0 if found.stopped else bootstrap, runner)
 
 
 def check_numbers(

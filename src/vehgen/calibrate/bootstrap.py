@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from vehgen.calibrate.calibration import StepResult
-from vehgen.calibrate.intervals import LEVEL, Estimate, Uncertainty, refit
+from vehgen.calibrate.intervals import LEVEL, Estimate, Uncertainty, errors_left_open, refit
 from vehgen.fit.parallel import Runner
 from vehgen.fit.prior_data import PriorData
 
@@ -42,7 +42,9 @@ def bootstrap_intervals(
         Where the refits run.
     """
     seeds = [int(item) for item in np.random.SeedSequence([seed, 3]).generate_state(replicates)]
-    rows = np.array(list(runner.map(partial(refit, result.fits[0], facts=facts), seeds)))
+    fit = result.fits[0]
+    draw = partial(refit, fit, left_open=errors_left_open(fit), facts=facts)
+    rows = np.array(list(runner.map(draw, seeds)))
     tail = 50 * (1 - LEVEL)
     found = []
     for estimate in ratios:

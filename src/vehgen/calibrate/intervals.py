@@ -1,6 +1,7 @@
 """Intervals from the Fisher information, for parameters, combinations and natural frequencies; bootstraps to check them.
 
-The information of a fit is J'J of its whitened residuals. Nuisances are marginalised. Along unidentifiable directions there is none, and
+The information of a fit is J'J of its whitened residuals, less what the taper of a record takes: neighbouring lines of a tapered record are
+not independent. Nuisances are marginalised. Along unidentifiable directions there is none, and
 what depends on them gets no interval; for all else the covariance is V (V' F V)^-1 V', V a basis of the identifiable combinations.
 Where the residuals of a run are larger than the noise model says (its chi2 above 1), the recordings' information is divided by chi2:
 intervals grow by its root. The noise is estimated from all runs together, so that chi2 of all is near 1 wherever a fit ends.
@@ -10,7 +11,7 @@ Intervals of positive quantities are symmetric on a logarithmic scale.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,13 +22,18 @@ from vehgen.calibrate.identifiability import Structure, remaining_directions
 from vehgen.errors import InputError, shown
 from vehgen.files.expressions import Expression, ExpressionError, parse
 from vehgen.files.units import Dimension
+from vehgen.fit.alignment import error_bounds
 from vehgen.fit.least_squares import FitOptions, LeastSquaresFit, fit_least_squares
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.prior_data import PriorData
+from vehgen.fit.problem import Problem
+from vehgen.fit.window import seen_share
 from vehgen.simulate import Mode, natural_modes
 from vehgen.vehicle import Vehicle
 
 Array = NDArray[np.float64]
+TOLD = 0.3
+"""An error of a run or a sensor counts as told by the recordings where they leave less than this share of its prior's deviation."""
 LEVEL = 0.90
 """Confidence level of all intervals."""
 _GRADIENT_STEP = 1e-5
@@ -71,6 +77,21 @@ def read_combination(vehicle: Vehicle, text: str) -> tuple[Expression, Dimension
         raise InputError(f"{shown(text)}: {error}") from error
 
 
+def combination_value(vehicle: Vehicle, expression: Expression, free: Mapping[str, float]) -> float:
+    """Return an expression of a vehicle's parameters at values [SI] of its free ones; raises InputError where it has none."""
+    try:
+        return float(expression.evaluate(vehicle.all_values(dict(free))))
+    except ExpressionError as error:
+        raise InputError(f"the combination {error}") from error
+
+
+def check_combination(problem: Problem, text: str) -> None:
+    """Raise InputError for text that is no expression of a problem's parameters, or has no value where they begin."""
+    trial = problem.trials[0]
+    vehicle = trial.run.vehicle
+    combination_value(vehicle, read_combination(vehicle, text)[0], {name: trial.values[name] for name in vehicle.free_parameters})
+
+
 class Uncertainty:
     """The covariance of a fit's parameters, and intervals of anything that depends on them.
 
@@ -98,8 +119,7 @@ class Uncertainty:
         self.structure = structure
         self.values = fit.values
         space = fit.misfit.problem.space
-        jacobian = linearise(fit.misfit, fit.x).jacobian
-        information = jacobian.T @ jacobian
+        information = _recorded(fit)
         n = fit.misfit.n_parameters
         cross, own = information[:n, n:], information[n:, n:]
         told = information[:n, :n] - cross @ np.linalg.solve(own, cross.T) if own.size else information[:n, :n]
@@ -170,7 +190,7 @@ class Uncertainty:
 
         def quantity(values: Array) -> float:
             free = {name: trial.values[name] for name in vehicle.free_parameters} | dict(zip(names, values.tolist(), strict=True))
-            return float(expression.evaluate(vehicle.all_values(free)))
+            return combination_value(vehicle, expression, free)
 
         return quantity
 
@@ -215,6 +235,17 @@ class Uncertainty:
         return Estimate(name, value, value - spread, value + spread)
 
 
+def _recorded(fit: LeastSquaresFit) -> Array:
+    """Return the information of the recordings and of the errors' priors about all unknowns of a fit, `shape (n_unknowns, n_unknowns)`."""
+    found, linearised = np.zeros((fit.misfit.n_unknowns, fit.misfit.n_unknowns)), linearise(fit.misfit, fit.x)
+    for number, (trial, columns) in enumerate(zip(fit.misfit.problem.trials, linearised.columns, strict=True)):
+        rows, time = linearised.rows(number), trial.recording.time
+        found[np.ix_(columns, columns)] += 2 * seen_share(len(time), trial.recording.dt, trial.fade_in) * rows @ rows.T
+    errors = np.arange(fit.misfit.n_unknowns - fit.misfit.n_errors, fit.misfit.n_unknowns)
+    found[errors, errors] += 1.0
+    return found
+
+
 def _covariance(information: Array) -> Array:
     """Return the covariance of coordinates of the unit cube, `shape (n, n)`, from what is known of them."""
     return np.asarray(np.linalg.pinv(information + _LEAST_INFORMATION * np.eye(len(information)), hermitian=True))
@@ -224,24 +255,37 @@ def _component(i: int) -> Quantity:
     return lambda values: float(values[i])
 
 
-def refit(fit: LeastSquaresFit, seed: int, facts: PriorData | None = None) -> Array:
-    """Return the parameters [SI] fitted to recordings drawn at random from a fit: one replicate of a parametric bootstrap."""
+def errors_left_open(fit: LeastSquaresFit) -> NDArray[np.bool_]:
+    """Return which errors of runs and sensors the recordings leave nearly as open as their priors do, `shape (n_errors,)`."""
+    information, n = _recorded(fit), fit.misfit.n_unknowns - fit.misfit.n_errors
+    information[:n, :n] += _LEAST_INFORMATION * np.eye(n)
+    return np.asarray(np.sqrt(np.diagonal(np.linalg.inv(information))[n:]) > TOLD)
+
+
+def refit(fit: LeastSquaresFit, seed: int, left_open: NDArray[np.bool_], facts: PriorData | None = None) -> Array:
+    """Return the parameters [SI] fitted to recordings drawn at random from a fit: one replicate of a parametric bootstrap.
+
+    What is not measured but believed is drawn, too: facts, and the errors that the recordings leave open `shape (n_errors,)`, of which a
+    fit that begins at the truth would learn nothing and so look far too sure.
+    """
     random = np.random.Generator(np.random.PCG64(seed))
     misfit = fit.misfit
-    drawn = misfit.draw(fit.x, random)
+    unit, errors = misfit.split(fit.x)
+    low, high = error_bounds(misfit)
+    errors = np.where(left_open, np.clip(random.standard_normal(len(errors)), low, high), errors)
+    drawn = misfit.draw(np.concatenate([fit.x[: len(fit.x) - len(errors)], errors]), random)
     trials = [
         replace(trial, recording=replace(trial.recording, values=values))
         for trial, values in zip(misfit.problem.trials, drawn, strict=True)
     ]
-    unit, _ = misfit.split(fit.x)
     again = fit_least_squares(
         misfit.problem.with_trials(trials),
         unit,
         FitOptions(misfit.nuisances, misfit.band),
         noises=misfit.noises,
-        start=misfit.split(fit.x)[1],
+        start=errors,
         shared=misfit.shared,
         numbers=tuple(misfit.adjusted(fit.x)),
-        prior_data=facts,
+        prior_data=None if facts is None else facts.drawn(fit.values, random),
     )
     return again.values

@@ -153,7 +153,7 @@ class Nuisances:
             for force, rms in measured_forces(trial).items():
                 names.setdefault(("force_gain", force), Nuisance("force_gain", force, spread["force_gain"]))
                 known = names.get(("force_offset", force))
-                sigma = max(rms * spread["force_offset"], 0.0 if known is None else known.sigma)  # of the loudest run
+                sigma = max(self._offset(trial, rms), 0.0 if known is None else known.sigma)  # of the loudest run
                 names["force_offset", force] = Nuisance("force_offset", force, sigma)
             for link in measured_displacements(trial):
                 names.setdefault(("displacement_gain", link), Nuisance("displacement_gain", link, spread["displacement_gain"]))
@@ -166,6 +166,14 @@ class Nuisances:
         """Return the standard deviation of a run's speed at any moment, relative: the driver's wander is part of it."""
         spread = self._stated(trial)
         return math.hypot(spread["speed"], spread["wander"])
+
+    def _offset(self, trial: Trial, rms: float) -> float:
+        """Return the standard deviation of a constant force beside a measured one [N], of that root mean square [N]."""
+        own = trial.run.file.uncertainty
+        stated = None if own is None or "force_offset" in self.asked else own.force_offset
+        if isinstance(stated, Spread) and not stated.is_share and self.force_offset > 0:
+            return stated.value
+        return rms * self._stated(trial)["force_offset"]
 
     def _stated(self, trial: Trial) -> dict[str, float]:
         """Return the standard deviations by name: those asked for, else those that the run file states, else these; 0 stays out."""
@@ -261,7 +269,7 @@ def _size(trial: Trial, name: str) -> float:
     """Return what a run's stated deviation is a share of: its speed [m/s], its hump's height or length [m], its largest force [N]."""
     humps = trial.scenario.humps
     if name == "force_offset":
-        return max(measured_forces(trial).values(), default=1.0)
+        return max(measured_forces(trial).values(), default=0.0) or 1.0
     if name in ("speed", "wander"):
         return trial.scenario.top_speed
     if name == "length" and humps:

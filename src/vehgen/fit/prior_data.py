@@ -13,7 +13,7 @@ A fact enters the fit as a residual, (model - value)/uncertainty.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -101,6 +101,12 @@ class PriorData:
         steps = _JACOBIAN_STEP * (space.upper - space.lower)
         above, below = np.split(self._residuals(np.concatenate([values + np.diag(steps), values - np.diag(steps)])), 2)
         return np.asarray((above - below).T / (2 * steps))
+
+    def drawn(self, values: Array, random: np.random.Generator) -> PriorData:
+        """Return the facts as they might have been told of a vehicle of these values `shape (n_parameters,)` [SI]."""
+        strayed = self.residuals(values) + random.standard_normal(len(self.facts))
+        facts = (replace(item, value=item.value + item.uncertainty * off) for item, off in zip(self.facts, strayed.tolist(), strict=True))
+        return replace(self, facts=tuple(facts))
 
     def _residuals(self, points: Array) -> Array:
         """Return the residuals at searched values `shape (n, n_parameters)`: `shape (n, n_facts)`."""

@@ -43,6 +43,11 @@ def taper(n_samples: int, dt: float, fade_in: float = RAMP) -> Array:
     return window
 
 
+def seen_share(n_samples: int, dt: float, fade_in: float = RAMP) -> float:
+    """Return the share of a record that :func:`taper` lets through: by so much less do its lines tell than as many independent ones."""
+    return float(np.mean(taper(n_samples, dt, fade_in) ** 2))
+
+
 def transform(values: Array, dt: float, inside: NDArray[np.bool_], late: Array | None = None, seen: Window = Window()) -> Complex:
     """Return spectral lines of tapered histories `shape (..., n_samples, n_channels)`, scaled so that |line|^2 is a one-sided PSD.
 

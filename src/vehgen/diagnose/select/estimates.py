@@ -16,7 +16,7 @@ from vehgen.effects import EffectParameter
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
-from vehgen.fit.window import taper
+from vehgen.fit.window import seen_share
 from vehgen.simulate.last_used import LastUsed
 
 Array = NDArray[np.float64]
@@ -138,7 +138,7 @@ def _moved(jacobians: Iterable[Array], n_unknowns: int) -> Array:
 def _seen(misfit: Misfit) -> float:
     """Return the share of the records that their tapers let through: neighbouring lines of tapered records are not independent."""
     trials = misfit.problem.trials
-    return float(np.mean([np.mean(taper(len(item.recording.time), item.recording.dt, item.fade_in) ** 2) for item in trials]))
+    return float(np.mean([seen_share(len(item.recording.time), item.recording.dt, item.fade_in) for item in trials]))
 
 
 def _columns(fit: ModelFit, candidate: Candidate) -> list[tuple[EffectParameter, int, float, float]]:
@@ -186,7 +186,7 @@ def _solved(fit: ModelFit, candidate: Candidate, covariance: Array) -> dict[str,
         return np.array(found)
 
     runs = by_run(unit)
-    medians, scatter = np.median(runs, axis=0), np.std(runs, axis=0) / np.sqrt(len(runs))
+    medians, scatter = np.median(runs, axis=0), _median_error(runs)
     n, step = len(unit), 1e-3
     slopes = [(np.median(by_run(unit + step * row), axis=0) - medians) / step for row in np.eye(n)]
     found = {}
@@ -196,6 +196,18 @@ def _solved(fit: ModelFit, candidate: Candidate, covariance: Array) -> dict[str,
         spread = NINETY * float(np.sqrt(max(gradient @ covariance[:n, :n] @ gradient, 0.0) + own**2))
         found[parameter.name] = NamedParameter(float(value), (float(value) - spread, float(value) + spread), parameter.unit)
     return found
+
+
+def _median_error(runs: Array) -> Array:
+    """Return what a 90 % interval of the median of few numbers `shape (n_runs, k)` spans, over NINETY; none for a single run.
+
+    Student's t of their scatter, and the median strays by sqrt(pi/2) more than the mean, but that of two, which is their mean.
+    """
+    n = len(runs)
+    if n < 2:
+        return np.zeros(runs.shape[1])
+    wider = 1.0 if n == 2 else float(np.sqrt(np.pi / 2))
+    return np.asarray(wider * scipy.stats.t.ppf(0.95, n - 1) / NINETY * np.std(runs, axis=0, ddof=1) / np.sqrt(n))
 
 
 def estimates_by_run(fit: ModelFit, candidate: Candidate | None = None) -> list[RunEstimate]:
