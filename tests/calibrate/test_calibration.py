@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 import scipy.stats
 
+import vehgen
 from tests.fit.recordings import sedan_truth, write_run
-from vehgen.calibrate.calibration import Settings, calibrate_problem
+from vehgen.calibrate.calibration import Settings, calibrate_problem, fingerprint
 from vehgen.calibrate.genetic import GeneticSearch
 from vehgen.calibrate.identifiability import find_structure
 from vehgen.calibrate.intervals import Uncertainty
@@ -176,3 +177,37 @@ def test_the_vehicle_file_that_comes_out_is_read_back_exactly(problem, tmp_path)
     values = load_vehicle(path).values()
     assert {name: values[name] for name in outcome.calibration.values} == outcome.calibration.values
     assert load_vehicle(path).ranges() == problem.trials[0].run.vehicle.ranges()
+
+
+def test_runs_are_calibrated_jointly_by_the_sensors_that_each_has(tmp_path):
+    both, one = write_run(tmp_path, "both", TRUTH, 2.5), write_run(tmp_path, "one", TRUTH, 3.0, seed=1)
+    lines = one.read_text(encoding="utf-8").splitlines()
+    one.write_text("\n".join(line for line in lines if not line.strip().startswith("R:")) + "\n", encoding="utf-8")
+    found = calibrate_problem(make_problem(load_trials([both, one])), Settings(search=GeneticSearch(1, 10, 1), polish=False))
+    channels = [trial.channels for trial in found.problem.trials]
+    assert channels == [("F_az", "F_q", "R_az", "R_q"), ("F_az", "F_q")]
+
+
+def test_a_checkpoint_is_of_the_files_that_were_read(tmp_path):
+    run = write_run(tmp_path, "run", TRUTH, 2.5)
+    drawn = "{shape: points, file: hump.csv, distance: s, height_column: h, at: 4 m}"
+    text = run.read_text(encoding="utf-8")
+    start = text.index("{shape: half_sine")
+    run.write_text(text[:start] + drawn + text[text.index("}", start) + 1 :], encoding="utf-8")
+    found = set()
+    for height in (0.03, 0.06, 0.03):
+        s = np.linspace(0, 0.5, 26)
+        hump = np.column_stack([s, height * np.sin(np.pi * s / 0.5)])
+        np.savetxt(tmp_path / "hump.csv", hump, delimiter=",", header="s,h", comments="")
+        found.add(fingerprint(make_problem(load_trials([run])), small()))
+    assert len(found) == 2
+
+
+@pytest.mark.parametrize(("asked", "told"), [("k_f/mH", "which sedan2 does not have"), ("kf/(ktf-ktf)", "has no value")])
+def test_a_combination_that_cannot_be_is_told_before_the_search(tmp_path, asked, told):
+    steps = []
+    with pytest.raises(InputError, match=told):
+        vehgen.calibrate(
+            "sedan2", [write_run(tmp_path, "run", TRUTH, 2.5)], combinations=[asked], progress=lambda *step: steps.append(step)
+        )
+    assert not steps

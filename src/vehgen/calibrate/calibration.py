@@ -18,6 +18,7 @@ from vehgen.calibrate.objective import PsdObjective
 from vehgen.calibrate.polish import Polish, PolishOptions, polish
 from vehgen.errors import InputError
 from vehgen.files import write_text
+from vehgen.files.provenance import file_hashes
 from vehgen.files.reading import read_text
 from vehgen.files.tables import MAX_TABLE_BYTES
 from vehgen.fit.band import CALIBRATION_BAND_HZ
@@ -27,6 +28,7 @@ from vehgen.fit.parallel import Runner
 from vehgen.fit.prior_data import PriorData
 from vehgen.fit.problem import Problem
 from vehgen.fit.recorders import FoundRecorder
+from vehgen.simulate.run_file.files_read import files_read
 
 Array = NDArray[np.float64]
 SAVE_EVERY = 10
@@ -195,15 +197,19 @@ def starting_points(problem: Problem, state: SearchState, settings: Settings) ->
 
 
 def fingerprint(problem: Problem, settings: Settings) -> str:
-    """Return a hash of everything the search depends on: settings, ranges, start values and measurements."""
+    """Return a hash of everything the search depends on: settings, ranges, start values, measurements, and the files that were read."""
     digest = hashlib.sha256()
     told = asdict(replace(settings, polish=True, starts=0, nuisances=Nuisances(), search=replace(settings.search, generations=0)))
     digest.update(json.dumps(told, sort_keys=True).encode())
     digest.update(" ".join(problem.space.names).encode())
     for array in (problem.space.lower, problem.space.upper, problem.space.start):
         digest.update(array.tobytes())
+    files = files_read([trial.run for trial in problem.trials])
+    digest.update(" ".join(sorted(file_hashes(files).values())).encode())
     for trial in problem.trials:
         digest.update(trial.recording.values.tobytes())
+        digest.update(trial.recording.time.tobytes())
+        digest.update(json.dumps(trial.run.vehicle.document.plain(), sort_keys=True, default=str).encode())
         digest.update(json.dumps(trial.values, sort_keys=True).encode())
         digest.update(json.dumps(trial.run.document.plain(), sort_keys=True, default=str).encode())
     return digest.hexdigest()

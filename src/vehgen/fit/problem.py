@@ -89,9 +89,12 @@ class Problem:
         return replace(self, trials=tuple(trials))
 
     def of_sensors(self, sensors: Sequence[str]) -> Problem:
-        """Return the problem with some sensors only."""
-        shared = SimulatorPool()
-        return self.with_trials([trial.of_sensors(sensors, shared) for trial in self.trials])
+        """Return the problem with some sensors only, of each run those that it has; raises InputError for a run that has none of them."""
+        shared, trials = SimulatorPool(), []
+        for trial in self.trials:
+            own = [name for name in sensors if name in trial.run.file.sensors]
+            trials.append(trial.of_sensors(own or sensors, shared))
+        return self.with_trials(trials)
 
     def searching(self, names: Sequence[str], fixed: dict[str, float]) -> Problem:
         """Return the problem that searches `names` only, other parameters standing at `fixed` [SI]."""
