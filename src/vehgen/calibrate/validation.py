@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
+import scipy.stats
 from numpy.typing import NDArray
 from pydantic import Field
 
@@ -184,7 +185,7 @@ def compare_trial(trial: Trial, bands: Bands) -> list[ChannelComparison]:
                 measured_rms=rms[0],
                 simulated_rms=rms[1],
                 errors=relative_errors(rms[1], rms[0]),
-                audible=rms[0] > LOUD * _noise_rms(frequency, densities[0], bands),
+                audible=rms[0] > LOUD * _noise_rms(frequency, densities[0], bands, len(measured) * dt / SEGMENT if averaged else 0.5),
                 frequency=frequency,
                 measured_psd=densities[0],
                 simulated_psd=densities[1],
@@ -210,8 +211,13 @@ def reference_spectrum(name: str) -> ReferenceSpectrum:
     return ReferenceSpectrum(f"{SPECTRA[name].name} ({NOTE})", frequency, SPECTRA[name].at(frequency))
 
 
-def _noise_rms(frequency: Array, density: Array, bands: Bands) -> Array:
-    """Return the RMS that white noise of the level at the top of the band would have in bands, `shape (n_bands,)`."""
+def _noise_rms(frequency: Array, density: Array, bands: Bands, segments: float) -> Array:
+    """Return the RMS that white noise of the level at the top of the band would have in bands, `shape (n_bands,)`.
+
+    The level is told by the median of lines, each the mean of as many squares as so many half-overlapping `segments` have: of a single
+    record two, of many about 3.8 a segment (P. D. Welch, IEEE Trans. Audio Electroacoust. 15, 1967, doi:10.1109/TAU.1967.1161901).
+    """
     inside = (frequency >= NOISE_BAND_SHARES[0] * frequency[-1]) & (frequency <= NOISE_BAND_SHARES[1] * frequency[-1])
-    level = float(np.median(density[inside]) / np.log(2))
+    freedom = 2.0 if segments < 1 else 36 * (count := 2 * segments - 1) ** 2 / (19 * count - 1)
+    level = float(np.median(density[inside]) * freedom / scipy.stats.chi2.median(freedom))
     return np.sqrt(level * np.array([high - low for low, high in bands]))
