@@ -93,6 +93,15 @@ def test_plain_csv_with_a_column_map(tmp_path):
     assert export.streams["speed"].values == pytest.approx(2.0)
 
 
+@pytest.mark.parametrize("name", ["az", "az [g]", "-az"])
+def test_a_plain_csv_is_in_the_units_of_its_headings(tmp_path, name):
+    (tmp_path / "log.csv").write_text("t [ms],az [g],v (km/h)\n0,0,36\n10,1,36\n20,2,36\n")
+    found = read_export(tmp_path / "log.csv", ColumnMap("t", name, speed="v", speed_unit="km/h")).streams
+    assert found["vertical_acceleration"].time == pytest.approx([0.0, 0.01, 0.02])
+    assert abs(found["vertical_acceleration"].values[1, 0]) == pytest.approx(9.80665)
+    assert found["speed"].values == pytest.approx(10.0)
+
+
 @pytest.mark.parametrize(
     ("text", "columns", "message"),
     [
@@ -100,6 +109,7 @@ def test_plain_csv_with_a_column_map(tmp_path):
         ("a,b\n1,2\n", ColumnMap("a", "c"), "has no column 'c'"),
         ("a,b\n1,2\n3,four\n", ColumnMap("a", "b"), "log.csv:3:2: expected a number in column 'b', found 'four'"),
         ("a,b\n1,2\n", ColumnMap("a", "b", time_unit="kg"), "expected a unit of s, found 'kg'"),
+        ("a,b [g]\n1,2\n", ColumnMap("a", "b", acceleration_unit="m/s^2"), "log.csv says g, `columns` m/s^2"),
         ("", None, "is empty"),
     ],
 )

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from vehgen.errors import ArgumentError, InputError, Position, did_you_mean, shortened, shown
 from vehgen.files.reading import split_lines
 from vehgen.files.tables.csv_rows import csv_rows
+from vehgen.files.tables.headings import name_and_unit
 from vehgen.files.units import ACCELERATION, FREQUENCY, TIME, Dimension, factor_to_si, parse_unit
 from vehgen.files.units import SPEED as SPEED_DIMENSION
 from vehgen.phones.export import PITCH_RATE_STREAM, SPEED_STREAM, VERTICAL_ACCELERATION_STREAM, PhoneExport, Stream
@@ -28,6 +29,8 @@ Array = NDArray[np.float64]
 MAX_COLUMNS = 200
 LARGEST_EXPORTED = 1e20
 """Beyond it a number was not measured; times in ns since 1970 are the largest that are."""
+SAME_UNIT = 1e-9
+"""Two units are the same whose factors to SI differ by no larger share."""
 _DECIMAL_COMMA = re.compile(r'^"?[+-]?\d*,\d+(?:[eE][+-]?\d+)?"?$')
 _NUMBER_CELL = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _MISSING = {"", "nan", "null", "na", "n/a", "-"}
@@ -88,8 +91,12 @@ class Table:
         return [row[index].strip() if index < len(row) else "" for _, row in self.rows()]
 
     def find(self, name: str) -> int:
-        """Return the index of a column by its name, capitals aside; raises InputError naming the nearest, and for a name that repeats."""
-        lower = [item.lower() for item in self.header]
+        """Return the index of a column by its heading, or by that without a unit in brackets, capitals aside.
+
+        Raises InputError naming the nearest, and for a name that repeats.
+        """
+        whole = [item.lower() for item in self.header]
+        lower = whole if name.lower() in whole else [name_and_unit(item)[0].lower() for item in self.header]
         if name.lower() not in lower:
             raise InputError(f"{self.name} has no column {shown(name)}; {did_you_mean(name, self.header)}")
         if lower.count(name.lower()) > 1:
@@ -144,16 +151,19 @@ def _rows(data: bytes, encoding: str, delimiter: str, name: str) -> Iterator[tup
 
 @dataclass(frozen=True)
 class ColumnMap:
-    """Which columns of a plain CSV hold what, in which units; a column written `-name` counts with its sign reversed."""
+    """Which columns of a plain CSV hold what; a column written `-name` counts with its sign reversed.
+
+    Units are those of the headings, `az [g]`, where they are not stated; without either they are s, m/s^2, rad/s and m/s.
+    """
 
     time: str
     acceleration: str
     pitch_rate: str | None = None
     speed: str | None = None
-    time_unit: str = "s"
-    acceleration_unit: str = "m/s^2"
-    pitch_rate_unit: str = "rad/s"
-    speed_unit: str = "m/s"
+    time_unit: str | None = None
+    acceleration_unit: str | None = None
+    pitch_rate_unit: str | None = None
+    speed_unit: str | None = None
 
 
 def read_plain(table: Table, columns: ColumnMap | None) -> PhoneExport:
@@ -168,7 +178,7 @@ def read_plain(table: Table, columns: ColumnMap | None) -> PhoneExport:
         shown = ", ".join(repr(item) for item in table.header[:12])
         message = f"{table.name} is of no app that vehgen knows (its columns: {shown}); say which columns are which with `columns`: "
         raise ArgumentError(f"{message}time=...,acceleration=...,pitch_rate=...", "columns")
-    time = _column(table, columns.time) * unit_factor(columns.time_unit, TIME, "`columns` time_unit")
+    time = _in_si(table, columns.time, columns.time_unit, TIME, "s")
     wanted = (
         (VERTICAL_ACCELERATION_STREAM, columns.acceleration, columns.acceleration_unit, ACCELERATION, "m/s^2"),
         (PITCH_RATE_STREAM, columns.pitch_rate, columns.pitch_rate_unit, FREQUENCY, "rad/s"),
@@ -177,15 +187,20 @@ def read_plain(table: Table, columns: ColumnMap | None) -> PhoneExport:
     streams = {}
     for name, column, unit, dimension, si in wanted:
         if column is not None:
-            values = _column(table, column) * unit_factor(unit, dimension, "`columns`")
-            streams[name] = Stream(time, values[:, None], (column,), si)
+            streams[name] = Stream(time, _in_si(table, column, unit, dimension, si)[:, None], (column,), si)
     return PhoneExport("plain CSV", streams)
 
 
-def _column(table: Table, name: str) -> Array:
-    if name.startswith("-") and name not in table.header:
-        return -table.column(table.find(name[1:]))
-    return table.column(table.find(name))
+def _in_si(table: Table, name: str, stated: str | None, dimension: Dimension, si: str) -> Array:
+    """Return a column in its SI unit, `shape (n,)`, by the unit that is stated, else by its heading's."""
+    reversed_sign = name.startswith("-") and name not in table.header
+    index = table.find(name[1:] if reversed_sign else name)
+    own = name_and_unit(table.header[index])[1]
+    factor = unit_factor(stated or own or si, dimension, f"`columns` {name}")
+    if stated is not None and own is not None and abs(unit_factor(own, dimension, f"`columns` {name}") / factor - 1) > SAME_UNIT:
+        message = f"the heading {shown(table.header[index])} of {table.name} says {own}, `columns` {stated}; correct one of them"
+        raise ArgumentError(message, "columns")
+    return table.column(index) * (-factor if reversed_sign else factor)
 
 
 def unit_factor(unit: str, dimension: Dimension, where: str) -> float:

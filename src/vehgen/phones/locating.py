@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.errors import InputError
+from vehgen.errors import ArgumentError, InputError
 from vehgen.phones.clocks import COARSE_SCALES, TRUSTED, Match, epoch_disagreement, match, predictor
 from vehgen.phones.gps import CrossingSpeed, crossing_speed
 from vehgen.phones.hump_event import HumpEvent, expected_onset, find_hump
@@ -42,6 +42,9 @@ def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundS
     told: CrossingSpeed | None = None
     teller = next((phone for phone in phones if speed_stream(phone.export) is not None), phones[0])
     speed = plan.speed
+    if speed is None and plan.by_axles and speed_stream(teller.export) is None:
+        message = f"{teller.name} recorded no GPS speed, near which the axles' marks would tell it; give `speed` in m/s, e.g. 2.0"
+        raise ArgumentError(message, "speed")
     if speed is None:
         speed = crossing_speed(speed_stream(teller.export), teller.begin, teller.end, teller.name).median
     if plan.road.hump is None:
