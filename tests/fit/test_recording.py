@@ -43,6 +43,8 @@ def test_a_column_is_found_by_any_heading_and_its_channel_has_a_name(tmp_path):
     ("change", "said"),
     [
         ({"t": np.arange(600) * 0.4}, "2.5 Hz; at least 50 Hz"),
+        ({"t": np.arange(600) * 10.0}, r"0.1 Hz, if 't' is in s: if it is in ms, head the column `t \[ms\]`"),
+        ({"t": 1.7e9 + np.arange(600) * 0.01}, "'t' begins at 1700000000 s, but a run's time counts from where its way does"),
         ({"t": np.cumsum(np.random.default_rng(0).uniform(0.005, 0.015, 600))}, "uneven clock"),
         ({"t": np.r_[np.arange(300), np.arange(300)] * 0.01}, "ascend"),
         ({"az": np.clip(10 * np.sin(np.arange(600) * 0.3) * np.exp(-((np.arange(600) - 300) ** 2) / 500), -1.5, 1.5)}, "clipped"),

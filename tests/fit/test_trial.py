@@ -130,3 +130,12 @@ def test_what_never_decays_is_not_waited_for(tmp_path):
 def test_a_recording_is_cut_where_its_number_of_samples_makes_transforms_slow(count, kept):
     """601, 997 and 103 are primes; no number with small factors alone lies within 1 % below 103."""
     assert _quick_count(count) == kept
+
+
+def test_a_recording_that_begins_when_the_hump_is_behind_says_so(tmp_path):
+    path = write_run(tmp_path, "hump", TRUTH, 2.5)
+    rows = np.loadtxt(tmp_path / "hump.csv", delimiter=",", skiprows=1)
+    rows[:, 0] += 50.0
+    np.savetxt(tmp_path / "hump.csv", rows, delimiter=",", header="t,F_az,F_q,R_az,R_q", comments="")
+    with pytest.raises(InputError, match=r"begins at t = 50 s, 125.0 m on the way, when the last axle has left the hump at 4.0 m"):
+        load_trials([path])

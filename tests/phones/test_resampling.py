@@ -84,6 +84,8 @@ def test_a_clock_that_runs_backwards_is_refused():
 def test_slow_logs_are_refused_with_the_rate_needed():
     with pytest.raises(InputError, match=r"logged at 2.5 Hz; at least 50 Hz is needed to see up to 25 Hz"):
         check_rate(np.arange(100) / 2.5, 25.0, "phone")
+    with pytest.raises(InputError, match=r"logged at 0.1 Hz, if its times are in s; state `time_unit=ms`"):
+        check_rate(np.arange(100) * 10.0, 25.0, "phone")
     assert check_rate(clock(59.4, 0.4), 25.0, "phone") == pytest.approx(59.4, rel=0.02)
 
 

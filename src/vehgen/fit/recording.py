@@ -27,6 +27,8 @@ FEWEST_SAMPLES = 16
 """Fewer samples are no recording: a run has hundreds."""
 LOWEST_RATE = 50.0
 """Below this sampling rate [Hz] a recording cannot show the axles' hop."""
+LATEST_BEGIN = 86400.0
+"""Times of a recording that begin later [s] are those of a clock on the wall."""
 FINE_STEPS_SHARE, FINEST_STEP = 0.25, 0.5
 """A recording is finer than its recorder where so many of the steps between its values are below so much of the resolution."""
 REFUSED_IN_A_ROW = 5
@@ -136,6 +138,17 @@ def _check_clock(table: TableColumns) -> None:
     steps = np.diff(time)
     dt = float(np.median(steps))
     rate = 1 / dt
+    if 1000 * rate >= LOWEST_RATE > 50 * rate:
+        raise InputError(
+            f"logged at {rate:.3g} Hz, if {shown(table.names[0])} is in s: if it is in ms, head the column `{TIME_COLUMN} [ms]`",
+            table.heading(0),
+        )
+    if abs(time[0]) > LATEST_BEGIN:
+        raise InputError(
+            f"{shown(table.names[0])} begins at {time[0]:.12g} s, but a run's time counts from where its way does: take so much off all "
+            "times, or let `vehgen import` find the hump",
+            table.place(0),
+        )
     if rate < LOWEST_RATE * 0.99:
         raise InputError(
             f"logged at {rate:.3g} Hz; at least {LOWEST_RATE:g} Hz is needed (100 Hz is usual): log again, faster", table.place(1)

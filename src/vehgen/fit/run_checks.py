@@ -33,13 +33,21 @@ OF_MOTION = ("displacement", "velocity", "pitch", "pitch_rate", "suspension_trav
 
 
 def check_hump_reached(run: Run, scenario: Scenario, offsets: Array, name: str) -> None:
-    """Refuse a recording that ends before the last axle, `offsets` [m] behind the first, has met the hump."""
+    """Refuse a recording that ends before the last axle, `offsets` [m] behind the first, has met the hump, or begins when it has left."""
     humps = [entry.hump for entry in run.file.road if entry.hump is not None]
     travelled = float(scenario.speed.distance(np.array([scenario.start + scenario.duration]))[0])
     if humps and travelled < max(hump.at for hump in humps) + float(offsets.max(initial=0.0)):
         raise InputError(
             f"{name}: the recording ends after {travelled:.1f} m, before the last axle ({offsets.max(initial=0.0):.1f} m behind the first) "
             f"has met the hump at {max(hump.at for hump in humps):.1f} m: record until the vehicle has left it",
+            run.document.find(("recording",)),
+        )
+    begun = float(scenario.speed.distance(np.array([scenario.start]))[0])
+    if scenario.over_humps_alone and begun > scenario.track.end + float(offsets.max(initial=0.0)):
+        raise InputError(
+            f"{name}: the recording begins at t = {scenario.start:.4g} s, {begun:.1f} m on the way, when the last axle has left the hump "
+            f"at {max(hump.at for hump in humps):.1f} m: its times count from the run's start, not from when the recorder was switched on; "
+            "take so much off them, or let `vehgen import` find the hump",
             run.document.find(("recording",)),
         )
 

@@ -81,6 +81,10 @@ def clean(stream: Stream, name: str) -> tuple[Stream, tuple[str, ...]]:
     return replace(stream, time=time[fresh], values=values[fresh]), tuple(notes)
 
 
+SLOWEST_LOGGER = 1.0
+"""What seems to be logged at less [Hz] has its times in another unit."""
+
+
 def sampling_rate(time: Array) -> float:
     """Return the median rate of samples at ascending times `shape (n,)` [s], in Hz."""
     return float(1 / np.median(np.diff(time)))
@@ -90,6 +94,8 @@ def check_rate(time: Array, top: float, name: str) -> float:
     """Return the sampling rate [Hz], refusing one below twice the top of the band [Hz]."""
     rate = sampling_rate(time)
     if rate < 2 * top * 0.99:
+        if 1000 * rate >= 2 * top and rate < SLOWEST_LOGGER:
+            raise InputError(f"{name} was logged at {rate:.3g} Hz, if its times are in s; state `time_unit=ms` if they are in ms")
         raise InputError(
             f"{name} was logged at {rate:.3g} Hz; at least {2 * top:g} Hz is needed to see up to {top:g} Hz (100 Hz is usual): set the app "
             "to its fastest rate and record again"

@@ -92,7 +92,7 @@ class TableColumns:
         stuck = np.flatnonzero(~(np.diff(first) > 0))
         if len(stuck):
             row = int(stuck[0]) + 1
-            raise InputError(f"{shown(self.names[0])} must ascend; {first[row]:g} comes after {first[row - 1]:g}", self.place(row))
+            raise InputError(f"{shown(self.names[0])} must ascend; {first[row]:.12g} comes after {first[row - 1]:.12g}", self.place(row))
         if len(first) < least:
             place = self.place(-1) if len(first) else self.heading(0)
             raise InputError(f"{len(first)} rows of numbers; at least {least} were expected", place)
