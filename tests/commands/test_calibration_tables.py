@@ -28,7 +28,7 @@ def open_summary(summary):
     """The summary of a vehicle that recordings tell but in part."""
     parameters = {name: replace(item, interval=None, status="unidentifiable") for name, item in summary.parameters.items()}
     directions = (dict.fromkeys(summary.parameters, 1.0),)
-    told = {"kf/mH": CombinationSummary(40.0, (39.0, 41.0), "s^-2")}
+    told = {"kf/mH": CombinationSummary(40.0, (39.0, 41.0), "s^-2"), "kf/mf": CombinationSummary(700.0, None, "s^-2")}
     advice = (KERB_MASS, FRONT)
     return replace(
         summary, parameters=parameters, rank=9, pivots=("mf",), null_directions=directions, combinations=told, prior_data_advice=advice
@@ -56,6 +56,7 @@ def test_what_is_told_comes_before_what_is_not(open_summary, capsys):
         for part in ("body heave", "39 to 41", "unidentifiable", "help most", "warning: recordings of these sensors can determine 9")
     ]
     assert places == sorted(places)
+    assert "kf/mf 700 s^-2 unidentifiable" in text
     low, high = open_summary.parameters["kf"].interval_given_pivots
     assert "if mf were known" in text
     assert f"{low:.4g} to {high:.4g}" in text

@@ -37,7 +37,10 @@ def show_calibration(outcome: CalibrationSummary) -> None:
         columns = ("mode", "undamped [Hz]", f"{level} interval", "damping ratio", f"{level} interval")
         print_table(f"{outcome.vehicle}: natural modes", columns, modes, right=(1, 3))
     if outcome.combinations:
-        rows = [(name, f"{item.value:.5g}", item.unit, _to(item.interval, ".4g")) for name, item in outcome.combinations.items()]
+        rows = [
+            (name, f"{item.value:.5g}", item.unit, "unidentifiable" if item.interval is None else _to(item.interval, ".4g"))
+            for name, item in outcome.combinations.items()
+        ]
         print_table("combinations of parameters", ("combination", "value", "unit", f"{level} interval"), rows, right=(1,))
     _show_parameters(outcome, level)
     _show_runs(outcome)

@@ -104,8 +104,9 @@ def _draw_bars(axes: Axes, bars: Sequence[_Bar], fixed: str) -> dict[str, Line2D
     found: dict[str, Line2D] = {}
     for row, bar in enumerate(bars):
         if bar.interval is None:
-            (mark,) = axes.plot([0.0], [row], marker="x", color="#b03030", ls="", ms=5)
-            found.setdefault("held fixed", mark)
+            marker, colour, label = ("s", "#7d8a94", "not told by the recordings") if bar.is_told else ("x", "#b03030", "held fixed")
+            (mark,) = axes.plot([0.0], [row], marker=marker, color=colour, mfc="white", ls="", ms=5)
+            found.setdefault(label, mark)
             continue
         colour = SIMULATED if bar.is_told else "#7d8a94"
         (line,) = axes.plot([100 * (end / bar.value - 1) for end in bar.interval], [row, row], color=colour, lw=2.2)
