@@ -211,3 +211,10 @@ def test_a_combination_that_cannot_be_is_told_before_the_search(tmp_path, asked,
             "sedan2", [write_run(tmp_path, "run", TRUTH, 2.5)], combinations=[asked], progress=lambda *step: steps.append(step)
         )
     assert not steps
+
+
+def test_a_recording_that_is_given_twice_is_refused(tmp_path):
+    run = write_run(tmp_path, "run", TRUTH, 2.5)
+    (tmp_path / "again.yaml").write_text(run.read_text(encoding="utf-8"), encoding="utf-8")
+    with pytest.raises(InputError, match="run and again are one recording"):
+        vehgen.calibrate("sedan2", [run, tmp_path / "again.yaml"])

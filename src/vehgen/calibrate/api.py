@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Sequence
 from pathlib import Path
+
+import numpy as np
 
 from vehgen.calibrate.calibration import CalibrationProgress, Settings, calibrate_problem
 from vehgen.calibrate.genetic import GeneticSearch
@@ -18,7 +21,7 @@ from vehgen.fit.nuisances import asked_nuisances
 from vehgen.fit.one_thread import one_blas_thread
 from vehgen.fit.parallel import runner_at
 from vehgen.fit.prior_data import load_prior_data
-from vehgen.fit.problem import make_problem
+from vehgen.fit.problem import Problem, make_problem
 from vehgen.fit.trial import TrialLike, load_trials
 from vehgen.vehicle import VehicleLike, as_vehicle
 
@@ -115,6 +118,7 @@ def calibrate(
         nuisances=asked_nuisances(speed=speed_error, height=height_error),
     )
     problem = make_problem(load_trials(runs, as_vehicle(vehicle)))
+    _check_passes(problem)
     prior_data = None if facts is None else load_prior_data(Path(facts), problem)
     path = None if checkpoint is None else Path(checkpoint)
     asked = _names(combinations, "combinations")
@@ -123,6 +127,13 @@ def calibrate(
     with runner_at(scheduler, workers) as runner, one_blas_thread():  # small matrices: more threads only wait
         found = calibrate_problem(problem, settings, prior_data, progress, path, resume, runner)
         return summarise(found, prior_data, asked, 0 if found.stopped else bootstrap, runner)
+
+
+def _check_passes(problem: Problem) -> None:
+    """Refuse a recording that is given twice: intervals would be too narrow."""
+    for one, other in itertools.combinations(problem.trials, 2):
+        if one.channels == other.channels and np.array_equal(one.recording.values, other.recording.values):
+            raise ArgumentError(f"`runs`: {one.name} and {other.name} are one recording; leave one of them out", "runs")
 
 
 def check_numbers(

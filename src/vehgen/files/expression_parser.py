@@ -90,7 +90,8 @@ def _replace_quantities(text: str) -> tuple[str, list[tuple[float, Dimension]], 
         elif text[position] in _SIGN_CHARACTERS:
             piece, end = ("**" if text[position] == "^" else text[position]), position + 1
         else:
-            raise ExpressionError(f"{_ALLOWED}, found {text[position]!r}", position)
+            hint = "; a share is a plain number, 0.05 for 5 %" if text[position] == "%" else ""
+            raise ExpressionError(f"{_ALLOWED}, found {text[position]!r}{hint}", position)
         pieces.append(piece)
         offsets.extend([position] * len(piece))
         position = end
