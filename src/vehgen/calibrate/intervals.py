@@ -32,8 +32,8 @@ from vehgen.simulate import Mode, natural_modes
 from vehgen.vehicle import Vehicle
 
 Array = NDArray[np.float64]
-TOLD = 0.3
-"""An error of a run or a sensor counts as told by the recordings where they leave less than this share of its prior's deviation."""
+LEFT_OPEN = 0.3
+"""An error of a run or a sensor counts as left open where the recordings leave more than this share of its prior's deviation."""
 LEVEL = 0.90
 """Confidence level of all intervals."""
 _GRADIENT_STEP = 1e-5
@@ -259,7 +259,7 @@ def errors_left_open(fit: LeastSquaresFit) -> NDArray[np.bool_]:
     """Return which errors of runs and sensors the recordings leave nearly as open as their priors do, `shape (n_errors,)`."""
     information, n = _recorded(fit), fit.misfit.n_unknowns - fit.misfit.n_errors
     information[:n, :n] += _LEAST_INFORMATION * np.eye(n)
-    return np.asarray(np.sqrt(np.diagonal(np.linalg.inv(information))[n:]) > TOLD)
+    return np.asarray(np.sqrt(np.diagonal(np.linalg.inv(information))[n:]) > LEFT_OPEN)
 
 
 def refit(fit: LeastSquaresFit, seed: int, left_open: NDArray[np.bool_], facts: PriorData | None = None) -> Array:
