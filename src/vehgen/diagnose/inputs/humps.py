@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,8 @@ from vehgen.fit.trial import Trial
 from vehgen.road import Hump
 
 Array = NDArray[np.float64]
+RunScore = Callable[[int, str, float], float]
+"""How well a run, by its number, is foretold over a hump of a shape and so many times the stated length."""
 SHAPES = ("half_sine", "versine", "trapezoid")
 LENGTHS = tuple(round(0.6 + 0.05 * i, 2) for i in range(23))
 """True lengths over stated ones that are tried."""
@@ -29,9 +32,9 @@ ONE_HUMP = 0.02
 
 def hump_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     """Yield that humps have another length or shape: all of them, those of one size, or that of one run only."""
-    groups = _groups(case.trials)
-    changed = [item for group in groups if (item := _best(case, group)) is not None]
-    single = [item for group in groups if len(group) > 1 for number in group if (item := _best(case, (number,))) is not None]
+    groups, score = _groups(case.trials), cache(partial(_score, case))  # of a run with others over its hump, then of it alone
+    changed = [item for group in groups if (item := _best(case, group, score)) is not None]
+    single = [item for group in groups if len(group) > 1 for number in group if (item := _best(case, (number,), score)) is not None]
     for items in ([changed] if len(changed) > 1 else []) + [[item] for item in (*changed, *single)]:
         trials, faults = list(case.trials), []
         for runs, fault in items:
@@ -57,12 +60,16 @@ def _groups(trials: Sequence[Trial]) -> list[tuple[int, ...]]:
     return [tuple(members) for _, members in found]
 
 
-def _best(case: BaseRefits, group: tuple[int, ...]) -> tuple[dict[int, Trial], MeasurementFault] | None:
+def _best(case: BaseRefits, group: tuple[int, ...], score: RunScore) -> tuple[dict[int, Trial], MeasurementFault] | None:
     """Return runs, by number, over the hump that suits them best, with the fault told; None where that is the file's."""
+
+    def mean(shape: str, factor: float) -> float:
+        return float(np.mean([score(number, shape, factor) for number in group]))
+
     as_filed = float(np.mean([case.comparisons[i].score for i in group]))
-    scores = {(shape, factor): _score(case, group, shape, factor) for shape in SHAPES for factor in LENGTHS}
+    scores = {(shape, factor): mean(shape, factor) for shape in SHAPES for factor in LENGTHS}
     shape, factor = max(scores, key=lambda key: scores[key])
-    fine = {(shape, factor + step): _score(case, group, shape, factor + step) for step in FINE_LENGTHS}
+    fine = {(shape, factor + step): mean(shape, factor + step) for step in FINE_LENGTHS}
     shape, factor = max(fine, key=lambda key: fine[key])
     if fine[shape, factor] < as_filed + RISEN:
         return None
@@ -79,9 +86,10 @@ def _best(case: BaseRefits, group: tuple[int, ...]) -> tuple[dict[int, Trial], M
     return changed, MeasurementFault("hump", runs, (), message, cure, hump.length, "m")
 
 
-def _score(case: BaseRefits, group: tuple[int, ...], shape: str, factor: float) -> float:
-    changed = [_over(case.trials[i], shape, factor) for i in group]
-    return float(np.mean([compare(trial, case.predict(trial), case.band).score for trial in changed]))
+def _score(case: BaseRefits, number: int, shape: str, factor: float) -> float:
+    """Return how well a run, by its number, is foretold over a hump of another shape and so many times as long."""
+    changed = _over(case.trials[number], shape, factor)
+    return compare(changed, case.predict(changed), case.band).score
 
 
 def _over(trial: Trial, shape: str, factor: float) -> Trial:
