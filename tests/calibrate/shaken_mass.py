@@ -26,11 +26,10 @@ NOISE = 0.01
 """Of the sensor, as a share of what it reads."""
 
 
-def shaken_mass(folder, told="", force=None):
+def shaken_mass(folder, told=""):
     """Return the problem of a shaken mass, recorded with noise, and the standard deviation of that noise; `told` ends its run file."""
     random, time = np.random.default_rng(0), np.arange(1600) * 0.005
-    if force is None:
-        force = 200 * np.convolve(random.standard_normal(1600), np.ones(4) / 4, "same")
+    force = 200 * np.convolve(random.standard_normal(1600), np.ones(4) / 4, "same")
     np.savetxt(folder / "force.csv", np.column_stack([time, force]), delimiter=",", header="t,F", comments="")
     (folder / "mass.yaml").write_text(VEHICLE, encoding="utf-8")
     (folder / "run.yaml").write_text(RUN + told, encoding="utf-8")
