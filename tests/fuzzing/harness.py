@@ -28,7 +28,7 @@ YARDSTICK_S = 0.022
 """What :func:`yardstick` takes where the limits of time hold as they are [CPU s], with the other cores at rest."""
 TRIES = 3
 """So often is a case tried that seems too slow."""
-MOST_SLOWNESS = 3.0
+MOST_SLOWNESS = 6.0
 """No machine counts as slower than by this factor."""
 
 

@@ -18,7 +18,7 @@ PLACE = re.compile(r"^error: (?P<file>[^\n]*?):(?P<line>\d+):(?P<column>\d+): ")
 class Limits:
     """What a file may cost: CPU [s], on a machine as fast as the harness assumes, and memory beyond the imports [MB]."""
 
-    seconds: float = 2.0
+    seconds: float = 4.0
     megabytes: float = 300.0
 
 
