@@ -24,6 +24,7 @@ from vehgen.diagnose.select.faint import faint_look_again, faint_round, faintly_
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.diagnose.select.group_members import with_members
+from vehgen.diagnose.select.needless import without_needless
 from vehgen.diagnose.select.one_error import explains_easily, one_error
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
@@ -117,6 +118,7 @@ class Decision(Ending):
             if freed := freed_instead(first, self.base):
                 return self._out_of_range(freed)
         weak = self._add(first) if first.fits else self._all_idle()
+        self._leave_out_needless()
         if self.interrupted:
             return self._name(self.chain) if self.chain else self._stopped()
         return self._other_mistakes(first) or weak or (self._name(self.chain) if self.chain else self._unknown(first))
@@ -233,6 +235,13 @@ class Decision(Ending):
 
     def _combiner(self) -> Combiner:
         return Combiner(self.detection, self.base, self.tried, self._search_round, self._candidates, self.rounds)
+
+    def _leave_out_needless(self) -> None:
+        """Leave out of several effects what the others do as well without."""
+        if len(self.chain) > 1 and not self.interrupted:
+            self.progress("do without", 0, 1, self.chain[-1].label)
+            self.chain = without_needless(self.chain, self.detection, self.rounds)
+            self.parts = self.parts and len(self.chain) > 1
 
     def _combine(self, first: SearchRound) -> None:
         """Look for a pair of effects that passes, then for a set of parts."""

@@ -46,15 +46,15 @@ def alternatives_beside(detection: Detection, step: SearchRound, fit: ModelFit, 
         Which of its effects.
     """
     chosen, later = fit.effects[number], fit.effects[number + 1 :]
-    without = _refit(detection, step.current, later, fit)
-    if without is None:
+    without = refit_later(detection, step.current, later, fit)
+    if not without:
         return []
-    before = excess(without.training)
+    before = excess(without[-1].training)
     found = []
     for rival in _rivals(step, chosen, later):
-        both = _refit(detection, rival, later, fit)
-        if both is not None and does_as_well(both.training, fit.training, before):
-            found.append(Alternative(chosen, rival.last, both))
+        both = refit_later(detection, rival, later, fit)
+        if both and does_as_well(both[-1].training, fit.training, before):
+            found.append(Alternative(chosen, rival.last, both[-1]))
     return found
 
 
@@ -65,14 +65,19 @@ def _rivals(step: SearchRound, chosen: Candidate, later: Sequence[Candidate]) ->
     return [*alike, *(item for item in others if item not in alike)][:RIVALS]
 
 
-def _refit(detection: Detection, base: ModelFit, later: Sequence[Candidate], fit: ModelFit) -> ModelFit | None:
-    """Return a fit with the later effects of another one added, begun where they are there; None where one cannot live there."""
+def refit_later(detection: Detection, base: ModelFit, later: Sequence[Candidate], whole: ModelFit, checked: bool = False) -> list[ModelFit]:
+    """Return fits that add the later effects of a whole fit to another base, one by one, begun where they are there.
+
+    Unless they are `checked`, not on the validation runs. Nothing is returned where an effect cannot live on that base.
+    """
+    found: list[ModelFit] = []
     for candidate in later:
-        trials = base.least_squares.misfit.problem.trials
+        current = found[-1] if found else base
+        trials = current.least_squares.misfit.problem.trials
         if candidate.place not in candidate.effect.places(trials[0].run.vehicle, trials):
-            return None
-        again = Fitter(detection, base, ()).fit(candidate, [fitted_numbers(fit, candidate)], checked=False)
-        if again is None:
-            return None
-        base = again
-    return base
+            return []
+        fit = Fitter(detection, current, ()).fit(candidate, [fitted_numbers(whole, candidate)], checked=checked)
+        if fit is None:
+            return []
+        found.append(fit)
+    return found
