@@ -26,13 +26,13 @@ def verdict_of(monkeypatch, detection, believed, effects, faults_of_believed=())
 
 
 def test_where_believable_errors_do_as_well_nothing_is_wrong(monkeypatch, detection_of):
-    detection = detection_of()
+    detection = detection_of(runs=HUMPS)
     found = verdict_of(monkeypatch, detection, believable(detection), ["cubic_stiffness"])
     assert (found.verdict, found.faults) == ("no_missing_effect", ())
 
 
 def test_what_believable_errors_leave_is_told(monkeypatch, detection_of):
-    detection = detection_of()
+    detection = detection_of(runs=HUMPS)
     found = verdict_of(monkeypatch, detection, believable(detection), ["cubic_stiffness"], (FAULT,))
     assert (found.verdict, found.faults) == ("measurement_fault", (FAULT,))
 
@@ -46,13 +46,13 @@ def test_what_believable_errors_leave_is_told(monkeypatch, detection_of):
     ids=["of the vehicle", "of a sensor"],
 )
 def test_an_effect_of_the_vehicle_is_told_in_place_of_a_mistake(monkeypatch, detection_of, effect, name, verdict):
-    detection = detection_of(effect)
+    detection = detection_of(effect, runs=HUMPS)
     found = verdict_of(monkeypatch, detection, replace(detection), [name])
     assert found.verdict == verdict
 
 
 def test_believable_errors_are_small(detection_of):
-    believed = believable(detection_of(CUBIC))
+    believed = believable(detection_of(CUBIC, runs=HUMPS))
     for part in (believed.base.least_squares, believed.base.validation_fit):
         assert max(abs(item.sigmas) for item in part.conditions()) <= 2.5 + 1e-9
 

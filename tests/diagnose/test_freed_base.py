@@ -52,6 +52,7 @@ def test_a_damper_on_a_soft_mount_is_named_with_its_stiffness(trials_of):
     assert found.chosen[-1].training < 1.05
 
 
+@pytest.mark.slow
 def test_a_freed_damper_that_leaves_the_gap_is_not_to_blame(trials_of):
     """No damper of any size imitates a spring: then neither do effects that free one, and nothing is said against the file."""
     found = diagnose_trials(trials_of(CUBIC, runs=HUMPS), [EFFECTS["damper_mount"]])
@@ -61,7 +62,7 @@ def test_a_freed_damper_that_leaves_the_gap_is_not_to_blame(trials_of):
 @pytest.mark.parametrize(("left", "verdict"), [(1.07, "too_weak"), (1.00, "insufficient_data")])
 def test_a_freed_parameter_is_blamed_only_for_the_gap_that_it_closes(detection_of, monkeypatch, left, verdict):
     """A gap of chi 1.08, beside which every effect does no more than a freed parameter alone."""
-    detection = detection_of()
+    detection = detection_of(runs=HUMPS)
     base = replace(detection.base, training=1.08**2, mean_squares=dict.fromkeys(detection.base.mean_squares, 1.08**2))
     detection = replace(detection, base=base)
     freed = replace(base, effects=(Candidate(FREED_BASE, "cf", (), (), ("cf",)),), training=left**2)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.conftest import CUBIC
+from tests.diagnose.conftest import CUBIC, HUMPS
 from vehgen.diagnose import decision
 from vehgen.diagnose.decision import Decision
 from vehgen.diagnose.detect.detection import look_again
@@ -69,16 +69,16 @@ def test_a_recorder_is_judged_by_the_better_model_however_clear_it_was(detection
 
 def test_a_second_look_may_check_the_effect_by_another_run(monkeypatch, detection_of):
     """What places leave is told of the runs that are fitted: with the old runs' errors it could not be used any more."""
-    first = detection_of(CUBIC)
-    others = [trial for trial in first.trials if trial.name != "high"]
-    held = [trial for trial in first.trials if trial.name == "high"]
+    first = detection_of(CUBIC, runs=HUMPS)
+    others = [trial for trial in first.trials if trial.name != "low"]
+    held = [trial for trial in first.trials if trial.name == "low"]
     problem = first.problem.with_trials(others)
     base = fit_base(problem, held, first.floor.noises, first.band)
     second = [replace(first, problem=problem, validation_runs=tuple(held), base=base)]
-    assert [trial.name for trial in first.validation_runs] != ["high"]
+    assert [trial.name for trial in first.validation_runs] != ["low"]
     monkeypatch.setattr(decision, "look_again", lambda detection, fit: second.pop() if second else None)
     decided = Decision(first, [EFFECTS["cubic_stiffness"]], False, lambda stage, done, total, best: None).decide()
     found = with_evidence(decided, lambda stage, done, total, best: None)
     assert not second
     assert [(item.name, item.place) for item in found.verdict.effects] == [("cubic_stiffness", "rear")]
-    assert {run.run for run in found.verdict.gap.runs if run.validation} == {"high"}
+    assert {run.run for run in found.verdict.gap.runs if run.validation} == {"low"}

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from benchmarks.hidden_effects.generator import Effect
 
+from tests.diagnose.conftest import HUMPS
 from vehgen.diagnose.fits import screening
 from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.fits.model_fit import CurrentModel
@@ -21,7 +22,7 @@ LAWS = [EFFECTS[name] for name in ("dry_friction", "hysteresis", "bump_stop", "q
 def test_friction_far_below_where_its_search_begins_is_worth_a_fit(detection_of, monkeypatch, force):
     """Friction that holds what truly slips is of no use to first order; where it is small, so is its first order."""
     monkeypatch.setattr(screening, "MAX_CANDIDATES", 3)
-    detection = detection_of(Effect("dry_friction", "front", {"force": force}))
+    detection = detection_of(Effect("dry_friction", "front", {"force": force}), runs=HUMPS)
     trial = detection.trials[0]
     candidates = list_candidates(trial.run.vehicle, detection.trials, LAWS)
     locator = EffectLocator(trial.run.vehicle, dict(trial.values))
@@ -33,7 +34,7 @@ def test_friction_far_below_where_its_search_begins_is_worth_a_fit(detection_of,
 
 def test_every_law_at_a_place_that_is_kept_is_worth_a_fit(detection_of, monkeypatch):
     monkeypatch.setattr(screening, "MAX_CANDIDATES", 3)
-    detection = detection_of(Effect("dry_friction", "front", {"force": 150.0}))
+    detection = detection_of(Effect("dry_friction", "front", {"force": 150.0}), runs=HUMPS)
     trial = detection.trials[0]
     candidates = list_candidates(trial.run.vehicle, detection.trials, LAWS)
     locator = EffectLocator(trial.run.vehicle, dict(trial.values))

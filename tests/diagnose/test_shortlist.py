@@ -14,7 +14,7 @@ GAIN = Effect("sensor_gain", "F_az", {"error": 0.2})
 
 
 def test_a_channel_whose_absence_leaves_more_than_noise_excludes_nothing(detection_of):
-    detection = detection_of()
+    detection = detection_of(runs=HUMPS)
     base = detection.base
     every = list_candidates(detection.trials[0].run.vehicle, detection.trials, list(EFFECTS.values()))
 

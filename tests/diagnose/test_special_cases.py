@@ -85,7 +85,7 @@ def test_in_a_car_that_begins_at_rest_friction_is_named_as_it_is(trials_of, lops
 
 
 def test_a_special_case_is_found_from_where_the_law_that_holds_it_ended(detection_of, lopsided):
-    detection = detection_of(lopsided(1.0))
+    detection = detection_of(lopsided(1.0), runs=HUMPS)
     fitter = Fitter(detection, detection.base, [])
     vehicle = detection.trials[0].run.vehicle
     general, plain = (

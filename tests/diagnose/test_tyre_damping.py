@@ -11,6 +11,7 @@ RATIOS = {"front": 0.03, "rear": 0.14}
 DAMPING, OTHERS = EFFECTS["tyre_damping"], [EFFECTS[name] for name in ("tyre_footprint", "speed_error")]
 
 
+@pytest.mark.slow
 def test_ratios_that_differ_by_axle_are_told_each(trials_of):
     found = diagnose_trials(
         trials_of(*(Effect("tyre_damping", name, {"ratio": ratio}) for name, ratio in RATIOS.items())), [DAMPING, *OTHERS]

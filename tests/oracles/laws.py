@@ -83,7 +83,7 @@ def integrate(numeric, branches: list[Branch], road: Callable, times: np.ndarray
     while t < times[-1] - 1e-12:
         end = next(b for b in ends if b > t + 1e-12)
         solution = solve_ivp(
-            field_, (t, end), x, method="DOP853", rtol=1e-9, atol=1e-12, max_step=0.02, dense_output=True, events=events() or None
+            field_, (t, end), x, method="DOP853", rtol=1e-7, atol=1e-10, max_step=0.02, dense_output=True, events=events() or None
         )
         reached = solution.t[-1]
         for k in np.flatnonzero((times >= t) & (times <= reached)):
