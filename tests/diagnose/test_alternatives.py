@@ -8,7 +8,7 @@ from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.effects import EFFECTS
 
 LATE = Effect("sensor_delay", "R", {"time": 0.06})
-TRIED = [EFFECTS[name] for name in ("cubic_stiffness", "sensor_delay", "quadratic_damping")]
+TRIED = [EFFECTS[name] for name in ("cubic_stiffness", "sensor_delay")]
 
 
 @pytest.fixture(scope="module")

@@ -43,7 +43,7 @@ def test_nothing_hidden_is_found_to_be_nothing(trials_of):
 
 
 def test_a_hidden_spring_is_placed_named_and_measured(trials_of):
-    found = diagnose_trials(trials_of(CUBIC))
+    found = diagnose_trials(trials_of(CUBIC, runs=HUMPS))
     assert {item.place.label for item in found.passed} == {"suspension rear", "tyre rear"}
     assert found.verdict.verdict == "named"
     effect = found.verdict.effects[0]

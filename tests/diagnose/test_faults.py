@@ -353,7 +353,7 @@ def test_healthy_runs_have_no_fault(plain):
 
 
 HONEST = (
-    Effect("tyre_footprint", "all", {"length": 0.23}),
+    pytest.param(Effect("tyre_footprint", "all", {"length": 0.23}), id="tyre_footprint", marks=pytest.mark.slow),
     Effect("sensor_gain", "F_az", {"error": 0.15}),
     Effect("speed_error", "all", {"error": 0.05}),
 )

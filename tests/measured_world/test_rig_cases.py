@@ -110,6 +110,7 @@ def test_a_servo_and_its_measured_force_make_the_same_motion():
     assert np.max(np.abs(motions["displacement"])) < 2.0
 
 
+@pytest.mark.slow
 def test_what_a_parameter_can_take_off_is_not_distinct(pushed):
     """A spring-like or friction-like law remains; a law that only adds damping does not."""
     rig, run, _ = pushed
@@ -133,7 +134,9 @@ def test_sharp_hysteresis_and_friction_by_direction_may_be_called_dry_friction()
     assert all(accepted(law, {}, scale) == {} for law in LAWS if law not in ("hysteresis", "directional_friction"))
 
 
-@pytest.mark.parametrize(("family", "seed"), [("half_car", 0), ("half_car", 2), ("dyno", 1), ("carriage", 3)])
+@pytest.mark.parametrize(
+    ("family", "seed"), [("half_car", 0), ("half_car", 2), pytest.param("dyno", 1, marks=pytest.mark.slow), ("carriage", 3)]
+)
 def test_vehgen_moves_a_healthy_rig_as_recorded_to_within_the_noise(family, seed, tmp_path):
     """Files with the true parameters and exact inputs leave the sensors' noise: signs, units and places are as they are meant."""
     rig = with_exact_inputs(with_true_file(bare(family, seed)))
