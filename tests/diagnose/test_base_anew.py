@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.diagnose.conftest import HUMPS
+from vehgen.diagnose.detect import detection as detecting
 from vehgen.diagnose.fits import base_anew as module
 from vehgen.diagnose.fits.base_anew import base_anew
 from vehgen.diagnose.fits.model_fit import evaluate_fit
@@ -17,13 +18,17 @@ def detection(detection_of):
     return detection_of(runs=HUMPS)
 
 
-@pytest.fixture(scope="module")
-def astray(detection):
-    """The base with the speed of every run at its bound, as a fit that locked in a cycle off leaves it."""
-    fit = detection.base.least_squares
+def led_astray(base, validation_runs, noises):
+    """Return a base with the speed of every run at its bound, as a fit that locked in a cycle off leaves it."""
+    fit = base.least_squares
     at = [4.0 if item.name == "speed" else number for item, number in zip(fit.conditions(), fit.misfit.split(fit.x)[1], strict=True)]
     moved = replace(fit, x=np.concatenate([fit.x[: fit.misfit.n_parameters], at]), linearisation=None)
-    return evaluate_fit((), moved, detection.validation_runs, detection.floor.noises)
+    return evaluate_fit((), moved, validation_runs, noises)
+
+
+@pytest.fixture(scope="module")
+def astray(detection):
+    return led_astray(detection.base, detection.validation_runs, detection.floor.noises)
 
 
 def again(base, detection):
@@ -46,3 +51,17 @@ def test_any_other_base_stays_as_it_is(detection, astray, monkeypatch, kind):
     base = detection.base if kind == "good" else astray
     assert again(base, detection) is base
     assert len(tried) == (kind == "no better")
+
+
+def test_a_base_that_another_noise_led_astray_comes_back(detection, trials_of, monkeypatch):
+    """The first fit of a detection is good; what begins from it, beside noise that was found from it, is not."""
+    plain = detecting.fit_base
+
+    def misled(problem, validation_runs, noises, band, begin=None, **options):
+        fit = plain(problem, validation_runs, noises, band, begin, **options)
+        return fit if begin is None else led_astray(fit, validation_runs, noises)
+
+    monkeypatch.setattr(detecting, "fit_base", misled)
+    monkeypatch.setattr(detecting, "split_by_gap", lambda base, trials: None)
+    found = detecting.detect(trials_of(runs=HUMPS))
+    assert found.base.training == pytest.approx(detection.base.training, rel=0.02)

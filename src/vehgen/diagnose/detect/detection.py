@@ -107,7 +107,7 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
     band = band or compared_band(trials)
     floor = find_noise_floor(trials, band)
     problem = narrow(make_problem(training))
-    base = base_anew(fit_base(problem, validation_runs, floor.noises, band), validation_runs, floor.noises, band)
+    base = _fitted(problem, validation_runs, floor.noises, band)
     if lines := steady_lines(base):  # they were taken for noise
         problem, validation_runs = problem.with_trials(without_lines(training, lines)), list(without_lines(validation_runs, lines))
         floor = find_noise_floor((*problem.trials, *validation_runs), band)
@@ -131,7 +131,15 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
         problem, validation_runs, base = tried[which]
         if before is not None and recorder.is_like(before):
             break
+    base = base_anew(base, validation_runs, floor.noises, base.least_squares.misfit.band)  # another recorder or noise may mislead it again
     return _with_telling_runs(_detection(problem, validation_runs, floor, base, recorder, band))
+
+
+def _fitted(
+    problem: Problem, validation_runs: Sequence[Trial], noises: Noises, band: tuple[float, float], begin: ModelFit | None = None
+) -> ModelFit:
+    """Return the base fitted, and fitted anew where that ended in a wrong minimum."""
+    return base_anew(fit_base(problem, validation_runs, noises, band, begin), validation_runs, noises, band)
 
 
 def _recorded(
@@ -161,7 +169,7 @@ def look_again(detection: Detection, fit: ModelFit) -> Detection | None:
         return None
     band = detection.asked_band if recorder is None else recorder.band
     floor = replace(floor, noises=noises)
-    base = fit_base(problem, validation_runs, noises, band, detection.base)
+    base = _fitted(problem, validation_runs, noises, band, detection.base)
     return _with_telling_runs(_detection(problem, validation_runs, floor, base, recorder, detection.asked_band))
 
 
@@ -182,7 +190,7 @@ def _with_telling_runs(detection: Detection) -> Detection:
 def with_runs(detection: Detection, training: Sequence[Trial], validation_runs: Sequence[Trial]) -> Detection:
     """Return a detection with other training and validation runs."""
     problem = detection.problem.with_trials(training)
-    base = fit_base(problem, validation_runs, detection.floor.noises, detection.band)
+    base = _fitted(problem, validation_runs, detection.floor.noises, detection.band)
     return _detection(problem, validation_runs, detection.floor, base, detection.recorder, detection.asked_band)
 
 
