@@ -310,3 +310,19 @@ def test_the_run_file_says_through_which_low_pass_the_phone_was_put_on_the_grid(
     chains = channel_chains(load_run(tmp_path / "run.yaml"), float(rate))
     assert {chain.filter for chain in chains.values()} == {kept}
     assert {chain.cut_off for chain in chains.values()} == {None if kept == "unknown" else 25.0}
+
+
+def test_a_phone_that_the_vehicle_matches_badly_is_laid_roughly_or_set_by_its_energy(tmp_path, capsys, monkeypatch):
+    """As where a law is missing that the file lacks: the match still tells the time, but its clock less well."""
+    good = facts(capsys, tmp_path / "good.yaml", both("hump_2ms"))
+    assert load_run(tmp_path / "good.yaml").file.uncertainty.clock is None
+    for module in ("locating", "importing", "run_text"):
+        monkeypatch.setattr(f"vehgen.phones.{module}.TRUSTED", 0.9999)
+    rough = facts(capsys, tmp_path / "rough.yaml", both("hump_2ms"))
+    assert [phone["zero"] for phone in rough["phones"]] == pytest.approx([phone["zero"] for phone in good["phones"]], abs=1e-6)
+    assert load_run(tmp_path / "rough.yaml").file.uncertainty.clock == pytest.approx(0.03)
+    monkeypatch.setattr("vehgen.phones.locating.ROUGHLY", 0.0)
+    onset = facts(capsys, tmp_path / "onset.yaml", both("hump_2ms"))
+    for phone, other in zip(onset["phones"], good["phones"], strict=True):
+        assert phone["zero"] != other["zero"]
+        assert phone["zero"] == pytest.approx(other["zero"], abs=0.15)

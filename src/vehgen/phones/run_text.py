@@ -11,6 +11,7 @@ from typing import Any
 from vehgen.errors import ArgumentError, shortened, shown
 from vehgen.files import write_text
 from vehgen.files.yaml_writer import Commented, OneLine, yaml_document
+from vehgen.phones.clocks import TRUSTED
 from vehgen.phones.gps import USUAL_SPEED_SHARE
 from vehgen.phones.importing import Imported, ImportedPhone, clock_difference
 from vehgen.phones.resampling import is_low_passed
@@ -18,6 +19,9 @@ from vehgen.simulate import load_run
 from vehgen.vehicle import Vehicle, VehicleLike
 from vehgen.vehicle.loading import find_vehicle_file, models_folder
 from vehgen.vehicle.writing import base_reference
+
+DOUBTFUL_CLOCK_S = 0.03
+"""How well phones' clocks are known against one another [s] where one of them is matched badly: 10 ms is usual."""
 
 
 def write_import(imported: Imported, vehicle: VehicleLike, out: Path) -> tuple[Path, Path]:
@@ -94,11 +98,13 @@ def run_text(imported: Imported, vehicle: VehicleLike, out: Path) -> str:
 
 
 def _uncertainty(imported: Imported) -> OneLine | None:
-    """Return how well a GPS knows the speed, where that is less well than runs are usually known."""
-    deviation = imported.speed.deviation
-    if deviation is None or deviation <= USUAL_SPEED_SHARE * imported.speed.value:
-        return None
-    return OneLine(speed=f"{deviation:.2g} m/s")
+    """Return how well a GPS knows the speed, and the phones' clocks one another, where that is less well than runs are usually known."""
+    deviation, stated = imported.speed.deviation, {}
+    if deviation is not None and deviation > USUAL_SPEED_SHARE * imported.speed.value:
+        stated["speed"] = f"{deviation:.2g} m/s"
+    if imported.at is not None and len(imported.phones) > 1 and any(item.match.correlation < TRUSTED for item in imported.phones):
+        stated["clock"] = f"{1000 * DOUBTFUL_CLOCK_S:g} ms"
+    return OneLine(**stated) if stated else None
 
 
 def _road_entry(imported: Imported, folder: Path) -> dict[str, Any]:
