@@ -41,7 +41,7 @@ LANES = 32
 """Individuals of CMA-ES's first population: those that the kernel advances side by side."""
 
 
-class Spent(Exception):  # noqa: N818
+class BudgetSpentError(Exception):
     """The simulations are used up."""
 
 
@@ -73,9 +73,9 @@ class Recorder:
         return self.objective.problem.spent[0]
 
     def __call__(self, unit: Array) -> Array:
-        """Return Eq. 5 at points `shape (n, n_parameters)`; raises Spent where the budget would be exceeded."""
+        """Return Eq. 5 at points `shape (n, n_parameters)`; raises BudgetSpentError where the budget would be exceeded."""
         if self.count + len(unit) > self.limit:
-            raise Spent
+            raise BudgetSpentError
         found = self.objective(unit)
         i = int(np.argmin(found))
         self.keep(unit[i], float(found[i]), better=found[i] < self.value)
@@ -192,7 +192,7 @@ def measure(kind: str, name: str, seed: int) -> Outcome:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             METHODS[name](recorder, seed)
-    except Spent:
+    except BudgetSpentError:
         pass
     seconds = time.perf_counter() - start
     right = np.array([[truth[key] for key in plain.space.names]])

@@ -8,14 +8,13 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "examples" / "emps"))
+from force_error import read_motion
+
+from vehgen.report import save_figure
+from vehgen.vehicle import load_vehicle
+
 HERE = Path(__file__).parents[1]
-sys.path.insert(0, str(HERE / "examples" / "emps"))
-
-from force_error import read_motion  # noqa: E402
-
-from vehgen.report import save_figure  # noqa: E402
-from vehgen.vehicle import load_vehicle  # noqa: E402
-
 MEASURED, LAW, VISCOUS = "#9aa7b1", "#0b5fa5", "#d55e00"
 
 

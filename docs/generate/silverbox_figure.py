@@ -10,16 +10,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "examples" / "silverbox"))
+from free_run import FIRST, Array, fit, free_run, with_cubic_spring
+from prepare import DISPLACEMENT, RUNS, STEP, TESTS, noise_levels, read_silverbox, upsample, write_runs
+
+from vehgen.measure import record_psd
+from vehgen.report import save_figure
+from vehgen.vehicle import load_vehicle
+
 HERE = Path(__file__).parents[1]
-sys.path.insert(0, str(HERE / "examples" / "silverbox"))
-
-from free_run import FIRST, Array, fit, free_run, with_cubic_spring  # noqa: E402
-from prepare import DISPLACEMENT, RUNS, STEP, TESTS, noise_levels, read_silverbox, upsample, write_runs  # noqa: E402
-
-from vehgen.measure import record_psd  # noqa: E402
-from vehgen.report import save_figure  # noqa: E402
-from vehgen.vehicle import load_vehicle  # noqa: E402
-
 MEASURED, LINEAR, CUBIC = "#9aa7b1", "#d55e00", "#0b5fa5"
 MILLI = 1e3 / DISPLACEMENT
 """From metres to millivolts of V2."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -66,15 +67,16 @@ def integrate(numeric, branches: list[Branch], road: Callable, times: np.ndarray
         """What keeps a sticking branch still, from the middle of its bounds."""
         return friction(smooth(t, x)[0])[i] - rough[i].middle
 
+    def slips_on(t, x, i):
+        return J[i] @ x[n : 2 * n] * rough[i].mode + 1e-12
+
+    def holds(t, x, i):
+        return rough[i].friction - abs(beyond(t, x, i))
+
     def events():
-        found = []
-        for i, branch in enumerate(rough):
-            if branch.mode:
-                event = lambda t, x, i=i: J[i] @ x[n : 2 * n] * rough[i].mode + 1e-12  # noqa: E731
-            else:
-                event = lambda t, x, i=i: rough[i].friction - abs(beyond(t, x, i))  # noqa: E731
+        found = [partial(slips_on if branch.mode else holds, i=i) for i, branch in enumerate(rough)]
+        for event in found:
             event.terminal, event.direction = True, -1
-            found.append(event)
         return found
 
     x, t = np.zeros(slots[-1]), times[0]

@@ -124,7 +124,7 @@ def test_a_run_states_how_well_a_gps_knows_its_speed(tmp_path, capsys, name, opt
 
 def test_where_the_vehicle_fits_too_badly_for_its_axles_to_tell_the_speed_the_gps_does(tmp_path, capsys, monkeypatch):
     by_gps = facts(capsys, tmp_path / "gps.yaml", both("hump_2ms"))
-    monkeypatch.setattr("vehgen.phones.importing.TRUSTED", 0.9999)
+    monkeypatch.setattr("vehgen.phones.clocks.TRUSTED", 0.9999)
     found = facts(capsys, tmp_path / "run.yaml", both("hump_2ms"), "--speed", "axles")
     assert (found["speed"], found["speed_deviation"]) == (by_gps["speed"], by_gps["speed_deviation"])
     assert any("so the GPS's stands" in warning for warning in found["warnings"])
@@ -316,12 +316,11 @@ def test_a_phone_that_the_vehicle_matches_badly_is_laid_roughly_or_set_by_its_en
     """As where a law is missing that the file lacks: the match still tells the time, but its clock less well."""
     good = facts(capsys, tmp_path / "good.yaml", both("hump_2ms"))
     assert load_run(tmp_path / "good.yaml").file.uncertainty.clock is None
-    for module in ("locating", "importing", "run_text"):
-        monkeypatch.setattr(f"vehgen.phones.{module}.TRUSTED", 0.9999)
+    monkeypatch.setattr("vehgen.phones.clocks.TRUSTED", 0.9999)
     rough = facts(capsys, tmp_path / "rough.yaml", both("hump_2ms"))
     assert [phone["zero"] for phone in rough["phones"]] == pytest.approx([phone["zero"] for phone in good["phones"]], abs=1e-6)
     assert load_run(tmp_path / "rough.yaml").file.uncertainty.clock == pytest.approx(0.03)
-    monkeypatch.setattr("vehgen.phones.locating.ROUGHLY", 0.0)
+    monkeypatch.setattr("vehgen.phones.locating.ONSET_TOLERANCE_S", 0.0)
     onset = facts(capsys, tmp_path / "onset.yaml", both("hump_2ms"))
     for phone, other in zip(onset["phones"], good["phones"], strict=True):
         assert phone["zero"] != other["zero"]

@@ -14,7 +14,6 @@ import numpy as np
 import scipy.signal
 from numpy.typing import NDArray
 
-from vehgen.phones.export import PhoneExport
 from vehgen.simulate import Scenario, Simulator
 
 Array = NDArray[np.float64]
@@ -24,7 +23,7 @@ COARSE_SCALES = np.arange(0.88, 1.1201, 0.01)
 FINE_SCALE_STEPS = np.arange(-0.01, 0.01001, 0.001)
 """... and then around the best of them."""
 TRUSTED = 0.6
-"""Least correlation of a match that is used."""
+"""Least correlation of a match that tells clock and speed."""
 HIGHEST_FREQUENCY_HZ = 20.0
 """Above this frequency [Hz] the vehicle's answer is not compared."""
 
@@ -36,6 +35,11 @@ class Match:
     shift: float
     correlation: float
     scale: float
+
+    @property
+    def is_trusted(self) -> bool:
+        """Whether the vehicle answers so much like the recording that the match tells clock and speed."""
+        return self.correlation >= TRUSTED
 
 
 def predictor(simulator: Simulator, parameters: Array, scenario: Scenario) -> Answer:
@@ -110,10 +114,3 @@ def _vertex(three: Array) -> float:
     """Return where a parabola through three samples has its top, in steps from the middle one."""
     curve = three[0] - 2 * three[1] + three[2]
     return float(np.clip(0.5 * (three[0] - three[2]) / curve, -0.5, 0.5)) if curve < 0 else 0.0
-
-
-def epoch_disagreement(first: PhoneExport, moment: float, other: PhoneExport, other_moment: float) -> float | None:
-    """Return how much later [s] the other phone's world clock puts one event, None where either phone has none."""
-    if first.epoch is None or other.epoch is None:
-        return None
-    return other.epoch.at(other_moment) - first.epoch.at(moment)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError
 from vehgen.measure.quality import NoiseFloor, find_clipping, noise_floor
-from vehgen.phones.clocks import TRUSTED, Match, epoch_disagreement
+from vehgen.phones.clocks import Match
 from vehgen.phones.detect import read_export
 from vehgen.phones.export import Stream
 from vehgen.phones.hump_event import HumpEvent
@@ -114,7 +114,7 @@ def read_pass(exports: Sequence[str | os.PathLike[str]], plan: Plan) -> Imported
     distance = max(wheels.values()) + plan.road.length
     speed, events = find_speed(phones, plan, distance)
     matches, arrivals = locate(phones, plan, simulator, simulator.parameters(values)[0], speed.value, distance, events)
-    if plan.by_axles and all(item.correlation >= TRUSTED for item in matches):
+    if plan.by_axles and all(item.is_trusted for item in matches):
         speed = FoundSpeed(speed.value * matches[0].scale, f"by the axles' marks; {speed.source}")
         matches = [replace(item, scale=1.0) for item in matches]
     elif plan.by_axles and speed.deviation is None:
@@ -160,7 +160,7 @@ def _assemble(
         used = phone.acceleration.between(zero, zero + float(time[-1]))
         warnings += clipping_warnings(phone.name, used)
         warnings += [f"{phone.name}: {text}" for text in (orientation.warnings if orientation else ())]
-        if is_hump and item.correlation < TRUSTED:
+        if is_hump and not item.is_trusted:
             warnings.append(
                 f"{phone.name}: the vehicle's answer fits badly (correlation {item.correlation:.2f}), so its clock is set by {found_by}: "
                 "check vehicle, place and forward axis"
@@ -171,7 +171,7 @@ def _assemble(
                     f"{channel}: the lead-in is {floor.sigma / floor.band_sigma:.1f} times as loud as the top of its band: road or engine"
                 )
         done.append(ImportedPhone(phone, zero, arrival, found_by, quiet, upward, pitch, orientation, event, item, noise, tuple(notes)))
-    fitted = speed * matches[0].scale if all(item.correlation >= TRUSTED for item in matches) else None
+    fitted = speed * matches[0].scale if all(item.is_trusted for item in matches) else None
     if fitted is not None and abs(fitted / speed - 1) > SPEED_DOUBT:
         warnings.append(f"the axles' marks fit {fitted:.3f} m/s better than {speed:.3f} m/s ({source}); the speed by the axles takes that")
     if plan.by_axles and found_speed.deviation is not None:
@@ -236,7 +236,8 @@ def _clock_warnings(done: list[ImportedPhone]) -> list[str]:
 
 def clock_difference(first: ImportedPhone, other: ImportedPhone) -> float | None:
     """Return how much later [s] the other phone's world clock puts the front wheel at the hump, None where either phone has none."""
-    return epoch_disagreement(first.phone.export, first.arrival, other.phone.export, other.arrival)
+    its, others = first.phone.export.epoch, other.phone.export.epoch
+    return None if its is None or others is None else others.at(other.arrival) - its.at(first.arrival)
 
 
 def with_forward(sensors: Sequence[PhoneSensor], forward: str | None) -> tuple[PhoneSensor, ...]:

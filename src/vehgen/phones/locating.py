@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError
-from vehgen.phones.clocks import COARSE_SCALES, TRUSTED, Match, match, predictor
+from vehgen.phones.clocks import COARSE_SCALES, Match, match, predictor
 from vehgen.phones.gps import CrossingSpeed, crossing_speed
 from vehgen.phones.hump_event import HumpEvent, expected_onset, find_hump
 from vehgen.phones.phone import Phone, speed_stream
@@ -21,9 +21,9 @@ LONGEST_PASS = 2000.0
 """No pass over a hump or profile is longer [s]."""
 CLOCK_DOUBT = 0.5
 """Difference of two phones' world clocks over one event [s] that deserves a warning."""
-ROUGH, ROUGHLY = 0.4, 0.15
-"""A match of so small a correlation tells when a wheel arrived, if energy set in within so many seconds [s] of that: one of 0.54 erred
-by 5 ms; by the onset of energy 15 passes of vehicles with laws that their files lack erred by 45 ms (rms), by world clocks by 230 ms.
+ROUGH_CORRELATION, ONSET_TOLERANCE_S = 0.4, 0.15
+"""A match of this correlation tells when a wheel arrived, if energy set in within this time [s] of that: one of 0.54 erred by 5 ms;
+by the onset of energy 15 passes of vehicles with laws that their files lack erred by 45 ms (rms), by world clocks by 230 ms.
 """
 
 
@@ -107,7 +107,7 @@ def locate(
     found = match(recordings, answer, columns, step, near)
     arrivals: list[tuple[float, str]] = []
     for i, (item, event) in enumerate(zip(found, events, strict=True)):
-        if item.correlation >= TRUSTED:
+        if item.is_trusted:
             arrivals.append(
                 (item.shift + lead / (speed * item.scale), f"the vehicle's answer laid over it (correlation {item.correlation:.2f})")
             )
@@ -124,6 +124,6 @@ def locate(
 
 def _doubtful(set_in: float, laid: float, correlation: float) -> tuple[float, str]:
     """Return the arrival of a phone that the simulated response matches badly: as it is laid over, if its energy set in about then."""
-    if correlation >= ROUGH and abs(laid - set_in) <= ROUGHLY:
+    if correlation >= ROUGH_CORRELATION and abs(laid - set_in) <= ONSET_TOLERANCE_S:
         return laid, f"the vehicle's answer laid roughly over it (correlation {correlation:.2f})"
     return set_in, "when its energy set in, less the time that the vehicle's answer takes to reach it"

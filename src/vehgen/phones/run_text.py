@@ -11,7 +11,6 @@ from typing import Any
 from vehgen.errors import ArgumentError, shortened, shown
 from vehgen.files import write_text
 from vehgen.files.yaml_writer import Commented, OneLine, yaml_document
-from vehgen.phones.clocks import TRUSTED
 from vehgen.phones.gps import USUAL_SPEED_SHARE
 from vehgen.phones.importing import Imported, ImportedPhone, clock_difference
 from vehgen.phones.resampling import is_low_passed
@@ -102,7 +101,7 @@ def _uncertainty(imported: Imported) -> OneLine | None:
     deviation, stated = imported.speed.deviation, {}
     if deviation is not None and deviation > USUAL_SPEED_SHARE * imported.speed.value:
         stated["speed"] = f"{deviation:.2g} m/s"
-    if imported.at is not None and len(imported.phones) > 1 and any(item.match.correlation < TRUSTED for item in imported.phones):
+    if imported.at is not None and len(imported.phones) > 1 and not all(item.match.is_trusted for item in imported.phones):
         stated["clock"] = f"{1000 * DOUBTFUL_CLOCK_S:g} ms"
     return OneLine(**stated) if stated else None
 
