@@ -67,13 +67,42 @@ def test_none_is_told_unless_all_speaks_for_it(detection_of, found_of, monkeypat
     assert faintly_told(found, detection) is None
 
 
+def at_a_bound(fit):
+    x = fit.least_squares.x.copy()
+    x[0] = 1.0
+    return replace(fit, least_squares=replace(fit.least_squares, x=x))
+
+
 def test_none_is_told_that_leaves_a_parameter_at_its_bound(detection_of, found_of):
-    detection, best = detection_of(UNLIKE, runs=HUMPS), found_of.fits[0]
-    held = best.least_squares.x.copy()
-    held[0] = 1.0
-    bent = replace(best, least_squares=replace(best.least_squares, x=held))
+    detection, bent = detection_of(UNLIKE, runs=HUMPS), at_a_bound(found_of.fits[0])
     assert bent.least_squares.on_bound
     assert faintly_told(replace(found_of, fits=(bent, *found_of.fits[1:])), detection) is None
+
+
+def test_what_falls_as_far_within_its_bounds_goes_before_what_ends_at_one(found_of, monkeypatch):
+    """As relaxation falls a little farther than a damper's mount, with a damper weaker than its file allows."""
+    best = found_of.fits[0]
+    inside = replace(best, effects=(replace(best.last, effect=EFFECTS["quadratic_damping"]),))
+    bent = at_a_bound(best)
+    falls = {id(bent): (1000.0, 300.0), id(inside): (850.0, 310.0)}
+    monkeypatch.setattr(criteria, "fall", lambda found, fit: falls[id(fit)][0])
+    monkeypatch.setattr(criteria, "validation_fall", lambda base, fit: falls[id(fit)][1])
+    assert faint._likeliest_first(found_of, [bent, inside]) == [inside, bent]
+    falls[id(inside)] = (700.0, 310.0)
+    assert faint._likeliest_first(found_of, [bent, inside]) == [bent, inside]
+
+
+def test_what_ends_at_a_bound_and_does_no_better_is_no_tie(found_of, monkeypatch):
+    best = found_of.fits[0]
+    rival = at_a_bound(replace(best, effects=(replace(best.last, effect=EFFECTS["quadratic_damping"]),)))
+    monkeypatch.setattr(criteria, "falls_as_far", lambda found, fit, best: True)
+    both = replace(found_of, fits=(best, rival))
+    assert tied(both, best) == []
+    assert tied(both, rival) == [best]
+    bent = at_a_bound(best)
+    assert tied(replace(both, fits=(bent, rival)), bent) == [rival]
+    monkeypatch.setattr(criteria, "merit", lambda fit: 0.0 if fit is rival else 100.0)
+    assert tied(both, best) == [rival]
 
 
 def test_none_is_told_whose_number_ends_its_range(detection_of, found_of, monkeypatch):

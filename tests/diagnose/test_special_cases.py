@@ -22,7 +22,14 @@ BASE = SimpleNamespace(training=20.0)
 
 def fit(name, place, training):
     candidate = Candidate(EFFECTS[name], place, ())
-    return SimpleNamespace(last=candidate, effects=(candidate,), key=((name, place),), training=training, validation=training)
+    return SimpleNamespace(
+        last=candidate,
+        effects=(candidate,),
+        key=((name, place),),
+        training=training,
+        validation=training,
+        least_squares=SimpleNamespace(on_bound=()),
+    )
 
 
 def test_a_special_case_that_does_as_well_goes_first_and_is_no_tie():

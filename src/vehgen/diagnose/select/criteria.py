@@ -83,12 +83,28 @@ def falls_as_far(found: SearchRound, fit: ModelFit, best: ModelFit) -> bool:
 
 
 def tied(found: SearchRound, best: ModelFit) -> list[ModelFit]:
-    """Return the fits of a round that do as well as the best: within the slack of TIE, or of FAINT_TIE where chi shows no gap."""
+    """Return the fits of a round that do as well as the best: within the slack of TIE, or of FAINT_TIE where chi shows no gap.
+
+    Not those that do no better, but ask of the base what its file does not allow.
+    """
     before = excess(found.current.training)
-    others = [item for item in found.fits if item.key != best.key and not same(item.last, best.last)]
+    others = [item for item in found.fits if item.key != best.key and not same(item.last, best.last) and not _asks_for_more(item, best)]
     if found.faint:
         return [item for item in others if falls_as_far(found, item, best)]
     return [item for item in others if does_as_well(item.training, best.training, before)]
+
+
+def _asks_for_more(fit: ModelFit, best: ModelFit) -> bool:
+    """Return whether a fit takes base parameters to the ends of their ranges where the best one takes none there, and does no better.
+
+    So relaxation does that stands in for a damper's mount: beside it the damper itself would have to be weaker than its file allows.
+    """
+    return bool(_held(fit)) and not _held(best) and merit(fit) >= merit(best)
+
+
+def _held(fit: ModelFit) -> set[str]:
+    """Return the base parameters at the ends of their ranges."""
+    return set(fit.least_squares.on_bound).difference(*(item.parameters for item in fit.effects))
 
 
 def same(one: Candidate, other: Candidate) -> bool:

@@ -55,7 +55,7 @@ def faint_round(detection: Detection, candidates: Sequence[Candidate], runner: R
     clear = [fit for fit in fits if fall(found, fit) >= limit.FAINT_FALL]
     checked = {id(fit): fitter.fit_again(fit) for fit in clear if not np.isfinite(fit.validation)}
     fits = sorted((checked.get(id(fit), fit) for fit in fits), key=merit)
-    return replace(found, fits=tuple(_simplest_first(found, fits)))
+    return replace(found, fits=tuple(_likeliest_first(found, fits)))
 
 
 def _hides_behind(item: Candidate, held: set[str], vehicle: Vehicle) -> bool:
@@ -76,7 +76,7 @@ def faint_look_again(found: SearchRound, detection: Detection, runner: Runner = 
         detection = again
         fits = fit_leading_again(Fitter(detection, detection.base, ()), found.fits, weigh=True, runner=runner)
         found = replace(found, current=detection.base, fits=tuple(fits))
-        found = replace(found, fits=tuple(_simplest_first(found, sorted(fits, key=merit))))
+        found = replace(found, fits=tuple(_likeliest_first(found, sorted(fits, key=merit))))
     return found, detection
 
 
@@ -91,8 +91,7 @@ def faintly_told(found: SearchRound, detection: Detection) -> ModelFit | None:
     runs = [trial.name for trial in detection.validation_runs]
     if best is None or not _falls(found, best) or not surely_falls(found.current, best, runs) or not is_told(best):
         return None
-    held = best.least_squares.on_bound or best.least_squares.adjusted_to_a_bound
-    if held or not replace(detection, base=best).is_quiet or not _beats_freed_base(found, best, detection):
+    if _is_held(best) or not replace(detection, base=best).is_quiet or not _beats_freed_base(found, best, detection):
         return None
     places = localise_at(found.current, best.last.place)
     return None if like_a_placebo_law(places, found.current, best) else best
@@ -102,12 +101,18 @@ def _falls(found: SearchRound, fit: ModelFit) -> bool:
     return fall(found, fit) >= limit.FAINT_FALL and validation_fall(found.current, fit) >= limit.FAINT_VALIDATION
 
 
-def _simplest_first(found: SearchRound, fits: Sequence[ModelFit]) -> list[ModelFit]:
-    """Return fits in their order, but a special case of the best one first where it falls as far."""
+def _likeliest_first(found: SearchRound, fits: Sequence[ModelFit]) -> list[ModelFit]:
+    """Return fits in their order, but first one that falls as far as the best: its special case, or within bounds where that is at one."""
     for fit in fits[1:]:
-        if fits[0].last.holds(fit.last) and falls_as_far(found, fit, fits[0]):
+        likelier = fits[0].last.holds(fit.last) or (_is_held(fits[0]) and not _is_held(fit))
+        if likelier and falls_as_far(found, fit, fits[0]):
             return [fit, *(item for item in fits if item is not fit)]
     return list(fits)
+
+
+def _is_held(fit: ModelFit) -> bool:
+    """Return whether a parameter, or a number of an error, is at the end of its range."""
+    return bool(fit.least_squares.on_bound) or fit.least_squares.adjusted_to_a_bound
 
 
 def _beats_freed_base(found: SearchRound, best: ModelFit, detection: Detection) -> bool:
