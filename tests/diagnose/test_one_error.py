@@ -10,11 +10,13 @@ from tests.diagnose.conftest import CUBIC, HUMPS
 from vehgen.diagnose.detect.detection import believable
 from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.select.estimates import estimate
-from vehgen.diagnose.select.one_error import _within_belief, one_error
+from vehgen.diagnose.select.fitter import Fitter
+from vehgen.diagnose.select.one_error import _within_belief, one_error, taken_over
 from vehgen.effects import EFFECTS
 
 GAIN = Effect("sensor_gain", "F_az", {"error": 0.15})
 LATE = Effect("sensor_delay", "R", {"time": 0.06})
+FAST = Effect("speed_error", "all", {"error": 0.05})
 NAMES = ("cubic_stiffness", "sensor_gain", "sensor_delay", "speed_error")
 NOTHING = SimpleNamespace(stopped=False, models=SimpleNamespace(chosen=()))
 """What a search finds that names no effect."""
@@ -31,7 +33,7 @@ def tried(detection, strained=None, found=NOTHING, names=NAMES):
 
 @pytest.mark.parametrize(
     ("effect", "label", "value"),
-    [(GAIN, "sensor_gain at F_az", 1.15), (Effect("speed_error", "all", {"error": 0.05}), "speed_error at all runs", 1.05)],
+    [(GAIN, "sensor_gain at F_az", 1.15), (FAST, "speed_error at all runs", 1.05)],
     ids=["gain", "speed"],
 )
 def test_the_one_error_that_explains_the_runs_is_found(detection_of, effect, label, value):
@@ -42,6 +44,30 @@ def test_the_one_error_that_explains_the_runs_is_found(detection_of, effect, lab
     assert found.interval[0] < value < found.interval[1]
     for part in round_.fits[0].parts:
         assert max(abs(item.sigmas) for item in part.conditions()) <= 2.5 + 1e-9
+
+
+def test_an_error_takes_over_what_the_base_supposes_of_each_run(detection_of):
+    detection = detection_of(FAST, runs=HUMPS)
+    base = detection.base
+    found = {item.label: taken_over(base, item) for item in candidates_of(detection)}
+    (unit, errors), (number,) = found["speed_error at all runs"]
+    before = base.least_squares.conditions()
+    speeds = [item.value for item in before if item.name == "speed"]
+    assert number == pytest.approx(1 + sum(speeds) / len(speeds))
+    assert number == pytest.approx(1.05, abs=0.02)
+    for item, left in zip(before, errors, strict=True):
+        assert left * item.sigma == pytest.approx(item.value - (number - 1 if item.name == "speed" else 0.0), abs=1e-12)
+    assert unit == pytest.approx(base.least_squares.x[: len(unit)])
+    assert found["cubic_stiffness at rear"] is None
+
+
+def test_where_the_believable_base_has_lost_the_phase_a_fit_begins_at_the_strained_one(detection_of, monkeypatch):
+    for name in ("fit_all_begun", "fit_all"):
+        monkeypatch.setattr(Fitter, name, lambda *_: iter(()))
+    (found,) = tried(detection_of(FAST, runs=HUMPS)).fits
+    assert found.label == "speed_error at all runs"
+    (value,) = estimate(found).values()
+    assert value.interval[0] < 1.05 < value.interval[1]
 
 
 @pytest.mark.parametrize(

@@ -71,7 +71,10 @@ class Fitter:
         known = dict(zip((item.name for item in general.last.effect.parameters), found.values[space.size :], strict=True))
         usual = candidate.effect.starts(candidate.place, self.locator, self.residual)[0]
         numbers = tuple(float(known.get(item.name, first)) for item, first in zip(candidate.effect.parameters, usual, strict=True))
-        begin = space.unit(found.values[: space.size]), found.misfit.split(found.x)[1]
+        return self.fit_from(candidate, (space.unit(found.values[: space.size]), found.misfit.split(found.x)[1]), numbers)
+
+    def fit_from(self, candidate: Candidate, begin: StartingPoint, numbers: tuple[float, ...]) -> ModelFit | None:
+        """Fit one candidate, all motions at once, from parameters and errors, and numbers of its own."""
         return self._fit(candidate, [begin], [numbers], True, None, False)
 
     def _fit(

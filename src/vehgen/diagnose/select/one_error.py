@@ -17,7 +17,11 @@ from vehgen.diagnose.select.criteria import is_told
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.search import SearchRound, merit
 from vehgen.effects import RunEffect
+from vehgen.effects.evidence import StartingPoint
 from vehgen.fit.parallel import HERE, Runner
+
+SUPPOSED_AS = {"speed_error": "speed", "sensor_delay": "clock", "sensor_gain": "gain"}
+"""What a base supposes of each run, or of a sensor, by the name of the error that says it of all runs."""
 
 
 def explains_easily(found: Decided) -> bool:
@@ -36,7 +40,8 @@ def one_error(
 
     One that does leaves noise, with all other errors of BELIEVED_SIGMAS at most and nothing to be supposed of the runs. It is likelier,
     with the price of its number, than the many errors of the strained base, and the runs tell its size. Fits begin where the believable
-    base ends, all motions at once; if none explains the runs so, slow motions first.
+    base ends, all motions at once; if none explains the runs so, slow motions first; at last where the strained base ends, as the
+    believable one may have lost the runs' phase.
 
     Parameters
     ----------
@@ -60,7 +65,11 @@ def one_error(
     gains = fitter.first_order_gains()
     fits: list[ModelFit] = []
     try:
-        for tried in (fitter.fit_all_begun([(item, gains.of(item)[1]) for item in alone], runner), fitter.fit_all(alone, runner)):
+        for tried in (
+            fitter.fit_all_begun([(item, gains.of(item)[1]) for item in alone], runner),
+            fitter.fit_all(alone, runner),
+            (fitter.fit_from(item, *begin) for item in alone if (begin := taken_over(strained.base, item)) is not None),
+        ):
             within = (_within_belief(fit, believed) for fit in tried if fit is not None)
             fits = [fit for fit in within if _explains(fit, strained, believed)]
             if fits:
@@ -68,6 +77,22 @@ def one_error(
     except KeyboardInterrupt:
         return replace(nothing, stopped=True)
     return replace(nothing, fits=tuple(sorted(fits, key=merit)))
+
+
+def taken_over(strained: ModelFit, candidate: Candidate) -> tuple[StartingPoint, tuple[float]] | None:
+    """Return where a fit begins with an error of all runs that takes over what a base supposes of each of them, in the mean.
+
+    Returned are the base's parameters and errors, these less that mean, and the error's number; None where the base knows no such error.
+    """
+    fit = strained.least_squares
+    conditions, place = fit.conditions(), "" if candidate.effect.is_global else candidate.place
+    alike = np.array([(item.name, item.place) == (SUPPOSED_AS.get(candidate.effect.name), place) for item in conditions])
+    if not isinstance(candidate.effect, RunEffect) or not alike.any():
+        return None
+    mean = float(np.mean([item.value for item, taken in zip(conditions, alike, strict=True) if taken]))
+    unit, errors = fit.misfit.split(fit.x)
+    left = errors - alike * mean / np.array([item.sigma for item in conditions])
+    return (unit, left), (candidate.effect.neutral + mean,)
 
 
 def _within_belief(fit: ModelFit, believed: Detection) -> ModelFit:
