@@ -385,6 +385,14 @@ def test_heights_that_are_alike_are_not_exchanged():
     assert [item.kind for item in faults] == ["hump_height", "hump_height"]
 
 
+def test_a_speed_that_wanders_at_several_times_is_told_once_a_run():
+    conditions = [Condition("low", "wander", f"{time} s", value, "", 0.01) for time, value in ((1, 0.04), (2, -0.04), (3, 0.04))]
+    faults = findings_of_conditions([*conditions, Condition("fast", "wander", "1 s", 0.04, "", 0.01)], ["low", "fast", "high"])
+    assert [item.kind for item in faults] == ["wander"] * len(faults)
+    assert len({item.message for item in faults}) == len(faults)
+    assert {run for item in faults for run in item.runs} == {"low", "fast"}
+
+
 @pytest.mark.parametrize(
     ("clocks", "told"),
     [((0.0136, 0.0139, 0.0132), True), ((-0.015, -0.016, -0.0155), True), ((0.0136, 0.0139), False), ((0.0136, 0.0139, 0.007), False)],

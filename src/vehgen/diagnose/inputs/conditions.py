@@ -111,7 +111,7 @@ def findings_of_conditions(
             alike = [item for item in left if abs(item.value - left[0].value) <= max(AGREE * abs(left[0].value), item.sigma)]
             found.append(_fault(alike, tuple(runs)))
             left = [item for item in left if item not in alike]
-    return tuple(found)
+    return tuple({item.message: item for item in found}.values())  # a speed that wanders may do so at several times
 
 
 def alike_in_all_runs(conditions: Sequence[Condition], runs: Sequence[str]) -> tuple[str, ...]:
