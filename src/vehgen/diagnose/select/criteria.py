@@ -99,10 +99,10 @@ def _asks_for_more(fit: ModelFit, best: ModelFit) -> bool:
 
     So relaxation does that stands in for a damper's mount: beside it the damper itself would have to be weaker than its file allows.
     """
-    return bool(_held(fit)) and not _held(best) and merit(fit) >= merit(best)
+    return bool(_base_at_bounds(fit)) and not _base_at_bounds(best) and merit(fit) >= merit(best)
 
 
-def _held(fit: ModelFit) -> set[str]:
+def _base_at_bounds(fit: ModelFit) -> set[str]:
     """Return the base parameters at the ends of their ranges."""
     return set(fit.least_squares.on_bound).difference(*(item.parameters for item in fit.effects))
 

@@ -91,7 +91,7 @@ def faintly_told(found: SearchRound, detection: Detection) -> ModelFit | None:
     runs = [trial.name for trial in detection.validation_runs]
     if best is None or not _falls(found, best) or not surely_falls(found.current, best, runs) or not is_told(best):
         return None
-    if _is_held(best) or not replace(detection, base=best).is_quiet or not _beats_freed_base(found, best, detection):
+    if _ends_at_a_bound(best) or not replace(detection, base=best).is_quiet or not _beats_freed_base(found, best, detection):
         return None
     places = localise_at(found.current, best.last.place)
     return None if like_a_placebo_law(places, found.current, best) else best
@@ -104,13 +104,13 @@ def _falls(found: SearchRound, fit: ModelFit) -> bool:
 def _likeliest_first(found: SearchRound, fits: Sequence[ModelFit]) -> list[ModelFit]:
     """Return fits in their order, but first one that falls as far as the best: its special case, or within bounds where that is at one."""
     for fit in fits[1:]:
-        likelier = fits[0].last.holds(fit.last) or (_is_held(fits[0]) and not _is_held(fit))
+        likelier = fits[0].last.holds(fit.last) or (_ends_at_a_bound(fits[0]) and not _ends_at_a_bound(fit))
         if likelier and falls_as_far(found, fit, fits[0]):
             return [fit, *(item for item in fits if item is not fit)]
     return list(fits)
 
 
-def _is_held(fit: ModelFit) -> bool:
+def _ends_at_a_bound(fit: ModelFit) -> bool:
     """Return whether a parameter, or a number of an error, is at the end of its range."""
     return bool(fit.least_squares.on_bound) or fit.least_squares.adjusted_to_a_bound
 
