@@ -6,9 +6,11 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
+import numpy as np
+
 from vehgen.fit.alignment import align
 from vehgen.fit.chain_estimate import slowest_rate
-from vehgen.fit.least_squares import COARSE_TOLERANCE, FitOptions, LeastSquaresFit, first_noises, fit_least_squares
+from vehgen.fit.least_squares import COARSE_TOLERANCE, FitOptions, LeastSquaresFit, estimate_noises, first_noises, fit_least_squares
 from vehgen.fit.misfit import Array, Misfit
 from vehgen.fit.nuisances import LOW_PASS, Nuisances
 from vehgen.fit.parallel import Runner
@@ -16,8 +18,10 @@ from vehgen.fit.prior_data import PriorData
 from vehgen.fit.problem import Problem
 from vehgen.fit.recorders import FoundRecorder, clearest, find_recorder, has_unknown
 
-FIRST_ROUNDS, LAST_ROUNDS = 2, 2
-"""So often is the noise estimated before the recorder is known, and after."""
+LAST_ROUNDS = 3
+"""So often is the noise estimated at the end."""
+SAME_ANSWER = 1.0
+"""Two fits end in one minimum where the square of how far their answers differ is below this many times the noise's mean square."""
 REFRESHED_EVERY = 4
 """Derivatives by errors of runs serve for so many steps."""
 Told = Callable[[int, float], None]
@@ -26,7 +30,7 @@ Told = Callable[[int, float], None]
 
 @dataclass(frozen=True)
 class Polish:
-    """Polished starts, best first, and what stands for recorders that no run file declares (None where all are declared)."""
+    """Polished starts, best first, one of those that answer alike; what stands for undeclared recorders, or None."""
 
     fits: tuple[LeastSquaresFit, ...]
     recorder: FoundRecorder | None
@@ -46,8 +50,8 @@ def polish(
 ) -> Polish:
     """Fit a problem from several points by least squares.
 
-    All starts share the runs' alignment at the first of them. Where a recorder is not declared, its low-pass is found at the best of the
-    fits, and every fit is polished again through it.
+    All starts share the runs' alignment at the first of them. Of those that answer alike once the noise is roughly known, one goes on.
+    Where a recorder is not declared, its low-pass is found at the best of the fits, and every fit is polished again through it.
 
     Parameters
     ----------
@@ -63,29 +67,48 @@ def polish(
         Told of progress.
     """
     nuisances, band = options.nuisances, options.band
-    noises = first_noises(problem)
-    errors = align(Misfit(problem, noises, problem.space.values(points[0]), nuisances, band), points[0])
-    unknown = has_unknown(problem.trials)
-    own = FitOptions(nuisances, band, jacobian_refresh=REFRESHED_EVERY)
-    if unknown:
-        own = replace(own, noise_rounds=FIRST_ROUNDS, tolerance=COARSE_TOLERANCE)
+    errors = align(Misfit(problem, first_noises(problem), problem.space.values(points[0]), nuisances, band), points[0])
+    rough = FitOptions(nuisances, band, noise_rounds=1, tolerance=COARSE_TOLERANCE, jacobian_refresh=REFRESHED_EVERY)
+    last = replace(rough, noise_rounds=LAST_ROUNDS, tolerance=FitOptions().tolerance)
     fits: list[LeastSquaresFit] = []
-    for fit in options.runner.map(partial(fit_least_squares, problem, options=own, start=errors, prior_data=prior_data), points):
+    for fit in options.runner.map(partial(fit_least_squares, problem, options=rough, start=errors, prior_data=prior_data), points):
         fits.append(fit)
         if told is not None:
             told(len(fits), min(item.loss for item in fits))
-    if not unknown:
-        return _sorted(fits, None)
-    best = min(fits, key=lambda fit: fit.loss)
-    found = find_recorder(best.misfit, best.x).with_usual(slowest_rate(problem.trials))
-    tried = list(options.runner.map(partial(_through, problem, own, prior_data, best), found))
-    recorder = found[clearest(found, [fit.loss for fit in tried])]
-    last = replace(own, noise_rounds=LAST_ROUNDS, tolerance=FitOptions().tolerance)
-    return _sorted(options.runner.map(partial(_through, problem, last, prior_data, recorder=recorder), fits), recorder)
-
-
-def _sorted(fits: Iterable[LeastSquaresFit], recorder: FoundRecorder | None) -> Polish:
+    fits = distinct(fits)
+    recorder = None
+    if has_unknown(problem.trials):
+        fits = list(options.runner.map(partial(_anew, rough, prior_data), fits))
+        best = min(fits, key=lambda fit: fit.loss)
+        found = find_recorder(best.misfit, best.x).with_usual(slowest_rate(problem.trials))
+        tried = list(options.runner.map(partial(_through, problem, replace(rough, noise_rounds=LAST_ROUNDS), prior_data, best), found))
+        recorder = found[clearest(found, [fit.loss for fit in tried])]
+        fits = distinct(options.runner.map(partial(_through, problem, rough, prior_data, recorder=recorder), fits))
+        last = replace(last, band=recorder.band)
+    fits = list(options.runner.map(partial(_anew, last, prior_data), fits))
     return Polish(tuple(sorted(fits, key=lambda fit: fit.loss)), recorder)
+
+
+def distinct(fits: Iterable[LeastSquaresFit]) -> list[LeastSquaresFit]:
+    """Return fits to the same runs, best first, without those that answer as a better one does within its noise."""
+    kept: list[LeastSquaresFit] = []
+    for fit in sorted(fits, key=lambda fit: fit.loss):
+        if not any(_answer_alike(other, fit) for other in kept):
+            kept.append(fit)
+    return kept
+
+
+def _answer_alike(better: LeastSquaresFit, other: LeastSquaresFit) -> bool:
+    pairs = zip(better.misfit.residual_spectrum(better.x), other.misfit.residual_spectrum(other.x), strict=True)
+    apart = [better.misfit.whiten(number, mine - other) for number, ((mine, _), (other, _)) in enumerate(pairs)]
+    return 2 * sum(float(np.vdot(lines, lines).real) for lines in apart) < SAME_ANSWER * better.chi2
+
+
+def _anew(options: FitOptions, prior_data: PriorData | None, fit: LeastSquaresFit) -> LeastSquaresFit:
+    """Return a fit done again from where it ended, by the noise that it leaves."""
+    unit, errors = fit.misfit.split(fit.x)
+    noises = estimate_noises(fit.misfit, fit.x)
+    return fit_least_squares(fit.misfit.problem, unit, options, first=noises, start=errors, prior_data=prior_data)
 
 
 def _through(

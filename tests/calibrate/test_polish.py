@@ -1,0 +1,47 @@
+"""The polish goes on with starts that answer differently, and with one of those that answer alike."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.fit.recordings import sedan_truth, write_run
+from vehgen.calibrate.polish import PolishOptions, distinct, polish
+from vehgen.fit.band import CALIBRATION_BAND_HZ
+from vehgen.fit.least_squares import FitOptions, fit_least_squares
+from vehgen.fit.nuisances import Nuisances
+from vehgen.fit.parallel import Runner
+from vehgen.fit.problem import make_problem
+from vehgen.fit.trial import load_trials
+
+OPTIONS = PolishOptions(Nuisances(), CALIBRATION_BAND_HZ, Runner())
+
+
+@pytest.fixture(scope="module")
+def problem(tmp_path_factory):
+    return make_problem(load_trials([write_run(tmp_path_factory.mktemp("runs"), "slow", sedan_truth(), 1.5)]))
+
+
+@pytest.fixture(scope="module")
+def fit(problem):
+    return fit_least_squares(problem, problem.space.unit(problem.space.start), FitOptions(noise_rounds=2))
+
+
+def test_fits_that_no_data_tell_apart_are_one(fit):
+    """By steps of one parameter that move the residuals by so many times what noise does."""
+    step = np.eye(len(fit.x))[0] * np.sqrt(fit.chi2) / np.linalg.norm(fit.linearisation.jacobian[:, 0])
+    below, beyond = (replace(fit, x=fit.x + share * step, loss=fit.loss + share**2) for share in (0.7, 1.5))
+    kept = distinct([beyond, below, fit])
+    assert [item.loss for item in kept] == [fit.loss, beyond.loss]
+
+
+def test_starts_that_end_alike_give_one_fit_as_good_as_the_best_of_them(problem):
+    random = np.random.default_rng(4)
+    points = [problem.space.unit(problem.space.start), *random.uniform(0.3, 0.7, (3, problem.space.size))]
+    told = []
+    found = polish(problem, points, OPTIONS, told=lambda done, best: told.append((done, best)))
+    alone = [fit_least_squares(problem, point) for point in points]
+    assert [done for done, _ in told] == [1, 2, 3, 4]
+    assert len(found.fits) == 1
+    assert found.fits[0].loss == pytest.approx(min(item.loss for item in alone), abs=0.5)
+    assert max(item.loss for item in alone) < found.fits[0].loss + 1.0
