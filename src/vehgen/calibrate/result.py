@@ -60,7 +60,7 @@ class ModeSummary:
 
 @dataclass(frozen=True)
 class FitSummary:
-    """Where one start of the polish ended: its loss, chi2 (1 is noise alone), and the parameters that ended at a bound."""
+    """Where starts of the polish ended that answer alike: their loss, chi2 (1 is noise alone), and the parameters that ended at a bound."""
 
     loss: float
     chi2: float
@@ -144,7 +144,7 @@ class CalibrationSummary(Result):
     rank, searched, pivots, null_directions
         How many combinations of how many parameters the sensors can tell, and along what the others trade.
     objective, chi2, fits, spread
-        Eq. 5 by channel; the best fit's chi2; all starts; the values among the starts that fit as well as the best.
+        Eq. 5 by channel; the best fit's chi2; the fits that answer differently; the values among those that fit as well as the best.
     nuisances, noise, tyre_load_minimum
         What is supposed of the runs; each axle's least tyre load over its static load.
     history, steps
