@@ -53,3 +53,9 @@ def halved(trial: Trial) -> Trial:
     """Return a trial simulated with half the step, its samples the same."""
     scenario = trial.scenario
     return replace(trial, scenario=replace(scenario, dt=scenario.dt / 2, decimation=2 * scenario.decimation))
+
+
+def as_fine(trial: Trial, other: Trial) -> Trial:
+    """Return a trial with the step of another one."""
+    steps = replace(trial.scenario, dt=other.scenario.dt, decimation=other.scenario.decimation)
+    return replace(trial, scenario=steps, jumps=other.jumps)

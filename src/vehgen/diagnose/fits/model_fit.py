@@ -17,7 +17,7 @@ from vehgen.fit.linearisation import Linearisation
 from vehgen.fit.misfit import Misfit, Noises
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.problem import Problem
-from vehgen.fit.resolution import resolve
+from vehgen.fit.resolution import as_fine, resolve
 from vehgen.fit.space import SearchSpace
 from vehgen.fit.trial import Trial
 from vehgen.simulate import SimulatorPool
@@ -35,6 +35,8 @@ DIAGNOSIS_TOLERANCE = 1e-6
 """Relative change of the sum of squares at which a fit of a diagnosis ends."""
 OPTIONS = FitOptions(NUISANCES, tolerance=DIAGNOSIS_TOLERANCE, jacobian_refresh=JACOBIAN_REFRESH)
 """How a diagnosis fits."""
+MUCH_WORSE = 1.5
+"""Validation runs that leave so many times what noise or training runs do were perhaps fitted from wrong errors."""
 
 
 @dataclass(frozen=True)
@@ -174,12 +176,6 @@ def fit_base(
     return evaluate_fit((), fit, validation_runs, noises, most_sigmas)
 
 
-def as_fine(trial: Trial, other: Trial) -> Trial:
-    """Return a trial with the step of another one."""
-    steps = replace(trial.scenario, dt=other.scenario.dt, decimation=other.scenario.decimation)
-    return replace(trial, scenario=steps, jumps=other.jumps)
-
-
 def mean_square_as_filed(trials: Sequence[Trial], noises: Noises, band: tuple[float, float]) -> float:
     """Return the mean square that the model as its file has it leaves: only each run's clock, speed and road height are fitted."""
     if not trials:
@@ -246,7 +242,8 @@ def evaluate_fit(
 ) -> ModelFit:
     """Simulate a fitted model on validation runs, of which only the clock, speed and road height are fitted, and the phase of a line.
 
-    These errors begin as other models' fits to the same runs, `near`, have them (default: runs are laid over their recordings).
+    These errors begin as other models' fits to the same runs, `near`, have them (default: runs are laid over their recordings). Where that
+    leaves MUCH_WORSE, runs are laid over their recordings after all: a model that lacks an effect may have lost a run's phase.
     """
     powers = _powers(fit)
     runs, counts = _by_run(powers)
@@ -266,8 +263,10 @@ def evaluate_fit(
         frozen = resolve(*_begin(frozen, noises, fit.misfit.band, frozen_shared))
         options = replace(OPTIONS, band=fit.misfit.band, most_sigmas=most_sigmas)
         known = fit.misfit.common_errors(fit.x)
-        laid = partial(_errors_as_in, near) if near else None
-        again = fit_least_squares(frozen, np.zeros(0), options, noises=noises, start=laid, shared=frozen_shared, known=known)
+        check = partial(fit_least_squares, frozen, np.zeros(0), options, noises=noises, shared=frozen_shared, known=known)
+        again = check(start=partial(_errors_as_in, near) if near else None)
+        if near and again.chi2 > MUCH_WORSE * max(train, 1.0):
+            again = min(again, check(), key=lambda item: item.loss)
         checked = _powers(again)
         own, own_counts = _by_run(checked)
         later, runs, counts, powers = _pooled(own, own_counts), runs | own, counts | own_counts, powers | checked

@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from vehgen.diagnose.fits.candidate import Candidate, build_problem, carried
-from vehgen.diagnose.fits.model_fit import CurrentModel, as_fine, refine
+from vehgen.diagnose.fits.model_fit import CurrentModel, refine
 from vehgen.effects import EffectLocator
 from vehgen.fit.least_squares import LeastSquaresFit
+from vehgen.fit.resolution import as_fine
 from vehgen.simulate import SimulatorPool
 
 WORTH_RELEASING = 10.0

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, build_problem
-from vehgen.diagnose.fits.model_fit import CurrentModel, ModelFit, as_fine, evaluate_fit, refine
+from vehgen.diagnose.fits.model_fit import CurrentModel, ModelFit, evaluate_fit, refine
 from vehgen.diagnose.fits.multi_start import fit_candidate
 from vehgen.diagnose.fits.occurring import occurring
 from vehgen.diagnose.fits.released import release
@@ -24,6 +24,7 @@ from vehgen.effects.evidence import Origins, Residual, StartingPoint
 from vehgen.fit.alignment import align
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.parallel import Runner
+from vehgen.fit.resolution import as_fine
 from vehgen.simulate import SimulatorPool
 
 Array = NDArray[np.float64]
