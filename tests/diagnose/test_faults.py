@@ -11,7 +11,7 @@ from benchmarks.hidden_effects.generator import Effect, Hump, RunSpec, nominal, 
 
 from vehgen.diagnose.detect.detection import detect
 from vehgen.diagnose.inputs import judging
-from vehgen.diagnose.inputs.amplitudes import hidden_units, unit_hypotheses
+from vehgen.diagnose.inputs.amplitudes import dead_hypotheses, hidden_units, unit_hypotheses
 from vehgen.diagnose.inputs.conditions import alike_in_all_runs, findings_of_conditions, moved_roads
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always
 from vehgen.diagnose.inputs.judging import explain_gap, plain_mistakes, recorded_mistakes, supposed_mistakes
@@ -161,6 +161,22 @@ def test_a_unit_holds_in_runs_that_hardly_follow_their_prediction(plain):
     (hypothesis,) = unit_hypotheses(case)
     for found, trial in zip(hypothesis.trials, plain, strict=True):
         np.testing.assert_allclose(found.recording.values, trial.recording.values, rtol=1e-3)
+
+
+@pytest.mark.parametrize("loud", [1.0, 20.0], ids=["even", "loud for a moment"])
+def test_a_channel_is_dead_only_if_it_is_as_loud_all_the_time(plain, loud):
+    """Whatever it follows: a clock that is off, and a missing effect, spoil its prediction."""
+
+    def change(values):
+        values = noise_only(R_AZ, 0.01)(values)
+        values[100:150, R_AZ] *= loud
+        return values
+
+    runs = edited(plain, change, "high")
+    unlike = np.array([[0.9, 0.9, 0.1, 0.9]])
+    follow = [SimpleNamespace(own=np.where(trial.name == "high", unlike, 0.9), best=0, dt=0.01) for trial in runs]
+    found = list(dead_hypotheses(SimpleNamespace(trials=runs, comparisons=follow, runs=tuple(trial.name for trial in runs))))
+    assert [hypothesis.blind for hypothesis in found] == ([frozenset({("high", "R_az")})] if loud == 1.0 else [])
 
 
 def test_two_mistakes_are_both_named(plain):

@@ -29,6 +29,8 @@ ALIVE, DEAD = 0.6, 0.35
 """A dead channel correlates below the one while its like correlate above the other: channels of its quantity, or else all others."""
 SLOW_MOTIONS_HZ, FOLLOWS = 10.0, 0.3
 """Channels of one vehicle follow one another in motions up to the one; noise, over ten seconds, correlates by 0.2 at most."""
+BURST_S, BURST = 0.25, 3.0
+"""Noise is even: in no stretch of the one [s] is it so many times as loud as in half of them."""
 NEIGHBOURS = 0.05
 """A dead channel's correlation is looked at within this of the others' lag [s]."""
 OTHER_UNIT = 0.5
@@ -99,7 +101,7 @@ def dead_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
             like = [j for j in others if channels[j].quantity == channel.quantity] or others
             late = np.abs(item.own[:, i]).max() > ALIVE  # it follows at another lag: a clock is wrong
             unlike = around[i] < DEAD and not late and like and around[like].min() > ALIVE
-            if unlike and not _follows_another(trial, i, reach):
+            if unlike and not _follows_another(trial, i, reach) and not _bursts(trial.recording.values[:, i], item.dt):
                 found.setdefault(channel.name, []).append(trial.name)
     if not found:
         return
@@ -129,6 +131,14 @@ def _follows_another(trial: Trial, channel: int, reach: int) -> bool:
     both = np.fft.irfft(lines * lines[:, [channel]].conj(), axis=0) * len(values) / np.maximum(power * power[channel], 1e-300)
     near = np.abs(np.concatenate([both[-reach:], both[: reach + 1]])).max(axis=0)
     return bool(np.delete(near, channel).max(initial=0.0) > FOLLOWS)
+
+
+def _bursts(values: Array, dt: float) -> bool:
+    """Return whether a channel `shape (n_samples,)` is loud for a moment, as one that feels a hump is, whatever model and clock say."""
+    length = max(round(BURST_S / dt), 2)
+    stretches = values[: len(values) // length * length].reshape(-1, length)
+    loudness = stretches.std(axis=1)  # about its own mean each: a zero may wander
+    return bool(loudness.max(initial=0.0) > BURST * np.median(loudness))
 
 
 def gain_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
