@@ -80,6 +80,8 @@ def test_what_is_in_no_library_is_told_by_where_it_is():
     assert "of 12 tried, dry friction in the front suspension comes nearest and leaves chi 3.21" in text
     assert text.endswith("an unknown force in the rear suspension, an unknown force in the rear tyre or leaving out the sensor F would")
     assert "would not either" in wording.not_in_library(None, [])
+    assert "can live where the model errs" in wording.not_in_library(None, causes)
+    assert "more than other values of cf or kf do" in wording.not_in_library(None, causes, ("cf", "kf"))
 
 
 def test_parts_of_a_gap_are_told_with_what_each_leaves():

@@ -95,7 +95,8 @@ class Ending:
         if first.fits:
             self.notes.append(wording.ranked([(self._words(fit.last), share) for fit, share in explained_shares(first, self.base)]))
         causes = [wording.force_words(item.place.kind, item.place.name) for item in first.passed[:3]]
-        ended = self._end("not_in_library", reason or wording.not_in_library(best, causes))
+        freed = first.idle[0].last.freed if first.idle else ()
+        ended = self._end("not_in_library", reason or wording.not_in_library(best, causes, freed))
         law = None if (shown := strongest(first.passed)) is None else fit_free_form(recover(self.detection, shown))
         if law is None:
             return ended

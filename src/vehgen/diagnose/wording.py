@@ -155,17 +155,18 @@ def force_words(kind: str, name: str) -> str:
     return f"an unknown force {place_words(kind, name)}"
 
 
-def not_in_library(best: tuple[int, str, float] | None, causes: Sequence[str]) -> str:
+def not_in_library(best: tuple[int, str, float] | None, causes: Sequence[str], freed: Sequence[str] = ()) -> str:
     """Return the verdict that no effect of the library explains the gap.
 
     Parameters
     ----------
     best
         How many effects were tried, which of them leaves least, and the chi that it leaves; None where none could live there.
-    causes
-        What would explain the gap, of :func:`force_words`.
+    causes, freed
+        What would explain the gap, of :func:`force_words`; base parameters of which other values do as much as any effect does.
     """
-    tried = "none of those tried can live where the model errs"
+    does_no_more = f"does more than other values of {join_names(freed)} do"
+    tried = f"none of those tried {does_no_more if freed else 'can live where the model errs'}"
     if best is not None:
         count, label, chi = best
         tried = f"of {count} tried, {label} comes nearest and leaves chi {chi:.2f}, where 1 is noise alone"
