@@ -100,7 +100,7 @@ def distinct(fits: Iterable[LeastSquaresFit]) -> list[LeastSquaresFit]:
 
 def _answer_alike(better: LeastSquaresFit, other: LeastSquaresFit) -> bool:
     pairs = zip(better.misfit.residual_spectrum(better.x), other.misfit.residual_spectrum(other.x), strict=True)
-    apart = [better.misfit.whiten(number, mine - other) for number, ((mine, _), (other, _)) in enumerate(pairs)]
+    apart = [better.misfit.whiten(number, mine - theirs) for number, ((mine, _), (theirs, _)) in enumerate(pairs)]
     return 2 * sum(float(np.vdot(lines, lines).real) for lines in apart) < SAME_ANSWER * better.chi2
 
 
