@@ -13,7 +13,7 @@ from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
 
 TRUE_SPEED, STATED_SPEED = 2.5, 2.45
-AS_WELL = 3e-3
+SPEED_TOLERANCE = 3e-3
 """How far off a speed may be told, as a share: by the fit's own information its standard deviation is 0.0022."""
 
 
@@ -58,10 +58,10 @@ def test_each_run_tells_its_speed_clock_and_chi2_with_what_was_known(summary):
     found = {(item.run, item.name): item for item in summary.conditions}
     assert set(found) >= {(run, name) for run in ("right", "wrong") for name in ("delay", "speed", "height", "length")}
     wrong = found["wrong", "speed"]
-    assert wrong.value == pytest.approx(TRUE_SPEED / STATED_SPEED - 1, abs=AS_WELL)
+    assert wrong.value == pytest.approx(TRUE_SPEED / STATED_SPEED - 1, abs=SPEED_TOLERANCE)
     assert wrong.prior == 0.01
     assert wrong.sigmas == pytest.approx(wrong.value / wrong.prior)
-    assert abs(found["right", "speed"].value) < AS_WELL
+    assert abs(found["right", "speed"].value) < SPEED_TOLERANCE
     assert found["right", "delay"].unit == "s"
     assert set(summary.run_chi2) == {"right", "wrong"}
     assert all(value == pytest.approx(1.0, abs=0.2) for value in summary.run_chi2.values())

@@ -18,8 +18,6 @@ from vehgen.fit.prior_data import PriorData
 from vehgen.fit.problem import Problem
 from vehgen.fit.recorders import FoundRecorder, clearest, find_recorder, has_unknown
 
-LAST_ROUNDS = 3
-"""So often is the noise estimated at the end."""
 SAME_ANSWER = 1.0
 """Two fits end in one minimum where the square of how far their answers differ is below this many times the noise's mean square."""
 REFRESHED_EVERY = 4
@@ -68,8 +66,9 @@ def polish(
     """
     nuisances, band = options.nuisances, options.band
     errors = align(Misfit(problem, first_noises(problem), problem.space.values(points[0]), nuisances, band), points[0])
-    rough = FitOptions(nuisances, band, noise_rounds=1, tolerance=COARSE_TOLERANCE, jacobian_refresh=REFRESHED_EVERY)
-    last = replace(rough, noise_rounds=LAST_ROUNDS, tolerance=FitOptions().tolerance)
+    last = FitOptions(nuisances, band, jacobian_refresh=REFRESHED_EVERY)
+    coarse = replace(last, tolerance=COARSE_TOLERANCE)
+    rough = replace(coarse, noise_rounds=1)
     fits: list[LeastSquaresFit] = []
     for fit in options.runner.map(partial(fit_least_squares, problem, options=rough, start=errors, prior_data=prior_data), points):
         fits.append(fit)
@@ -81,7 +80,7 @@ def polish(
         fits = list(options.runner.map(partial(_anew, rough, prior_data), fits))
         best = min(fits, key=lambda fit: fit.loss)
         found = find_recorder(best.misfit, best.x).with_usual(slowest_rate(problem.trials))
-        tried = list(options.runner.map(partial(_through, problem, replace(rough, noise_rounds=LAST_ROUNDS), prior_data, best), found))
+        tried = list(options.runner.map(partial(_through, problem, coarse, prior_data, best), found))
         recorder = found[clearest(found, [fit.loss for fit in tried])]
         fits = distinct(options.runner.map(partial(_through, problem, rough, prior_data, recorder=recorder), fits))
         last = replace(last, band=recorder.band)

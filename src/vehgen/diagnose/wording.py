@@ -161,7 +161,7 @@ def not_in_library(best: tuple[int, str, float] | None, causes: Sequence[str], f
     Parameters
     ----------
     best
-        How many effects were tried, which of them leaves least, and the chi that it leaves; None where none could live there.
+        How many effects were tried, which of them leaves least, and the chi that it leaves; None where none is left.
     causes, freed
         What would explain the gap, of :func:`force_words`; base parameters of which other values do as much as any effect does.
     """
