@@ -9,6 +9,7 @@ from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.select import early_end
 from vehgen.diagnose.select.early_end import settle
 from vehgen.diagnose.select.fitter import Fitter
+from vehgen.diagnose.select.range_ends import numbers_at_ends
 from vehgen.diagnose.select.search import fit_candidates
 from vehgen.effects import EFFECTS
 from vehgen.fit.misfit import Misfit
@@ -93,5 +94,5 @@ def test_an_error_of_a_sensor_at_an_end_of_its_range_settles_nothing(detection_o
     old = fit.least_squares
     shared = tuple(replace(item, high=float(value)) for item, value in zip(old.misfit.shared, old.misfit.adjusted(old.x), strict=True))
     held = Misfit(old.misfit.problem, old.misfit.noises, old.values, old.misfit.nuisances, old.misfit.band, shared)
-    assert not early_end._at_an_end(fit)
-    assert early_end._at_an_end(replace(fit, least_squares=replace(old, misfit=held)))
+    assert numbers_at_ends(fit) == []
+    assert numbers_at_ends(replace(fit, least_squares=replace(old, misfit=held))) == [item.name for item in fit.last.effect.parameters]

@@ -7,12 +7,13 @@ import pytest
 from benchmarks.hidden_effects.generator import Effect
 
 from tests.diagnose.conftest import HUMPS
+from vehgen.diagnose import decision
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.select import criteria, faint
 from vehgen.diagnose.select.criteria import tied
-from vehgen.diagnose.select.faint import faint_look_again, faint_round, faintly_told
+from vehgen.diagnose.select.faint import faint_exchange, faint_look_again, faint_round, faintly_told
 from vehgen.effects import EFFECTS
 from vehgen.report.pages.diagnosis_page import diagnosis_page
 
@@ -107,7 +108,7 @@ def test_what_ends_at_a_bound_and_does_no_better_is_no_tie(found_of, monkeypatch
 
 def test_none_is_told_whose_number_ends_its_range(detection_of, found_of, monkeypatch):
     detection = detection_of(UNLIKE, runs=HUMPS)
-    monkeypatch.setattr(type(found_of.fits[0].least_squares), "adjusted_to_a_bound", property(lambda self: True))
+    monkeypatch.setattr(type(found_of.fits[0].least_squares), "adjusted_to_bounds", property(lambda self: ("a tilt",)))
     assert faintly_told(found_of, detection) is None
 
 
@@ -144,3 +145,27 @@ def test_a_tie_falls_nearly_as_far_on_both_kinds_of_runs(found_of, monkeypatch):
     for numbers in ((750.0, 260.0), (850.0, 200.0)):
         falls[id(rival)] = numbers
         assert tied(both, best) == []
+
+
+def test_what_its_validation_run_does_not_show_is_checked_on_the_run_that_shows_it_most(trials_of, detection_of, found_of, monkeypatch):
+    detection, best = detection_of(UNLIKE, runs=HUMPS), found_of.fits[0]
+    shares = {trial.name: (detection.base.mean_squares[trial.name] - best.mean_squares[trial.name]) for trial in detection.trials}
+    found, exchanged = faint_exchange(found_of, detection)
+    (checked,) = (trial.name for trial in exchanged.validation_runs)
+    assert checked != detection.validation_runs[0].name
+    assert shares[checked] == max(shares[trial.name] for trial in detection.problem.trials)
+    assert faintly_told(found, exchanged).last.label == "asymmetric_damping at rear"
+    monkeypatch.setattr(decision, "faintly_told", lambda round_, now: None if now is not exchanged else faintly_told(round_, now))
+    monkeypatch.setattr(decision, "faint_exchange", lambda *_: (found, exchanged))
+    told = diagnose_trials(trials_of(UNLIKE, runs=HUMPS), [EFFECTS[name] for name in NAMES])
+    assert [(item.name, item.place) for item in told.verdict.effects] == [("asymmetric_damping", "rear")]
+
+
+def test_runs_do_not_change_places_for_what_falls_too_little_or_for_what_the_kept_run_speaks_against(detection_of, found_of, monkeypatch):
+    detection = detection_of(UNLIKE, runs=HUMPS)
+    monkeypatch.setattr(faint, "validation_fall", lambda *_: -1.0)
+    assert faint_exchange(found_of, detection) is None
+    monkeypatch.undo()
+    monkeypatch.setattr(limit, "FAINT_FALL", 1e9)
+    assert faint_exchange(found_of, detection) is None
+    assert faint_exchange(replace(found_of, fits=()), detection) is None

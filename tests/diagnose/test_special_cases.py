@@ -28,7 +28,7 @@ def fit(name, place, training):
         key=((name, place),),
         training=training,
         validation=training,
-        least_squares=SimpleNamespace(on_bound=()),
+        least_squares=SimpleNamespace(on_bound=(), adjusted_to_bounds=()),
     )
 
 

@@ -19,14 +19,15 @@ from vehgen.diagnose.inputs.judging import explain_gap, moved_axles, odd_mistake
 from vehgen.diagnose.localise.localisation import localise
 from vehgen.diagnose.result import Decided
 from vehgen.diagnose.select.criteria import fall, freed_instead, p_value_of, passes, unfinished
-from vehgen.diagnose.select.estimates import excluded
-from vehgen.diagnose.select.faint import faint_look_again, faint_round, faintly_told
+from vehgen.diagnose.select.estimates import estimate, excluded
+from vehgen.diagnose.select.faint import faint_exchange, faint_look_again, faint_round, faintly_told
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.diagnose.select.group_members import with_members
 from vehgen.diagnose.select.needless import without_needless
 from vehgen.diagnose.select.one_error import explains_easily, one_error
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
+from vehgen.diagnose.select.range_ends import numbers_at_ends
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
 from vehgen.diagnose.select.search import LEADING, LOOKS_AGAIN, SearchRound, fit_leading_again, search_round
 from vehgen.diagnose.select.validation import seen_again, validation_fall
@@ -94,6 +95,9 @@ class Decision(Ending):
         found = faint_round(self.detection, self._candidates(self.base), self.runner) if found is None else replace(found, faint=True)
         found, detection = faint_look_again(found, self.detection, self.runner)
         best = faintly_told(found, detection)
+        if best is None and (exchanged := faint_exchange(found, detection, self.runner)) is not None:
+            found, detection = exchanged
+            best = faintly_told(found, detection)
         if best is None:
             return None
         self.notes.append(wording.faint(self.detection.chi, fall(found, best), validation_fall(found.current, best)))
@@ -152,8 +156,8 @@ class Decision(Ending):
         weak = self._too_weak(first, best, good)
         if weak is not None and weak.verdict.verdict != "measurement_fault" and (faint := self._faint(first)) is not None:
             return faint
-        if weak is None and good and (told := excluded(best)):
-            return self._unknown(first, wording.runs_exclude_one_another(self._words(best.last), told))
+        if weak is None and good and (imitation := self._imitation(best)):
+            return self._unknown(first, imitation)
         if weak is None and good:
             self.chain = self._combiner().further([best])
             if not self.interrupted and max(self.chain[-1].training, self.chain[-1].validation) > limit.NAMED_LEFT**2:
@@ -161,6 +165,13 @@ class Decision(Ending):
         elif weak is None:
             self._combine(first)
         return weak
+
+    def _imitation(self, best: ModelFit) -> str:
+        """Return why the best effect only stands in for another one, that it closes the gap notwithstanding; nothing where it does not."""
+        if apart := excluded(best):
+            return wording.imitates(self._words(best.last), apart)
+        ends = numbers_at_ends(best)
+        return wording.imitates(self._words(best.last, estimate(best)), (), ends) if ends else ""
 
     def _all_idle(self) -> Decided | None:
         """Return the verdict where a gap is small, and no effect does more for it than base parameters do."""

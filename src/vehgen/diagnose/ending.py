@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,7 +20,7 @@ from vehgen.diagnose.result import Decided, DiagnosisModels
 from vehgen.diagnose.select.criteria import explained_shares
 from vehgen.diagnose.select.freed_base import freed_ratios
 from vehgen.diagnose.select.search import DiagnosisProgress, SearchRound
-from vehgen.diagnose.verdict import Gap, PlaceChi, Verdict, VerdictName
+from vehgen.diagnose.verdict import Gap, NamedParameter, PlaceChi, Verdict, VerdictName
 from vehgen.effects import Effect
 from vehgen.fit.parallel import HERE, Runner
 
@@ -109,5 +109,5 @@ class Ending:
         verdict = replace(named, gap=self._gap(chain[-1]), places=self._places(), notes=(*self.notes, *named.notes))
         return self._decided(verdict, chain)
 
-    def _words(self, candidate: Candidate) -> str:
-        return wording.candidate_words(self.detection.trials[0].run.vehicle, candidate)
+    def _words(self, candidate: Candidate, parameters: Mapping[str, NamedParameter] | None = None) -> str:
+        return wording.candidate_words(self.detection.trials[0].run.vehicle, candidate, parameters)

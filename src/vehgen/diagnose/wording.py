@@ -174,12 +174,11 @@ def not_in_library(best: tuple[int, str, float] | None, causes: Sequence[str], f
     return f"No effect of the library explains what the model misses ({tried}); {where}"
 
 
-def runs_exclude_one_another(label: str, told: Sequence[str]) -> str:
-    """Return the verdict that an effect closes the gap, but with numbers that differ so much from run to run that it is another one."""
-    return (
-        f"{label} imitates what the model misses, but runs ask for numbers of it that exclude one another "
-        f"({join_names(told)}): what acts there is not in the library"
-    )
+def imitates(label: str, apart: Sequence[str], ends: Sequence[str] = ()) -> str:
+    """Return the verdict that an effect closes the gap, but with numbers that lie `apart` from run to run or at the `ends` of ranges."""
+    why = f"runs ask for numbers of it that exclude one another ({join_names(apart)})"
+    why = why if apart else f"only with {join_names(ends, 'and')} at the end of its range"
+    return f"{label} imitates what the model misses, but {why}: what acts there is not in the library"
 
 
 def not_told_from_chance(chi: float, p_value: float) -> str:

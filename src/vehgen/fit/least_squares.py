@@ -60,10 +60,10 @@ class LeastSquaresFit:
         return self.misfit.problem.space.values(self.misfit.split(self.x)[0])
 
     @property
-    def adjusted_to_a_bound(self) -> bool:
-        """Whether an adjustment of runs or sensors is at an end of its range."""
+    def adjusted_to_bounds(self) -> tuple[Adjustment, ...]:
+        """The adjustments of runs or sensors that are at an end of their range."""
         pairs = zip(self.misfit.shared, self.misfit.adjusted(self.x), strict=True)
-        return any(item.scale > 0 and min(value - item.low, item.high - value) <= AT_BOUND * item.scale for item, value in pairs)
+        return tuple(item for item, value in pairs if item.scale > 0 and min(value - item.low, item.high - value) <= AT_BOUND * item.scale)
 
     @property
     def on_bound(self) -> tuple[str, ...]:

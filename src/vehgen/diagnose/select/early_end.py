@@ -11,6 +11,7 @@ from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.fits.screening import FirstOrderGains
 from vehgen.diagnose.select.fitter import Fitter
+from vehgen.diagnose.select.range_ends import numbers_at_ends
 from vehgen.fit.parallel import HERE, Runner
 
 MOST_AT_ONCE = 4
@@ -57,13 +58,7 @@ def _settles(fit: ModelFit) -> bool:
     """
     noise = limit.NOISE_FLOOR**2
     quiet = bool(np.isfinite(fit.validation)) and max(fit.training, fit.validation) <= noise
-    return quiet and not _at_an_end(fit) and all(abs(item.sigmas) <= UNSTRAINED for part in fit.parts for item in part.conditions())
-
-
-def _at_an_end(fit: ModelFit) -> bool:
-    """Return whether a number of the last effect of a fit is at an end of its range."""
-    found = fit.least_squares
-    return found.adjusted_to_a_bound or not set(fit.last.parameters).isdisjoint(found.on_bound)
+    return quiet and not numbers_at_ends(fit) and all(abs(item.sigmas) <= UNSTRAINED for part in fit.parts for item in part.conditions())
 
 
 def _is_inseparable(item: Candidate, best: Candidate) -> bool:

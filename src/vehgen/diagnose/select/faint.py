@@ -20,6 +20,7 @@ from vehgen.diagnose.select.criteria import fall, falls_as_far, is_told
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import fitted_freed
 from vehgen.diagnose.select.placebo_laws import like_a_placebo_law
+from vehgen.diagnose.select.reaching_runs import with_checking_run
 from vehgen.diagnose.select.search import LOOKS_AGAIN, SearchRound, fit_leading_again, merit
 from vehgen.diagnose.select.validation import surely_falls, validation_fall
 from vehgen.effects.locator import base_parameters
@@ -73,11 +74,28 @@ def faint_look_again(found: SearchRound, detection: Detection, runner: Runner = 
         best = next(iter(found.fits), None)
         if best is None or not _falls(found, best) or (again := look_again(detection, best)) is None:
             break
-        detection = again
-        fits = fit_leading_again(Fitter(detection, detection.base, ()), found.fits, weigh=True, runner=runner)
-        found = replace(found, current=detection.base, fits=tuple(fits))
-        found = replace(found, fits=tuple(_likeliest_first(found, sorted(fits, key=merit))))
+        found, detection = _beside(again, found, runner), again
     return found, detection
+
+
+def faint_exchange(found: SearchRound, detection: Detection, runner: Runner = HERE) -> tuple[SearchRound, Detection] | None:
+    """Return a round and a detection that check its best fit on the training run that shows it most; None where there is none to check.
+
+    Friction that holds an axle all through the gentle run that was kept for checking cannot be seen there. That run is fitted instead, if
+    it does not speak against the fit, and the effect has to be found in the others anew, and in the run that is now kept.
+    """
+    best = next(iter(found.fits), None)
+    if best is None or fall(found, best) < limit.FAINT_FALL or validation_fall(found.current, best) < 0:
+        return None
+    exchanged = with_checking_run(detection, best)
+    return None if exchanged is None else (_beside(exchanged, found, runner), exchanged)
+
+
+def _beside(detection: Detection, found: SearchRound, runner: Runner) -> SearchRound:
+    """Return a round's fits made again, from where they are, beside another detection's base."""
+    fits = fit_leading_again(Fitter(detection, detection.base, ()), found.fits, weigh=True, runner=runner)
+    found = replace(found, current=detection.base, fits=fits)
+    return replace(found, fits=tuple(_likeliest_first(found, sorted(fits, key=merit))))
 
 
 def faintly_told(found: SearchRound, detection: Detection) -> ModelFit | None:
@@ -112,7 +130,7 @@ def _likeliest_first(found: SearchRound, fits: Sequence[ModelFit]) -> list[Model
 
 def _ends_at_a_bound(fit: ModelFit) -> bool:
     """Return whether a parameter, or a number of an error, is at the end of its range."""
-    return bool(fit.least_squares.on_bound) or fit.least_squares.adjusted_to_a_bound
+    return bool(fit.least_squares.on_bound or fit.least_squares.adjusted_to_bounds)
 
 
 def _beats_freed_base(found: SearchRound, best: ModelFit, detection: Detection) -> bool:

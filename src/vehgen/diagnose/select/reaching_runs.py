@@ -1,4 +1,4 @@
-"""Runs that reach where no other does: a stop that only a validation run meets cannot be fitted without it."""
+"""Runs that change places: a stop that only a validation run meets cannot be fitted without it, nor one checked that it does not show."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.detect.detection import Detection, with_runs
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.criteria import excess
+from vehgen.fit.trial import Trial
 
 
 def with_reaching_run(detection: Detection, best: ModelFit) -> Detection | None:
@@ -30,5 +31,31 @@ def with_reaching_run(detection: Detection, best: ModelFit) -> Detection | None:
         return None
     reaching = max(detection.validation_runs, key=lambda trial: best.mean_squares[trial.name])
     checking = max(detection.problem.trials, key=lambda trial: base.mean_squares[trial.name])
-    training = [reaching if trial is checking else trial for trial in detection.problem.trials]
-    return with_runs(detection, training, [checking if trial is reaching else trial for trial in detection.validation_runs])
+    return _exchanged(detection, reaching, checking)
+
+
+def with_checking_run(detection: Detection, best: ModelFit) -> Detection | None:
+    """Return a detection that keeps for validation the training run of which a law explains most; None with a single training run.
+
+    It changes places with the validation run of which the law explains least.
+
+    Parameters
+    ----------
+    detection
+        As it is.
+    best
+        The best effect's fit.
+    """
+    if len(detection.problem.trials) < 2:
+        return None
+
+    def explained(trial: Trial) -> float:
+        return (detection.base.mean_squares[trial.name] - best.mean_squares[trial.name]) * best.counts[trial.name]
+
+    return _exchanged(detection, min(detection.validation_runs, key=explained), max(detection.problem.trials, key=explained))
+
+
+def _exchanged(detection: Detection, held: Trial, fitted: Trial) -> Detection:
+    """Return a detection whose validation run `held` is fitted, and whose training run `fitted` is kept for validation instead."""
+    training = [held if trial is fitted else trial for trial in detection.problem.trials]
+    return with_runs(detection, training, [fitted if trial is held else trial for trial in detection.validation_runs])

@@ -1,4 +1,4 @@
-"""Effects that hold another one as a special case: they do as well wherever that one does, so the one with fewer numbers goes first."""
+"""Which of fits that do as well goes first: a special case, as its general case always does as well, or one within its range."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.model_fit import ModelFit
+from vehgen.diagnose.select.range_ends import numbers_at_ends
 
 
 def does_as_well(mean_square: float, best: float, before: float) -> bool:
@@ -18,7 +19,7 @@ def does_as_well(mean_square: float, best: float, before: float) -> bool:
 
 
 def simplest_first(fits: Sequence[ModelFit], base: ModelFit) -> list[ModelFit]:
-    """Return fits in their order, but a special case of the best one first where it does as well.
+    """Return fits in their order, but first one that does as well as the best: its special case, or within its range where that is not.
 
     Parameters
     ----------
@@ -29,7 +30,8 @@ def simplest_first(fits: Sequence[ModelFit], base: ModelFit) -> list[ModelFit]:
     """
     before = max(base.training - 1, 0.0)
     for fit in fits[1:]:
-        if fits[0].last.holds(fit.last) and np.isfinite(fit.validation) and does_as_well(fit.training, fits[0].training, before):
+        likelier = fits[0].last.holds(fit.last) or (bool(numbers_at_ends(fits[0])) and not numbers_at_ends(fit))
+        if likelier and np.isfinite(fit.validation) and does_as_well(fit.training, fits[0].training, before):
             return [fit, *(item for item in fits if item is not fit)]
     return list(fits)
 
