@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from tests.calibrate.shaken_mass import shaken_mass
+from vehgen.calibrate.bootstrap import errors_left_open, refit
 from vehgen.calibrate.identifiability import find_structure
-from vehgen.calibrate.intervals import Uncertainty, errors_left_open, refit
+from vehgen.calibrate.intervals import Uncertainty
 from vehgen.calibrate.validation import _noise_rms
 from vehgen.fit.least_squares import FitOptions, fit_least_squares
 from vehgen.fit.noise import EVEN, Noise
@@ -41,7 +42,7 @@ def test_a_bootstrap_redraws_what_is_believed_of_sensors(tmp_path):
     left_open = errors_left_open(fit)
     told = {item.name: bool(own) for item, own in zip(fit.conditions(), left_open, strict=True)}
     assert {name: told[name] for name in ("gain", "force_gain", "delay")} == {"gain": True, "force_gain": True, "delay": False}
-    rows = np.array([refit(fit, seed, left_open) for seed in range(40)])
+    rows = np.array([refit(fit, np.random.default_rng(seed), left_open) for seed in range(40)])
     for column, item in enumerate(known.parameters()):
         assert 1.645 * rows[:, column].std(ddof=1) == pytest.approx((item.high - item.low) / 2, rel=0.35)
 

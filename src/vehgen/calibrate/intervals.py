@@ -1,4 +1,4 @@
-"""Intervals from the Fisher information, for parameters, combinations and natural frequencies; bootstraps to check them.
+"""Intervals from the Fisher information, for parameters, combinations and natural frequencies.
 
 The information of a fit is J'J of its whitened residuals, less what the taper of a record takes: neighbouring lines of a tapered record are
 not independent. Nuisances are marginalised. Along unidentifiable directions there is none, and
@@ -22,8 +22,7 @@ from vehgen.calibrate.identifiability import Structure, remaining_directions
 from vehgen.errors import InputError, shown
 from vehgen.files.expressions import Expression, ExpressionError, parse
 from vehgen.files.units import Dimension
-from vehgen.fit.alignment import error_bounds
-from vehgen.fit.least_squares import FitOptions, LeastSquaresFit, fit_least_squares
+from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.prior_data import PriorData
 from vehgen.fit.problem import Problem
@@ -32,12 +31,10 @@ from vehgen.simulate import Mode, natural_modes
 from vehgen.vehicle import Vehicle
 
 Array = NDArray[np.float64]
-LEFT_OPEN = 0.3
-"""An error of a run or a sensor counts as left open where the recordings leave more than this share of its prior's deviation."""
 LEVEL = 0.90
 """Confidence level of all intervals."""
 _GRADIENT_STEP = 1e-5
-_LEAST_INFORMATION = 0.25
+LEAST_INFORMATION = 0.25
 """What recordings say nothing of, such as a stop that no run meets, is known to two ranges: an interval beyond both ends, not none."""
 
 
@@ -53,6 +50,17 @@ class Estimate:
     def covers(self, truth: float) -> bool:
         """Return whether the interval holds a value."""
         return self.low is not None and self.high is not None and self.low <= truth <= self.high
+
+
+@dataclass(frozen=True)
+class Frozen:
+    """What an earlier step tells of parameters that it keeps: their `names`, and its `information` on them, all others marginalised.
+
+    The information is of the unit cube's coordinates, `shape (n, n)`.
+    """
+
+    names: tuple[str, ...]
+    information: Array
 
 
 Quantity = Callable[[Array], float]
@@ -103,6 +111,8 @@ class Uncertainty:
         Structural rank and unidentifiable directions.
     facts
         What else was known, as residuals.
+    frozen
+        What an earlier step told of some of the parameters: the fit kept these as they were, though its runs depend on them.
 
     Attributes
     ----------
@@ -114,12 +124,12 @@ class Uncertainty:
         The factor by which intervals are wider than the noise model alone would have them.
     """
 
-    def __init__(self, fit: LeastSquaresFit, structure: Structure, facts: PriorData | None = None) -> None:
+    def __init__(self, fit: LeastSquaresFit, structure: Structure, facts: PriorData | None = None, frozen: Frozen | None = None) -> None:
         self.fit = fit
         self.structure = structure
         self.values = fit.values
         space = fit.misfit.problem.space
-        information = _recorded(fit)
+        information = recorded_information(fit)
         n = fit.misfit.n_parameters
         cross, own = information[:n, n:], information[n:, n:]
         told = information[:n, :n] - cross @ np.linalg.solve(own, cross.T) if own.size else information[:n, :n]
@@ -128,12 +138,21 @@ class Uncertainty:
         if facts is not None:
             known = facts.jacobian(self.values) * space.slopes(self.values)
             self.information = self.information + known.T @ known
+        if frozen is not None:
+            self.information = _with_frozen(self.information, space.names, frozen)
         self.null = structure.null
         if facts is not None:
             self.null = remaining_directions(structure.null, facts.jacobian(self.values) * space.slopes(self.values))
         self.basis = replace(structure, null=self.null).row_space
         reduced = self.basis.T @ self.information @ self.basis
         self.covariance = self.basis @ _covariance(reduced) @ self.basis.T
+
+    def told_of(self, names: Sequence[str]) -> Frozen:
+        """Return what is known of some of the parameters, all others marginalised."""
+        kept = np.isin(self.structure.space.names, names)
+        cross, others = self.information[np.ix_(kept, ~kept)], self.information[np.ix_(~kept, ~kept)]
+        told = self.information[np.ix_(kept, kept)] - cross @ _covariance(others) @ cross.T
+        return Frozen(tuple(name for name in self.structure.space.names if name in names), told)
 
     def gradient(self, quantity: Quantity) -> Array:
         """Return a quantity's derivatives by the unit cube's coordinates, `shape (n_parameters,)`."""
@@ -235,7 +254,7 @@ class Uncertainty:
         return Estimate(name, value, value - spread, value + spread)
 
 
-def _recorded(fit: LeastSquaresFit) -> Array:
+def recorded_information(fit: LeastSquaresFit) -> Array:
     """Return the information of the recordings and of the errors' priors about all unknowns of a fit, `shape (n_unknowns, n_unknowns)`."""
     found, linearised = np.zeros((fit.misfit.n_unknowns, fit.misfit.n_unknowns)), linearise(fit.misfit, fit.x)
     for number, (trial, columns) in enumerate(zip(fit.misfit.problem.trials, linearised.columns, strict=True)):
@@ -246,46 +265,24 @@ def _recorded(fit: LeastSquaresFit) -> Array:
     return found
 
 
+def _with_frozen(information: Array, names: Sequence[str], frozen: Frozen) -> Array:
+    """Return the information `shape (n, n)` of a fit that kept some parameters where an earlier step had left them.
+
+    With information I of its runs on the frozen parameters a and those that it fitted, b, an error of a moves b by -I_bb^-1 I_ba, whatever
+    its runs could have told of a themselves. The covariance of both (Murphy and Topel 1985, doi:10.2307/1391724) has this inverse.
+    """
+    kept = np.array([names.index(name) for name in frozen.names])
+    fitted = np.setdiff1d(np.arange(len(names)), kept)
+    cross = information[np.ix_(kept, fitted)]
+    found = information.copy()
+    found[np.ix_(kept, kept)] = frozen.information + cross @ _covariance(information[np.ix_(fitted, fitted)]) @ cross.T
+    return found
+
+
 def _covariance(information: Array) -> Array:
     """Return the covariance of coordinates of the unit cube, `shape (n, n)`, from what is known of them."""
-    return np.asarray(np.linalg.pinv(information + _LEAST_INFORMATION * np.eye(len(information)), hermitian=True))
+    return np.asarray(np.linalg.pinv(information + LEAST_INFORMATION * np.eye(len(information)), hermitian=True))
 
 
 def _component(i: int) -> Quantity:
     return lambda values: float(values[i])
-
-
-def errors_left_open(fit: LeastSquaresFit) -> NDArray[np.bool_]:
-    """Return which errors of runs and sensors the recordings leave nearly as open as their priors do, `shape (n_errors,)`."""
-    information, n = _recorded(fit), fit.misfit.n_unknowns - fit.misfit.n_errors
-    information[:n, :n] += _LEAST_INFORMATION * np.eye(n)
-    return np.asarray(np.sqrt(np.diagonal(np.linalg.inv(information))[n:]) > LEFT_OPEN)
-
-
-def refit(fit: LeastSquaresFit, seed: int, left_open: NDArray[np.bool_], facts: PriorData | None = None) -> Array:
-    """Return the parameters [SI] fitted to recordings drawn at random from a fit: one replicate of a parametric bootstrap.
-
-    What is not measured but believed is drawn, too: facts, and the errors that the recordings leave open `shape (n_errors,)`, of which a
-    fit that begins at the truth would learn nothing and so look far too sure.
-    """
-    random = np.random.Generator(np.random.PCG64(seed))
-    misfit = fit.misfit
-    unit, errors = misfit.split(fit.x)
-    low, high = error_bounds(misfit)
-    errors = np.where(left_open, np.clip(random.standard_normal(len(errors)), low, high), errors)
-    drawn = misfit.draw(np.concatenate([fit.x[: len(fit.x) - len(errors)], errors]), random)
-    trials = [
-        replace(trial, recording=replace(trial.recording, values=values))
-        for trial, values in zip(misfit.problem.trials, drawn, strict=True)
-    ]
-    again = fit_least_squares(
-        misfit.problem.with_trials(trials),
-        unit,
-        FitOptions(misfit.nuisances, misfit.band),
-        noises=misfit.noises,
-        start=errors,
-        shared=misfit.shared,
-        numbers=tuple(misfit.adjusted(fit.x)),
-        prior_data=None if facts is None else facts.drawn(fit.values, random),
-    )
-    return again.values

@@ -33,6 +33,7 @@ from vehgen.calibrate.result import (
     ParameterSummary,
     RecorderSummary,
 )
+from vehgen.calibrate.step_intervals import step_uncertainties
 from vehgen.files.provenance import file_hashes, versions
 from vehgen.fit.parallel import Runner
 from vehgen.fit.prior_data import PriorData
@@ -67,16 +68,15 @@ def summarise(
     problem = calibration.problem
     structure = find_structure(problem, calibration.array)
     found: dict[str, ParameterSummary] = {}
-    last, uncertainty = calibration.steps[-1], None
-    for result in calibration.steps:
-        uncertainty = _uncertainty(result, prior_data)
-        found |= _parameters(result, uncertainty)
+    last, known = calibration.steps[-1], step_uncertainties(problem, calibration.steps, prior_data)
+    uncertainty = known[-1]
+    for result, own in zip(calibration.steps, known, strict=True):
+        found |= _parameters(result, uncertainty or own)
     asked = () if uncertainty is None else tuple(uncertainty.combination(text) for text in combinations)
     ratios = () if uncertainty is None else (*asked, *identifiable_ratios(uncertainty))
     boot: list[Estimate] = []
     if uncertainty is not None and replicates:
-        facts, seed = _facts_of(last, prior_data), calibration.settings.seed
-        boot = bootstrap_intervals(last, uncertainty, facts, ratios, replicates, seed, runner or Runner())
+        boot = bootstrap_intervals(calibration, uncertainty, prior_data, ratios, replicates, runner or Runner())
     conditions, responses = run_conditions(calibration), fitted_responses(calibration)
     psds, histories = measured_and_simulated(calibration, responses)
     return CalibrationSummary(
@@ -109,26 +109,14 @@ def summarise(
         conditions=conditions,
         run_chi2=run_chi2(last.fits[0]) if last.fits else {},
         interval_inflation=1.0 if uncertainty is None else uncertainty.inflation,
-        prior_data_advice=() if uncertainty is None else advise_prior_data(uncertainty, _facts_of(last, prior_data)),
+        prior_data_advice=() if uncertainty is None else advise_prior_data(uncertainty, prior_data),
         recorder=tuple(_recorder(step.step.label, step.recorder) for step in calibration.steps if step.recorder is not None),
     )
 
 
-def _uncertainty(result: StepResult, prior_data: PriorData | None) -> Uncertainty | None:
-    """Return how sure a step's best fit is; None without a polish."""
-    if not result.fits:
-        return None
-    return Uncertainty(result.fits[0], find_structure(result.problem, result.fits[0].values), _facts_of(result, prior_data))
-
-
-def _facts_of(result: StepResult, prior_data: PriorData | None) -> PriorData | None:
-    """Return what was known from elsewhere, of a step's own parameters."""
-    return None if prior_data is None else PriorData(result.problem, prior_data.facts)
-
-
 def _parameters(result: StepResult, uncertainty: Uncertainty | None) -> dict[str, ParameterSummary]:
     vehicle = result.problem.trials[0].run.vehicle
-    space = result.problem.space
+    space = result.problem.space if uncertainty is None else uncertainty.structure.space
     bounds = result.fits[0].on_bound if result.fits else ()
     estimates = uncertainty.parameters() if uncertainty else [Estimate(name, value) for name, value in result.values.items()]
     given = uncertainty.given_fixed_parameters() if uncertainty else [None] * space.size
