@@ -15,6 +15,7 @@ from vehgen.diagnose.select import criteria, faint
 from vehgen.diagnose.select.criteria import tied
 from vehgen.diagnose.select.faint import faint_exchange, faint_look_again, faint_round, faintly_told
 from vehgen.effects import EFFECTS
+from vehgen.fit.adjustments import Gain
 from vehgen.report.pages.diagnosis_page import diagnosis_page
 
 UNLIKE = Effect("asymmetric_damping", "rear", {"ratio": 0.975})
@@ -108,7 +109,7 @@ def test_what_ends_at_a_bound_and_does_no_better_is_no_tie(found_of, monkeypatch
 
 def test_none_is_told_whose_number_ends_its_range(detection_of, found_of, monkeypatch):
     detection = detection_of(UNLIKE, runs=HUMPS)
-    monkeypatch.setattr(type(found_of.fits[0].least_squares), "adjusted_to_bounds", property(lambda self: ("a tilt",)))
+    monkeypatch.setattr(type(found_of.fits[0].least_squares), "adjusted_to_bounds", property(lambda self: (Gain("F_az"),)))
     assert faintly_told(found_of, detection) is None
 
 
