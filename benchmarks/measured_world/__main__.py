@@ -1,4 +1,4 @@
-"""Make cases, solve and score them, print tables: `python -m benchmarks.measured_world make|score|page|tellable|told`."""
+"""Make cases, solve and score them, print tables: `python -m benchmarks.measured_world make|score|page|glance|tellable|told`."""
 
 from __future__ import annotations
 
@@ -40,6 +40,9 @@ def _parser() -> argparse.ArgumentParser:
     score.add_argument("--settings", type=json.loads, default={}, help="more arguments of calibrations, as JSON")
     show = commands.add_parser("page", help="print the tables of scored cases")
     show.add_argument("results", type=Path, nargs="+")
+    short = commands.add_parser("glance", help="print one row for every set of scored effects")
+    short.add_argument("results", type=Path, nargs="+")
+    short.add_argument("--misses", action="store_true", help="print the intervals that miss the truth instead")
     tell = commands.add_parser("tellable", help="fit the true law at its true place: could the recordings tell it?")
     tell.add_argument("folder", type=Path, help="what `make` wrote")
     tell.add_argument("--out", type=Path, required=True, help="a file of JSON lines that grows case by case")
@@ -76,6 +79,10 @@ def main() -> None:
         score_set(options.folder, options.out, options.processes, options.limit, options.timeout, options.settings)
     elif options.command == "tellable":
         _tell(options)
+    elif options.command == "glance":
+        from benchmarks.measured_world.glance import glance, misses
+
+        print(misses(options.results) if options.misses else glance(options.results))
     elif options.command == "told":
         from benchmarks.measured_world.telling.table import telling_page
 

@@ -1,0 +1,50 @@
+"""Counts of scored sets of effects: what was right, a wrong cause, or not told, and which intervals hold."""
+
+import json
+
+import pytest
+from benchmarks.measured_world.glance import glance, intervals, misses
+
+FRICTION = {"name": "dry_friction", "place": "rear", "values": {"force": 500.0}}
+PLAY = {"name": "damper_free_play", "place": "rear", "values": {"play": 0.002}}
+
+
+def record(judged, effect=FRICTION, interval=None):
+    told = [{"name": effect["name"], "place": "rear", "parameters": {"force": {"value": 450.0, "interval": interval, "unit": "N"}}}]
+    return {"case": "effects_000", "kind": "effects", "effects": [effect], "judged": judged, "answer": {"effects": told}}
+
+
+@pytest.fixture
+def scored(tmp_path):
+    """Two sets: six cases of the library, three outside it, one healthy vehicle."""
+    first = [
+        record("named right", interval=[400.0, 510.0]),
+        record("named right", interval=[400.0, 480.0]),
+        record("named right"),
+        record("ambiguous, truth among them", interval=[400.0, 480.0]),
+        record("too_weak"),
+        record("not_in_library", PLAY),
+        {"case": "healthy_000", "kind": "healthy", "effects": [], "judged": "no_missing_effect", "answer": {}},
+    ]
+    second = [record("several_effects"), record("measurement_fault", PLAY), record("import_refused", PLAY)]
+    paths = [tmp_path / "one.jsonl", tmp_path / "two.jsonl"]
+    for path, records in zip(paths, (first, second), strict=True):
+        path.write_text("".join(json.dumps(item) + "\n" for item in records), encoding="utf-8")
+    return paths
+
+
+def test_each_set_has_a_row_and_all_together_one(scored):
+    assert glance(scored).splitlines()[2:] == [
+        "| one | 5 | 3 | 1 | 0 | 1 | 0 | 1 | 1 | 0 | 0 | 0 | 1 of 2 |",
+        "| two | 1 | 0 | 0 | 0 | 0 | 1 | 2 | 0 | 1 | 0 | 1 | 0 of 0 |",
+        "| all | 6 | 3 | 1 | 0 | 1 | 1 | 3 | 1 | 1 | 0 | 1 | 1 of 2 |",
+    ]
+
+
+def test_intervals_that_miss_are_listed(scored):
+    assert misses(scored).splitlines()[2:] == ["| effects_000 | dry_friction_force | 400 | 480 | 500 |"]
+
+
+def test_numbers_that_the_generator_does_not_state_count_for_nothing():
+    other = record("named right", {**FRICTION, "values": {"level": 500.0}}, [400.0, 480.0])
+    assert intervals(other) == []
