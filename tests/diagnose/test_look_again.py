@@ -82,3 +82,11 @@ def test_a_second_look_may_check_the_effect_by_another_run(monkeypatch, detectio
     assert not second
     assert [(item.name, item.place) for item in found.verdict.effects] == [("cubic_stiffness", "rear")]
     assert {run.run for run in found.verdict.gap.runs if run.validation} == {"low"}
+
+
+def test_what_one_look_leaves_as_it_was_is_not_looked_at_again(monkeypatch, detection_of):
+    looks = []
+    monkeypatch.setattr(decision, "look_again", lambda detection, fit: looks.append(fit.label))
+    decided = Decision(detection_of(CUBIC, runs=HUMPS), [EFFECTS["cubic_stiffness"]], False, lambda stage, done, total, best: None).decide()
+    assert decided.verdict.verdict == "named"
+    assert looks == ["cubic_stiffness at rear"]

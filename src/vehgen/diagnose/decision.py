@@ -117,10 +117,13 @@ class Decision(Ending):
         first = self._search_round(self.base)
         if first.stopped:
             return self._stopped()
-        for look in range(LOOKS_AGAIN + 1):
-            first = self._again(first) if look else first
-            if freed := freed_instead(first, self.base):
-                return self._out_of_range(freed)
+        for _ in range(LOOKS_AGAIN):
+            again = first if freed_instead(first, self.base) else self._again(first)
+            if again is first:
+                break
+            first = again
+        if freed := freed_instead(first, self.base):
+            return self._out_of_range(freed)
         weak = self._add(first) if first.fits else self._all_idle()
         self._leave_out_needless()
         if self.interrupted:
