@@ -325,3 +325,16 @@ def test_a_phone_that_the_vehicle_matches_badly_is_laid_roughly_or_set_by_its_en
     for phone, other in zip(onset["phones"], good["phones"], strict=True):
         assert phone["zero"] != other["zero"]
         assert phone["zero"] == pytest.approx(other["zero"], abs=0.15)
+
+
+def test_a_hump_that_does_not_stand_out_is_found_where_the_vehicles_answer_is_like_the_recording(tmp_path, capsys, monkeypatch):
+    """As a low one after a rough road; else it is refused as what does not stand out."""
+    good = facts(capsys, tmp_path / "good.yaml", both("hump_2ms"))
+    monkeypatch.setattr("vehgen.phones.hump_event.SMALLEST_CONTRAST", 1000.0)
+    found = facts(capsys, tmp_path / "low.yaml", both("hump_2ms"))
+    arrivals = [[phone["zero"] + item["at"] / item["speed"] for phone in item["phones"]] for item in (found, good)]
+    assert arrivals[0] == pytest.approx(arrivals[1], abs=0.01)
+    assert found["speed"] == pytest.approx(good["speed"], rel=0.02)
+    assert not any("energy sets in" in note for phone in found["phones"] for note in phone["notes"])
+    monkeypatch.setattr("vehgen.phones.clocks.TRUSTED", 0.9999)
+    assert "shows no hump" in refusal(capsys, tmp_path / "none.yaml", both("hump_2ms"))

@@ -19,7 +19,7 @@ from vehgen.phones.clocks import Match
 from vehgen.phones.detect import read_export
 from vehgen.phones.export import Stream
 from vehgen.phones.hump_event import HumpEvent
-from vehgen.phones.locating import CLOCK_DOUBT, FoundSpeed, find_speed, locate
+from vehgen.phones.locating import CLOCK_DOUBT, FoundSpeed, Mark, find_speed, locate
 from vehgen.phones.orientation import Orientation
 from vehgen.phones.phone import MARGIN, QUIET, Phone, make_phone
 from vehgen.phones.plan import PhoneSensor, Plan
@@ -126,7 +126,7 @@ def _assemble(
     phones: list[Phone],
     plan: Plan,
     found_speed: FoundSpeed,
-    events: list[HumpEvent | None],
+    events: list[Mark],
     matches: list[Match],
     arrivals: list[tuple[float, str]],
     distance: float,
@@ -170,7 +170,8 @@ def _assemble(
                 notes.append(
                     f"{channel}: the lead-in is {floor.sigma / floor.band_sigma:.1f} times as loud as the top of its band: road or engine"
                 )
-        done.append(ImportedPhone(phone, zero, arrival, found_by, quiet, upward, pitch, orientation, event, item, noise, tuple(notes)))
+        stood_out = event if isinstance(event, HumpEvent) else None
+        done.append(ImportedPhone(phone, zero, arrival, found_by, quiet, upward, pitch, orientation, stood_out, item, noise, tuple(notes)))
     fitted = speed * matches[0].scale if all(item.is_trusted for item in matches) else None
     if fitted is not None and abs(fitted / speed - 1) > SPEED_DOUBT:
         warnings.append(f"the axles' marks fit {fitted:.3f} m/s better than {speed:.3f} m/s ({source}); the speed by the axles takes that")

@@ -27,6 +27,10 @@ by the onset of energy 15 passes of vehicles with laws that their files lack err
 """
 
 
+Mark = HumpEvent | InputError | None
+"""When a phone's energy set in, or why that tells nothing; None of a measured profile, which has no one moment."""
+
+
 @dataclass(frozen=True)
 class FoundSpeed:
     """The speed of a pass [m/s], where it is from, and its standard deviation [m/s] where a GPS tells it, else None."""
@@ -41,8 +45,8 @@ class FoundSpeed:
         return cls(told.median, f"{name}: {told}", told.deviation)
 
 
-def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundSpeed, list[HumpEvent | None]]:
-    """Return the speed, and when every phone recorded the hump."""
+def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundSpeed, list[Mark]]:
+    """Return the speed, and when every phone recorded the hump, or why that does not stand out."""
     told: CrossingSpeed | None = None
     teller = next((phone for phone in phones if speed_stream(phone.export) is not None), phones[0])
     speed = plan.speed
@@ -56,12 +60,14 @@ def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundS
             return FoundSpeed(plan.speed, "given"), [None] * len(phones)
         told = crossing_speed(speed_stream(teller.export), teller.begin, teller.end, teller.name)
         return FoundSpeed.by_gps(told, teller.name), [None] * len(phones)
-    events: list[HumpEvent | None] = [_event(phone, distance / speed) for phone in phones]
+    events = [_event(phone, distance / speed) for phone in phones]
     event = events[phones.index(teller)]
-    assert event is not None
+    begin, end = teller.begin, teller.end
+    if isinstance(event, HumpEvent):
+        begin, end = event.onset - 0.5, event.onset + distance / speed + 0.5
     if speed_stream(teller.export) is not None:
         try:
-            told = crossing_speed(speed_stream(teller.export), event.onset - 0.5, event.onset + distance / speed + 0.5, teller.name)
+            told = crossing_speed(speed_stream(teller.export), begin, end, teller.name)
         except InputError:
             if plan.speed is None:
                 raise
@@ -71,16 +77,27 @@ def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundS
     return FoundSpeed.by_gps(told, teller.name), events
 
 
-def _event(phone: Phone, crossing: float) -> HumpEvent:
+def _event(phone: Phone, crossing: float) -> Mark:
     upward, _, _ = phone.turned(phone.begin, phone.end)
     grid = np.arange(phone.begin, phone.end, 0.01)
-    return find_hump(grid, np.interp(grid, upward.time, upward.values[:, 0]), crossing, phone.name)
+    try:
+        return find_hump(grid, np.interp(grid, upward.time, upward.values[:, 0]), crossing, phone.name)
+    except InputError as error:
+        return error
 
 
 def locate(
-    phones: list[Phone], plan: Plan, simulator: Simulator, parameters: Array, speed: float, distance: float, events: list[HumpEvent | None]
+    phones: list[Phone], plan: Plan, simulator: Simulator, parameters: Array, speed: float, distance: float, events: list[Mark]
 ) -> tuple[list[Match], list[tuple[float, str]]]:
-    """Return for each phone how the simulated response matches its recording, and when the front wheel reached the road's begin."""
+    """Return for each phone how the simulated response matches its recording, and when the front wheel reached the road's begin.
+
+    A low hump need not stand out from the road before it: where the response is like the recording all the same, that tells.
+
+    Raises
+    ------
+    InputError
+        Where neither tells when a phone crossed.
+    """
     step = 1 / plan.rate
     lead = 1.0 * speed if plan.road.hump else 0.0
     track = Track((plan.road.at(lead),), plan.footprint)
@@ -94,7 +111,7 @@ def locate(
     for phone, event in zip(phones, events, strict=True):
         upward, pitch, _ = phone.turned(phone.begin, phone.end)
         grid = np.arange(phone.begin, phone.end, step)
-        if event is not None:
+        if isinstance(event, HumpEvent):
             grid = np.arange(max(phone.begin, event.onset - distance / speed - 4.0), min(phone.end, event.onset + length + 2.0), step)
         recorded = [np.interp(grid, item.time, item.values[:, 0]) for item in (upward, pitch) if item is not None]
         recordings.append((grid, np.column_stack(recorded)))
@@ -102,7 +119,9 @@ def locate(
         first += len(recorded)
         lead_time = lead / speed
         near.append(
-            (event.onset - distance / speed - lead_time - 1.0, event.onset - lead_time + 0.4) if event else (phone.begin, phone.end)
+            (event.onset - distance / speed - lead_time - 1.0, event.onset - lead_time + 0.4)
+            if isinstance(event, HumpEvent)
+            else (phone.begin, phone.end)
         )
     found = match(recordings, answer, columns, step, near)
     arrivals: list[tuple[float, str]] = []
@@ -111,6 +130,8 @@ def locate(
             arrivals.append(
                 (item.shift + lead / (speed * item.scale), f"the vehicle's answer laid over it (correlation {item.correlation:.2f})")
             )
+        elif isinstance(event, InputError):
+            raise event
         elif event is None:
             raise InputError(
                 f"{phones[i].name} fits the answer of {plan.vehicle.name} to the road badly (correlation {item.correlation:.2f}): are "
