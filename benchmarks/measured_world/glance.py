@@ -13,6 +13,8 @@ Data = dict[str, Any]
 RIGHT, TIED = "named right", "ambiguous, truth among them"
 WRONG = ("named wrong", "ambiguous, wrong", "named right, elsewhere", "measurement_fault")
 """Causes told that are not there; a mistake of measuring is none of the generator's."""
+OF_THE_WHOLE_EXPORT = ("engine_harmonic_frequency", "engine_harmonic_drift")
+"""The truth states these for the start and the length of a phone's export, of which an import keeps a part."""
 UNTOLD = ("no_missing_effect", "too_weak", "insufficient_data")
 """A gap of which nothing is claimed."""
 
@@ -22,11 +24,12 @@ def intervals(record: Data) -> list[tuple[str, float, float, float]]:
     if record["judged"] != RIGHT:
         return []
     truth, told = record["effects"][0], record["answer"]["effects"][0]
+    other = OF_THE_WHOLE_EXPORT if record["recorder"] == "phones" else ()
     found = []
     for name, item in told["parameters"].items():
-        right, interval = truth["values"].get(name), item["interval"]
-        if right is not None and interval is not None:
-            found.append((f"{truth['name']}_{name}", interval[0], interval[1], right))
+        right, interval, number = truth["values"].get(name), item["interval"], f"{truth['name']}_{name}"
+        if right is not None and interval is not None and number not in other:
+            found.append((number, interval[0], interval[1], right))
     return found
 
 

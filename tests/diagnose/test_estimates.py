@@ -1,15 +1,20 @@
 """What counts as gain and as chance, on numbers that can be reckoned by hand."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import scipy.stats
 
+from tests.diagnose.conftest import CUBIC, HUMPS
+from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.select import estimates
-from vehgen.diagnose.select.estimates import RunEstimate, _median_error, excluded, p_value
+from vehgen.diagnose.select.estimates import RunEstimate, _median_error, estimate, excluded, p_value
+from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.validation import gain_interval, seen_again, validation_gain
 from vehgen.diagnose.verdict import NamedParameter
+from vehgen.effects import EFFECTS
 
 
 def fit(power, train=1.0, count=1000):
@@ -103,3 +108,13 @@ def test_a_median_of_few_runs_is_as_sure_as_it_says(runs):
     drawn = np.random.default_rng(runs).standard_normal((runs, 4000))
     held = np.mean(np.abs(np.median(drawn, axis=0)) <= 1.645 * _median_error(drawn))
     assert held == pytest.approx(0.9, abs=0.04)
+
+
+def test_what_a_laws_form_leaves_open_is_in_its_interval(detection_of):
+    detection = detection_of(CUBIC, runs=HUMPS)
+    listed = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS["cubic_stiffness"]])
+    found = Fitter(detection, detection.base, ()).fit_at_once(next(item for item in listed if item.place == "rear"))
+    vague = replace(found.last.effect, parameters=(replace(found.last.effect.parameters[0], form=0.2),))
+    known, unsure = (estimate(found, replace(found.last, effect=effect))["k3"] for effect in (found.last.effect, vague))
+    half, wider = (0.5 * (item.interval[1] - item.interval[0]) for item in (known, unsure))
+    assert wider == pytest.approx(np.hypot(half, 1.645 * 0.2 * known.value))

@@ -11,7 +11,8 @@ PLAY = {"name": "damper_free_play", "place": "rear", "values": {"play": 0.002}}
 
 def record(judged, effect=FRICTION, interval=None):
     told = [{"name": effect["name"], "place": "rear", "parameters": {"force": {"value": 450.0, "interval": interval, "unit": "N"}}}]
-    return {"case": "effects_000", "kind": "effects", "effects": [effect], "judged": judged, "answer": {"effects": told}}
+    found = {"case": "effects_000", "kind": "effects", "recorder": "phones", "effects": [effect]}
+    return {**found, "judged": judged, "answer": {"effects": told}}
 
 
 @pytest.fixture
@@ -48,3 +49,12 @@ def test_intervals_that_miss_are_listed(scored):
 def test_numbers_that_the_generator_does_not_state_count_for_nothing():
     other = record("named right", {**FRICTION, "values": {"level": 500.0}}, [400.0, 480.0])
     assert intervals(other) == []
+
+
+def test_an_engine_is_not_held_against_what_it_did_over_all_of_a_phones_export():
+    engine = {"name": "engine_harmonic", "place": "body", "values": {"frequency": 21.0, "amplitude": 300.0}}
+    item = record("named right", engine)
+    told = {name: {"value": value, "interval": [value - 1, value + 1], "unit": ""} for name, value in engine["values"].items()}
+    item["answer"]["effects"][0]["parameters"] = told
+    assert [name for name, *_ in intervals(item)] == ["engine_harmonic_amplitude"]
+    assert len(intervals({**item, "recorder": "logger"})) == 2

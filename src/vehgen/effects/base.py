@@ -39,7 +39,8 @@ def one(site: EffectSite) -> float:
 class EffectParameter:
     """A parameter of an effect: searched from `low` to `high`, begun at each of `starts`, all times `scale(site)`, in `unit`.
 
-    `of` says what `scale` is in words, as in "0.002 to 0.4 times the static load"; empty where it is 1.
+    `of` says what `scale` is in words, as in "0.002 to 0.4 times the static load"; empty where it is 1. `form` is the share of its value (a
+    standard deviation) by which fits stray since no real thing has quite the form of its law.
     """
 
     name: str
@@ -51,6 +52,7 @@ class EffectParameter:
     starts: tuple[float, ...]
     scale: Callable[[EffectSite], float] = one
     of: str = ""
+    form: float = 0.0
 
     @property
     def searched(self) -> str:

@@ -53,9 +53,9 @@ class RunEstimate:
 def estimate(fit: ModelFit, candidate: Candidate | None = None) -> dict[str, NamedParameter]:
     """Return an effect's own parameters (default: of the effect added last) with 90 % intervals.
 
-    Three parts add up in quadrature: noise, from the Fisher information of the fit, widened by the root of its mean square; what the runs
-    ask for beyond it (:func:`disagreement`); and the scatter of other minima that do as well. What is solved for in every run is the median
-    over the runs, its interval their spread and that of the base parameters.
+    Four parts add up in quadrature: noise, from the Fisher information of the fit, widened by the root of its mean square; what the runs
+    ask for beyond it (:func:`disagreement`); the scatter of other minima that do as well; and what the law's form makes of a parameter.
+    What is solved for in every run is the median over the runs, its interval their spread and that of the base parameters.
     """
     candidate = candidate or fit.last
     misfit = fit.least_squares.misfit
@@ -72,7 +72,8 @@ def estimate(fit: ModelFit, candidate: Candidate | None = None) -> dict[str, Nam
             if len(fit.equivalent_minima) > 1
             else 0.0
         )
-        spread = float(np.hypot(np.hypot(noise, minima), disagreement([item for item in alone if item.parameter == parameter.name])))
+        apart = disagreement([item for item in alone if item.parameter == parameter.name])
+        spread = float(np.linalg.norm([noise, minima, apart, NINETY * parameter.form * value]))
         interval = (value - spread, value + spread) if spread > 0 else None
         found[parameter.name] = NamedParameter(value, interval, parameter.unit)
     return found | _solved(fit, candidate, covariance)

@@ -9,6 +9,9 @@ from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import long_bodies
 
+SHAPE_ERROR = 0.0015
+"""No frame bends quite as a uniform beam: with modal masses of 0.75 to 1.25 times its, frequencies strayed by 0.12 % (rms of 11)."""
+
 
 def _edit(site: EffectSite, symbols: Symbols) -> Change:
     return {
@@ -30,7 +33,9 @@ FRAME_BENDING_EFFECT = VehicleEffect(
     attaches="body",
     places=long_bodies,
     parameters=(
-        EffectParameter("frequency", "Hz", "natural frequency of the free body", low=3.0, high=30.0, starts=(4.5, 7.0, 10.0, 15.0)),
+        EffectParameter(
+            "frequency", "Hz", "natural frequency of the free body", low=3.0, high=30.0, starts=(4.5, 7.0, 10.0, 15.0), form=SHAPE_ERROR
+        ),
         EffectParameter("damping_ratio", "", "damping ratio", low=0.003, high=0.3, starts=(0.06,)),
         EffectParameter(
             "length",
