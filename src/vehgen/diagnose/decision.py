@@ -30,7 +30,7 @@ from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.range_ends import numbers_at_ends
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
 from vehgen.diagnose.select.search import LEADING, LOOKS_AGAIN, SearchRound, fit_leading_again, search_round
-from vehgen.diagnose.select.validation import seen_again, validation_fall
+from vehgen.diagnose.select.validation import gain_interval, seen_again, validation_fall
 from vehgen.errors import InputError
 
 LOOK_AGAIN_SHARE = 0.5
@@ -173,8 +173,9 @@ class Decision(Ending):
         """Return why the best effect only stands in for another one, that it closes the gap notwithstanding; nothing where it does not."""
         if apart := excluded(best):
             return wording.imitates(self._words(best.last), apart)
-        ends = numbers_at_ends(best)
-        return wording.imitates(self._words(best.last, estimate(best)), (), ends) if ends else ""
+        ends, gain = numbers_at_ends(best), gain_interval(self.base, best, self.validation_runs)
+        unsure = bool(ends) and (gain is None or gain[0] < limit.AT_LEAST)
+        return wording.imitates(self._words(best.last, estimate(best)), (), ends) if unsure else ""
 
     def _all_idle(self) -> Decided | None:
         """Return the verdict where a gap is small, and no effect does more for it than base parameters do."""

@@ -177,7 +177,7 @@ def not_in_library(best: tuple[int, str, float] | None, causes: Sequence[str], f
 def imitates(label: str, apart: Sequence[str], ends: Sequence[str] = ()) -> str:
     """Return the verdict that an effect closes the gap, but with numbers that lie `apart` from run to run or at the `ends` of ranges."""
     why = f"runs ask for numbers of it that exclude one another ({join_names(apart)})"
-    why = why if apart else f"only with {join_names(ends, 'and')} at the end of its range"
+    why = why if apart else f"only with {join_names(ends, 'and')} at the end of its range, and other runs do not surely show half of it"
     return f"{label} imitates what the model misses, but {why}: what acts there is not in the library"
 
 

@@ -10,7 +10,6 @@ from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.estimates import estimate, excluded, p_value
-from vehgen.diagnose.select.range_ends import numbers_at_ends
 from vehgen.diagnose.select.search import SearchRound, merit, own_numbers
 from vehgen.diagnose.select.special_cases import does_as_well
 from vehgen.diagnose.select.validation import validation_fall
@@ -59,11 +58,10 @@ def p_value_of(found: SearchRound, fit: ModelFit, tried: int) -> float:
 def is_told(fit: ModelFit) -> bool:
     """Return whether the runs tell the size of the last effect of a fit.
 
-    They do not where they ask for numbers that exclude one another or lie at the end of their range, and, of an error of all runs or of a
-    sensor, where its 90 % interval holds the number that changes nothing. Of a law it may: a stop that is surely there can be of any
-    stiffness.
+    They do not where they ask for numbers that exclude one another, and, of an error of all runs or of a sensor, where its 90 % interval
+    holds the number that changes nothing. Of a law it may: a stop that is surely there can be of any stiffness.
     """
-    if excluded(fit) or numbers_at_ends(fit):
+    if excluded(fit):
         return False
     effect = fit.last.effect
     if not isinstance(effect, RunEffect):

@@ -1,4 +1,4 @@
-"""Effects whose own numbers end at the ends of their ranges: they stand in for something that they are not."""
+"""Effects whose own numbers end at the ends of their ranges: they may stand in for something that they are not."""
 
 from __future__ import annotations
 
