@@ -22,7 +22,7 @@ Consume = Callable[[slice, NDArray[Any], Array], None]
 """Given which individuals a block holds, their responses, and their residuals; several threads call it."""
 OWN_ROWS = 64
 """Steps whose drives are read at once where each lane has its own: few enough for the first cache."""
-WORTH_THREADS = 1_000_000
+WORTH_THREADS = 250_000
 """Blocks times steps times coordinates below which one core is as quick as several."""
 
 
