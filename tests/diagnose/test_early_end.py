@@ -96,3 +96,16 @@ def test_an_error_of_a_sensor_at_an_end_of_its_range_settles_nothing(detection_o
     held = Misfit(old.misfit.problem, old.misfit.noises, old.values, old.misfit.nuisances, old.misfit.band, shared)
     assert numbers_at_ends(fit) == []
     assert numbers_at_ends(replace(fit, least_squares=replace(old, misfit=held))) == [item.name for item in fit.last.effect.parameters]
+
+
+def test_beside_a_base_at_its_bounds_none_settles_that_does_no_more_than_what_it_set_free(detection_of, monkeypatch):
+    detection = detection_of(CUBIC, runs=HUMPS)
+    assert detection.base.least_squares.on_bound
+    asked = []
+    monkeypatch.setattr(early_end, "idle_instead", lambda fit, fit_without: asked.append(fit.label) or fit)
+    candidates, _fits, left = settled(detection)
+    assert left == candidates
+    assert asked == ["cubic_stiffness at rear"]
+    monkeypatch.setattr(type(detection.base.least_squares), "on_bound", ())
+    assert len(settled(detection)[2]) < len(candidates)
+    assert asked == ["cubic_stiffness at rear"]

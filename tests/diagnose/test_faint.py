@@ -151,7 +151,9 @@ def test_a_tie_falls_nearly_as_far_on_both_kinds_of_runs(found_of, monkeypatch):
 def test_what_its_validation_run_does_not_show_is_checked_on_the_run_that_shows_it_most(trials_of, detection_of, found_of, monkeypatch):
     detection, best = detection_of(UNLIKE, runs=HUMPS), found_of.fits[0]
     shares = {trial.name: (detection.base.mean_squares[trial.name] - best.mean_squares[trial.name]) for trial in detection.trials}
-    found, exchanged = faint_exchange(found_of, detection)
+    unchecked = replace(found_of.fits[1], validation=float("nan"), validation_fit=None)
+    found, exchanged = faint_exchange(replace(found_of, fits=(best, unchecked)), detection)
+    assert [fit.label for fit in found.fits] == [best.label]
     (checked,) = (trial.name for trial in exchanged.validation_runs)
     assert checked != detection.validation_runs[0].name
     assert shares[checked] == max(shares[trial.name] for trial in detection.problem.trials)

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,10 +10,12 @@ from benchmarks.hidden_effects.generator import Effect, nominal
 
 from tests.diagnose.conftest import CUBIC, HUMPS
 from vehgen.diagnose.decision import Decision
-from vehgen.diagnose.fits.candidate import Candidate, build_problem, carried, list_candidates
+from vehgen.diagnose.fits.candidate import build_problem, carried, list_candidates
+from vehgen.diagnose.fits.freedom import freed_alone
 from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, base_priors, narrow
 from vehgen.diagnose.pipeline import diagnose_trials
-from vehgen.diagnose.select.freed_base import FREED_BASE
+from vehgen.diagnose.select.fitter import Fitter
+from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.diagnose.select.search import SearchRound
 from vehgen.effects import EFFECTS, EffectLocator
 from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
@@ -65,7 +68,7 @@ def test_a_freed_parameter_is_blamed_only_for_the_gap_that_it_closes(detection_o
     detection = detection_of(runs=HUMPS)
     base = replace(detection.base, training=1.08**2, mean_squares=dict.fromkeys(detection.base.mean_squares, 1.08**2))
     detection = replace(detection, base=base)
-    freed = replace(base, effects=(Candidate(FREED_BASE, "cf", (), (), ("cf",)),), training=left**2)
+    freed = replace(base, effects=(freed_alone(("cf",)),), training=left**2)
     monkeypatch.setattr(Decision, "_search_round", lambda self, current: SearchRound(current, (), (), (), (freed,)))
     found = Decision(detection, SERIES, False, lambda *_: None)._explain_gap().verdict
     assert found.verdict == verdict
@@ -98,3 +101,42 @@ def test_a_point_keeps_its_values_in_the_wider_space(posed):
     wide = carried(unit, base.space, problem.space)
     full = np.concatenate([wide, [0.5]])
     assert problem.space.values(full)[:-1] == pytest.approx(base.space.values(unit), rel=1e-12)
+
+
+def fitted(training, squares, numbers=2):
+    effect = SimpleNamespace(n_numbers=lambda runs: numbers)
+    misfit = SimpleNamespace(problem=SimpleNamespace(trials=()))
+    return SimpleNamespace(
+        training=training,
+        squares=squares,
+        n_residuals=1000,
+        counts={"run": 1000},
+        last=SimpleNamespace(freed=("kt3", "m3"), effect=effect),
+        least_squares=SimpleNamespace(misfit=misfit),
+    )
+
+
+@pytest.mark.parametrize(("fall", "idle"), [(100.0, True), (160.0, True), (170.0, False)])
+def test_beside_freed_parameters_that_leave_noise_an_effect_does_as_much_more_as_one_that_chi_does_not_show(fall, idle):
+    """A fall of 150 in -2 ln L beyond the price of its numbers, 13.8 here; chance alone would take less than 20."""
+    law, freed = fitted(0.8, 800.0), fitted(0.95, 800.0 + fall, numbers=0)
+    for one, without in ((lambda candidate: freed, None), (lambda candidate: None, lambda fit: freed)):
+        kept, left = split_idle([law], one, 1, (), without)
+        assert (kept, left) == (([], [freed]) if idle else ([law], []))
+
+
+def test_nothing_is_sought_from_where_a_fit_ended_that_freed_nothing():
+    law = fitted(0.8, 800.0)
+    law.last.freed = ()
+    assert split_idle([law], lambda candidate: None, 1, (), lambda fit: fitted(0.8, 700.0)) == ([law], [])
+
+
+def test_freed_parameters_begin_where_the_effects_fit_ended(detection_of):
+    detection = detection_of(CUBIC, runs=HUMPS)
+    fitter = Fitter(detection, detection.base, ())
+    candidates = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS["cubic_stiffness"]])
+    law = fitter.fit_at_once(next(item for item in candidates if item.place == "rear"))
+    freed = fitter.fit_without(law)
+    assert freed.last.freed == law.last.freed == ("kr",)
+    assert freed.n_effect_parameters == 0
+    assert freed.training > 10 * law.training

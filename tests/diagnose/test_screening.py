@@ -1,5 +1,6 @@
 """Which candidates the first order says are worth fitting."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -42,6 +43,25 @@ def test_every_law_at_a_place_that_is_kept_is_worth_a_fit(detection_of, monkeypa
     found = screening.screen(candidates, gains, "rear")
     assert {item.effect.name for item in found if item.place == "rear"} == {effect.name for effect in LAWS}
     assert len(found) < len(candidates)
+
+
+def test_laws_of_tyres_are_worth_a_fit_where_their_axles_parameters_are_at_bounds(detection_of, monkeypatch):
+    """An unsprung mass at its bound does part of what tyre damping does, which then gains nothing to the first order."""
+    monkeypatch.setattr(screening, "MAX_CANDIDATES", 1)
+    detection = detection_of(Effect("dry_friction", "front", {"force": 150.0}), runs=HUMPS)
+    trial, fit = detection.trials[0], detection.base.least_squares
+    candidates = list_candidates(trial.run.vehicle, detection.trials, [*LAWS, EFFECTS["tyre_damping"]])
+    locator = EffectLocator(trial.run.vehicle, dict(trial.values))
+    x = fit.x.copy()
+    x[fit.misfit.problem.space.names.index("mr")] = 0.0
+    chosen = []
+    for base in (detection.base, replace(detection.base, least_squares=replace(fit, x=x))):
+        gains = screening.FirstOrderGains(base, CurrentModel.of(base), locator, SimulatorPool())
+        chosen.append({item.label for item in screening.screen(candidates, gains) if item.effect.name == "tyre_damping"})
+    assert chosen[0].isdisjoint(chosen[1] - chosen[0])
+    assert chosen[1] >= {"tyre_damping at rear", "tyre_damping at all tyres", "tyre_damping at each tyre"}
+    assert "tyre_damping at front" not in chosen[1] - chosen[0]
+    assert len(chosen[0]) < len(chosen[1])
 
 
 def test_a_place_is_kept_only_where_the_base_fit_is_strained():

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate
+from vehgen.diagnose.fits.freedom import freed_alone
 from vehgen.diagnose.fits.model_fit import ModelFit, base_priors
 from vehgen.diagnose.fits.multi_start import fit_candidate
 from vehgen.diagnose.select.criteria import passes
 from vehgen.diagnose.select.estimates import fitted_numbers, p_value
 from vehgen.diagnose.select.fitter import Fitter
-from vehgen.diagnose.select.freed_base import FREED_BASE
 from vehgen.diagnose.select.search import own_numbers
 from vehgen.diagnose.select.validation import gain_interval
 from vehgen.effects.evidence import StartingPoint
@@ -113,7 +113,7 @@ class Falls:
                 np.clip(fit.least_squares.values[:n], self.fitter.current.problem.space.lower, self.fitter.current.problem.space.upper)
             )
             ended = values, fit.least_squares.misfit.split(fit.least_squares.x)[1]
-            alone = Candidate(FREED_BASE, ", ".join(freed), (), (), freed)
+            alone = freed_alone(freed)
             other = self._fitted(alone, [self.fitter.origins.fitted, ended], [()])
             self._bases[freed] = [self.base, *([] if other is None else [other])]
         return min(self._bases[freed], key=cost)

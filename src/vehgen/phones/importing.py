@@ -19,7 +19,7 @@ from vehgen.phones.clocks import Match
 from vehgen.phones.detect import read_export
 from vehgen.phones.export import Stream
 from vehgen.phones.hump_event import HumpEvent
-from vehgen.phones.locating import CLOCK_DOUBT, FoundSpeed, Mark, find_speed, locate
+from vehgen.phones.locating import CLOCK_DOUBT, FoundSpeed, find_speed, locate
 from vehgen.phones.orientation import Orientation
 from vehgen.phones.phone import MARGIN, QUIET, Phone, make_phone
 from vehgen.phones.plan import PhoneSensor, Plan
@@ -119,14 +119,15 @@ def read_pass(exports: Sequence[str | os.PathLike[str]], plan: Plan) -> Imported
         matches = [replace(item, scale=1.0) for item in matches]
     elif plan.by_axles and speed.deviation is None:
         raise ArgumentError("the simulated response fits the recordings too badly to find the speed from its axles; give `speed`", "speed")
-    return _assemble(phones, plan, speed, events, matches, arrivals, distance, wheels)
+    stood_out = [item if isinstance(item, HumpEvent) else None for item in events]
+    return _assemble(phones, plan, speed, stood_out, matches, arrivals, distance, wheels)
 
 
 def _assemble(
     phones: list[Phone],
     plan: Plan,
     found_speed: FoundSpeed,
-    events: list[Mark],
+    events: list[HumpEvent | None],
     matches: list[Match],
     arrivals: list[tuple[float, str]],
     distance: float,
@@ -170,8 +171,7 @@ def _assemble(
                 notes.append(
                     f"{channel}: the lead-in is {floor.sigma / floor.band_sigma:.1f} times as loud as the top of its band: road or engine"
                 )
-        stood_out = event if isinstance(event, HumpEvent) else None
-        done.append(ImportedPhone(phone, zero, arrival, found_by, quiet, upward, pitch, orientation, stood_out, item, noise, tuple(notes)))
+        done.append(ImportedPhone(phone, zero, arrival, found_by, quiet, upward, pitch, orientation, event, item, noise, tuple(notes)))
     fitted = speed * matches[0].scale if all(item.is_trusted for item in matches) else None
     if fitted is not None and abs(fitted / speed - 1) > SPEED_DOUBT:
         warnings.append(f"the axles' marks fit {fitted:.3f} m/s better than {speed:.3f} m/s ({source}); the speed by the axles takes that")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.effects import Effect
 from vehgen.effects.places import nowhere
 
@@ -18,3 +19,8 @@ class FreedBase(Effect):
 
 
 FREED_BASE = FreedBase(name="freed_base", title="Base parameters beyond the file's", attaches="base", places=nowhere)
+
+
+def freed_alone(names: tuple[str, ...]) -> Candidate:
+    """Return the candidate that sets base parameters free and adds nothing."""
+    return Candidate(FREED_BASE, ", ".join(names), (), (), names)

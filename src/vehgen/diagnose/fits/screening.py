@@ -20,14 +20,17 @@ from vehgen.diagnose.fits.model_fit import NUISANCES, CurrentModel, ModelFit
 from vehgen.diagnose.fits.projection import Projection
 from vehgen.effects import EffectLocator, RunEffect
 from vehgen.effects.evidence import Residual
+from vehgen.effects.locator import base_parameters
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.fit.problem import Problem
 from vehgen.simulate import SimulatorPool
+from vehgen.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 MAX_CANDIDATES, MAX_BESIDE = 14, 8
 """So many candidates that are forces are kept; so many beside effects that were found before."""
-
+MOST_BEHIND = 8
+"""So many laws of tyres at most are fitted that an axle's parameters at their bounds may stand in for."""
 INSIDE = 0.01
 """A number begins so far within its range, of 1."""
 
@@ -35,8 +38,9 @@ INSIDE = 0.01
 def screen(candidates: Sequence[Candidate], gains: FirstOrderGains, kept_at: str = "") -> list[Candidate]:
     """Return the candidates worth fitting: all that leave the vehicle alone, of the others those with the largest first-order gain.
 
-    A first order scales what it moves: it says nothing of candidates without a number of their own, which are kept. What holds another
-    candidate as a special case is kept with it, and takes no place of its own.
+    A first order scales what it moves: it says nothing of candidates without a number of their own, which are kept, nor of laws that the
+    base's parameters at their bounds may stand in for. What holds another candidate as a special case is kept with it, and takes no place
+    of its own.
 
     Parameters
     ----------
@@ -52,7 +56,15 @@ def screen(candidates: Sequence[Candidate], gains: FirstOrderGains, kept_at: str
         return list(candidates)
     ranked = sorted(forces, key=lambda item: -gains.of(item)[0])
     placed = [item for item in forces if item.place == kept_at]
-    return chosen_with_holders(candidates, [*always, *placed, *ranked[:most]])
+    held = () if gains.base.effects else gains.base.least_squares.on_bound
+    behind = [item for item in ranked[most:] if hides_behind(item, set(held), gains.locator.vehicle)]
+    return chosen_with_holders(candidates, [*always, *placed, *ranked[:most], *behind[:MOST_BEHIND]])
+
+
+def hides_behind(item: Candidate, held: set[str], vehicle: Vehicle) -> bool:
+    """Return whether parameters that the base leaves at their bounds may stand in for a law of a tyre."""
+    of_tyre = item.effect.changes_vehicle and item.effect.attaches == "tyre"
+    return of_tyre and not held.isdisjoint(base_parameters(vehicle, item.place, ("m", "kt")))
 
 
 class FirstOrderGains:

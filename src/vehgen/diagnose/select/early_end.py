@@ -11,6 +11,7 @@ from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.fits.screening import FirstOrderGains
 from vehgen.diagnose.select.fitter import Fitter
+from vehgen.diagnose.select.freed_base import idle_instead
 from vehgen.diagnose.select.range_ends import numbers_at_ends
 from vehgen.fit.parallel import HERE, Runner
 
@@ -32,7 +33,7 @@ def settle(
 ) -> list[Candidate]:
     """Fit the candidates of the largest first-order gains until one settles the gap of the base; those at `kept_at` stay its rivals.
 
-    Every fit is handed to `each` as soon as it is made.
+    Every fit is handed to `each` as soon as it is made. Beside a base at its bounds none settles that does no more than what it set free.
 
     Returns
     -------
@@ -40,11 +41,12 @@ def settle(
     """
     ranked = [(*gains.of(item), item) for item in candidates]
     ranked.sort(key=lambda known: -known[0])
+    strained = bool(fitter.base.least_squares.on_bound)
     tried = set()
     for fit in fitter.fit_all_begun([(item, begin) for _, begin, item in ranked[:MOST_AT_ONCE]], runner):
         each(fit)
         tried.add(fit.key[-1])
-        if _settles(fit):
+        if _settles(fit) and not (strained and idle_instead(fit, fitter.fit_without)):
             own = next(gain for gain, _, item in ranked if (item.effect.name, item.place) == fit.key[-1])
             rest = [(gain, item) for gain, _, item in ranked if (item.effect.name, item.place) not in tried]
             return [item for gain, item in rest if gain >= RIVAL * own or item.place == kept_at or _is_inseparable(item, fit.last)]

@@ -15,6 +15,7 @@ from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.detect.detection import Detection, look_again
 from vehgen.diagnose.fits.candidate import Candidate, has_room
 from vehgen.diagnose.fits.model_fit import ModelFit
+from vehgen.diagnose.fits.screening import MOST_BEHIND, hides_behind
 from vehgen.diagnose.localise.localisation import localise_at
 from vehgen.diagnose.select.criteria import fall, falls_as_far, is_told
 from vehgen.diagnose.select.fitter import Fitter
@@ -23,16 +24,12 @@ from vehgen.diagnose.select.placebo_laws import like_a_placebo_law
 from vehgen.diagnose.select.reaching_runs import with_checking_run
 from vehgen.diagnose.select.search import LOOKS_AGAIN, SearchRound, fit_leading_again, merit
 from vehgen.diagnose.select.validation import surely_falls, validation_fall
-from vehgen.effects.locator import base_parameters
 from vehgen.fit.parallel import HERE, Runner
-from vehgen.vehicle import Vehicle
 
 FIRST_ORDER, MOST_LAWS = 60.0, 4
 """Laws of the vehicle are fitted that gain so much to the first order, and so many of them at most, the largest gains first ..."""
 FIRST_ORDER_OF_ERRORS, MOST_ERRORS = 25.0, 4
 """... and errors of all runs or of a sensor, of which the base's own errors take in the most."""
-MOST_BEHIND = 8
-"""So many laws of tyres at most are fitted that an axle's parameters at their bounds may stand in for."""
 
 
 def faint_round(detection: Detection, candidates: Sequence[Candidate], runner: Runner = HERE) -> SearchRound:
@@ -49,7 +46,7 @@ def faint_round(detection: Detection, candidates: Sequence[Candidate], runner: R
     ranked.sort(key=lambda known: -known[0])
     laws = [(item, begin) for gain, begin, item in ranked if item.effect.changes_vehicle and gain > FIRST_ORDER]
     held = set(base.least_squares.on_bound)
-    behind = [(item, begin) for gain, begin, item in ranked if gain <= FIRST_ORDER and _hides_behind(item, held, fitter.locator.vehicle)]
+    behind = [(item, begin) for gain, begin, item in ranked if gain <= FIRST_ORDER and hides_behind(item, held, fitter.locator.vehicle)]
     errors = [(item, begin) for gain, begin, item in ranked if not item.effect.changes_vehicle and gain > FIRST_ORDER_OF_ERRORS]
     fits = list(fitter.fit_all_begun([*laws[:MOST_LAWS], *behind[:MOST_BEHIND], *errors[:MOST_ERRORS]], runner))
     found = SearchRound(base, (), (), (), faint=True)
@@ -57,12 +54,6 @@ def faint_round(detection: Detection, candidates: Sequence[Candidate], runner: R
     checked = {id(fit): fitter.fit_again(fit) for fit in clear if not np.isfinite(fit.validation)}
     fits = sorted((checked.get(id(fit), fit) for fit in fits), key=merit)
     return replace(found, fits=tuple(_likeliest_first(found, fits)))
-
-
-def _hides_behind(item: Candidate, held: set[str], vehicle: Vehicle) -> bool:
-    """Return whether parameters that the base leaves at their bounds may stand in for a law of a tyre."""
-    of_tyre = item.effect.changes_vehicle and item.effect.attaches == "tyre"
-    return of_tyre and not held.isdisjoint(base_parameters(vehicle, item.place, ("m", "kt")))
 
 
 def faint_look_again(found: SearchRound, detection: Detection, runner: Runner = HERE) -> tuple[SearchRound, Detection]:
@@ -83,12 +74,14 @@ def faint_exchange(found: SearchRound, detection: Detection, runner: Runner = HE
 
     Friction that holds an axle all through the gentle run that was kept for checking cannot be seen there. That run is fitted instead, if
     it does not speak against the fit, and the effect has to be found in the others anew, and in the run that is now kept.
+    Fits that fell too little to be checked at all are left out.
     """
     best = next(iter(found.fits), None)
     if best is None or fall(found, best) < limit.FAINT_FALL or validation_fall(found.current, best) < 0:
         return None
     exchanged = with_checking_run(detection, best)
-    return None if exchanged is None else (_beside(exchanged, found, runner), exchanged)
+    checked = replace(found, fits=tuple(fit for fit in found.fits if np.isfinite(fit.validation)))
+    return None if exchanged is None else (_beside(exchanged, checked, runner), exchanged)
 
 
 def _beside(detection: Detection, found: SearchRound, runner: Runner) -> SearchRound:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, build_problem
+from vehgen.diagnose.fits.freedom import freed_alone
 from vehgen.diagnose.fits.model_fit import CurrentModel, ModelFit, evaluate_fit, refine
 from vehgen.diagnose.fits.multi_start import fit_candidate
 from vehgen.diagnose.fits.occurring import occurring
@@ -73,6 +74,12 @@ class Fitter:
         usual = candidate.effect.starts(candidate.place, self.locator, self.residual)[0]
         numbers = tuple(float(known.get(item.name, first)) for item, first in zip(candidate.effect.parameters, usual, strict=True))
         return self.fit_from(candidate, (space.unit(found.values[: space.size]), found.misfit.split(found.x)[1]), numbers)
+
+    def fit_without(self, fit: ModelFit) -> ModelFit | None:
+        """Fit what the last effect of a fit set free, without it, from where that fit ended, to the training runs alone."""
+        found, space = fit.least_squares, self.current.problem.space
+        ended = space.unit(found.values[: space.size]), found.misfit.split(found.x)[1]
+        return self._fit(freed_alone(fit.last.freed), [ended], [()], False, None, False)
 
     def fit_from(self, candidate: Candidate, begin: StartingPoint, numbers: tuple[float, ...]) -> ModelFit | None:
         """Fit one candidate, all motions at once, from parameters and errors, and numbers of its own."""

@@ -13,15 +13,19 @@ import numpy as np
 
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import Candidate
-from vehgen.diagnose.fits.freedom import FREED_BASE
+from vehgen.diagnose.fits.freedom import freed_alone
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.estimates import p_value
 
 FitOne = Callable[[Candidate], ModelFit | None]
 """Fits one candidate on top of the current model."""
+FitWithout = Callable[[ModelFit], ModelFit | None]
+"""Fits what a fit's last effect set free, without that effect, from where the fit ended."""
 
 
-def split_idle(fits: Sequence[ModelFit], fit_one: FitOne, count: int, edge: tuple[str, ...] = ()) -> tuple[list[ModelFit], list[ModelFit]]:
+def split_idle(
+    fits: Sequence[ModelFit], fit_one: FitOne, count: int, edge: tuple[str, ...] = (), fit_without: FitWithout | None = None
+) -> tuple[list[ModelFit], list[ModelFit]]:
     """Return the fits whose effects do something, in their order, and those of freed base parameters alone that do as well, best first.
 
     Parameters
@@ -34,6 +38,8 @@ def split_idle(fits: Sequence[ModelFit], fit_one: FitOne, count: int, edge: tupl
         How many are needed.
     edge
         Base parameters that the current model has at the edge of its bounds.
+    fit_without
+        Where given, freed base parameters are sought from where each fit ended, too.
     """
     alone: dict[tuple[str, ...], ModelFit | None] = {}
     kept: list[ModelFit] = []
@@ -47,14 +53,26 @@ def split_idle(fits: Sequence[ModelFit], fit_one: FitOne, count: int, edge: tupl
             if freed is not None and _does_as_well(freed, fit):
                 idle[names] = freed
                 does_nothing = True
+        if not does_nothing and fit_without is not None and len(kept) < count and (freed := idle_instead(fit, fit_without)) is not None:
+            idle[freed.last.freed] = freed
+            does_nothing = True
         if not does_nothing:
             kept.append(fit)
     return kept, sorted(idle.values(), key=_price)
 
 
+def idle_instead(fit: ModelFit, fit_without: FitWithout) -> ModelFit | None:
+    """Return the freed base parameters that do as well as the effect whose fit freed them, sought from where that ended; None if none do.
+
+    From where fits usually begin, those of a base that hangs on its bounds may end elsewhere, and an effect pass for what they do.
+    """
+    freed = fit_without(fit) if fit.last.freed else None
+    return freed if freed is not None and _does_as_well(freed, fit) else None
+
+
 def fitted_freed(names: tuple[str, ...], fit_one: FitOne) -> ModelFit | None:
     """Return the fit of base parameters that are set free, without an effect."""
-    return fit_one(Candidate(FREED_BASE, ", ".join(names), (), (), names))
+    return fit_one(freed_alone(names))
 
 
 def freed_ratios(freed: ModelFit) -> dict[str, float]:
@@ -71,7 +89,12 @@ def _price(freed: ModelFit) -> float:
 
 
 def _does_as_well(freed: ModelFit, fit: ModelFit) -> bool:
-    """Return whether freed base parameters leave what a fit leaves: by chance, or less than twice its excess."""
+    """Return whether freed base parameters leave what a fit leaves: by chance, or less than twice its excess.
+
+    Where they leave noise alone, an effect has to do as much more as one that chi does not show.
+    """
     own = fit.last.effect.n_numbers(len(fit.least_squares.misfit.problem.trials))
+    if freed.training <= limit.NOISE_FLOOR**2:
+        return freed.squares - fit.squares - own * float(np.log(fit.n_residuals)) < limit.FAINT_FALL
     before, after = (max(item.training - 1, 0.0) for item in (freed, fit))
     return after > limit.AT_LEAST * before or p_value(freed, fit, own) > limit.SIGNIFICANT

@@ -82,7 +82,9 @@ def search_round(
         wider, stopped = fit_candidates(detection, current, passed, rest, say, everything, runner)
         found = simplest_first(sorted([*found, *wider], key=merit), current)
     edge = () if current.effects else current.least_squares.on_bound
-    fits, idle = (found, []) if stopped else split_idle(found, Fitter(detection, current, passed).fit_roughly, LEADING, edge)
+    fitter = Fitter(detection, current, passed)
+    without = fitter.fit_without if edge else None
+    fits, idle = (found, []) if stopped else split_idle(found, fitter.fit_roughly, LEADING, edge, without)
     return SearchRound(current, tuple(places), tuple(passed), tuple(fits), tuple(idle), stopped)
 
 
