@@ -171,7 +171,7 @@ class Decision(Ending):
         return weak
 
     def _imitation(self, best: ModelFit) -> str:
-        """Return why the best effect only stands in for another one, that it closes the gap notwithstanding; nothing where it does not."""
+        """Return why the best effect may only stand in for another one, though it closes the gap; nothing where nothing says so."""
         if apart := excluded(best):
             return wording.imitates(self._words(best.last), apart)
         ends, gain = numbers_at_ends(best), gain_interval(self.base, best, self.validation_runs)
