@@ -163,6 +163,13 @@ def test_a_unit_holds_in_runs_that_hardly_follow_their_prediction(plain):
         np.testing.assert_allclose(found.recording.values, trial.recording.values, rtol=1e-3)
 
 
+def test_a_unit_is_told_of_a_channel_on_a_road_that_raises_all_channels(plain):
+    """A run over a low hump, 1.8 times as loud as predicted: by itself its channel is 103 times too loud, which no unit makes."""
+    doubled = edited(edited(plain, times(57.3, R_Q)), times(1.8, *range(4)), "low")
+    (fault,) = hidden_units(doubled, (0.5, 25.0))
+    assert told([fault]) == [("unit", EVERY, ("R_q",))]
+
+
 @pytest.mark.parametrize("loud", [1.0, 20.0], ids=["even", "loud for a moment"])
 def test_a_channel_is_dead_only_if_it_is_as_loud_all_the_time(plain, loud):
     """Whatever it follows: a clock that is off, and a missing effect, spoil its prediction."""

@@ -23,6 +23,8 @@ UNITS_OF = {"acceleration": ACCELERATION_UNITS, "pitch_rate": RATE_UNITS}
 """What a channel's units are worth in SI, by quantity."""
 NEAR_FACTOR = 0.45
 """A level within this of a factor's logarithm suggests it: the file's parameters and a missing effect move levels too."""
+LIKE_PREDICTED = 1.0
+"""Channels whose levels, as logarithms, are below this are in their units; what they have in common is a rough road's doing."""
 COHERENT = 0.4
 """A channel's unit is judged where it correlates this well with its prediction."""
 ALIVE, DEAD = 0.6, 0.35
@@ -74,13 +76,16 @@ def hidden_units(trials: Sequence[Trial], band: tuple[float, float]) -> tuple[Me
 def _other_units(trials: Sequence[Trial], comparisons: Sequence[Comparison]) -> dict[tuple[str, str, float], list[str]]:
     """Return channels whose levels differ from their predictions' by what one unit is worth in another, and the runs in which they do.
 
-    A channel must follow its prediction in one of the runs; over a measured road few do.
+    A channel must follow its prediction in one of the runs; over a measured road few do. A road that is rougher than its hump is high
+    raises all channels alike.
     """
     found: dict[tuple[str, str, float], list[str]] = {}
     followed = set()
     for trial, item in zip(trials, comparisons, strict=True):
+        usual = item.levels[np.abs(item.levels) < LIKE_PREDICTED]
+        rough = max(float(np.median(usual)), 0.0) if len(usual) else 0.0
         for i, channel in enumerate(trial.recording.channels):
-            factor = _nearest_factor(float(item.levels[i]), UNITS_OF.get(channel.quantity, {}))
+            factor = _nearest_factor(float(item.levels[i]) - rough, UNITS_OF.get(channel.quantity, {}))
             if factor != 1.0:
                 key = channel.name, channel.quantity, factor
                 found.setdefault(key, []).append(trial.name)
