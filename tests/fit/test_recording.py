@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from vehgen.errors import InputError
-from vehgen.fit.recording import read_recording
+from vehgen.fit.recording import REFUSED_IN_A_ROW, read_recording
+from vehgen.measure.quality import find_clipping
 from vehgen.simulate import load_run
 
 RUN = """vehicle: sedan2.yaml
@@ -61,6 +62,17 @@ def test_a_recording_that_cannot_be_used_says_why(tmp_path, change, said):
     with pytest.raises(InputError, match=said) as caught:
         read_recording(write(tmp_path, **change))
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("step", [0.01, 0.03, 0.05])
+def test_the_round_top_of_a_slow_motion_in_steps_of_a_resolution_is_not_clipped(tmp_path, step):
+    """As of a gyroscope behind a low-pass at 8 Hz."""
+    after = np.arange(600) * 0.01 - 3
+    values = step * np.round(np.cos(2 * np.pi * 0.7 * after) * np.exp(-((after / 1.5) ** 2)) / step)
+    assert find_clipping(values, REFUSED_IN_A_ROW)
+    read_recording(write(tmp_path, az=values))
+    with pytest.raises(InputError, match=r"az is clipped at 0\.6"):
+        read_recording(write(tmp_path, az=np.clip(values, -0.6, 0.6)))
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from vehgen.files.quantities import read_quantity
 from vehgen.files.tables import TableColumns, read_columns
 from vehgen.files.units import read_unit
 from vehgen.measure.acquisition import AcquisitionChain
-from vehgen.measure.quality import find_clipping
+from vehgen.measure.quality import find_clipping, has_cut
 from vehgen.mechanics import GRAVITY
 from vehgen.mechanics.outputs import Output
 from vehgen.simulate import Run
@@ -32,7 +32,8 @@ LATEST_BEGIN = 86400.0
 FINE_STEPS_SHARE, FINEST_STEP = 0.25, 0.5
 """A recording is finer than its recorder where so many of the steps between its values are below so much of the resolution."""
 REFUSED_IN_A_ROW = 5
-"""So many equal samples in a row at a channel's extreme are refused as clipped: nothing but clipping does that at any resolution in use."""
+"""So many equal samples in a row at a channel's extreme are refused as clipped, if they have cut something off: the round top of a slow
+motion, in the steps of a resolution, has as many."""
 
 
 @dataclass(frozen=True)
@@ -163,7 +164,7 @@ def _check_clock(table: TableColumns) -> None:
 def _check_samples(table: TableColumns, column: int, values: Array, channel: RecordedChannel) -> None:
     if np.ptp(values) == 0:
         raise InputError(f"{channel.name} is constant; the sensor recorded nothing", table.heading(column))
-    for item in find_clipping(values, REFUSED_IN_A_ROW):
+    for item in (top for top in find_clipping(values, REFUSED_IN_A_ROW) if has_cut(values, top)):
         raise InputError(
             f"{channel.name} is clipped at {item.level:.4g} from t = {table.values[0][item.first]:.4g} s: use a sensor with a larger "
             "range, a lower speed or a lower hump",
