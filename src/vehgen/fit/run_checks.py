@@ -39,7 +39,7 @@ def check_hump_reached(run: Run, scenario: Scenario, offsets: Array, name: str) 
     if humps and travelled < max(hump.at for hump in humps) + float(offsets.max(initial=0.0)):
         raise InputError(
             f"{name}: the recording ends after {travelled:.1f} m, before the last axle ({offsets.max(initial=0.0):.1f} m behind the first) "
-            f"has met the hump at {max(hump.at for hump in humps):.1f} m: record until the vehicle has left it",
+            f"has met the hump at {max(hump.at for hump in humps):.1f} m: record until the vehicle has left it, or put the speed right",
             run.document.find(("recording",)),
         )
     begun = float(scenario.speed.distance(np.array([scenario.start]))[0])
