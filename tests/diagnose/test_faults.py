@@ -446,3 +446,13 @@ def test_conditions_of_any_fit_are_read_by_name_place_and_size():
     ]
     assert "5 % less than stated" in faults[1].message
     assert "10 standard deviations" in faults[1].message
+
+
+@pytest.mark.parametrize(("kind", "unsure", "told"), [("low_pass", True, True), ("low_pass", False, False), ("hump", True, False)])
+def test_a_low_pass_wins_over_an_effect_that_leaves_something_where_it_does_nearly_as_well(monkeypatch, kind, unsure, told):
+    """A footprint left 0.066 of the excess of recordings through a low-pass at 8 Hz, which itself left 0.111: it had cut the noise, too."""
+    found = (SimpleNamespace(kind=kind),)
+    monkeypatch.setattr(judging, "find_mistakes", lambda case: found)
+    monkeypatch.setattr(judging, "BaseRefits", lambda detection: SimpleNamespace(excess=0.111, first_excess=1.0))
+    detection, footprint = SimpleNamespace(is_quiet=False, chi=5.667), SimpleNamespace(chi=1.745)
+    assert judging.explain_gap(detection, footprint, unsure) == (found if told else ())

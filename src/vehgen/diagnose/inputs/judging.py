@@ -200,7 +200,8 @@ def explain_gap(
     leading
         What effects explain best; mistakes must leave a clearly smaller excess (default: no effects were found).
     vehicle
-        Whether the vehicle may be another one altogether.
+        Whether the vehicle may be another one altogether, as effects leave something or explain nothing. Then a low-pass wins that does
+        nearly as well as they do: it cuts off noise, too, so that what it leaves is held against too small a one.
     nearest
         What comes nearest, though it may explain little: recordings much of which it explains are no stranger's (default: `leading`).
     """
@@ -209,7 +210,9 @@ def explain_gap(
     case = BaseRefits(detection)
     found = find_mistakes(case)
     left = case.excess / case.first_excess
-    better = 1.0 if {item.kind for item in found} == {"clock_or_speed"} else CLEARLY_BETTER  # a tie with the effect is a tie
+    kinds = {item.kind for item in found}
+    better = 1.0 if kinds == {"clock_or_speed"} else CLEARLY_BETTER  # a tie with the effect is a tie
+    better = 1 / CLEARLY_BETTER if vehicle and kinds == {"low_pass"} else better
     if found and (leading is None or better * left < (leading.chi**2 - 1) / (detection.chi**2 - 1)):
         return found
     if found or not vehicle:
