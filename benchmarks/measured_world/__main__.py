@@ -80,7 +80,7 @@ def main() -> None:
     elif options.command == "tellable":
         _tell(options)
     elif options.command == "glance":
-        from benchmarks.measured_world.glance import glance, misses
+        from benchmarks.measured_world.telling.glance import glance, misses
 
         print(misses(options.results) if options.misses else glance(options.results))
     elif options.command == "told":

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from benchmarks.measured_world.glance import glance, intervals, misses
+from benchmarks.measured_world.telling.glance import glance, intervals, misses
 
 FRICTION = {"name": "dry_friction", "place": "rear", "values": {"force": 500.0}}
 PLAY = {"name": "damper_free_play", "place": "rear", "values": {"play": 0.002}}
