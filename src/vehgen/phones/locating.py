@@ -27,7 +27,7 @@ by the onset of energy 15 passes of vehicles with laws that their files lack err
 """
 
 
-Mark = HumpEvent | InputError | None
+FoundHump = HumpEvent | InputError | None
 """When a phone's energy set in, or why that tells nothing; None of a measured profile, which has no one moment."""
 
 
@@ -45,7 +45,7 @@ class FoundSpeed:
         return cls(told.median, f"{name}: {told}", told.deviation)
 
 
-def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundSpeed, list[Mark]]:
+def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundSpeed, list[FoundHump]]:
     """Return the speed, and when every phone recorded the hump, or why that does not stand out."""
     told: CrossingSpeed | None = None
     teller = next((phone for phone in phones if speed_stream(phone.export) is not None), phones[0])
@@ -77,7 +77,7 @@ def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundS
     return FoundSpeed.by_gps(told, teller.name), events
 
 
-def _event(phone: Phone, crossing: float) -> Mark:
+def _event(phone: Phone, crossing: float) -> FoundHump:
     upward, _, _ = phone.turned(phone.begin, phone.end)
     grid = np.arange(phone.begin, phone.end, 0.01)
     try:
@@ -87,7 +87,7 @@ def _event(phone: Phone, crossing: float) -> Mark:
 
 
 def locate(
-    phones: list[Phone], plan: Plan, simulator: Simulator, parameters: Array, speed: float, distance: float, events: list[Mark]
+    phones: list[Phone], plan: Plan, simulator: Simulator, parameters: Array, speed: float, distance: float, events: list[FoundHump]
 ) -> tuple[list[Match], list[tuple[float, str]]]:
     """Return for each phone how the simulated response matches its recording, and when the front wheel reached the road's begin.
 
