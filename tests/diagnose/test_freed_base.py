@@ -121,14 +121,14 @@ def test_beside_freed_parameters_that_leave_noise_an_effect_does_as_much_more_as
     """A fall of 150 in -2 ln L beyond the price of its numbers, 13.8 here; chance alone would take less than 20."""
     law, freed = fitted(0.8, 800.0), fitted(0.95, 800.0 + fall, numbers=0)
     for one, without in ((lambda candidate: freed, None), (lambda candidate: None, lambda fit: freed)):
-        kept, left = split_idle([law], one, 1, (), without)
+        kept, left = split_idle([law], one, 1, law.last.freed if without else (), without)
         assert (kept, left) == (([], [freed]) if idle else ([law], []))
 
 
 def test_nothing_is_sought_from_where_a_fit_ended_that_freed_nothing():
     law = fitted(0.8, 800.0)
     law.last.freed = ()
-    assert split_idle([law], lambda candidate: None, 1, (), lambda fit: fitted(0.8, 700.0)) == ([law], [])
+    assert split_idle([law], lambda candidate: None, 1, ("mr",), lambda fit: fitted(0.8, 700.0)) == ([law], [])
 
 
 def test_freed_parameters_begin_where_the_effects_fit_ended(detection_of):

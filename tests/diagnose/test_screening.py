@@ -58,7 +58,6 @@ def test_laws_of_tyres_are_worth_a_fit_where_their_axles_parameters_are_at_bound
     for base in (detection.base, replace(detection.base, least_squares=replace(fit, x=x))):
         gains = screening.FirstOrderGains(base, CurrentModel.of(base), locator, SimulatorPool())
         chosen.append({item.label for item in screening.screen(candidates, gains) if item.effect.name == "tyre_damping"})
-    assert chosen[0].isdisjoint(chosen[1] - chosen[0])
     assert chosen[1] >= {"tyre_damping at rear", "tyre_damping at all tyres", "tyre_damping at each tyre"}
     assert "tyre_damping at front" not in chosen[1] - chosen[0]
     assert len(chosen[0]) < len(chosen[1])

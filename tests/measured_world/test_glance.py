@@ -1,6 +1,7 @@
 """Counts of scored sets of effects: what was right, a wrong cause, or not told, and which intervals hold."""
 
 import json
+from pathlib import Path
 
 import pytest
 from benchmarks.measured_world.telling.glance import glance, intervals, misses
@@ -58,3 +59,10 @@ def test_an_engine_is_not_held_against_what_it_did_over_all_of_a_phones_export()
     item["answer"]["effects"][0]["parameters"] = told
     assert [name for name, *_ in intervals(item)] == ["engine_harmonic_amplitude"]
     assert len(intervals({**item, "recorder": "logger"})) == 2
+
+
+def test_the_page_shows_all_sets_as_their_records_have_them():
+    root = Path(__file__).parents[2]
+    files = (root / "benchmarks" / "measured_world" / "results").glob("sealed_effects*.jsonl")
+    listed = sorted(files, key=lambda path: int(path.stem.rpartition("_")[2].replace("effects", "1")))
+    assert glance(listed) in (root / "docs" / "hidden-effects.md").read_text(encoding="utf-8")

@@ -148,8 +148,7 @@ class Decision(Ending):
         fits, idle = list(fit_leading_again(fitter, first.fits, quieter, self.runner)), list[ModelFit]()
         if quieter:  # what loud noise hid, freed base parameters may do as well
             self.weighed_by = self.base.training
-            edge = self.base.least_squares.on_bound
-            fits, idle = split_idle(fits, fitter.fit_roughly, LEADING, edge, fitter.fit_without if edge else None)
+            fits, idle = split_idle(fits, fitter.fit_roughly, LEADING, self.base.least_squares.on_bound, fitter.fit_without)
         self.rounds[:] = [replace(first, current=self.base, fits=tuple(fits), idle=tuple(idle))]
         return self.rounds[-1]
 

@@ -16,6 +16,7 @@ from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.freedom import freed_alone
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.estimates import p_value
+from vehgen.diagnose.select.merit import merit, own_numbers
 
 FitOne = Callable[[Candidate], ModelFit | None]
 """Fits one candidate on top of the current model."""
@@ -39,7 +40,7 @@ def split_idle(
     edge
         Base parameters that the current model has at the edge of its bounds.
     fit_without
-        Where given, freed base parameters are sought from where each fit ended, too.
+        Where an edge is given, freed base parameters are sought from where each fit ended, too.
     """
     alone: dict[tuple[str, ...], ModelFit | None] = {}
     kept: list[ModelFit] = []
@@ -53,9 +54,11 @@ def split_idle(
             if freed is not None and _does_as_well(freed, fit):
                 idle[names] = freed
                 does_nothing = True
-        if not does_nothing and fit_without is not None and len(kept) < count and (freed := idle_instead(fit, fit_without)) is not None:
-            idle[freed.last.freed] = freed
-            does_nothing = True
+        if edge and fit_without is not None and not does_nothing and len(kept) < count:
+            freed = idle_instead(fit, fit_without)
+            if freed is not None:
+                idle[freed.last.freed] = freed
+                does_nothing = True
         if not does_nothing:
             kept.append(fit)
     return kept, sorted(idle.values(), key=_price)
@@ -93,8 +96,7 @@ def _does_as_well(freed: ModelFit, fit: ModelFit) -> bool:
 
     Where they leave noise alone, an effect has to do as much more as one that chi does not show.
     """
-    own = fit.last.effect.n_numbers(len(fit.least_squares.misfit.problem.trials))
     if freed.training <= limit.NOISE_FLOOR**2:
-        return freed.squares - fit.squares - own * float(np.log(fit.n_residuals)) < limit.FAINT_FALL
+        return merit(freed) - merit(fit) < limit.FAINT_FALL
     before, after = (max(item.training - 1, 0.0) for item in (freed, fit))
-    return after > limit.AT_LEAST * before or p_value(freed, fit, own) > limit.SIGNIFICANT
+    return after > limit.AT_LEAST * before or p_value(freed, fit, own_numbers(fit)) > limit.SIGNIFICANT

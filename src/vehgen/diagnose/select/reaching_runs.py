@@ -35,16 +35,9 @@ def with_reaching_run(detection: Detection, best: ModelFit) -> Detection | None:
 
 
 def with_checking_run(detection: Detection, best: ModelFit) -> Detection | None:
-    """Return a detection that keeps for validation the training run of which a law explains most; None with a single training run.
+    """Return a detection that keeps for validation the training run of which the best effect explains most; None with a single one.
 
-    It changes places with the validation run of which the law explains least.
-
-    Parameters
-    ----------
-    detection
-        As it is.
-    best
-        The best effect's fit.
+    It changes places with the validation run of which that effect explains least.
     """
     if len(detection.problem.trials) < 2:
         return None

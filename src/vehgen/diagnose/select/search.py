@@ -17,6 +17,7 @@ from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.diagnose.select.early_end import MOST_AT_ONCE, settle
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
+from vehgen.diagnose.select.merit import merit
 from vehgen.diagnose.select.special_cases import does_as_well, simplest_first
 from vehgen.fit.parallel import HERE, Runner
 
@@ -83,8 +84,7 @@ def search_round(
         found = simplest_first(sorted([*found, *wider], key=merit), current)
     edge = () if current.effects else current.least_squares.on_bound
     fitter = Fitter(detection, current, passed)
-    without = fitter.fit_without if edge else None
-    fits, idle = (found, []) if stopped else split_idle(found, fitter.fit_roughly, LEADING, edge, without)
+    fits, idle = (found, []) if stopped else split_idle(found, fitter.fit_roughly, LEADING, edge, fitter.fit_without)
     return SearchRound(current, tuple(places), tuple(passed), tuple(fits), tuple(idle), stopped)
 
 
@@ -190,20 +190,6 @@ def _best_of_each(fits: Sequence[ModelFit]) -> list[ModelFit]:
     for fit in sorted(fits, key=merit):
         best.setdefault(fit.key, fit)
     return list(best.values())
-
-
-def merit(fit: ModelFit) -> float:
-    """Return what ranks fits: -2 ln of the likelihood on the training runs and of the errors it supposes, with the price of its numbers.
-
-    That price is BIC's for the last effect's numbers. Errors count because of two effects that do as well, the one that needs a phone's
-    clock to be 30 ms off in every run is the less likely one.
-    """
-    return fit.squares + own_numbers(fit) * float(np.log(fit.n_residuals))
-
-
-def own_numbers(fit: ModelFit) -> int:
-    """Return how many numbers the last effect of a fit added."""
-    return fit.last.effect.n_numbers(len(fit.least_squares.misfit.problem.trials))
 
 
 def fit_leading_again(fitter: Fitter, fits: Sequence[ModelFit], weigh: bool, runner: Runner = HERE) -> tuple[ModelFit, ...]:
