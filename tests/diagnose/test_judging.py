@@ -4,8 +4,15 @@ from types import SimpleNamespace
 
 import pytest
 
+from tests.diagnose.conftest import CUBIC, HUMPS
+from vehgen.diagnose import decision
+from vehgen.diagnose.combining import Combiner
+from vehgen.diagnose.decision import Decision
 from vehgen.diagnose.inputs import judging
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always
+from vehgen.effects import EFFECTS
+
+FAULT = MeasurementFault("hump", ("high",), (), "the hump in high is another than the file says", "measure it")
 
 
 def supposed(kind, left, sigmas):
@@ -24,16 +31,31 @@ def test_of_mistakes_that_leave_noise_one_that_supposes_nothing_else_is_told(mon
     fits = {id(hypothesis): fit for hypothesis, fit in both}
     monkeypatch.setattr(judging, "PLAIN", ())
     monkeypatch.setattr(judging, "SUBTLE", tuple(lambda case, item=item: [item] for item, _ in both))
-    case = SimpleNamespace(excess=3.0, judge=lambda item: fits[id(item)], accept=lambda *_: setattr(case, "excess", 0.0))
-    (fault,) = judging.find_mistakes(case)
-    assert fault.kind == told
+    case = SimpleNamespace(excess=3.0, first_excess=3.0, judge=lambda item: fits[id(item)], accept=lambda *_: setattr(case, "excess", 0.0))
+    monkeypatch.setattr(judging, "BaseRefits", lambda detection: case)
+    undone = judging.find_mistakes(None)
+    assert [fault.kind for fault in undone.faults] == [told]
+    assert undone.at_once == (told == "easy"), "what supposes something beyond belief does not tell all"
 
 
 @pytest.mark.parametrize(("kind", "unsure", "told"), [("low_pass", True, True), ("low_pass", False, False), ("hump", True, False)])
-def test_a_low_pass_wins_over_an_effect_that_leaves_something_where_it_does_nearly_as_well(monkeypatch, kind, unsure, told):
+def test_a_low_pass_wins_over_an_effect_that_leaves_something_where_it_does_nearly_as_well(kind, unsure, told):
     """A footprint left 0.066 of the excess of recordings through a low-pass at 8 Hz, which itself left 0.111: it had cut the noise, too."""
     found = (SimpleNamespace(kind=kind),)
-    monkeypatch.setattr(judging, "find_mistakes", lambda case: found)
-    monkeypatch.setattr(judging, "BaseRefits", lambda detection: SimpleNamespace(excess=0.111, first_excess=1.0))
+    undone = judging.Undone(found, 0.111, False, None)
     detection, footprint = SimpleNamespace(is_quiet=False, chi=5.667), SimpleNamespace(chi=1.745)
-    assert judging.explain_gap(detection, footprint, unsure) == (found if told else ())
+    assert judging.explain_gap(detection, footprint, unsure, undone=undone) == (found if told else ())
+
+
+@pytest.mark.parametrize("at_once", [True, False])
+def test_pairs_of_effects_are_not_looked_for_where_one_mistake_leaves_noise(monkeypatch, detection_of, at_once):
+    asked = []
+    monkeypatch.setattr(decision, "find_mistakes", lambda detection: judging.Undone((FAULT,), 0.01, at_once, None))
+    monkeypatch.setattr(Combiner, "pair", lambda *_: asked.append("pair") or [])
+    monkeypatch.setattr(Combiner, "together", lambda *_: [])
+    monkeypatch.setattr(decision, "with_members", lambda first, *_: first)
+    found = Decision(detection_of(CUBIC, runs=HUMPS), [EFFECTS["asymmetric_damping"]], False, lambda *_: None)
+    found.rounds = [SimpleNamespace(fits=(), passed=())]
+    found._combine(found.rounds[0])
+    assert asked == ([] if at_once else ["pair"])
+    assert found._other_mistakes(found.rounds[0]).verdict.faults == (FAULT,)

@@ -15,7 +15,16 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.checks import variety_notes
 from vehgen.diagnose.inputs.conditions import alike_in_all_runs
 from vehgen.diagnose.inputs.fault import MeasurementFault
-from vehgen.diagnose.inputs.judging import explain_gap, moved_axles, odd_mistake, plain_mistakes, recorded_mistakes, supposed_mistakes
+from vehgen.diagnose.inputs.judging import (
+    Undone,
+    explain_gap,
+    find_mistakes,
+    moved_axles,
+    odd_mistake,
+    plain_mistakes,
+    recorded_mistakes,
+    supposed_mistakes,
+)
 from vehgen.diagnose.localise.localisation import localise
 from vehgen.diagnose.result import Decided
 from vehgen.diagnose.select.criteria import fall, freed_instead, p_value_of, passes, unfinished
@@ -213,8 +222,15 @@ class Decision(Ending):
         of_vehicle = all(candidate.effect.changes_vehicle for fit in self.chain[-1:] for candidate in fit.effects)
         if self.detection.chi <= limit.WEAK or (self.chain and of_vehicle and not unsure):
             return None
-        mistakes = explain_gap(self.detection, leading, unsure, leading or next(iter(first.fits), None))
+        mistakes = explain_gap(self.detection, leading, unsure, leading or next(iter(first.fits), None), self._undone())
         return self._mistaken(mistakes) if mistakes else None
+
+    def _undone(self) -> Undone:
+        """Return the mistakes that explain what the base misses, looked for once."""
+        if self.undone is None or self.undone[0] is not self.detection:
+            self.progress("look for mistakes", 0, 1, "")
+            self.undone = self.detection, find_mistakes(self.detection)
+        return self.undone[1]
 
     def _too_weak(self, first: SearchRound, best: ModelFit, good: bool) -> Decided | None:
         """Return the verdict where the best effect is not told from chance, from random laws, or by the validation runs."""
@@ -259,7 +275,9 @@ class Decision(Ending):
             self.parts = self.parts and len(self.chain) > 1
 
     def _combine(self, first: SearchRound) -> None:
-        """Look for a pair of effects that passes, then for a set of parts."""
+        """Look for a pair of effects that passes, then for a set of parts; not where a single mistake tells all that effects would."""
+        if self.detection.chi > limit.WEAK and self._undone().at_once and self._other_mistakes(first):
+            return
         fitter = Fitter(self.detection, self.base, first.passed)
         first = self.rounds[0] = with_members(first, self._candidates(self.base), fitter.fit)
         self.chain = self._combiner().pair(first)

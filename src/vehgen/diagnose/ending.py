@@ -13,7 +13,7 @@ from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.fault import MeasurementFault
-from vehgen.diagnose.inputs.judging import supposed_mistakes
+from vehgen.diagnose.inputs.judging import Undone, supposed_mistakes
 from vehgen.diagnose.localise.free_form import FreeForm, fit_free_form, recover, strongest
 from vehgen.diagnose.naming import Naming
 from vehgen.diagnose.result import Decided, DiagnosisModels
@@ -42,6 +42,7 @@ class Ending:
         self.chain: list[ModelFit] = []
         self.parts = False
         self.notes: list[str] = []
+        self.undone: tuple[Detection, Undone] | None = None
         self.interrupted = False
         self.tried = len(self._candidates(self.base))
 

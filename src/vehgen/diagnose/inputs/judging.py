@@ -83,27 +83,36 @@ class _Judged:
         return self.left * excess <= FLOOR and not self.strained
 
 
-def find_mistakes(case: BaseRefits, plain_only: bool = False) -> tuple[MeasurementFault, ...]:
-    """Return the mistakes that explain the gap, the one that explains most first; nothing where none does.
+@dataclass(frozen=True)
+class Undone:
+    """The mistakes that explain a gap, the one that explains most first; none where none does.
 
-    Parameters
-    ----------
-    case
-        The runs; left with what was found undone.
-    plain_only
-        Look for subtle mistakes only beside plain ones.
+    `left` is the share of the gap's excess that they leave; `at_once` tells whether a single one leaves noise, and supposes nothing else.
+    `case` holds the runs with the mistakes undone.
     """
+
+    faults: tuple[MeasurementFault, ...]
+    left: float
+    at_once: bool
+    case: BaseRefits
+
+
+def find_mistakes(detection: Detection, plain_only: bool = False) -> Undone:
+    """Return the mistakes that explain the base model's gap; with `plain_only` subtle ones only where they stand beside plain ones."""
+    case = BaseRefits(detection)
     found: list[MeasurementFault] = []
+    at_once = False
     while len(found) < MOST_MISTAKES:
         steps = _next(case, plain_only)
         if not steps:
             break
+        at_once = not found and len(steps) == 1 and steps[0].explains(case.excess)
         for step in steps:
             found += step.faults
             case.accept(step.hypothesis, step.fit, step.left)
         if case.excess <= FLOOR:
             break
-    return tuple(found)
+    return Undone(tuple(found), case.excess / case.first_excess, at_once, case)
 
 
 def _next(case: BaseRefits, plain_only: bool) -> tuple[_Judged, ...]:
@@ -176,7 +185,7 @@ def odd_mistake(odd: OddRun | OddChannel) -> MeasurementFault:
 
 def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
     """Return mistakes that no effect of the library looks like."""
-    return find_mistakes(BaseRefits(detection), plain_only=True)
+    return find_mistakes(detection, plain_only=True).faults
 
 
 def moved_axles(detection: Detection) -> tuple[MeasurementFault, ...]:
@@ -189,7 +198,11 @@ def moved_axles(detection: Detection) -> tuple[MeasurementFault, ...]:
 
 
 def explain_gap(
-    detection: Detection, leading: ModelFit | None = None, vehicle: bool = True, nearest: ModelFit | None = None
+    detection: Detection,
+    leading: ModelFit | None = None,
+    vehicle: bool = True,
+    nearest: ModelFit | None = None,
+    undone: Undone | None = None,
 ) -> tuple[MeasurementFault, ...]:
     """Return the mistakes that explain what the base model misses, whatever they look like; nothing where none does, or nothing is missing.
 
@@ -204,18 +217,19 @@ def explain_gap(
         nearly as well as they do: it cuts off noise, too, so that what it leaves is held against too small a one.
     nearest
         What comes nearest, though it may explain little: recordings much of which it explains are no stranger's (default: `leading`).
+    undone
+        The mistakes that were found (default: look for them).
     """
     if detection.is_quiet:
         return supposed_mistakes(detection)
-    case = BaseRefits(detection)
-    found = find_mistakes(case)
-    left = case.excess / case.first_excess
+    undone = undone or find_mistakes(detection)
+    found = undone.faults
     kinds = {item.kind for item in found}
     better = 1.0 if kinds == {"clock_or_speed"} else CLEARLY_BETTER  # a tie with the effect is a tie
     better = 1 / CLEARLY_BETTER if vehicle and kinds == {"low_pass"} else better
-    if found and (leading is None or better * left < (leading.chi**2 - 1) / (detection.chi**2 - 1)):
+    if found and (leading is None or better * undone.left < (leading.chi**2 - 1) / (detection.chi**2 - 1)):
         return found
     if found or not vehicle:
         return ()
     nearest = nearest or leading
-    return other_vehicle(case) or unrelated_recording(case.base if nearest is None else nearest.least_squares)
+    return other_vehicle(undone.case) or unrelated_recording(undone.case.base if nearest is None else nearest.least_squares)
