@@ -34,6 +34,7 @@ from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.diagnose.select.group_members import with_members
 from vehgen.diagnose.select.needless import without_needless
+from vehgen.diagnose.select.one_cause import BEFORE, one_cause
 from vehgen.diagnose.select.one_error import explains_easily, one_error
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.range_ends import numbers_at_ends
@@ -77,7 +78,7 @@ class Decision(Ending):
         other = Decision(believed, self.effects, self.everything, self.progress, self.runner)
         other.notes += self.notes
         if believed.is_quiet:
-            return self._mistaken(left) if (left := supposed_mistakes(believed)) else other._quiet()
+            return self._mistaken(left) if (left := supposed_mistakes(believed)) else self._one_cause() or other._quiet()
         found = other._explain_gap()
         single = one_error(self.detection, believed, found, self._candidates(believed.base), self.runner)
         self.interrupted = single.stopped
@@ -88,10 +89,21 @@ class Decision(Ending):
         return found if explains_easily(found) else self._mistaken(mistakes)
 
     def _quiet(self) -> Decided:
-        """Return the verdict where chi shows no gap: a faint effect, runs that do not agree, or that nothing is missing."""
+        """Return the verdict where chi shows no gap: one error of all runs, a faint effect, runs that disagree, or nothing."""
         if isinstance(odd := disagreement(self.detection), OddChannel):
             return self._mistaken((odd_mistake(odd),))
-        return self._faint() or self._disagreeing(odd) or self._nothing()
+        return self._one_cause() or self._faint() or self._disagreeing(odd) or self._nothing()
+
+    def _one_cause(self) -> Decided | None:
+        """Return the verdict where all runs suppose the same error, each within belief: it is one of all runs."""
+        found = one_cause(self.detection, self._candidates(self.base))
+        if found is None:
+            return None
+        sure, fit = found
+        other = Decision(sure, self.effects, self.everything, self.progress, self.runner)
+        other.notes += [*self.notes, BEFORE]
+        other.rounds = [SearchRound(sure.base, (), (), (fit,))]
+        return other._name([fit])
 
     def _faint(self, found: SearchRound | None = None) -> Decided | None:
         """Return the verdict where an effect too small for chi is told by how far -2 ln of the likelihood falls with it.

@@ -114,17 +114,25 @@ def findings_of_conditions(
     return tuple({item.message: item for item in found}.values())  # a speed that wanders may do so at several times
 
 
-def alike_in_all_runs(conditions: Sequence[Condition], runs: Sequence[str]) -> tuple[str, ...]:
-    """Return what all `runs` suppose alike, in sentences: no finding, but that they agree says more than each of them."""
+def alike_conditions(
+    conditions: Sequence[Condition], runs: Sequence[str], spread: float = ALIKE_SPREAD
+) -> tuple[tuple[Condition, ...], ...]:
+    """Return what all `runs` suppose alike, an error of each: they lie within `spread` standard deviations of one another."""
     found = []
     for name, place in dict.fromkeys((item.name, item.place) for item in conditions if item.name in OF_ALL_RUNS):
-        same = [item for item in conditions if (item.name, item.place) == (name, place)]
+        same = tuple(item for item in conditions if (item.name, item.place) == (name, place))
         sigmas = [item.sigmas for item in same]
         off = min(sigmas) >= ALIKE_SIGMAS or max(sigmas) <= -ALIKE_SIGMAS
         every = len(same) >= LEAST_ALIKE and {item.run for item in same} == set(runs)
-        if every and off and max(sigmas) - min(sigmas) <= ALIKE_SPREAD:
-            found.append(f"every run supposes it, and nearly as much: {_sentence(same, tuple(runs))[1]}")
+        if every and off and max(sigmas) - min(sigmas) <= spread:
+            found.append(same)
     return tuple(found)
+
+
+def alike_in_all_runs(conditions: Sequence[Condition], runs: Sequence[str]) -> tuple[str, ...]:
+    """Return what all `runs` suppose alike, in sentences: no finding, but that they agree says more than each of them."""
+    every = "every run supposes it, and nearly as much"
+    return tuple(f"{every}: {_sentence(alike, tuple(runs))[1]}" for alike in alike_conditions(conditions, runs))
 
 
 def moved_roads(

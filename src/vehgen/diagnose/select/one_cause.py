@@ -1,0 +1,105 @@
+"""An error that all runs suppose alike, each within belief: one error of all runs, and not as many that happen to agree."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from vehgen.diagnose.detect.detection import Detection, with_runs
+from vehgen.diagnose.fits.candidate import Candidate
+from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit, refine
+from vehgen.diagnose.inputs.conditions import alike_conditions
+from vehgen.diagnose.inputs.judging import supposed_mistakes
+from vehgen.diagnose.select.criteria import is_told
+from vehgen.diagnose.select.fitter import Fitter
+from vehgen.diagnose.select.merit import merit
+from vehgen.diagnose.select.one_error import SUPPOSED_AS, taken_over
+from vehgen.effects.evidence import StartingPoint
+from vehgen.files.quantities import Spread
+from vehgen.fit.nuisances import Condition
+from vehgen.fit.trial import Trial
+from vehgen.simulate.run_file.knowledge import UncertaintyEntry
+
+AGREE_WITHIN = 0.25
+"""From the least to the largest in so many standard deviations of what each run may be off by: three runs do so by chance twice in 1000."""
+FAR_TOGETHER = 4.0
+"""The sum over the runs is so many of its standard deviations off."""
+OF_ONE_KIND = {"clock": ("clock",), "speed": ("speed", "wander")}
+"""The errors that a run does not have where it supposes none of a kind: a driver who strays all the way drives another speed."""
+BEFORE = "each run might have had such an error of its own, but all agree: chi before is that of runs without any"
+"""What is told beside it."""
+
+
+def one_cause(detection: Detection, candidates: Sequence[Candidate]) -> tuple[Detection, ModelFit] | None:
+    """Return the error of a sensor's clock, or of all speeds, that explains what every run supposes, and the gap of runs that suppose none.
+
+    Clocks that are set run by run, and speeds that are read run by run, are off by as many different amounts. Where all agree, one cause
+    made them, and no run needs an error of its own. Where all are off the same way, and far together, one number of all runs is likelier,
+    with its price, and small errors of each beside it. None where such an error does not leave noise of all runs, or where the runs do
+    not tell its size.
+
+    Parameters
+    ----------
+    detection
+        A base that leaves noise.
+    candidates
+        Every effect at every place.
+    """
+    conditions = [item for part in detection.base.parts for item in part.conditions()]
+    runs = [trial.name for trial in detection.trials]
+    for alike in alike_conditions(conditions, runs, np.inf):
+        candidate = next((item for item in candidates if _says(item, alike[0])), None)
+        begin = None if candidate is None else taken_over(detection.base, candidate)
+        if candidate is None or begin is None:
+            continue
+        parts = detection.problem.trials, detection.validation_runs
+        sure = with_runs(detection, *([_sure_of(OF_ONE_KIND[alike[0].name], trial) for trial in part] for part in parts))
+        fit = None if sure.is_quiet else _instead(sure, candidate, alike, begin[1]) or _beside(detection, candidate, alike, begin)
+        if fit is not None:
+            return sure, fit
+    return None
+
+
+def _instead(sure: Detection, candidate: Candidate, alike: Sequence[Condition], number: tuple[float]) -> ModelFit | None:
+    """Return the fit of one error of all runs in place of theirs, where these agree."""
+    sigmas = [item.sigmas for item in alike]
+    if max(sigmas) - min(sigmas) > AGREE_WITHIN:
+        return None
+    fit = Fitter(sure, sure.base, ()).fit_begun((candidate, number))
+    return fit if fit is not None and _explains(fit, sure) else None
+
+
+def _beside(
+    detection: Detection, candidate: Candidate, alike: Sequence[Condition], begin: tuple[StartingPoint, tuple[float]]
+) -> ModelFit | None:
+    """Return the fit of one error of all runs beside small ones of each, where it is likelier than theirs alone."""
+    if abs(sum(item.sigmas for item in alike)) < FAR_TOGETHER * len(alike) ** 0.5:
+        return None
+    rough = Fitter(detection, detection.base, ()).fit_from(candidate, *begin)
+    if rough is None:
+        return None
+    old = rough.least_squares
+    found = refine(old.misfit.problem, old, old.x, rough.effects)  # a fit beside a base that leaves noise stays rough
+    fit = evaluate_fit(rough.effects, found, detection.validation_runs, detection.floor.noises)
+    return fit if _explains(fit, detection) and merit(fit) < detection.base.squares else None
+
+
+def _says(candidate: Candidate, error: Condition) -> bool:
+    """Return whether an effect says of all runs what an error says of one."""
+    place = "" if candidate.effect.is_global else candidate.place
+    return (SUPPOSED_AS.get(candidate.effect.name), place) == (error.name, error.place)
+
+
+def _sure_of(names: Sequence[str], trial: Trial) -> Trial:
+    """Return a trial whose run file states that it has none of these errors."""
+    known = trial.run.file.uncertainty or UncertaintyEntry()
+    stated = known.model_copy(update=dict.fromkeys(names, Spread(0.0, True)))
+    return replace(trial, run=replace(trial.run, file=trial.run.file.model_copy(update={"uncertainty": stated})))
+
+
+def _explains(fit: ModelFit, detection: Detection) -> bool:
+    """Return whether a fit leaves noise, with nothing to be supposed of the runs, and these tell its number."""
+    with_it = replace(detection, base=fit)
+    return bool(np.isfinite(fit.validation)) and with_it.is_quiet and not supposed_mistakes(with_it) and is_told(fit)

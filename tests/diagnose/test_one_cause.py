@@ -1,0 +1,59 @@
+"""An error that all runs suppose alike: named as one of all runs, and not where each run's is its own."""
+
+from dataclasses import replace
+
+import pytest
+from benchmarks.hidden_effects.generator import Effect
+
+from tests.diagnose.conftest import HUMPS
+from vehgen.diagnose.decision import Decision
+from vehgen.diagnose.detect.detection import detect
+from vehgen.effects import EFFECTS
+
+LATE = Effect("sensor_delay", "R", {"time": 0.013})
+CHOSEN = [EFFECTS[name] for name in ("sensor_delay", "speed_error", "cubic_stiffness")]
+
+
+def verdict_of(detection):
+    return Decision(detection, CHOSEN, False, lambda *_: None).decide().verdict
+
+
+def at_other_speeds(trials, *errors):
+    """Return trials whose true speeds are those of their files times 1 + error."""
+    pairs = zip(trials, errors, strict=True)
+    return [replace(trial, scenario=trial.scenario.adjusted(speed=1 / (1 + error))) for trial, error in pairs]
+
+
+def test_a_clock_that_is_as_late_in_all_runs_is_named(detection_of):
+    detection = detection_of(LATE, runs=HUMPS)
+    assert detection.is_quiet, "each run may have a clock of its own"
+    found = verdict_of(detection)
+    (named,) = found.effects
+    assert (found.verdict, named.name, named.place) == ("named", "sensor_delay", "R")
+    low, high = named.parameters["delay"].interval
+    assert low < 0.013 < high
+    assert high - low < 0.003
+    assert found.gap.before > 1.3
+    assert found.gap.after < 1.06
+
+
+def test_speeds_that_are_all_off_the_same_way_are_one_error_beside_small_ones(trials_of):
+    detection = detect(at_other_speeds(trials_of(runs=HUMPS), 0.03, 0.043, 0.035))
+    assert detection.is_quiet
+    found = verdict_of(detection)
+    (named,) = found.effects
+    assert (found.verdict, named.name) == ("named", "speed_error")
+    low, high = named.parameters["scale"].interval
+    assert low < 1.036 < high
+    assert high - low < 0.04
+
+
+@pytest.mark.parametrize("errors", [(0.03, -0.03, 0.03), (0.012, 0.016, 0.014)], ids=["either way", "small"])
+def test_speeds_that_runs_may_well_have_are_no_error_of_all(trials_of, errors):
+    assert verdict_of(detect(at_other_speeds(trials_of(runs=HUMPS), *errors))).verdict == "no_missing_effect"
+
+
+def test_an_error_that_the_library_does_not_have_is_not_named(detection_of):
+    found = Decision(detection_of(LATE, runs=HUMPS), CHOSEN[1:], False, lambda *_: None).decide().verdict
+    assert found.verdict == "no_missing_effect"
+    assert any("the clock of R in all runs is" in note for note in found.notes)
