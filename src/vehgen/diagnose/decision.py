@@ -33,6 +33,7 @@ from vehgen.diagnose.select.faint import faint_exchange, faint_look_again, faint
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.diagnose.select.group_members import with_members
+from vehgen.diagnose.select.merit import own_numbers
 from vehgen.diagnose.select.needless import without_needless
 from vehgen.diagnose.select.one_cause import BEFORE, one_cause
 from vehgen.diagnose.select.one_error import explains_easily, one_error
@@ -253,7 +254,7 @@ class Decision(Ending):
             return self._disagreement() or self._propose(wording.small_gap(chi), best)
         if not good:
             return None
-        if not seen_again(self.base, best, self.validation_runs):
+        if own_numbers(best) and not seen_again(self.base, best, self.validation_runs):  # what has no number was not fitted
             shown = [gap.run for gap in run_gaps(self.detection) if gap.chi > limit.WEAK and gap.run not in self.validation_runs]
             if shown and chi > VISIBLE:
                 return self._end("insufficient_data", *wording.seen_once(self._words(best.last), chi, shown))

@@ -25,8 +25,9 @@ def with_reaching_run(detection: Detection, best: ModelFit) -> Detection | None:
         The best effect's fit.
     """
     base = detection.base
-    explained = excess(best.training) <= limit.NOISE_FLOOR**2 - 1 < excess(base.training)
-    failed = np.isfinite(best.validation) and excess(best.validation) > limit.LAW_PASSES * excess(base.validation)
+    floor = limit.NOISE_FLOOR**2 - 1
+    explained = excess(best.training) <= floor < excess(base.training)
+    failed = np.isfinite(best.validation) and excess(best.validation) > max(limit.LAW_PASSES * excess(base.validation), floor)
     if not (explained and failed and len(detection.problem.trials) > 1):
         return None
     reaching = max(detection.validation_runs, key=lambda trial: best.mean_squares[trial.name])
