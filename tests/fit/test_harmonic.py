@@ -90,3 +90,22 @@ def test_a_line_drifts_from_where_the_recording_begins(shaken):
     later = replace(trial, recording=replace(trial.recording, time=trial.recording.time + 20.0))
     here, there = (Harmonic("body", sigma={trial.name: SIGMA}).columns(item, 21.0, 0.02, trial.values) for item in (trial, later))
     np.testing.assert_allclose(there, here, atol=1e-9 * np.abs(here).max())
+
+
+def test_a_line_suits_sensors_whose_clocks_differ(tmp_path):
+    """One sensor is 7 ms late, a seventh of the line's period: heave and pitch cannot make up for that."""
+    late = 0.007
+    dense = RUN.replace("sample: 10 ms", "sample: 1 ms")
+    hump, engine = record(tmp_path, dense), record(tmp_path, dense + FORCE, road=False)
+    fine = hump + engine[: len(hump)]
+    on_time = np.arange(0, len(fine), 10)
+    values = np.column_stack([fine[on_time, :2], fine[np.maximum(on_time - round(1000 * late), 0), 2:]])
+    trials = trial_of(tmp_path, values + np.random.default_rng(3).standard_normal(values.shape) * SIGMA)
+    noises = {trials[0].name: Noise(EVEN, SIGMA)}
+    problem = make_problem(trials)
+    misfit = Misfit(problem, noises, problem.space.start, shared=harmonic_adjustments("body", {trials[0].name: SIGMA}))
+    x = np.zeros(misfit.n_unknowns)
+    x[: misfit.n_parameters] = problem.space.unit(problem.space.start)
+    x[misfit.n_parameters] = (21.0 - misfit.shared[0].neutral) / misfit.shared[0].scale
+    x[misfit.n_unknowns - misfit.n_errors + misfit.error_position(0, "clock")] = late / misfit.nuisances.clock
+    assert np.mean(misfit.residuals(x) ** 2) < 2.5

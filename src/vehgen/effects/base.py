@@ -210,7 +210,9 @@ class Effect(ABC):
         touches = not evidence.parts.isdisjoint(place.split("+"))
         return touches or (self.is_global and not evidence.one_force)
 
-    def solve(self, place: str, adjustments: Sequence[Adjustment], trial: Trial, response: Array, values: Mapping[str, float]) -> Array:
+    def solve(
+        self, place: str, adjustments: Sequence[Adjustment], trial: Trial, response: Array, values: Mapping[str, float], late: Array
+    ) -> Array:
         """Return its `solved_parameters` in a run, `shape (n_solved,)`.
 
         Parameters
@@ -223,6 +225,8 @@ class Effect(ABC):
             What the sensors would read without it, `shape (n_samples, n_channels)`.
         values
             The vehicle's parameters [SI].
+        late
+            How late every channel's clock is [s], `shape (n_channels,)`.
         """
         return np.zeros(0)
 

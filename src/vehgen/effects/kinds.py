@@ -203,9 +203,11 @@ class LineEffect(Effect):
         """Return where the last fit ended: the base parameters cannot have absorbed a line."""
         return [origins.fitted]
 
-    def solve(self, place: str, adjustments: Sequence[Adjustment], trial: Trial, response: Array, values: Mapping[str, float]) -> Array:
+    def solve(
+        self, place: str, adjustments: Sequence[Adjustment], trial: Trial, response: Array, values: Mapping[str, float], late: Array
+    ) -> Array:
         """Return the amplitude of the vertical force in a run [N], `shape (1,)`."""
         line = adjustments[0]
         assert isinstance(line, Harmonic)
         numbers = np.array([item.neutral for item in adjustments])
-        return np.array([line.amplitude(trial, response, numbers, values)])
+        return np.array([line.amplitude(trial, response, numbers, values, late)])

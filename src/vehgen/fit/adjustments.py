@@ -45,10 +45,11 @@ class Adjustment:
         """Return the scenario as it was, at the number `value`."""
         return scenario
 
-    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
         """Return what the sensors would have read, `shape (n, n_samples, n_channels)`.
 
-        `numbers` holds its own number, then those of the adjustments after it: one that needs two is followed by a plain one.
+        `numbers` holds its own number, then those of the adjustments after it: one that needs two is followed by a plain one. `late` is how
+        late every channel's clock is [s], `shape (n_channels,)`, by which the recording is, and the response not yet (default: none is).
         """
         return response
 
@@ -72,7 +73,7 @@ class Footprint(Adjustment):
 class Gain(Adjustment):
     """A channel's reading over the truth."""
 
-    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
         """Return the readings with the channel times its number."""
         factors = np.array([numbers[0] if name == self.place else 1.0 for name in trial.channels])
         return np.asarray(response * factors)
@@ -81,7 +82,7 @@ class Gain(Adjustment):
 class SensorDelay(Adjustment):
     """How late all channels of a sensor are [s]."""
 
-    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
         """Return the readings with the sensor's channels `numbers[0]` [s] later, by the phase of their Fourier transform."""
         late = np.array([channel.sensor == self.place for channel in trial.recording.channels])
         n, dt = response.shape[-2], trial.recording.dt
@@ -103,7 +104,7 @@ class Tilt(Adjustment):
 
     _known: dict[int, tuple[Trial, Array]] = field(default_factory=dict, repr=False, compare=False)
 
-    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
         """Return the readings with the sensor tilted by `numbers[0]` [rad] and `numbers[1]` [m] higher."""
         columns = {channel.quantity: i for i, channel in enumerate(trial.recording.channels) if channel.sensor == self.place}
         if "acceleration" not in columns or "pitch_rate" not in columns:
@@ -137,8 +138,18 @@ def fore_aft_shares(trial: Trial, sensor: str) -> Array:
 
 
 def _derivative(signal: Array, dt: float) -> Array:
-    """Return the rate of change of signals `shape (..., n_samples)`, by their Fourier transform; mirrored, so that their ends meet."""
+    """Return the rate of change of signals `shape (..., n_samples)`."""
+    return _turned(signal, np.asarray(2j * np.pi * np.fft.rfftfreq(2 * signal.shape[-1], dt)))
+
+
+def shifted(signals: Array, dt: float, later: Array) -> Array:
+    """Return signals `shape (n_samples, n_channels)`, each so much later [s], `shape (n_channels,)`."""
+    frequency = np.fft.rfftfreq(2 * len(signals), dt)
+    return _turned(signals.T, np.exp(-2j * np.pi * later[:, None] * frequency)).T
+
+
+def _turned(signal: Array, factors: NDArray[np.complexfloating]) -> Array:
+    """Return signals `shape (..., n_samples)` with their spectral lines times factors; mirrored, so that their ends meet."""
     n = signal.shape[-1]
-    frequency = np.fft.rfftfreq(2 * n, dt)
     both = np.concatenate([signal, signal[..., ::-1]], axis=-1)
-    return np.asarray(np.fft.irfft(2j * np.pi * frequency * np.fft.rfft(both), 2 * n)[..., :n])
+    return np.asarray(np.fft.irfft(factors * np.fft.rfft(both), 2 * n)[..., :n])

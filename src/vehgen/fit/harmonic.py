@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.fit.adjustments import Adjustment
+from vehgen.fit.adjustments import Adjustment, shifted
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.trial import Trial
 from vehgen.mechanics.rows import Row
@@ -38,22 +38,21 @@ class Harmonic(Adjustment):
 
     sigma: Mapping[str, Array] = field(default_factory=dict)
 
-    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
         """Return the readings with the line that suits them best added; without it for a trial whose noise is not known."""
         if trial.name not in self.sigma:
             return response
         columns = self.columns(trial, float(numbers[0]), float(numbers[1]), trial.values)
-        left = (trial.recording.values - response) / self.sigma[trial.name]
-        coefficients = self._solve(trial, columns, left)
+        coefficients = self._solve(trial, columns, response, late)
         return np.asarray(response + np.einsum("knc,...k->...nc", columns, coefficients))
 
-    def amplitude(self, trial: Trial, response: Array, numbers: Array, values: Mapping[str, float]) -> float:
+    def amplitude(self, trial: Trial, response: Array, numbers: Array, values: Mapping[str, float], late: Array) -> float:
         """Return the amplitude of the vertical force in a run [N], from the readings without it `shape (n_samples, n_channels)`.
 
-        `values` are the vehicle's parameters [SI]: a heavier body needs a larger force.
+        `values` are the vehicle's parameters [SI]: a heavier body needs a larger force. `late` as for :meth:`response`.
         """
         columns = self.columns(trial, float(numbers[0]), float(numbers[1]), values)
-        coefficients = self._solve(trial, columns, (trial.recording.values - response) / self.sigma[trial.name])
+        coefficients = self._solve(trial, columns, response, late)
         return float(np.hypot(coefficients[0], coefficients[1]))
 
     def columns(self, trial: Trial, frequency: float, drift: float, values: Mapping[str, float]) -> Array:
@@ -68,12 +67,19 @@ class Harmonic(Adjustment):
         parts = [part for j in range(turning.shape[2]) for part in (turning[:, :, j].real, -turning[:, :, j].imag)]
         return np.array(parts)
 
-    def _solve(self, trial: Trial, columns: Array, left: Array) -> Array:
+    def _solve(self, trial: Trial, columns: Array, response: Array, late: Array | None) -> Array:
+        left = (_on_time(trial, late) - response) / self.sigma[trial.name]
         weighed = (columns / self.sigma[trial.name]).reshape(len(columns), -1)
         normal = weighed @ weighed.T
         ridge = 1e-9 * np.trace(normal) / len(normal) * np.eye(len(normal))
         projected = np.einsum("km,...m->...k", weighed, left.reshape(*left.shape[:-2], -1))
         return np.asarray(np.linalg.solve(normal + ridge, projected[..., None])[..., 0])
+
+
+def _on_time(trial: Trial, late: Array | None) -> Array:
+    """Return a recording with every channel so much earlier as its clock is late [s], `shape (n_samples, n_channels)`."""
+    values = trial.recording.values
+    return values if late is None or not np.any(late) else shifted(values, trial.recording.dt, -late)
 
 
 def _rows(trial: Trial, body: str) -> list[Row]:

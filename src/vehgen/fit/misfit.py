@@ -186,7 +186,7 @@ class Misfit:
         """
         trial = trial or self.problem.trials[number]
         response = self.problem.respond(values, trial, self._driven(number, trial, numbers, error))[0]
-        return self._adjust(trial, response, numbers)
+        return self._adjust(number, trial, response, numbers, error)
 
     def respond_nearby(self, number: int, values: Array, numbers: Array, errors: Array) -> Array:
         """Return how the places of trial `number`'s sensors move at several errors of the trial that hardly differ.
@@ -196,7 +196,7 @@ class Misfit:
         """
         trial = self.problem.trials[number]
         first, *others = (self._driven(number, trial, numbers, error) for error in errors)
-        return self._adjust(trial, self.problem.respond_nearby(values, trial, first, others), numbers)
+        return self._adjust(number, trial, self.problem.respond_nearby(values, trial, first, others), numbers, errors[0])
 
     def _driven(self, number: int, trial: Trial, numbers: Array, error: Array) -> Scenario:
         """Return what a trial drives through, at adjustments and errors."""
@@ -205,9 +205,9 @@ class Misfit:
             scenario = item.scenario(scenario, float(value))
         return scenario
 
-    def _adjust(self, trial: Trial, response: Array, numbers: Array) -> Array:
+    def _adjust(self, number: int, trial: Trial, response: Array, numbers: Array, error: Array) -> Array:
         for i, item in enumerate(self.shared):
-            response = item.response(trial, response, numbers[i:])
+            response = item.response(trial, response, numbers[i:], self.errors[number].clocks(error))
         return response
 
     def channel_lines(self, number: int, response: Array, error: Array) -> Complex:

@@ -22,9 +22,9 @@ class RunGain(Gain):
 
     run: str = ""
 
-    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
         """Return the readings with the channel times its number, in its run."""
-        return super().response(trial, response, numbers) if trial.name == self.run else response
+        return super().response(trial, response, numbers, late) if trial.name == self.run else response
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class RunLevel(Adjustment):
 
     run: str = ""
 
-    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
         """Return the readings times its number, in its run."""
         return np.asarray(response * numbers[0]) if trial.name == self.run else response
 
@@ -44,9 +44,9 @@ class RunDelay(SensorDelay):
 
     run: str = ""
 
-    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
         """Return the readings with the sensor's channels later, in its run."""
-        return super().response(trial, response, numbers) if trial.name == self.run else response
+        return super().response(trial, response, numbers, late) if trial.name == self.run else response
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class RecorderFilter(Adjustment):
     runs: tuple[str, ...] = ()
     channels: tuple[str, ...] = ()
 
-    def response(self, trial: Trial, response: Array, numbers: Array) -> Array:
+    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
         """Return the readings filtered, in its runs and channels."""
         if trial.name not in self.runs:
             return response

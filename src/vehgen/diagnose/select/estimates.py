@@ -181,9 +181,10 @@ def _solved(fit: ModelFit, candidate: Candidate, covariance: Array) -> dict[str,
         values = misfit.problem.space.values(at)
         found = []
         for t, trial in enumerate(misfit.problem.trials):
-            scenario = misfit.errors[t].scenario(trial.scenario, misfit.errors_of(x, t))
-            without = misfit.problem.respond(values[None], trial, scenario)[0][0]
-            found.append(effect.solve(candidate.place, adjustments, trial, without, misfit.problem.values_of(values, trial)))
+            errors, error = misfit.errors[t], misfit.errors_of(x, t)
+            without = misfit.problem.respond(values[None], trial, errors.scenario(trial.scenario, error))[0][0]
+            known = misfit.problem.values_of(values, trial)
+            found.append(effect.solve(candidate.place, adjustments, trial, without, known, errors.clocks(error)))
         return np.array(found)
 
     runs = by_run(unit)
