@@ -59,3 +59,12 @@ def test_pairs_of_effects_are_not_looked_for_where_one_mistake_leaves_noise(monk
     found._combine(found.rounds[0])
     assert asked == ([] if at_once else ["pair"])
     assert found._other_mistakes(found.rounds[0]).verdict.faults == (FAULT,)
+
+
+@pytest.mark.parametrize("passed", [(), ("suspension rear",)])
+def test_another_vehicle_is_not_told_where_one_force_at_a_place_explains_the_gap(monkeypatch, detection_of, passed):
+    other = MeasurementFault("other_parameters", (), (), "the recordings are of a vehicle with other parameters", "check the file")
+    monkeypatch.setattr(decision, "find_mistakes", lambda detection: judging.Undone((other,), 0.01, False, None))
+    found = Decision(detection_of(CUBIC, runs=HUMPS), [EFFECTS["asymmetric_damping"]], False, lambda *_: None)
+    told = found._other_mistakes(SimpleNamespace(fits=(), passed=passed))
+    assert (told is None) == bool(passed)

@@ -236,7 +236,8 @@ class Decision(Ending):
         if self.detection.chi <= limit.WEAK or (self.chain and of_vehicle and not unsure):
             return None
         mistakes = explain_gap(self.detection, leading, unsure, leading or next(iter(first.fits), None), self._undone())
-        return self._mistaken(mistakes) if mistakes else None
+        one_place = bool(first.passed) and any(item.kind == "other_parameters" for item in mistakes)  # no other vehicle errs at one place
+        return self._mistaken(mistakes) if mistakes and not one_place else None
 
     def _undone(self) -> Undone:
         """Return the mistakes that explain what the base misses, looked for once."""
