@@ -172,3 +172,10 @@ def test_runs_do_not_change_places_for_what_falls_too_little_or_for_what_the_kep
     monkeypatch.setattr(limit, "FAINT_FALL", 1e9)
     assert faint_exchange(found_of, detection) is None
     assert faint_exchange(replace(found_of, fits=()), detection) is None
+
+
+def test_laws_that_are_fitted_are_of_many_kinds():
+    """A cab on springs gained less to the first order than one law did at several axles, and was never fitted."""
+    ranked = [(SimpleNamespace(effect=SimpleNamespace(name=name), number=i), ()) for i, name in enumerate("aaaabaacbcdef")]
+    assert [item.number for item, _ in faint._of_many_kinds(ranked)] == [0, 1, 2, 3, 4, 7, 10]
+    assert [item.number for item, _ in faint._of_many_kinds(ranked[4:])] == [4, 5, 6, 7, 10, 11, 12]

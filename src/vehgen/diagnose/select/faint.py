@@ -27,10 +27,14 @@ from vehgen.diagnose.select.search import LOOKS_AGAIN, SearchRound, fit_leading_
 from vehgen.diagnose.select.validation import surely_falls, validation_fall
 from vehgen.fit.parallel import HERE, Runner
 
-FIRST_ORDER, MOST_LAWS = 60.0, 4
-"""Laws of the vehicle are fitted that gain so much to the first order, and so many of them at most, the largest gains first ..."""
+FIRST_ORDER, MOST_LAWS, MOST_OTHERS = 60.0, 4, 3
+"""Laws of the vehicle are fitted that gain so much to the first order, and so many of them at most, the largest gains first; then so many
+of other kinds, each at its best place, as the first ones may all be one law at several places ..."""
 FIRST_ORDER_OF_ERRORS, MOST_ERRORS = 25.0, 4
 """... and errors of all runs or of a sensor, of which the base's own errors take in the most."""
+
+Begun = tuple[Candidate, tuple[float, ...]]
+"""A candidate, and the numbers at which its fit begins."""
 
 
 def faint_round(detection: Detection, candidates: Sequence[Candidate], runner: Runner = HERE) -> SearchRound:
@@ -49,12 +53,22 @@ def faint_round(detection: Detection, candidates: Sequence[Candidate], runner: R
     held = set(base.least_squares.on_bound)
     behind = [(item, begin) for gain, begin, item in ranked if gain <= FIRST_ORDER and hides_behind(item, held, fitter.locator.vehicle)]
     errors = [(item, begin) for gain, begin, item in ranked if not item.effect.changes_vehicle and gain > FIRST_ORDER_OF_ERRORS]
-    fits = list(fitter.fit_all_begun([*laws[:MOST_LAWS], *behind[:MOST_BEHIND], *errors[:MOST_ERRORS]], runner))
+    fits = list(fitter.fit_all_begun([*_of_many_kinds(laws), *behind[:MOST_BEHIND], *errors[:MOST_ERRORS]], runner))
     found = SearchRound(base, (), (), (), faint=True)
     clear = [fit for fit in fits if fall(found, fit) >= limit.FAINT_FALL]
     checked = {id(fit): fitter.fit_again(fit) for fit in clear if not np.isfinite(fit.validation)}
     fits = sorted((checked.get(id(fit), fit) for fit in fits), key=merit)
     return replace(found, fits=tuple(_likeliest_first(found, fits)))
+
+
+def _of_many_kinds(ranked: Sequence[Begun]) -> list[Begun]:
+    """Return the first MOST_LAWS laws, and of those after them the first of each other kind, MOST_OTHERS of these at most."""
+    chosen = list(ranked[:MOST_LAWS])
+    kinds = {item.effect.name for item, _ in chosen}
+    others: dict[str, Begun] = {}
+    for known in ranked[MOST_LAWS:]:
+        others.setdefault(known[0].effect.name, known)
+    return [*chosen, *[known for name, known in others.items() if name not in kinds][:MOST_OTHERS]]
 
 
 def faint_look_again(found: SearchRound, detection: Detection, runner: Runner = HERE) -> tuple[SearchRound, Detection]:
