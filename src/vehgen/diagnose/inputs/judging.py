@@ -23,7 +23,7 @@ from vehgen.diagnose.inputs.levels import level_hypotheses
 from vehgen.diagnose.inputs.recorders import filter_hypotheses, rate_hypotheses, slow_recorder
 from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.diagnose.inputs.vehicle import axle_hypotheses, other_vehicle, strange_run, strange_run_hypotheses, unrelated_recording
-from vehgen.diagnose.thresholds import NOISE_FLOOR
+from vehgen.diagnose.thresholds import NOISE_FLOOR, WEAK
 from vehgen.fit.least_squares import LeastSquaresFit
 
 if TYPE_CHECKING:
@@ -174,8 +174,12 @@ def supposed_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
     told = {run for item in found if item.kind == "clock" for run in item.runs}
     arrivals = {trial.name: trial.scenario.first_arrival - trial.scenario.start for trial in detection.trials if trial.scenario.track.parts}
     moved = (item for item in moved_roads(conditions, speeds, arrivals) if not told & set(item.runs))
-    slow = slow_recorder(detection.recorder, tuple(trial.name for trial in detection.trials))
-    return (*found, *unrelated_recording(detection.base.least_squares), *moved, *slow)
+    return (*found, *unrelated_recording(detection.base.least_squares), *moved, *_slow(detection))
+
+
+def _slow(detection: Detection) -> tuple[MeasurementFault, ...]:
+    """Return that a recorder which nobody stated cuts off what a vehicle does."""
+    return slow_recorder(detection.recorder, tuple(trial.name for trial in detection.trials))
 
 
 def odd_mistake(odd: OddRun | OddChannel) -> MeasurementFault:
@@ -184,8 +188,8 @@ def odd_mistake(odd: OddRun | OddChannel) -> MeasurementFault:
 
 
 def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
-    """Return mistakes that no effect of the library looks like."""
-    return find_mistakes(detection, plain_only=True).faults
+    """Return mistakes that no effect of the library looks like; a slow recorder where the base leaves next to nothing behind it."""
+    return (_slow(detection) if detection.chi <= WEAK else ()) or find_mistakes(detection, plain_only=True).faults
 
 
 def moved_axles(detection: Detection) -> tuple[MeasurementFault, ...]:
