@@ -16,7 +16,11 @@ SENSOR_DELAY_EFFECT = RunEffect(
     source="J. S. Bendat, A. G. Piersol, Random Data, 4th ed., 2010, doi:10.1002/9781118032428",
     attaches="sensor",
     places=sensors,
-    parameters=(EffectParameter("delay", "s", "late against the first sensor", low=-0.3, high=0.3, starts=(-0.05, -0.015, 0.015, 0.05)),),
+    parameters=(
+        EffectParameter(
+            "delay", "s", "late against the first sensor", low=-0.3, high=0.3, starts=(-0.25, -0.15, -0.05, -0.015, 0.015, 0.05, 0.15, 0.25)
+        ),
+    ),
     adjustment=SensorDelay,
     scale=0.01,
     tie_advice=(
