@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from tests.diagnose.conftest import CUBIC, HUMPS
-from vehgen.diagnose import decision
+from vehgen.diagnose import decision, ending
 from vehgen.diagnose.combining import Combiner
 from vehgen.diagnose.decision import Decision
 from vehgen.diagnose.inputs import judging
@@ -50,7 +50,7 @@ def test_a_low_pass_wins_over_an_effect_that_leaves_something_where_it_does_near
 @pytest.mark.parametrize("at_once", [True, False])
 def test_pairs_of_effects_are_not_looked_for_where_one_mistake_leaves_noise(monkeypatch, detection_of, at_once):
     asked = []
-    monkeypatch.setattr(decision, "find_mistakes", lambda detection: judging.Undone((FAULT,), 0.01, at_once, None))
+    monkeypatch.setattr(ending, "find_mistakes", lambda detection: judging.Undone((FAULT,), 0.01, at_once, None))
     monkeypatch.setattr(Combiner, "pair", lambda *_: asked.append("pair") or [])
     monkeypatch.setattr(Combiner, "together", lambda *_: [])
     monkeypatch.setattr(decision, "with_members", lambda first, *_: first)
@@ -64,7 +64,25 @@ def test_pairs_of_effects_are_not_looked_for_where_one_mistake_leaves_noise(monk
 @pytest.mark.parametrize("passed", [(), ("suspension rear",)])
 def test_another_vehicle_is_not_told_where_one_force_at_a_place_explains_the_gap(monkeypatch, detection_of, passed):
     other = MeasurementFault("other_parameters", (), (), "the recordings are of a vehicle with other parameters", "check the file")
-    monkeypatch.setattr(decision, "find_mistakes", lambda detection: judging.Undone((other,), 0.01, False, None))
+    monkeypatch.setattr(ending, "find_mistakes", lambda detection: judging.Undone((other,), 0.01, False, None))
     found = Decision(detection_of(CUBIC, runs=HUMPS), [EFFECTS["asymmetric_damping"]], False, lambda *_: None)
     told = found._other_mistakes(SimpleNamespace(fits=(), passed=passed))
     assert (told is None) == bool(passed)
+
+
+@pytest.mark.parametrize(
+    ("kind", "runs", "at_once", "told"),
+    [
+        ("speed", ("high",), True, True),
+        ("speed", ("high",), False, False),
+        ("speed", ("low", "high", "fast"), True, False),
+        ("hump", ("high",), True, False),
+    ],
+    ids=["one run's speed", "not all of the gap", "all speeds", "a hump"],
+)
+def test_a_wrong_speed_of_some_runs_is_told_before_effects_are_tried(monkeypatch, detection_of, kind, runs, at_once, told):
+    """A truck's strained base had supposed four things of a run 9 % too fast, and effects were tried for ten minutes beside it."""
+    fault = MeasurementFault(kind, runs, (), f"the {kind} is another", "measure it")
+    monkeypatch.setattr(ending, "find_mistakes", lambda detection: judging.Undone((fault,), 0.01, at_once, None))
+    found = Decision(detection_of(CUBIC, runs=HUMPS), [], False, lambda *_: None)._one_speed()
+    assert (found is not None and found.verdict.faults == (fault,)) == told

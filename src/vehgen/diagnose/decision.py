@@ -15,19 +15,10 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.checks import variety_notes
 from vehgen.diagnose.inputs.conditions import alike_in_all_runs
 from vehgen.diagnose.inputs.fault import MeasurementFault
-from vehgen.diagnose.inputs.judging import (
-    Undone,
-    explain_gap,
-    find_mistakes,
-    moved_axles,
-    odd_mistake,
-    plain_mistakes,
-    recorded_mistakes,
-    supposed_mistakes,
-)
+from vehgen.diagnose.inputs.judging import moved_axles, odd_mistake, plain_mistakes, recorded_mistakes, supposed_mistakes
 from vehgen.diagnose.localise.localisation import localise
 from vehgen.diagnose.result import Decided
-from vehgen.diagnose.select.criteria import fall, freed_instead, p_value_of, passes, unfinished
+from vehgen.diagnose.select.criteria import fall, freed_instead, p_value_of, passes
 from vehgen.diagnose.select.estimates import estimate, excluded
 from vehgen.diagnose.select.faint import faint_exchange, faint_look_again, faint_round, faintly_told
 from vehgen.diagnose.select.fitter import Fitter
@@ -80,6 +71,8 @@ class Decision(Ending):
         other.notes += self.notes
         if believed.is_quiet:
             return self._mistaken(left) if (left := supposed_mistakes(believed)) else self._one_cause() or other._quiet()
+        if mistaken := other._one_speed():
+            return mistaken
         found = other._explain_gap()
         single = one_error(self.detection, believed, found, self._candidates(believed.base), self.runner)
         self.interrupted = single.stopped
@@ -224,27 +217,6 @@ class Decision(Ending):
         conditions = [item for part in self.base.parts for item in part.conditions()]
         self.notes += [*alike_in_all_runs(conditions, [trial.name for trial in self.detection.trials]), *self._edge()]
         return self._end("no_missing_effect", wording.no_missing_effect(self.detection.chi))
-
-    def _other_mistakes(self, first: SearchRound) -> Decided | None:
-        """Return the verdict where a mistake that looks like an effect explains the runs, and no effect of the vehicle does.
-
-        An effect that closes the gap, but is too weak to be named, is held against mistakes as one that is.
-        """
-        leading = self.chain[-1] if self.chain else next((fit for fit in first.fits[:1] if passes(fit, self.base)), None)
-        unsure = leading is None or (bool(self.chain) and unfinished(leading, self.base))
-        of_vehicle = all(candidate.effect.changes_vehicle for fit in self.chain[-1:] for candidate in fit.effects)
-        if self.detection.chi <= limit.WEAK or (self.chain and of_vehicle and not unsure):
-            return None
-        mistakes = explain_gap(self.detection, leading, unsure, leading or next(iter(first.fits), None), self._undone())
-        one_place = bool(first.passed) and any(item.kind == "other_parameters" for item in mistakes)  # no other vehicle errs at one place
-        return self._mistaken(mistakes) if mistakes and not one_place else None
-
-    def _undone(self) -> Undone:
-        """Return the mistakes that explain what the base misses, looked for once."""
-        if self.undone is None or self.undone[0] is not self.detection:
-            self.progress("look for mistakes", 0, 1, "")
-            self.undone = self.detection, find_mistakes(self.detection)
-        return self.undone[1]
 
     def _too_weak(self, first: SearchRound, best: ModelFit, good: bool) -> Decided | None:
         """Return the verdict where the best effect is not told from chance, from random laws, or by the validation runs."""

@@ -7,17 +7,18 @@ from dataclasses import replace
 
 import numpy as np
 
+from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose import wording
 from vehgen.diagnose.collecting import run_chis
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.fault import MeasurementFault
-from vehgen.diagnose.inputs.judging import Undone, supposed_mistakes
+from vehgen.diagnose.inputs.judging import Undone, explain_gap, find_mistakes, supposed_mistakes
 from vehgen.diagnose.localise.free_form import FreeForm, fit_free_form, recover, strongest
 from vehgen.diagnose.naming import Naming
 from vehgen.diagnose.result import Decided, DiagnosisModels
-from vehgen.diagnose.select.criteria import explained_shares
+from vehgen.diagnose.select.criteria import explained_shares, passes, unfinished
 from vehgen.diagnose.select.freed_base import freed_ratios
 from vehgen.diagnose.select.search import DiagnosisProgress, SearchRound
 from vehgen.diagnose.verdict import Gap, NamedParameter, PlaceChi, Verdict, VerdictName
@@ -66,6 +67,33 @@ class Ending:
     def _mistaken(self, mistakes: tuple[MeasurementFault, ...]) -> Decided:
         ended = self._end("measurement_fault", wording.mistaken([item.message for item in mistakes]))
         return replace(ended, verdict=replace(ended.verdict, faults=mistakes))
+
+    def _other_mistakes(self, first: SearchRound) -> Decided | None:
+        """Return the verdict where a mistake that looks like an effect explains the runs, and no effect of the vehicle does.
+
+        An effect that closes the gap, but is too weak to be named, is held against mistakes as one that is.
+        """
+        leading = self.chain[-1] if self.chain else next((fit for fit in first.fits[:1] if passes(fit, self.base)), None)
+        unsure = leading is None or (bool(self.chain) and unfinished(leading, self.base))
+        of_vehicle = all(candidate.effect.changes_vehicle for fit in self.chain[-1:] for candidate in fit.effects)
+        if self.detection.chi <= limit.WEAK or (self.chain and of_vehicle and not unsure):
+            return None
+        mistakes = explain_gap(self.detection, leading, unsure, leading or next(iter(first.fits), None), self._undone())
+        one_place = bool(first.passed) and any(item.kind == "other_parameters" for item in mistakes)  # no other vehicle errs at one place
+        return self._mistaken(mistakes) if mistakes and not one_place else None
+
+    def _undone(self) -> Undone:
+        """Return the mistakes that explain what the base misses, looked for once."""
+        if self.undone is None or self.undone[0] is not self.detection:
+            self.progress("look for mistakes", 0, 1, "")
+            self.undone = self.detection, find_mistakes(self.detection)
+        return self.undone[1]
+
+    def _one_speed(self) -> Decided | None:
+        """Return the verdict that a speed of some runs is wrong, where that alone explains all: no effect of a vehicle looks like it."""
+        found = self._undone()
+        some = all(item.kind == "speed" and len(item.runs) < len(self.detection.trials) for item in found.faults)
+        return self._mistaken(found.faults) if found.at_once and some else None
 
     def _end(self, verdict: VerdictName, reason: str, next_experiment: str | None = None) -> Decided:
         found = Verdict(verdict, reason, (), self._gap(), self._places(), next_experiment=next_experiment, notes=tuple(self.notes))
