@@ -14,6 +14,8 @@ from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.select import criteria, faint
 from vehgen.diagnose.select.criteria import tied
 from vehgen.diagnose.select.faint import faint_exchange, faint_look_again, faint_round, faintly_told
+from vehgen.diagnose.select.fitter import Fitter
+from vehgen.diagnose.select.search import LOOKED_AT_AGAIN, fit_leading_again
 from vehgen.effects import EFFECTS
 from vehgen.fit.adjustments import Gain
 from vehgen.report.pages.diagnosis_page import diagnosis_page
@@ -162,6 +164,19 @@ def test_what_its_validation_run_does_not_show_is_checked_on_the_run_that_shows_
     monkeypatch.setattr(decision, "faint_exchange", lambda *_: (found, exchanged))
     told = diagnose_trials(trials_of(UNLIKE, runs=HUMPS), [EFFECTS[name] for name in NAMES])
     assert [(item.name, item.place) for item in told.verdict.effects] == [("asymmetric_damping", "rear")]
+
+
+def test_all_that_fell_is_fitted_again_to_runs_that_changed_places(detection_of, found_of):
+    """Contenders beyond the first few were weighed on the runs that had been fitted before, and not known on the run that is fitted now."""
+    detection, best = detection_of(UNLIKE, runs=HUMPS), found_of.fits[0]
+    found, exchanged = faint_exchange(replace(found_of, fits=(best,) * (LOOKED_AT_AGAIN + 2)), detection)
+    fitted = {trial.name for trial in exchanged.problem.trials}
+    assert len(found.fits) == LOOKED_AT_AGAIN + 2
+    assert all({trial.name for trial in fit.least_squares.misfit.problem.trials} == fitted for fit in found.fits)
+    fitter = Fitter(exchanged, exchanged.base, ())
+    unchecked = replace(best, validation=float("nan"), validation_fit=None)
+    again = fit_leading_again(fitter, (best,) * LOOKED_AT_AGAIN + (replace(best), unchecked), weigh=True)
+    assert sum({trial.name for trial in fit.least_squares.misfit.problem.trials} == fitted for fit in again) == LOOKED_AT_AGAIN + 1
 
 
 def test_runs_do_not_change_places_for_what_falls_too_little_or_for_what_the_kept_run_speaks_against(detection_of, found_of, monkeypatch):

@@ -95,14 +95,20 @@ def faint_exchange(found: SearchRound, detection: Detection, runner: Runner = HE
     if best is None or fall(found, best) < limit.FAINT_FALL or validation_fall(found.current, best) < 0:
         return None
     exchanged = with_checking_run(detection, best)
-    checked = replace(found, fits=tuple(fit for fit in found.fits if np.isfinite(fit.validation)))
-    return None if exchanged is None else (_beside(exchanged, checked, runner), exchanged)
+    if exchanged is None:
+        return None
+    checked = [fit for fit in found.fits if np.isfinite(fit.validation) and fall(found, fit) > 0]
+    return _again(exchanged, found, Fitter(exchanged, exchanged.base, ()).fit_all_again(checked, runner)), exchanged
 
 
 def _beside(detection: Detection, found: SearchRound, runner: Runner) -> SearchRound:
     """Return a round's fits made again, from where they are, beside another detection's base."""
-    fits = fit_leading_again(Fitter(detection, detection.base, ()), found.fits, weigh=True, runner=runner)
-    found = replace(found, current=detection.base, fits=fits)
+    return _again(detection, found, fit_leading_again(Fitter(detection, detection.base, ()), found.fits, weigh=True, runner=runner))
+
+
+def _again(detection: Detection, found: SearchRound, fits: Sequence[ModelFit]) -> SearchRound:
+    """Return a round of fits that were made again beside a detection's base."""
+    found = replace(found, current=detection.base)
     return replace(found, fits=tuple(_likeliest_first(found, sorted(fits, key=merit))))
 
 

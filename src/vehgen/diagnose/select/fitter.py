@@ -120,6 +120,11 @@ class Fitter:
         again = evaluate_fit((*fit.effects[:-1], last), found, runs, noises, near=fit.parts)
         return replace(again, equivalent_minima=fit.equivalent_minima)
 
+    def has_all_runs(self, fit: ModelFit) -> bool:
+        """Return whether a fit was simulated on all runs that are fitted now, of which some may have been kept for checking before."""
+        known = {trial.name for part in fit.parts for trial in part.misfit.problem.trials}
+        return all(trial.name in known for trial in self.current.problem.trials)
+
     def weigh_again(self, fit: ModelFit) -> ModelFit:
         """Return a first effect's fit to the training runs as it is, by the noise that is now known."""
         old = fit.least_squares.misfit

@@ -201,8 +201,9 @@ def fit_leading_again(fitter: Fitter, fits: Sequence[ModelFit], weigh: bool, run
     rest = [fit for fit in fits if all(fit is not other for other in leading)]
     found = fitter.fit_all_again(leading, runner)
     if weigh and found:
-        rest = [fitter.weigh_again(fit) for fit in rest]
         near = CONTENDER * min(fit.training for fit in found)
-        found += fitter.fit_all_again([fit for fit in rest if fit.training <= near], runner)
-        rest = [fit for fit in rest if fit.training > near]
+        weighed = [(fitter.weigh_again(fit), fit) for fit in rest]
+        contenders = [fit for own, fit in weighed if own.training <= near and fitter.has_all_runs(fit)]
+        found += fitter.fit_all_again(contenders, runner)
+        rest = [own for own, fit in weighed if all(fit is not other for other in contenders)]
     return tuple(simplest_first([*sorted(found, key=merit), *(sorted(rest, key=merit) if weigh else rest)], fitter.detection.base))
