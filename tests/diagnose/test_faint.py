@@ -184,6 +184,9 @@ def test_runs_do_not_change_places_for_what_falls_too_little_or_for_what_the_kep
     monkeypatch.setattr(faint, "validation_fall", lambda *_: -1.0)
     assert faint_exchange(found_of, detection) is None
     monkeypatch.undo()
+    best = found_of.fits[0]
+    of_all_runs = replace(best, effects=(replace(best.last, effect=EFFECTS["tyre_footprint"]),))
+    assert faint_exchange(replace(found_of, fits=(of_all_runs,)), detection) is None, "every run may tell it"
     monkeypatch.setattr(limit, "FAINT_FALL", 1e9)
     assert faint_exchange(found_of, detection) is None
     assert faint_exchange(replace(found_of, fits=()), detection) is None

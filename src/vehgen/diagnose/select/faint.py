@@ -92,7 +92,9 @@ def faint_exchange(found: SearchRound, detection: Detection, runner: Runner = HE
     Fits that fell too little to be checked at all are left out.
     """
     best = next(iter(found.fits), None)
-    if best is None or fall(found, best) < limit.FAINT_FALL or validation_fall(found.current, best) < 0:
+    if best is None or not best.last.effect.changes_vehicle:
+        return None
+    if fall(found, best) < limit.FAINT_FALL or validation_fall(found.current, best) < 0:
         return None
     exchanged = with_checking_run(detection, best)
     if exchanged is None:
