@@ -118,3 +118,12 @@ def test_an_effect_of_a_group_is_the_same_at_an_axle_of_it_and_another_at_a_link
     assert not same(every, link)
     assert not link.is_among([every])
     assert not same(at("front and mid", "front", "mid"), at("mid and rear", "mid", "rear"))
+
+
+def test_a_progressive_spring_is_no_tie_with_stops_that_are_met_in_bump_alone():
+    stops, spring = fit("bump_stop", "rear", 1.02), fit("progressive_stiffness", "rear", 1.03)
+    ranked = simplest_first([stops, spring], BASE)
+    assert ranked == [spring, stops]
+    assert tied(SimpleNamespace(faint=False, current=BASE, fits=ranked), spring) == []
+    both_met = [stops, fit("progressive_stiffness", "rear", 2.0)]
+    assert simplest_first(both_met, BASE) == both_met

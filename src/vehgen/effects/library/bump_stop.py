@@ -10,6 +10,7 @@ from vehgen.effects.library.law_effect import suspension_law
 BUMP_STOP_EFFECT = suspension_law(
     name="bump_stop",
     law="bump_stop",
+    special_case="progressive_stiffness",  # where the stop in rebound is never met
     signature="sharp peaks of acceleration when travel passes a threshold; nothing below it",
     parameters=(
         EffectParameter(

@@ -18,7 +18,7 @@ PROGRESSIVE_STIFFNESS = Law(
     name="progressive_stiffness",
     title="Progressive stiffness",
     equation="f = k*max(d - start, 0)",
-    meaning="a helper leaf or second spring stage that joins in beyond a travel in bump",
+    meaning="a helper leaf, a second spring stage or a stop that joins in beyond a travel in bump, and nothing in rebound",
     source="T. D. Gillespie, Fundamentals of Vehicle Dynamics, SAE, 1992, doi:10.4271/R-114",
     strength="k",
     parameters=(
