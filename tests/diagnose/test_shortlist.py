@@ -1,5 +1,7 @@
 """Which candidates are worth fitting, by what the place test found."""
 
+from dataclasses import replace
+
 import pytest
 from benchmarks.hidden_effects.generator import Effect
 
@@ -9,6 +11,7 @@ from vehgen.diagnose.localise.localisation import shortlist
 from vehgen.diagnose.localise.unknown_force import Place, PlaceResult
 from vehgen.diagnose.select import search
 from vehgen.effects import EFFECTS
+from vehgen.effects.evidence import PlaceEvidence
 
 GAIN = Effect("sensor_gain", "F_az", {"error": 0.2})
 
@@ -40,3 +43,12 @@ def test_where_no_effect_of_a_channel_explains_what_channels_may_all_others_are_
     fits = search.search_round(detection, base, every).fits
     assert any(fit.last.effect.name == "cubic_stiffness" for fit in fits) == tries_all
     assert fits[0].last.effect.name == ("cubic_stiffness" if tries_all else "sensor_gain")
+
+
+def test_an_engines_line_is_tried_where_runs_show_one_though_another_place_suffices():
+    """The base of a car had bent to a line of 18.8 Hz so that a force at the front tyre explained the rest."""
+    engine = EFFECTS["engine_harmonic"]
+    elsewhere = PlaceEvidence(frozenset({"front"}), frozenset({"tyre"}), True, frozenset())
+    assert not engine.is_likely("body", elsewhere)
+    assert engine.is_likely("body", replace(elsewhere, steady_lines=True))
+    assert not EFFECTS["frame_bending"].is_likely("body", replace(elsewhere, steady_lines=True))

@@ -21,13 +21,14 @@ class PlaceEvidence:
 
     `parts` are the axles, hinges, links and bodies where an unknown force explains what the model misses, `kinds` what these places are
     (suspension, tyre ...); `one_force` tells that one force at one of them leaves noise. `sensors` are the sensors and channels without
-    which the model fits.
+    which the model fits. `steady_lines` tells that runs show lines of what shakes the vehicle all the time.
     """
 
     parts: frozenset[str]
     kinds: frozenset[str]
     one_force: bool
     sensors: frozenset[str]
+    steady_lines: bool = False
 
 
 @dataclass(frozen=True)

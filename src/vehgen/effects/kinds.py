@@ -186,6 +186,10 @@ class LineEffect(Effect):
         """Whether a fit to slow motions alone tells something of it: its line is a fast one."""
         return False
 
+    def is_likely(self, place: str, evidence: PlaceEvidence) -> bool:
+        """Return whether it is worth fitting at a place: as other effects, or where runs show a line, which the base may have bent to."""
+        return evidence.steady_lines or super().is_likely(place, evidence)
+
     def n_numbers(self, n_runs: int) -> int:
         """Return its frequency and drift, and in every run two phases each of a force and a moment."""
         return self.SEARCHED + self.NUMBERS_PER_RUN * n_runs

@@ -75,12 +75,14 @@ def shortlist(
         names |= {name for name, axle in vehicle.axles.items() if axle.body in names}
         names |= {name for name, hinge in vehicle.hinges.items() if not names.isdisjoint(hinge.points)}
     excess = max(base.training - 1, 1e-9)
-    channels = {channel.name: channel.sensor for trial in base.least_squares.misfit.problem.trials for channel in trial.recording.channels}
+    trials = base.least_squares.misfit.problem.trials
+    channels = {channel.name: channel.sensor for trial in trials for channel in trial.recording.channels}
     silenced = {
         part for item in places if item.place.channels and _reaches(item, excess) for part in (item.place.name, *item.place.channels)
     }
     silenced |= {channels[part] for part in silenced if part in channels}
-    evidence = PlaceEvidence(frozenset(names), frozenset(item.place.kind for item in passed), single, frozenset(silenced))
+    lines = any(trial.lines for trial in trials)
+    evidence = PlaceEvidence(frozenset(names), frozenset(item.place.kind for item in passed), single, frozenset(silenced), lines)
     return [candidate for candidate in candidates if candidate.effect.is_likely(candidate.place, evidence)]
 
 
