@@ -11,11 +11,9 @@ from vehgen.diagnose.detect.detection import Detection, with_runs
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit, refine
 from vehgen.diagnose.inputs.conditions import alike_conditions
-from vehgen.diagnose.inputs.judging import supposed_mistakes
-from vehgen.diagnose.select.criteria import is_told
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.merit import merit
-from vehgen.diagnose.select.one_error import SUPPOSED_AS, taken_over
+from vehgen.diagnose.select.one_error import SUPPOSED_AS, leaves_noise, taken_over
 from vehgen.effects.evidence import StartingPoint
 from vehgen.files.quantities import Spread
 from vehgen.fit.nuisances import Condition
@@ -23,7 +21,8 @@ from vehgen.fit.trial import Trial
 from vehgen.simulate.run_file.knowledge import UncertaintyEntry
 
 AGREE_WITHIN = 0.25
-"""From the least to the largest in so many standard deviations of what each run may be off by: three runs do so by chance twice in 1000."""
+"""From the least to the largest in so many standard deviations of what each run may be off by; that three are all off the same way, each by
+one at least, and agree so, is a chance of one in 1000."""
 FAR_TOGETHER = 4.0
 """The sum over the runs is so many of its standard deviations off."""
 OF_ONE_KIND = {"clock": ("clock",), "speed": ("speed", "wander")}
@@ -68,7 +67,7 @@ def _instead(sure: Detection, candidate: Candidate, alike: Sequence[Condition], 
     if max(sigmas) - min(sigmas) > AGREE_WITHIN:
         return None
     fit = Fitter(sure, sure.base, ()).fit_begun((candidate, number))
-    return fit if fit is not None and _explains(fit, sure) else None
+    return fit if fit is not None and leaves_noise(fit, sure) else None
 
 
 def _beside(
@@ -83,7 +82,7 @@ def _beside(
     old = rough.least_squares
     found = refine(old.misfit.problem, old, old.x, rough.effects)  # a fit beside a base that leaves noise stays rough
     fit = evaluate_fit(rough.effects, found, detection.validation_runs, detection.floor.noises)
-    return fit if _explains(fit, detection) and merit(fit) < detection.base.squares else None
+    return fit if leaves_noise(fit, detection) and merit(fit) < detection.base.squares else None
 
 
 def _says(candidate: Candidate, error: Condition) -> bool:
@@ -97,9 +96,3 @@ def _sure_of(names: Sequence[str], trial: Trial) -> Trial:
     known = trial.run.file.uncertainty or UncertaintyEntry()
     stated = known.model_copy(update=dict.fromkeys(names, Spread(0.0, True)))
     return replace(trial, run=replace(trial.run, file=trial.run.file.model_copy(update={"uncertainty": stated})))
-
-
-def _explains(fit: ModelFit, detection: Detection) -> bool:
-    """Return whether a fit leaves noise, with nothing to be supposed of the runs, and these tell its number."""
-    with_it = replace(detection, base=fit)
-    return bool(np.isfinite(fit.validation)) and with_it.is_quiet and not supposed_mistakes(with_it) and is_told(fit)

@@ -108,6 +108,10 @@ def _within_belief(fit: ModelFit, believed: Detection) -> ModelFit:
 
 def _explains(fit: ModelFit, strained: Detection, believed: Detection) -> bool:
     """Return whether an error alone explains the runs, better than the many of the strained base."""
-    with_it = replace(believed, base=fit)
-    quiet = bool(np.isfinite(fit.validation)) and with_it.is_quiet and not supposed_mistakes(with_it)
-    return quiet and merit(fit) < strained.base.squares and is_told(fit)
+    return merit(fit) < strained.base.squares and leaves_noise(fit, believed)
+
+
+def leaves_noise(fit: ModelFit, detection: Detection) -> bool:
+    """Return whether a fit leaves noise of all runs, with nothing to be supposed of them, and these tell its number."""
+    with_it = replace(detection, base=fit)
+    return bool(np.isfinite(fit.validation)) and with_it.is_quiet and not supposed_mistakes(with_it) and is_told(fit)
