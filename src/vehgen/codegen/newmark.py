@@ -10,7 +10,8 @@ No acceleration is carried; at kept samples it follows from equilibrium, M a = F
 from __future__ import annotations
 
 from vehgen.codegen.condensation import Condensation
-from vehgen.codegen.factorisation import Matrix, factorise
+from vehgen.codegen.factorisation import Factor, Matrix, factorise
+from vehgen.codegen.nonlinear_element import ElementAtBegin, NonlinearElement, find_nonlinear, static_travels
 from vehgen.codegen.program import STEP_PHASE, Node, Program
 from vehgen.codegen.step_program import EquationTerms, StepProgram
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
@@ -34,18 +35,57 @@ def write_step(model: EquationsOfMotion, sweeps: int | None = None) -> StepProgr
     factor = factorise(program, n, _effective_matrix(program, (M, C, K), terms.two_h, terms.half_h), "A")
     right = _right_sides(program, (M, K, loads), (u, v, drives), terms.two_h)
     middle = factor.solve(program, right)
+    joints = find_nonlinear(terms, K)
     laws, further = None, []
-    if any(element.laws for element in model.elements):
-        laws = Condensation(model, program, terms.symbols, terms.memo, h, factor, K, sweeps)
-        nonlinear = laws.write(middle, u, v, drives)
-        middle, further = nonlinear.middle, nonlinear.states
+    if joints:
+        reach = _reach(terms, factor, joints)
+        laws = Condensation(terms, joints, [[_along(terms, joint, column) for column in reach] for joint in joints], sweeps)
+        begins = _begins(terms, joints, (u, v, drives), middle)
+        found = laws.solve(begins)
+        for column, force in zip(reach, found.last, strict=True):
+            middle = [program.subtract(node, program.multiply(item, force)) for node, item in zip(middle, column, strict=True)]
+        further = laws.states(found, begins, [_along(terms, joint, middle) for joint in joints])
     middle = [program.label(node, f"vm{i}") for i, node in enumerate(middle)]
     next_v = [program.subtract(program.add(middle[i], middle[i]), v[i]) for i in range(n)]
     next_u = [program.add(u[i], program.multiply(h, middle[i])) for i in range(n)]
 
     channels = _channels(terms, (M, C, K, loads), (u, v, drives), laws)
     states = [*zip(u, next_u, strict=True), *zip(v, next_v, strict=True), *further]
-    return StepProgram(program, terms.parameters, laws.static_travels if laws else {}, h, drives, states, channels)
+    return StepProgram(program, terms.parameters, static_travels(terms, joints), h, drives, states, channels)
+
+
+def _reach(terms: EquationTerms, factor: Factor, joints: list[NonlinearElement]) -> list[list[Node]]:
+    """Return the columns of W = A^-1 J^T."""
+    program, n = terms.program, terms.model.n_dof
+    columns = [factor.solve(program, [joint.row.get(i, program.number(0.0)) for i in range(n)]) for joint in joints]
+    return [[program.label(node, f"W{i}_{j}") for i, node in enumerate(column)] for j, column in enumerate(columns)]
+
+
+def _along(terms: EquationTerms, joint: NonlinearElement, vector: list[Node]) -> Node:
+    """Return an element's travel, or its rate, of the unknowns' displacements or velocities."""
+    return terms.program.dot([(value, vector[i]) for i, value in sorted(joint.row.items())])
+
+
+def _ground(terms: EquationTerms, joint: NonlinearElement, drives: list[Node]) -> Node:
+    """Return the ground's part of an element's travel, or of its rate."""
+    return terms.program.dot([(value, drives[i]) for i, value in sorted(joint.input_row.items())])
+
+
+def _begins(
+    terms: EquationTerms, joints: list[NonlinearElement], state: tuple[list[Node], list[Node], list[Node]], free: list[Node]
+) -> list[ElementAtBegin]:
+    """Return the elements as a step begins that would reach the velocity `free` without the laws."""
+    u, v, drives = state
+    rates = drives[len(terms.model.inputs) :]
+    return [
+        ElementAtBegin(
+            terms.program.add(_along(terms, joint, u), _ground(terms, joint, drives)),
+            _ground(terms, joint, rates),
+            _along(terms, joint, free),
+            _along(terms, joint, v),
+        )
+        for joint in joints
+    ]
 
 
 def _effective_matrix(program: Program, matrices: tuple[Matrix, Matrix, Matrix], two_h: Node, half_h: Node) -> Matrix:
@@ -87,7 +127,11 @@ def _channels(
     M, C, K, loads = matrices
     u, v, drives = state
     acceleration: list[Node] = []
-    now = laws.now(u, v, drives) if laws else []
+    now: list[Node] = []
+    if laws:
+        begins = _begins(terms, laws.joints, state, v)
+        rates = [program.add(begin.moving, begin.ground) for begin in begins]
+        now = laws.now([begin.travel for begin in begins], rates, [begin.moving for begin in begins])
     pushes = laws.loads(now) if laws else {}
     if any(channel.acceleration for channel in model.channels):
         factor = factorise(program, model.n_dof, M, "M")
@@ -100,11 +144,8 @@ def _channels(
             forces.append(program.total(parts))
         acceleration = [program.label(node, f"a{i}") for i, node in enumerate(factor.solve(program, forces))]
 
-    carrying = {element: joint for joint, element in enumerate(i for i, item in enumerate(model.elements) if item.laws)}
     found = []
-    for number, channel in enumerate(model.channels):
+    for number in range(len(model.channels)):
         parts = terms.channel_terms(number, (acceleration, v, u), drives)
-        if channel.laws:
-            parts += terms.times({joint: channel.laws[element] for element, joint in carrying.items() if element in channel.laws}, now)
-        found.append(program.total(parts))
+        found.append(program.total([*parts, *(laws.channel_terms(number, now) if laws else [])]))
     return found
