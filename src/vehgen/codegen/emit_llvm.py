@@ -18,6 +18,7 @@ import ast
 import inspect
 import textwrap
 from collections.abc import Callable
+from functools import cache
 from types import SimpleNamespace
 from typing import Any
 
@@ -46,11 +47,20 @@ def compiles() -> bool:
     return not getattr(numba.config, "DISABLE_JIT", 0)
 
 
+@cache
+def _fits(width: int) -> int:
+    """Return how many of `width` lanes this machine computes at once: half of them where its vectors are shorter than a cache line.
+
+    Twice as many instructions would need twice the registers, which hold half as much there.
+    """
+    return width if llvm.get_host_cpu_features().get("avx512f", False) else width // 2
+
+
 def emit_llvm(*bodies: Callable[..., None], width: int, row: int) -> Any:
     """Join bodies `(work, j, dt, drives)` to a function `(work, active, dt, drives, steps)`: so many steps of all active lanes.
 
-    `width` lanes are computed at once, and a step has `row` numbers of `drives`. numba's code can call it; where numba is told not to
-    compile (NUMBA_DISABLE_JIT), it is plain Python, lane by lane.
+    At most `width` lanes are computed at once, and a step has `row` numbers of `drives`. numba's code can call it; where numba is told
+    not to compile (NUMBA_DISABLE_JIT), it is plain Python, lane by lane.
     """
     if not compiles():
         return _plain(bodies, width, row)
@@ -60,7 +70,7 @@ def emit_llvm(*bodies: Callable[..., None], width: int, row: int) -> Any:
             if not bodies:  # a vehicle without channels
                 return context.get_dummy_value()
             name = f"{bodies[0].__module__}.{bodies[0].__name__}"
-            text = write_function(name, [_statements(body) for body in bodies], width, row, str(context.get_data_type(work.dtype)))
+            text = write_function(name, [_statements(body) for body in bodies], _fits(width), row, str(context.get_data_type(work.dtype)))
             context.active_code_library.add_llvm_module(llvm.parse_assembly(text))
             kind = ir.FunctionType(ir.VoidType(), [argument.type for argument in arguments])
             builder.call(ir.Function(builder.module, kind, name), arguments)
