@@ -68,12 +68,12 @@ ARITHMETIC = (ast.Assign, ast.Name, ast.Store, ast.Load, ast.Tuple, ast.Subscrip
               ast.Attribute, ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.USub)  # fmt: skip
 PHASES = (*ARITHMETIC, ast.If, ast.Compare, ast.Eq, ast.Expr)
 LABEL = re.compile(
-    r"([pq]_\d+|(mean_)?(f_\d+|d?w_input_\d+)|[uvxraefghWGMCKPQF]\d+(_\d+)*|vm\d+|s\d+_\d+_\d+|(static|rest)\d+|[AMK]_?_(inv|l)\d+(_\d+)?)\Z"
+    r"([pq]_\d+|(mean_)?(f_\d+|d?w_input_\d+)|[uvxraeofghdmWGMCKPQF]\d+(_\d+)*|vm\d+|s\d+_\d+_\d+|(static|rest)\d+|[AMK]_?_(inv|l)\d+(_\d+)?)\Z"
 )
-OWN = {"work", "j", "dt", "drives", "math", "lower", "upper", "sign", "step", "abs", "float32", "float64", "residual"}
+OWN = {"work", "j", "dt", "drives", "math", "lower", "upper", "sign", "step", "abs", "float32", "float64", "residual", "started"}
 PHASE_NAMES = {"phase", "work", "active", "dt", "drives", "steps", "kept", "setup", "advance", "sample"}
 
-RESIDUAL_LINE = "State: what is left to be balanced (r) and twice the forces of springs (e, g), the residual form.\n"
+RESIDUAL_LINE = "State: what is left to be balanced (r) and twice the forces of springs (e, o), the residual form.\n"
 
 
 @pytest.fixture(scope="module")

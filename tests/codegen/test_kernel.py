@@ -171,17 +171,17 @@ def test_operation_counts_do_not_rise():
 
 
 NONLINEAR_BASELINE = {
-    "asymmetric_damping": 579,
-    "asymmetric_friction": 677,
-    "bump_stop": 557,
-    "cubic_stiffness": 667,
-    "dry_friction": 657,
-    "elasto_plastic": 567,
-    "hysteresis": 942,
-    "progressive_stiffness": 517,
-    "quadratic_damping": 664,
-    "quadratic_stiffness": 667,
-    "relaxation": 557,
+    "asymmetric_damping": 478,
+    "asymmetric_friction": 553,
+    "bump_stop": 448,
+    "cubic_stiffness": 548,
+    "dry_friction": 533,
+    "elasto_plastic": 458,
+    "hysteresis": 818,
+    "progressive_stiffness": 408,
+    "quadratic_damping": 563,
+    "quadratic_stiffness": 548,
+    "relaxation": 433,
     "tyre_liftoff": 496,
 }
 

@@ -128,9 +128,9 @@ class Condensation:
         pull = program.multiply(self.inverse[i], program.subtract(begin.free_rate, stop))
         others = [program.negate(program.multiply(self.normalised[i][j], force)) for j, force in enumerate(before) if j != i]
         along = program.multiply(slope, program.subtract(rate, stop))
-        stopping = program.total([pull, *others, program.negate(smooth), along])
         lost = program.multiply(program.multiply(program.number(0.5), program.add(self.inverse[i], slope)), begin.moving)
-        return Slip(program.subtract(stopping, lost), lost, begin.moving, *self._bound(joint))
+        holding = program.total([pull, program.negate(lost), *others, program.negate(smooth), along])
+        return Slip(holding, lost, begin.moving, *self._bound(joint))
 
     def _bound(self, joint: NonlinearElement) -> tuple[Node, Node]:
         """Return the bound of an element's friction, and what it is within the bound of."""

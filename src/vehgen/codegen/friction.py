@@ -44,8 +44,10 @@ class Slip:
 def mean_friction(program: Program, item: Slip) -> Node:
     """Return the mean friction of an element over a step."""
     side = program.subtract(program.multiply(program.number(2.0), program.apply("step", item.slip)), program.number(1.0))
-    span = program.subtract(item.bound, program.multiply(side, program.subtract(item.holding, item.middle)))
-    missing = program.apply("max", program.subtract(span, program.apply("abs", item.lost)), program.number(0.0))
+    held = program.multiply(side, program.subtract(item.holding, item.middle))
+    span = program.subtract(item.bound, held)
+    within = program.subtract(item.bound, program.apply("abs", item.lost))
+    missing = program.apply("max", program.subtract(within, held), program.number(0.0))
     width = program.apply("max", program.multiply(program.number(2.0), item.bound), program.number(SMALLEST_BOUND))
     share = program.divide(program.multiply(side, width), program.apply("max", span, width))
     most = program.add(item.middle, program.multiply(side, item.bound))

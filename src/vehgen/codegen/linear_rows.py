@@ -8,8 +8,8 @@ from vehgen.codegen.program import SETUP_PHASE, Node, Program
 def as_rows(program: Program, results: list[Node]) -> list[Node]:
     """Return the results as sums of coefficients times leaves.
 
-    The chain rule backwards through the program gives each coefficient. Programs of sums, and of products and quotients by what SETUP
-    knows, are linear; others are none of this function's business.
+    The chain rule backwards through the program gives each coefficient. Sums, and products and quotients by what SETUP knows, are linear;
+    what comes out of anything else counts as a leaf.
     """
     return [_row(program, result) for result in results]
 
@@ -20,12 +20,18 @@ def _row(program: Program, result: Node) -> Node:
     while weights:
         node = max(weights)
         weight = program.total(weights.pop(node))
-        if program.phases[node] == SETUP_PHASE or program.operations[node] == "leaf":
+        if program.phases[node] == SETUP_PHASE or not _is_linear(program, node):
             terms.append((node, program.multiply(weight, node)))
             continue
         for argument, factor in _factors(program, node, weight):
             weights.setdefault(argument, []).append(factor)
     return program.total([term for _, term in sorted(terms)])
+
+
+def _is_linear(program: Program, node: Node) -> bool:
+    """Whether a node is a sum, or a product or quotient by what SETUP knows."""
+    operation, known = program.operations[node], [program.phases[item] == SETUP_PHASE for item in program.arguments[node]]
+    return operation in ("neg", "+", "-") or (operation == "*" and any(known)) or (operation == "/" and known[1])
 
 
 def _factors(program: Program, node: Node, weight: Node) -> list[tuple[Node, Node]]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from vehgen.codegen.factorisation import Matrix, factorise
-from vehgen.codegen.program import SETUP_PHASE, STEP_PHASE, Node
+from vehgen.codegen.program import SETUP_PHASE, Node
 from vehgen.codegen.step_program import EquationTerms
 from vehgen.mechanics.energies import Element
 from vehgen.mechanics.law_terms import RATE, REST, STATIC, TIME_STEP, TRAVEL
@@ -47,6 +47,11 @@ class NonlinearElement:
     def asks_travel(self) -> bool:
         """Whether a law depends on the travel."""
         return any(TRAVEL in sp.Tuple(step.force, step.now, *step.states.values()).free_symbols for step in self.steps)
+
+    @property
+    def asks_rate(self) -> bool:
+        """Whether a law depends on the travel's rate at an instant."""
+        return self.friction or any(RATE in step.now.free_symbols for step in self.steps)
 
     def ends(self) -> dict[sp.Symbol, sp.Expr]:
         """Return the laws' states after a step, by their symbols."""

@@ -15,12 +15,14 @@ A (1 - l) holds the leaf's mass.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from functools import cached_property
 
 from vehgen.codegen.factorisation import Factor, Matrix, factorise
 from vehgen.codegen.linear_rows import as_rows
+from vehgen.codegen.nonlinear_element import find_nonlinear, static_travels
 from vehgen.codegen.program import STEP_PHASE, Node, Program
-from vehgen.codegen.spring_terms import Leaf, Spring, find_leaves, free_springs
+from vehgen.codegen.residual_laws import ResidualLaws
+from vehgen.codegen.spring_terms import Leaf, Spring, Velocities, find_leaves, free_springs
 from vehgen.codegen.step_program import EquationTerms, StepProgram
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 
@@ -28,32 +30,22 @@ MOST_FOR_ROWS = 400
 """Operations of a sample beyond which rows of coefficients, which must be compiled, are not worth what they save."""
 
 
-def write_residual_step(model: EquationsOfMotion) -> StepProgram:
-    """Write one step of a model without force laws, from rest, in residual form.
+def write_residual_step(model: EquationsOfMotion, sweeps: int | None = None) -> StepProgram:
+    """Write one step of a model, from rest, in residual form; `sweeps` as in :class:`vehgen.codegen.condensation.Condensation`.
+
+    Its laws must take that form, see :func:`vehgen.codegen.residual_laws.takes_residual_form`.
 
     The drives are those of :func:`vehgen.codegen.newmark.write_step`; in a step they stand for the sum of the means over this step and the
     next one. Before the first step, one step from zero whose drives are the means over the first one sets the state. At a sample `drives`
     are the values at that time, and `sample_means` the means over the step that begins then.
     """
-    return _ResidualStep(model).write()
-
-
-@dataclass(frozen=True)
-class _Motion:
-    """Velocities in the middle of a step: of unknowns that are no leaves, of the leaves, and of the free springs' travels.
-
-    Those of a leaf are A z and A (z - G), scaled as its states are.
-    """
-
-    rest: dict[int, Node]
-    leaves: list[tuple[Node, Node]]
-    free: list[Node]
+    return _ResidualStep(model, sweeps).write()
 
 
 class _ResidualStep:
     """Writes the residual form of a model into a program."""
 
-    def __init__(self, model: EquationsOfMotion) -> None:
+    def __init__(self, model: EquationsOfMotion, sweeps: int | None) -> None:
         self.model, self.terms = model, EquationTerms(model)
         terms, self.program = self.terms, self.terms.program
         self.mass = terms.matrix(model.mass_entries, "M")
@@ -66,18 +58,23 @@ class _ResidualStep:
         self.r = [self.program.leaf(f"r{i}", STEP_PHASE) for i in range(model.n_dof)]
         self.u = [self.program.leaf(f"u{i}", STEP_PHASE) for i in range(model.n_dof)]
 
+        self.joints = find_nonlinear(terms, terms.matrix(model.stiffness_entries, "K")) if any(e.laws for e in model.elements) else []
+        self.laws = ResidualLaws(terms, self.joints, self.leaves, self.free, self._motion, sweeps) if self.joints else None
+
     def write(self) -> StepProgram:
         """Return the program."""
-        motion = self._motion()
-        states = [*self._advance(motion), *self._displacements(motion)]
-        channels = self._channels()
-        terms = self.terms
-        return StepProgram(self.program, terms.parameters, {}, terms.h, self.drives, states, channels, sample_means=self.sample_means)
+        terms, program = self.terms, self.program
+        motion, pushes, further = self.laws.write(self.r) if self.laws else (self._motion(self.r), {}, [])
+        for unknown, node in motion.rest.items():
+            program.label(node, f"vm{unknown}")
+        states = [*self._advance(motion, pushes), *self._displacements(motion), *further]
+        rests, channels = static_travels(terms, self.joints), self._channels()
+        return StepProgram(program, terms.parameters, rests, terms.h, self.drives, states, channels, sample_means=self.sample_means)
 
-    def _motion(self) -> _Motion:
-        """Solve S v_mid = r."""
-        program, size = self.program, len(self.rest)
-        place = {unknown: i for i, unknown in enumerate(self.rest)}
+    @cached_property
+    def _factor(self) -> Factor:
+        """S without the leaves, factorised."""
+        program, place = self.program, self._place
         matrix: Matrix = {
             (place[i], place[j]): program.multiply(self.terms.two_h, node)
             for (i, j), node in self.mass.items()
@@ -87,38 +84,49 @@ class _ResidualStep:
             _add_outer(program, matrix, program.multiply(leaf.spring.middle, leaf.scale), leaf.spring.on(place))
         for spring in self.free:
             _add_outer(program, matrix, spring.middle, spring.on(place))
-        factor = factorise(program, size, matrix, "A")
-        solution = _solve(program, factor, [self.r[i] for i in self.rest])
-        rest = {unknown: program.label(solution[i], f"vm{unknown}") for i, unknown in enumerate(self.rest)}
-        rows = [spring.on(place) for spring in (*(leaf.spring for leaf in self.leaves), *self.free)]
-        direct = len(rows) * size <= _solving_cost(factor) + sum(map(len, rows))
+        return factorise(program, len(self.rest), matrix, "A")
+
+    @property
+    def _place(self) -> dict[int, int]:
+        """Where the unknowns that are no leaves stand among each other."""
+        return {unknown: i for i, unknown in enumerate(self.rest)}
+
+    def _motion(self, r: list[Node]) -> Velocities:
+        """Solve S v_mid = r."""
+        program, factor = self.program, self._factor
+        solution = _solve(program, factor, [r[i] for i in self.rest])
+        rest = {unknown: solution[i] for i, unknown in enumerate(self.rest)}
+        rows = [spring.on(self._place) for spring in (*(leaf.spring for leaf in self.leaves), *self.free)]
+        direct = len(rows) * len(self.rest) <= _solving_cost(factor) + sum(map(len, rows))
+        balance = [r[i] for i in self.rest] if direct else None
         leaves = []
         for leaf, row in zip(self.leaves, rows, strict=False):
-            r, one = self.r[leaf.unknown], program.number(1.0)
+            one, left = program.number(1.0), r[leaf.unknown]
             scale = program.multiply(leaf.scale, leaf.remainder)
-            hung = self._rate(factor, solution, row, scale if direct else None)
+            hung = self._rate(solution, row, scale, balance)
             pulled = program.multiply(one if direct else scale, hung)
             moved = program.multiply(leaf.passing if direct else program.multiply(leaf.scale, leaf.spring.middle), hung)
-            leaves.append((program.add(r, moved), program.subtract(r, pulled)))
-        free = [self._rate(factor, solution, row, program.number(1.0) if direct else None) for row in rows[len(leaves) :]]
-        return _Motion(rest, leaves, free)
+            leaves.append((program.add(left, moved), program.subtract(left, pulled)))
+        free = [self._rate(solution, row, program.number(1.0), balance) for row in rows[len(leaves) :]]
+        return Velocities(rest, leaves, free)
 
-    def _rate(self, factor: Factor, solution: list[Node], row: dict[int, Node], scale: Node | None) -> Node:
-        """Return a row times the velocities: `scale` times that, straight from the residual, where it is given."""
+    def _rate(self, solution: list[Node], row: dict[int, Node], scale: Node, balance: list[Node] | None) -> Node:
+        """Return a row times the velocities, or `scale` times that straight from what is to be balanced, where that is given."""
         program = self.program
-        if scale is None:
+        if balance is None:
             return program.dot([(a, solution[j]) for j, a in row.items()])
-        column = _column(program, factor, row)
-        return program.dot([(program.multiply(node, scale), self.r[i]) for node, i in zip(column, self.rest, strict=True)])
+        column = _column(program, self._factor, row)
+        return program.dot([(program.multiply(node, scale), item) for node, item in zip(column, balance, strict=True)])
 
-    def _advance(self, motion: _Motion) -> list[tuple[Node, Node]]:
-        """Return r and e with their values after the step."""
-        program = self.program
+    def _advance(self, motion: Velocities, pushes: dict[int, Node]) -> list[tuple[Node, Node]]:
+        """Return r and e with their values after the step; `pushes` are what the laws add to q, by their springs' places."""
+        program, zero = self.program, self.program.number(0.0)
         gathered = {i: [self.r[i], *self._load(i, self.drives)] for i in self.rest}
         states = []
         for leaf, (moved, travelled) in zip(self.leaves, motion.leaves, strict=True):
             i = leaf.unknown
             push, stretched = leaf.spring.advance(program, travelled, leaf.inverse)
+            push = program.add(push, pushes.get(leaf.spring.place, zero))
             own, pressed = leaf.own.advance(program, moved, leaf.inverse)
             loads = [program.multiply(node, self.drives[j]) for node, j in self._scaled_load(leaf)]
             other = program.total([*loads, program.negate(own)])
@@ -128,12 +136,13 @@ class _ResidualStep:
                 gathered[j].append(program.multiply(a, passed))
         for spring, rate in zip(self.free, motion.free, strict=True):
             push, stretched = spring.advance(program, rate, program.number(1.0))
+            push = program.add(push, pushes.get(spring.place, zero))
             states += stretched
             for j, a in spring.row.items():
                 gathered[j].append(program.negate(program.multiply(a, push)))
         return [*states, *((self.r[i], program.total(terms)) for i, terms in gathered.items())]
 
-    def _displacements(self, motion: _Motion) -> list[tuple[Node, Node]]:
+    def _displacements(self, motion: Velocities) -> list[tuple[Node, Node]]:
         """Return the displacements that a channel reads, with their values after the step."""
         program, found = self.program, []
         one = program.number(1.0)
@@ -159,6 +168,7 @@ class _ResidualStep:
         n = model.n_dof
         velocity: list[Node] = []
         acceleration: list[Node] = []
+        now = self.laws.now() if self.laws else []
         if any(channel.acceleration or channel.velocity for channel in model.channels):
             residual, resting = self._whole_residual(), self._resting_forces()
             factor = factorise(program, n, self.mass, "M")
@@ -167,13 +177,18 @@ class _ResidualStep:
                 parts = [residual[i], resting[i], *map(program.negate, self._load(i, self.sample_means))]
                 momentum.append(program.multiply(self.terms.half_h, program.total(parts)))
             velocity = [program.label(node, f"v{i}") for i, node in enumerate(factor.solve(program, momentum))]
+            pushes = self.laws.condensed.loads(now) if self.laws else {}
             forces = []
             for i in range(n):
                 parts = [program.negate(program.multiply(node, velocity[j])) for (row, j), node in sorted(self.damping.items()) if row == i]
+                parts += [program.negate(pushes[i])] if i in pushes else []
                 forces.append(program.total([*self._load(i, self.drives), program.negate(resting[i]), *parts]))
             acceleration = [program.label(node, f"a{i}") for i, node in enumerate(factor.solve(program, forces))]
         motion = acceleration, velocity, self.u
-        written = [program.total(self.terms.channel_terms(k, motion, self.drives)) for k in range(len(model.channels))]
+        written = []
+        for k in range(len(model.channels)):
+            own = self.laws.condensed.channel_terms(k, now) if self.laws else []
+            written.append(program.total([*self.terms.channel_terms(k, motion, self.drives), *own]))
         operations, instructions = program.cost(written)
         if operations > MOST_FOR_ROWS:
             return written

@@ -14,9 +14,11 @@ from vehgen.mechanics.energies import Element
 class Spring:
     """A spring and damper: `row` its travel's coefficients, or for a leaf's own those of the motion it hangs on.
 
-    `middle` is c + h/2 k, `gain` 2 h k and `reach` 2 (c + h k); `state` is e = 2 k J u, zero without stiffness.
+    `place` is its number among the elements, -1 for a leaf's other springs together; `middle` is c + h/2 k, `gain` 2 h k and `reach`
+    2 (c + h k); `state` is e = 2 k J u, zero without stiffness.
     """
 
+    place: int
     row: dict[int, Node]
     middle: Node
     gain: Node
@@ -41,6 +43,7 @@ class Spring:
 class Leaf:
     """An unknown that hangs by `spring` on the motion `spring.row`; `own` are its other springs together.
 
+    `end` is the leaf's coefficient in the row of its spring's travel.
     With A the leaf's entry of the matrix S of a step, s = `spring.middle` and l = s/A: `inverse` is 1/A, `scale` 1 - l, by which the leaf's
     states are scaled, `unscale` its reciprocal, `remainder` A - s and `passing` l/(1 - l).
     """
@@ -48,6 +51,7 @@ class Leaf:
     unknown: int
     spring: Spring
     own: Spring
+    end: Node
     inverse: Node
     remainder: Node
     scale: Node
@@ -55,9 +59,22 @@ class Leaf:
     passing: Node
 
 
+@dataclass(frozen=True)
+class Velocities:
+    """Velocities in the middle of a step: of unknowns that are no leaves, of the leaves, and of the free springs' travels.
+
+    Those of a leaf are A z and A (z - G), with z its velocity and G that of what it hangs on, scaled as its states are.
+    """
+
+    rest: dict[int, Node]
+    leaves: list[tuple[Node, Node]]
+    free: list[Node]
+
+
 def find_leaves(terms: EquationTerms, mass: Matrix) -> list[Leaf]:
     """Return the leaves of a model: with a mass that no other unknown shares, on one spring, beside which only springs of their own act.
 
+    Of those springs of their own none carries a force law.
     Of two unknowns on the ends of one spring only one is a leaf.
     """
     elements, taken, found = _elements(terms), set[int](), []
@@ -68,8 +85,11 @@ def find_leaves(terms: EquationTerms, mass: Matrix) -> list[Leaf]:
         hung = [number for number, element in touching.items() if len(element.row) > 1]
         if len(hung) != 1 or not elements[hung[0]].row[i].is_Number or taken & elements[hung[0]].row.keys():
             continue
+        own = [element for number, element in touching.items() if number != hung[0]]
+        if any(element.laws for element in own):
+            continue
         taken.add(i)
-        found.append(_leaf(terms, i, mass[i, i], hung[0], [element for number, element in touching.items() if number != hung[0]]))
+        found.append(_leaf(terms, i, mass[i, i], hung[0], own))
     return found
 
 
@@ -80,13 +100,15 @@ def free_springs(terms: EquationTerms, leaves: list[Leaf]) -> list[Spring]:
     for number, element in _elements(terms).items():
         if not taken & element.row.keys():
             row = {j: terms.convert(value) for j, value in sorted(element.row.items())}
-            springs.append(_spring(terms, row, (terms.convert(element.k), terms.convert(element.c)), f"e{number}"))
+            springs.append(_spring(terms, number, row, (terms.convert(element.k), terms.convert(element.c)), f"e{number}"))
     return springs
 
 
 def _elements(terms: EquationTerms) -> dict[int, Element]:
     """Return the elements that move and push, by their numbers."""
-    return {i: element for i, element in enumerate(terms.model.elements) if element.row and (element.k != 0 or element.c != 0)}
+    return {
+        i: element for i, element in enumerate(terms.model.elements) if element.row and (element.k != 0 or element.c != 0 or element.laws)
+    }
 
 
 def _leaf(terms: EquationTerms, unknown: int, mass: Node, number: int, own: list[Element]) -> Leaf:
@@ -94,12 +116,12 @@ def _leaf(terms: EquationTerms, unknown: int, mass: Node, number: int, own: list
     program, hung = terms.program, terms.model.elements[number]
     end = hung.row[unknown]
     row = {j: terms.convert(-value / end) for j, value in sorted(hung.row.items()) if j != unknown}
-    spring = _spring(terms, row, (terms.convert(hung.k * end**2), terms.convert(hung.c * end**2)), f"e{number}")
+    spring = _spring(terms, number, row, (terms.convert(hung.k * end**2), terms.convert(hung.c * end**2)), f"e{number}")
     factors = [
         (terms.convert(element.k * element.row[unknown] ** 2), terms.convert(element.c * element.row[unknown] ** 2)) for element in own
     ]
     stiffness, damping = (program.total([pair[k] for pair in factors]) for k in (0, 1))
-    other = _spring(terms, {}, (stiffness, damping), f"g{unknown}")
+    other = _spring(terms, -1, {}, (stiffness, damping), f"o{unknown}")
     remainder = program.add(program.multiply(terms.two_h, mass), other.middle)
     whole = program.add(remainder, spring.middle)
     inverse = program.divide(program.number(1.0), whole)
@@ -107,6 +129,7 @@ def _leaf(terms: EquationTerms, unknown: int, mass: Node, number: int, own: list
         unknown=unknown,
         spring=spring,
         own=other,
+        end=terms.convert(end),
         inverse=inverse,
         remainder=remainder,
         scale=program.multiply(remainder, inverse),
@@ -115,11 +138,12 @@ def _leaf(terms: EquationTerms, unknown: int, mass: Node, number: int, own: list
     )
 
 
-def _spring(terms: EquationTerms, row: dict[int, Node], pair: tuple[Node, Node], label: str) -> Spring:
+def _spring(terms: EquationTerms, place: int, row: dict[int, Node], pair: tuple[Node, Node], label: str) -> Spring:
     program, h = terms.program, terms.h
     k, c = pair
     two = program.number(2.0)
     return Spring(
+        place=place,
         row=row,
         middle=program.add(c, program.multiply(terms.half_h, k)),
         gain=program.multiply(program.multiply(two, h), k),

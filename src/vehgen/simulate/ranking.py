@@ -67,7 +67,8 @@ def rank_population(simulator: Simulator, parameters: Array, scenario: Scenario,
 
 def _may_be_single(simulator: Simulator, scenario: Scenario) -> bool:
     static = any(channel.quantity in WITH_STATIC for channel in simulator.model.channels)
-    return simulator.kernel.source.from_rest and not static and keeps_what_recorders_keep(simulator.kernel, scenario)
+    source = simulator.kernel.source
+    return source.from_rest and not source.nonlinear and not static and keeps_what_recorders_keep(simulator.kernel, scenario)
 
 
 def _from_sample(first: int, reduction: Reduction, responses: NDArray[Any]) -> Array:
