@@ -1,5 +1,6 @@
 """Which mistakes of the measurement win: over one another, and over effects."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -8,8 +9,11 @@ from tests.diagnose.conftest import CUBIC, HUMPS
 from vehgen.diagnose import decision, ending
 from vehgen.diagnose.combining import Combiner
 from vehgen.diagnose.decision import Decision
+from vehgen.diagnose.detect.detection import detect
 from vehgen.diagnose.inputs import judging
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always
+from vehgen.diagnose.inputs.refits import BaseRefits
+from vehgen.diagnose.select.search import SearchRound
 from vehgen.effects import EFFECTS
 
 FAULT = MeasurementFault("hump", ("high",), (), "the hump in high is another than the file says", "measure it")
@@ -77,12 +81,54 @@ def test_another_vehicle_is_not_told_where_one_force_at_a_place_explains_the_gap
         ("speed", ("high",), False, False),
         ("speed", ("low", "high", "fast"), True, False),
         ("hump", ("high",), True, False),
+        ("low_pass", ("low", "high", "fast"), True, True),
     ],
-    ids=["one run's speed", "not all of the gap", "all speeds", "a hump"],
+    ids=["one run's speed", "not all of the gap", "all speeds", "a hump", "a low-pass"],
 )
 def test_a_wrong_speed_of_some_runs_is_told_before_effects_are_tried(monkeypatch, detection_of, kind, runs, at_once, told):
     """A truck's strained base had supposed four things of a run 9 % too fast, and effects were tried for ten minutes beside it."""
     fault = MeasurementFault(kind, runs, (), f"the {kind} is another", "measure it")
     monkeypatch.setattr(ending, "find_mistakes", lambda detection: judging.Undone((fault,), 0.01, at_once, None))
-    found = Decision(detection_of(CUBIC, runs=HUMPS), [], False, lambda *_: None)._one_speed()
+    found = Decision(detection_of(CUBIC, runs=HUMPS), [], False, lambda *_: None)._one_mistake()
     assert (found is not None and found.verdict.faults == (fault,)) == told
+
+
+def test_a_low_pass_may_be_a_tyre_that_smooths_where_runs_do_not_differ_in_speed(monkeypatch, detection_of):
+    fault = MeasurementFault("low_pass", ("low", "high", "fast"), (), "low-passed at 8 Hz", "record faster")
+    monkeypatch.setattr(ending, "find_mistakes", lambda detection: judging.Undone((fault,), 0.01, True, None))
+    monkeypatch.setattr(ending.limit, "VARIED_SPEEDS", 2.1)
+    assert Decision(detection_of(CUBIC, runs=HUMPS), [], False, lambda *_: None)._one_mistake() is None
+
+
+def test_refits_begin_at_a_vehicle_that_is_known(detection_of):
+    """From the file's values they had ended far off, and a speed in km/h of the validation run alone was not told."""
+    known, lacking = (detection_of(*effects, runs=HUMPS) for effects in ((), (CUBIC,)))
+    space = known.problem.space
+    assert BaseRefits(known).begin == pytest.approx(space.unit(known.base.least_squares.values))
+    assert BaseRefits(lacking).begin == pytest.approx(space.unit(space.start))
+
+
+@pytest.mark.parametrize(("effects", "told"), [((), "mistake"), ((CUBIC,), "out of range")], ids=["unseen", "seen"])
+def test_a_gap_of_validation_runs_alone_is_first_held_against_mistakes(monkeypatch, detection_of, effects, told):
+    decision_of = Decision(detection_of(*effects, runs=HUMPS), list(EFFECTS.values()), False, lambda *_: None)
+    monkeypatch.setattr(Decision, "_search_round", lambda self, current: SearchRound(current, (), (), ()))
+    monkeypatch.setattr(decision, "freed_instead", lambda first, base: base)
+    monkeypatch.setattr(Decision, "_other_mistakes", lambda self, first: "mistake")
+    monkeypatch.setattr(Decision, "_out_of_range", lambda self, freed: "out of range")
+    assert decision_of._explain_gap() == told
+
+
+def test_exchanged_channels_of_a_stranger_are_told(monkeypatch, trials_of):
+    """Noise is told so large there that the base explains the runs, of whose energy it leaves four fifths."""
+    swapped = []
+    for trial in trials_of(runs=HUMPS):
+        values = trial.recording.values.copy()
+        values[:, :2] = values[:, 1::-1]
+        swapped.append(replace(trial, recording=replace(trial.recording, values=values)))
+    detection = detect(swapped)
+    stranger = MeasurementFault("stranger", (), (), "they have nothing to do with the vehicle", "check them")
+    fits = detection.base.least_squares
+    monkeypatch.setattr(judging, "unrelated_recording", lambda fit: (stranger,) if fit is fits else ())
+    found = [(item.kind, item.channels) for item in judging.supposed_mistakes(detection)]
+    assert ("exchanged", tuple(sorted(detection.trials[0].channels[:2]))) in found
+    assert "stranger" not in [kind for kind, _ in found]

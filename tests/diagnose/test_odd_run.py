@@ -90,6 +90,19 @@ def test_a_sensor_that_reads_more_in_one_run_is_told_with_its_factor(louder):
     assert found.sigma < 0.01
 
 
+def test_so_is_one_over_a_measured_road(trials_of):
+    found = []
+    for trial in trials_of():
+        values = trial.recording.values.copy()
+        if trial.name == "rough":
+            values[:, 2] *= GAIN
+        found.append(replace(trial, recording=replace(trial.recording, values=values)))
+    odd = disagreement(detect(found))
+    assert isinstance(odd, OddChannel)
+    assert (odd.run, odd.channel) == ("rough", found[0].channels[2])
+    assert odd.factor == pytest.approx(GAIN, abs=0.02)
+
+
 def test_first_order_gains_are_those_of_a_fit_with_that_number_free(louder):
     runs = AllRuns(louder)
     run = [trial.name for trial in runs.trials].index("fast")

@@ -71,7 +71,7 @@ class Decision(Ending):
         other.notes += self.notes
         if believed.is_quiet:
             return self._mistaken(left) if (left := supposed_mistakes(believed)) else self._one_cause() or other._quiet()
-        if mistaken := other._one_speed():
+        if mistaken := other._one_mistake():
             return mistaken
         found = other._explain_gap()
         single = one_error(self.detection, believed, found, self._candidates(believed.base), self.runner)
@@ -138,7 +138,8 @@ class Decision(Ending):
                 break
             first = again
         if freed := freed_instead(first, self.base):
-            return self._out_of_range(freed)
+            unseen = self.base.training <= limit.NOISE_FLOOR**2  # the gap is of validation runs alone, to which nothing is fitted
+            return (self._other_mistakes(first) if unseen else None) or self._out_of_range(freed)
         weak = self._add(first) if first.fits else self._all_idle()
         self._leave_out_needless()
         if self.interrupted:

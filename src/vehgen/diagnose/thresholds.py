@@ -51,3 +51,5 @@ Of laws fitted to 90 vehicles that hid nothing some fell by up to 827 on the tra
 validation runs."""
 FAINT_TIE = 0.8
 """Candidates that let -2 ln L fall by this share of what the best one does, on training and on validation runs, are tied with it there."""
+VARIED_SPEEDS = 1.25
+"""Runs differ in speed where the fastest is driven so many times as fast as the slowest."""

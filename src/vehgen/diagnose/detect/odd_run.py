@@ -1,4 +1,4 @@
-"""Whether runs over humps agree on the vehicle and on what its sensors read.
+"""Whether runs over humps agree on the vehicle, and all runs on what its sensors read.
 
 A base model that fits all runs within the noise may hide what is missing: recalibrated parameters and the errors of runs share it out
 among them. A run that was made with another load, or in which an effect that grows with travel shows most, asks for other parameters than
@@ -55,22 +55,17 @@ class OddChannel:
 
 
 def disagreement(detection: Detection) -> OddRun | OddChannel | None:
-    """Return what disagrees most: one channel of one run over humps, if that is all, or else a run; None where all agree.
+    """Return what disagrees most: one channel of one run, if that is all, or else a run over humps; None where all agree.
 
-    Measured roads have errors of their own and are left out; so are rigs.
+    Measured roads have errors of their own, which no gain of one channel looks like, but a vehicle may. Rigs are left out.
     """
-    trials = detection.trials
-    if len(trials) < ODD_AMONG or not any(_is_judged(detection, trial.name) for trial in trials):
+    if len(detection.trials) < ODD_AMONG or not any(trial.scenario.track.parts for trial in detection.trials):
         return None
     runs = AllRuns(detection)
-    judged = [number for number, trial in enumerate(runs.trials) if _is_judged(detection, trial.name)]
-    vehicles = [runs.own_parameters(number) for number in judged]
-    return _odd_channel(runs, vehicles) or _odd_run(runs, vehicles)
-
-
-def _is_judged(detection: Detection, run: str) -> bool:
-    trial = next(trial for trial in detection.trials if trial.name == run)
-    return bool(trial.scenario.track.parts) and not measured_profiles(trial)
+    driven = [number for number, trial in enumerate(runs.trials) if trial.scenario.track.parts]
+    vehicles = [runs.own_parameters(number) for number in driven if not measured_profiles(runs.trials[number])]
+    gains = {(number, c): runs.own_gain(number, c) for number in driven for c in range(len(runs.trials[number].channels))}
+    return _odd_channel(runs, gains, vehicles) or (_odd_run(runs, vehicles) if vehicles else None)
 
 
 def _is_odd(vehicle: OwnNumbers) -> bool:
@@ -86,9 +81,8 @@ def _odd_run(runs: AllRuns, vehicles: list[OwnNumbers]) -> OddRun | None:
     return OddRun(runs.trials[worst.run].name, worst.gain, by_chance, agree)
 
 
-def _odd_channel(runs: AllRuns, vehicles: list[OwnNumbers]) -> OddChannel | None:
-    """Return a channel beside which no other one is odd, and no run."""
-    gains = {(item.run, c): runs.own_gain(item.run, c) for item in vehicles for c in range(len(runs.trials[item.run].channels))}
+def _odd_channel(runs: AllRuns, gains: dict[tuple[int, int], OwnNumbers], vehicles: list[OwnNumbers]) -> OddChannel | None:
+    """Return a channel beside which no other one is odd, and no run; `gains` are theirs, by run and channel."""
     (run, channel), best = max(gains.items(), key=lambda item: item[1].gain)
     more = float(best.values[0])
     if best.gain < ODD_CHANNEL or abs(more) < ODD_READING:

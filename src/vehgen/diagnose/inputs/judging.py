@@ -7,6 +7,8 @@ from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from vehgen.diagnose.detect.odd_run import OddChannel, OddRun
 from vehgen.diagnose.detect.road_error import measured_profiles
 from vehgen.diagnose.inputs.amplitudes import dead_hypotheses, drift_hypotheses, gain_hypotheses, hidden_units, other_gain, unit_hypotheses
@@ -174,7 +176,17 @@ def supposed_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
     told = {run for item in found if item.kind == "clock" for run in item.runs}
     arrivals = {trial.name: trial.scenario.first_arrival - trial.scenario.start for trial in detection.trials if trial.scenario.track.parts}
     moved = (item for item in moved_roads(conditions, speeds, arrivals) if not told & set(item.runs))
-    return (*found, *unrelated_recording(detection.base.least_squares), *moved, *_slow(detection))
+    stranger = unrelated_recording(detection.base.least_squares)
+    unlike = (_mislabelled(detection) or stranger) if stranger else ()
+    return (*found, *unlike, *moved, *_slow(detection))
+
+
+def _mislabelled(detection: Detection) -> tuple[MeasurementFault, ...]:
+    """Return the wrong labels that leave least once they are put right, where recordings are no stranger's then."""
+    case = BaseRefits(detection)
+    right = [(hypothesis, *case.judge(hypothesis)) for hypothesis in label_hypotheses(case)]
+    known = [item for item in right if not unrelated_recording(item[1])]
+    return min(known, key=lambda item: item[2])[0].describe(np.zeros(0)) if known else ()
 
 
 def _slow(detection: Detection) -> tuple[MeasurementFault, ...]:

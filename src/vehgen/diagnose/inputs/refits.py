@@ -46,6 +46,8 @@ class BaseRefits:
         self.base = detection.base.least_squares
         self.detected = self.trials = detection.trials
         self.problem = detection.problem.with_trials(self.trials)
+        right = detection.base.training <= NOISE_FLOOR**2  # then the vehicle is known, and a mistake is in validation runs alone
+        self.begin = self.problem.space.unit(self.base.values if right else self.problem.space.start)
         self.band = self.refit_band = self.base.misfit.band
         self.excess = max(detection.chi**2 - 1, 1e-9)
         self.shared: tuple[Adjustment, ...] = ()
@@ -122,7 +124,7 @@ class BaseRefits:
         shared, numbers
             Adjustments fitted along with those that undo what was found, and where they begin.
         unit
-            Where the parameters begin (default: the file's values, held by the base's prior).
+            Where the parameters begin (default: the file's values, or the base's where these leave noise, held by the base's prior).
         blind
             Channels of runs that are not to count.
         """
@@ -137,7 +139,7 @@ class BaseRefits:
         blind = blind | self.blind
         fit = fit_least_squares(
             problem,
-            problem.space.unit(problem.space.start) if unit is None else unit,
+            self.begin if unit is None else unit,
             options,
             noises=self._noises(problem.trials, blind),
             shared=(*self.shared, *shared),
