@@ -6,9 +6,9 @@ import time
 
 import numpy as np
 
-from benchmarks.limits.worker import N, observed, over_a_hump
+from benchmarks.limits.worker import FRICTION, N, observed, over_a_hump
 from vehgen.codegen import Kernel, write_kernel
-from vehgen.simulate.benchmark import DECIMATION, population
+from vehgen.simulate.benchmark import DECIMATION, benchmark_model, population
 from vehgen.vehicle import bundled_models
 
 STEPS = 10_000
@@ -18,8 +18,8 @@ def main(rounds: int = 15) -> None:
     """Print operations and times of both forms, and the largest difference of a channel relative to its largest value."""
     print("| vehicle | degrees of freedom | operations | 304 individuals [ns] | ratio | one individual [ns] | ratio | difference |")
     print("|---|---|---|---|---|---|---|---|")
-    for name in bundled_models():
-        model = observed(name)
+    models = {**{name: observed(name) for name in bundled_models()}, f"tractor5, {FRICTION}": benchmark_model(FRICTION)}
+    for name, model in models.items():
         kernel, ride, everyone = Kernel(model), over_a_hump(model, STEPS), population(model, N)
         counts = [write_kernel(model, from_rest=value).operation_counts["step"] for value in (False, True)]
         texts, gap = [], 0.0
