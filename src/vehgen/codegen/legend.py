@@ -26,7 +26,7 @@ def kernel_legend(model: EquationsOfMotion) -> str:
         "Coordinates (u displacement, v velocity)": [
             f"u{i}, v{i}: {item.name} [{item.unit}], {item.meaning}" for i, item in enumerate(model.coordinates)
         ],
-        "Springs (e twice the force; g of all that act on that coordinate alone)": [
+        "Springs (e twice the force; o of all that act on that coordinate alone)": [
             f"e{i}: {element.kind} {element.name}" for i, element in enumerate(model.elements)
         ],
         "Parameters": [f"{parameter_label(i)}: {described(name)}" for i, name in enumerate(model.parameters)],

@@ -19,3 +19,11 @@ def merit(fit: ModelFit) -> float:
 def own_numbers(fit: ModelFit) -> int:
     """Return how many numbers the last effect of a fit added."""
     return fit.last.effect.n_numbers(len(fit.least_squares.misfit.problem.trials))
+
+
+def numbers_at_ends(fit: ModelFit) -> list[str]:
+    """Return the parameters of the last effect of a fit that are at an end of their range: it may stand in for what it is not."""
+    found, last, named = fit.least_squares, fit.last, fit.last.effect.parameters
+    held = {(type(item), item.place) for item in found.adjusted_to_bounds}
+    searched = [item.name for item, symbol in zip(named, last.parameters, strict=False) if symbol in found.on_bound]
+    return searched + [item.name for item, own in zip(named, last.shared, strict=False) if (type(own), own.place) in held]

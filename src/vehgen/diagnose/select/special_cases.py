@@ -8,7 +8,7 @@ import numpy as np
 
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.model_fit import ModelFit
-from vehgen.diagnose.select.range_ends import numbers_at_ends
+from vehgen.diagnose.select.merit import numbers_at_ends
 
 
 def does_as_well(mean_square: float, best: float, before: float) -> bool:
