@@ -34,20 +34,12 @@ def export(
 
     Parameters
     ----------
-    model
-        Equations of motion, or a vehicle: itself, its file, or the name of a bundled model.
+    model, outputs, forces, values, parameter_set
+        As in :func:`vehgen.state_space`.
     to
         The format, one of `vehgen.export.EXPORT_FORMATS`.
     out
         The file, or the folder of a format of several files (default: named as the vehicle, here).
-    outputs
-        What comes out (default: the model's channels; those of a vehicle are acceleration and pitch rate of every body).
-    forces
-        Where vertical forces act (default: the model's).
-    values
-        Parameters [SI] by name; what is not named keeps the value of the set, or the file's.
-    parameter_set
-        One of the vehicle's sets.
     linear
         Leave force laws out where the format cannot carry them; else such a vehicle is refused.
     step

@@ -77,18 +77,10 @@ def frequency_response(
 
     Parameters
     ----------
-    model
-        Equations of motion, or a vehicle: itself, its file, or the name of a bundled model.
+    model, outputs, forces, values, parameter_set
+        As in :func:`vehgen.state_space`.
     frequency
         `shape (n,)` [Hz] (default: 0.1 to 30 Hz, every 0.05 Hz).
-    outputs
-        What comes out (default: the model's channels; those of a vehicle are acceleration and pitch rate of every body).
-    forces
-        Where vertical forces act (default: the model's).
-    values
-        Parameters [SI] by name; what is not named keeps the value of the set, or the file's.
-    parameter_set
-        One of the vehicle's sets.
     speed
         Of the vehicle [m/s]: every axle then meets the same road, later by its distance behind the first, and `road` is one input in place
         of the axles'. Without it each axle has an input of its own.

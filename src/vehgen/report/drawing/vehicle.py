@@ -32,12 +32,8 @@ def draw_vehicle(
 
     Parameters
     ----------
-    model
-        Equations of motion, or a vehicle: itself, its file, or the name of a bundled model.
-    values
-        Parameters [SI] by name; what is not named keeps the value of the set, or the file's.
-    parameter_set
-        One of the vehicle's sets.
+    model, values, parameter_set
+        As in :func:`vehgen.natural_modes`.
     marked
         Places to ring, as a diagnosis calls them: `tyre rear`, `axle4 and axle5`, `fifth_wheel`.
 
