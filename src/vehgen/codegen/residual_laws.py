@@ -4,8 +4,8 @@ A law's mean force f over a step takes J^T f off what is to be balanced, S v_mid
 laws the velocities follow from r, with them from what their forces leave of it; the sweeps between are those of condensation.py. Of the
 travels and slips at the start of a step, which this form does not hold, those that a law asks for are carried along.
 
-The step from zero before the first one must leave the laws' forces and states at zero. Where a law may act at rest (a stop that is met
-there), they are switched on when that step is over.
+The step from zero before the first one must leave the laws' forces at zero. Where a law may act at rest (a stop that is met there), they
+are switched on when that step is over.
 """
 
 from __future__ import annotations
@@ -22,9 +22,6 @@ from vehgen.codegen.spring_terms import Leaf, Spring, Velocities
 from vehgen.codegen.step_program import EquationTerms
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.law_terms import RATE, TRAVEL
-
-STARTED = "started"
-"""The state that is 0 before the first step and 1 from it on."""
 
 
 def takes_residual_form(model: EquationsOfMotion) -> bool:
@@ -65,9 +62,8 @@ class ResidualLaws:
         self.leaves = {leaf.spring.place: (i, leaf) for i, leaf in enumerate(leaves)}
         self.free = {spring.place: (i, spring) for i, spring in enumerate(free)}
         self.condensed = Condensation(terms, joints, self._compliance(), sweeps)
-        self.late = {joint.states[symbol] for joint in joints for symbol, end in joint.ends().items() if _acts_at_rest(joint, end)}
         acting = any(_acts_at_rest(joint, step.force) for joint in joints for step in joint.steps)
-        self.started = self.program.leaf(STARTED, STEP_PHASE) if acting or self.late else None
+        self.started = self.program.leaf("started", STEP_PHASE) if acting else None
 
     def write(self, r: list[Node]) -> tuple[Velocities, dict[int, Node], list[tuple[Node, Node]]]:
         """Return the velocities in the middle of a step, what is added to q by springs' places, and states with their values after it."""
@@ -92,10 +88,8 @@ class ResidualLaws:
             if joint.asks_rate:
                 slip = program.multiply(program.multiply(two, factor), node)
                 states.append((begin.moving, program.subtract(slip, begin.moving)))
-        for leaf, after in self.condensed.states(found, begins, [program.multiply(*pair) for pair in rates]):
-            late = program.labels[leaf] in self.late
-            states.append((leaf, program.multiply(program.leaf(STARTED, STEP_PHASE), after) if late else after))
-        return motion, pushes, states
+        further = self.condensed.states(found, begins, [program.multiply(*pair) for pair in rates])
+        return motion, pushes, [*states, *further]
 
     def _travel(self, joint: NonlinearElement) -> Node:
         """Return an element's travel as a step begins, or at a sample."""
