@@ -18,7 +18,7 @@ import tempfile
 from functools import partial
 from pathlib import Path
 
-from benchmarks.jobs.inputs import ROOT, import_phones, write_recordings
+from benchmarks.jobs.inputs import MANY_CROSSINGS, ROOT, import_phones, write_recordings
 from benchmarks.jobs.tables import Taken, shortest, split, totals
 
 HERE = ROOT / "src"
@@ -28,15 +28,20 @@ INPUTS = {
     "phones": import_phones,
     "sedan": partial(write_recordings, vehicle="sedan2", friction=False),
     "sedan_friction": partial(write_recordings, vehicle="sedan2", friction=True),
+    "truck": partial(write_recordings, vehicle="tractor5", friction=False),
     "truck_friction": partial(write_recordings, vehicle="tractor5", friction=True),
+    "truck_many": partial(write_recordings, vehicle="tractor5", friction=True, many=True),
 }
 """What writes a folder of runs."""
 JOBS = {
     "dhcm": ("phones", "calibrate tractor5 hump_2ms.yaml hump_3ms.yaml --method dhcm"),
+    "joint": ("phones", "calibrate tractor5 hump_2ms.yaml hump_3ms.yaml --method joint"),
     "shcm": ("sedan", "calibrate sedan2 low_2.yaml high_3.yaml --method shcm --sensors F"),
     "healthy": ("sedan", "diagnose sedan2 low_2.yaml high_3.yaml high_4.yaml"),
     "friction": ("sedan_friction", "diagnose sedan2 low_2.yaml high_3.yaml high_4.yaml"),
+    "truck_healthy": ("truck", "diagnose tractor5 low_2.yaml high_3.yaml high_4.yaml"),
     "truck": ("truck_friction", "diagnose tractor5 low_2.yaml high_3.yaml high_4.yaml"),
+    "truck_8": ("truck_many", f"diagnose tractor5 {' '.join(f'{name}.yaml' for name in MANY_CROSSINGS)}"),
 }
 """Folder and command of each job."""
 

@@ -25,6 +25,9 @@ OFF = 0.05
 """A recorded vehicle's parameters are off those of the file by this share, up or down."""
 CROSSINGS = {"low_2": (2.0, 0.03), "high_3": (3.0, 0.05), "high_4": (4.0, 0.05)}
 """Speed [m/s] and height [m] of the hump."""
+MANY_CROSSINGS = {
+    f"{word}_{speed:g}": (speed, height) for speed in (2.0, 3.0, 4.0, 5.0) for word, height in (("low", 0.03), ("high", 0.05))
+}
 RUN = """vehicle: {vehicle}
 speed: {speed} m/s
 duration: {duration} s
@@ -40,6 +43,8 @@ SENSORS = {
     "  L2: {body: semitrailer, behind: fifth_wheel, distance: 9.115 m, channels: {acceleration: L2_az, pitch_rate: L2_q}}\n",
 }
 DURATIONS = {"sedan2": 6, "tractor5": 13}
+LONG = 25
+"""Duration of each of MANY_CROSSINGS [s]."""
 FRICTION = {
     "sedan2": "  rear: {suspension: {laws: [{dry_friction: {force: 450 N}}]}}\n",
     "tractor5": "  axle1: {suspension: {laws: [{dry_friction: {force: 3 kN}}]}}\n",
@@ -51,8 +56,11 @@ PHONE_SENSORS = (
 )
 
 
-def write_recordings(folder: Path, vehicle: str, friction: bool) -> None:
-    """Write run files and recordings of a bundled vehicle whose parameters are off, with or without friction that the file lacks."""
+def write_recordings(folder: Path, vehicle: str, friction: bool, many: bool = False) -> None:
+    """Write run files and recordings of a bundled vehicle whose parameters are off, with or without friction that the file lacks.
+
+    `many` asks for the long MANY_CROSSINGS.
+    """
     random = np.random.default_rng(SEED)
     folder.mkdir()
     searched = [(name, item) for name, item in vehgen.load_vehicle(vehicle).parameters.items() if item.range]
@@ -61,9 +69,9 @@ def write_recordings(folder: Path, vehicle: str, friction: bool) -> None:
     laws = f"axles:\n{FRICTION[vehicle]}" if friction else ""
     truth = folder / "truth.yaml"
     truth.write_text(f"extends: {vehicle}\nname: truth\nparameters:\n{off}{laws}", encoding="utf-8")
-    for name, (speed, height) in CROSSINGS.items():
+    duration = LONG if many else DURATIONS[vehicle]
+    for name, (speed, height) in (MANY_CROSSINGS if many else CROSSINGS).items():
         run = folder / f"{name}.yaml"
-        duration = DURATIONS[vehicle]
         text = RUN.format(vehicle=vehicle, speed=speed, duration=duration, name=name, height=height, sensors=SENSORS[vehicle])
         run.write_text(text, encoding="utf-8")
         response = vehgen.simulate(run, vehicle=truth)
