@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+import operator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 from vehgen.errors import did_you_mean, shown
 from vehgen.files.units import NONE, Dimension
@@ -72,35 +74,31 @@ def constant(node: SyntaxNode) -> float | None:
     return None
 
 
-def apply_float(operator: str, arguments: list[float]) -> float:
-    """Apply one operator of the expression language to floats."""
-    first = arguments[0]
-    match operator:
-        case "neg":
-            return -first
-        case "+":
-            return first + arguments[1]
-        case "-":
-            return first - arguments[1]
-        case "*":
-            return first * arguments[1]
-        case "/":
-            return first / arguments[1]
-        case "**":
-            result = first ** arguments[1]
-            if isinstance(result, complex):
-                raise ValueError("a negative number has no real root")
-            return float(result)
-        case "sqrt":
-            return math.sqrt(first)
-        case "abs":
-            return abs(first)
-        case "sign":
-            return math.copysign(1.0, first) if first else 0.0
-        case "min":
-            return min(arguments)
-        case _:
-            return max(arguments)
+def _power(base: float, exponent: float) -> float:
+    result = base**exponent
+    if isinstance(result, complex):
+        raise ValueError("a negative number has no real root")
+    return float(result)
+
+
+ARITHMETIC: Mapping[str, Callable[..., Any]] = {
+    "neg": operator.neg,
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+}
+"""Operators of the expression language that numbers and symbols share."""
+OF_FLOATS: Mapping[str, Callable[..., float]] = {
+    **ARITHMETIC,
+    "**": _power,
+    "sqrt": math.sqrt,
+    "abs": abs,
+    "sign": lambda value: math.copysign(1.0, value) if value else 0.0,
+    "min": min,
+    "max": max,
+}
+"""What all of them do to floats."""
 
 
 def dimension_of_node(node: SyntaxNode, dimensions: Mapping[str, Dimension]) -> Dimension:

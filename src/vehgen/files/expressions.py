@@ -17,7 +17,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from vehgen.errors import InputError, shown
 from vehgen.files.expression_parser import read_tree
-from vehgen.files.expression_tree import ExpressionError, Number, Operation, Symbol, SyntaxNode, apply_float, dimension_of_node, symbols_of
+from vehgen.files.expression_tree import OF_FLOATS, ExpressionError, Number, Operation, Symbol, SyntaxNode, dimension_of_node, symbols_of
 from vehgen.files.units import NONE, Dimension
 
 __all__ = ["Expression", "ExpressionError", "parse"]
@@ -48,7 +48,7 @@ class Expression:
     def evaluate(self, values: Mapping[str, float]) -> float:
         """Return its value in SI units; raises ExpressionError where it is undefined."""
         try:
-            return self.fold(lambda number: number.value, lambda name: values[name.name], apply_float)
+            return self.fold(float, values.__getitem__, OF_FLOATS)
         except (ZeroDivisionError, OverflowError, ValueError) as error:
             raise ExpressionError(f"{shown(self.text)} has no value: {error}") from error
 
@@ -56,20 +56,15 @@ class Expression:
         """Return its dimension; raises ExpressionError where units do not fit together."""
         return dimension_of_node(self.root, dimensions)
 
-    def fold(
-        self,
-        number: Callable[[Number], T],
-        name: Callable[[Symbol], T],
-        operation: Callable[[str, list[T]], T],
-    ) -> T:
+    def fold(self, number: Callable[[float], T], name: Callable[[str], T], operators: Mapping[str, Callable[..., T]]) -> T:
         """Rebuild the expression bottom-up in another algebra (floats, sympy)."""
 
         def visit(node: SyntaxNode) -> T:
             if isinstance(node, Number):
-                return number(node)
+                return number(node.value)
             if isinstance(node, Symbol):
-                return name(node)
-            return operation(node.operator, [visit(argument) for argument in node.arguments])
+                return name(node.name)
+            return operators[node.operator](*map(visit, node.arguments))
 
         return visit(self.root)
 

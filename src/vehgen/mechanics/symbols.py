@@ -7,9 +7,8 @@ from functools import cache
 
 import sympy as sp
 
+from vehgen.files.expression_tree import ARITHMETIC
 from vehgen.files.expressions import Expression
-
-_SYMPY_FUNCTIONS = {"sqrt": sp.sqrt, "abs": sp.Abs, "sign": sp.sign, "min": sp.Min, "max": sp.Max}
 
 
 @cache
@@ -28,25 +27,10 @@ def _exact(value: sp.Expr) -> sp.Expr:
     return value if value.is_Rational else sp.Rational(*Fraction(repr(float(value))).as_integer_ratio())
 
 
+_FUNCTIONS = {"sqrt": sp.sqrt, "abs": sp.Abs, "sign": sp.sign, "min": sp.Min, "max": sp.Max}
+_OPERATORS = {**ARITHMETIC, **_FUNCTIONS, "**": lambda base, exponent: base ** _exact(exponent)}
+
+
 def to_sympy(expression: Expression) -> sp.Expr:
     """Return an expression of a vehicle or run file in SI units as a sympy expression."""
-    return expression.fold(lambda item: number(item.value), lambda item: parameter(item.name), _apply)
-
-
-def _apply(operator: str, arguments: list[sp.Expr]) -> sp.Expr:
-    first = arguments[0]
-    match operator:
-        case "neg":
-            return -first
-        case "+":
-            return first + arguments[1]
-        case "-":
-            return first - arguments[1]
-        case "*":
-            return first * arguments[1]
-        case "/":
-            return first / arguments[1]
-        case "**":
-            return first ** _exact(arguments[1])
-        case _:
-            return _SYMPY_FUNCTIONS[operator](*arguments)
+    return expression.fold(number, parameter, _OPERATORS)
