@@ -102,7 +102,7 @@ def fit(problem: Problem, method: Method, truth: dict[str, float], generations: 
         problem.trials[0].values | found.values,
         spent["search"],
         spent["polish"],
-        search.evaluations * len(found.steps),
+        sum(replace(search, generations=step.state.generation).evaluations for step in found.steps),
         float(terms[0]),
         float(terms[1]),
         spectra(used, found.values),

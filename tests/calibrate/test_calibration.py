@@ -1,5 +1,7 @@
 """Calibration of a sedan against recordings made by other means."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.stats
@@ -150,6 +152,16 @@ def test_a_stopped_search_is_resumed_bit_for_bit(problem, tmp_path):
 
 
 @pytest.mark.slow
+def test_a_polish_takes_over_from_a_search_that_has_settled_and_finds_the_same(problem):
+    settings = Settings(search=GeneticSearch(1, 30, 300), starts=2)
+    early, whole = calibrate_problem(problem, settings), calibrate_problem(problem, replace(settings, polish=False))
+    last = early.steps[0].state
+    assert last.is_settled
+    assert 50 <= last.generation < whole.steps[0].state.generation == 300
+    assert not any(replace(last, history=last.history[:n]).is_settled for n in range(51, last.generation + 1))
+    assert early.array == pytest.approx(calibrate_problem(problem, small()).array, rel=1e-3)
+
+
 def test_fisher_intervals_agree_with_a_bootstrap(problem):
     found = calibrate_problem(problem, Settings(search=GeneticSearch(1, 10, 0), starts=2))
     outcome = summarise(found, replicates=60)

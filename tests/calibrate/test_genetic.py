@@ -1,4 +1,5 @@
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -6,10 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehgen.calibrate.genetic import GeneticSearch, SearchState
-from vehgen.calibrate.genetic.crossover import recombine
 from vehgen.calibrate.genetic.migration import migrate
-from vehgen.calibrate.genetic.mutation import mutate
 from vehgen.calibrate.genetic.selection import rank_fitness, sample_parents
+from vehgen.calibrate.genetic.variation import mutate, recombine
 from vehgen.errors import InputError
 
 
@@ -70,6 +70,22 @@ def test_the_search_finds_the_minimum_of_a_sphere(populations):
     assert state.elite_objective < 1e-4
     assert list(state.history) == sorted(state.history, reverse=True)
     assert len(state.history) == 151
+
+
+@pytest.mark.parametrize(
+    ("history", "settled"),
+    [
+        (np.geomspace(1.0, 0.79, 51), False),
+        (np.geomspace(1.0, 0.81, 51), True),
+        (np.ones(50), False),
+        (np.r_[9.0, np.ones(51)], True),
+        (np.r_[np.ones(51), 0.7], False),
+    ],
+)
+def test_a_search_is_settled_once_fifty_generations_take_less_than_a_fifth_off(history, settled):
+    search = GeneticSearch(1, 4, 0)
+    state = search.start(sphere(np.full(2, 0.5)), 2, seed=1)
+    assert replace(state, history=tuple(history.tolist())).is_settled is settled
 
 
 def test_a_saved_search_goes_on_bit_for_bit():

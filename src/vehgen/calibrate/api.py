@@ -71,7 +71,7 @@ def calibrate(
     search
         `ga`, one population, or `mpga`, three that exchange their best (default: `ga` for shcm, else `mpga`).
     size, generations
-        Individuals of a population; generations of a search.
+        Individuals of a population; generations of a search, fewer where it settles before a polish.
     starts, polish
         Starts of the gradient polish; without polish the search's best stands, without intervals.
     seed

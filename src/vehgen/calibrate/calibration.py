@@ -142,7 +142,7 @@ def calibrate_problem(
         try:
             for state in _search(objective, settings, number, saved[number] if number < len(saved) else None):
                 progress(step.label, state.generation, generations, state.elite_objective)
-                if checkpoint is not None and (state.generation % SAVE_EVERY == 0 or state.generation == generations):
+                if checkpoint is not None and (state.generation % SAVE_EVERY == 0 or _ends(settings, state)):
                     _save(checkpoint, problem, settings, [*(item.state for item in results), state])
             assert state is not None
             if settings.polish:
@@ -167,9 +167,14 @@ def _search(objective: PsdObjective, settings: Settings, number: int, state: Sea
     if state is None:
         state = search.start(objective, objective.problem.space.size, settings.seed + number, quick=objective.quick)
     yield state
-    while state.generation < search.generations:
+    while not _ends(settings, state):
         state = search.advance(state, objective, objective.quick)
         yield state
+
+
+def _ends(settings: Settings, state: SearchState) -> bool:
+    """Return whether a search ends: a polish goes on from where it has settled."""
+    return state.generation >= settings.search.generations or (settings.polish and state.is_settled)
 
 
 def _polish_all(

@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--freeze", metavar="P,Q", help="dhcm: parameters kept from the first step (default: the nearest axle's)")
     parser.add_argument("--search", choices=("ga", "mpga"), help="one population, or three that exchange their best (default; shcm: ga)")
     parser.add_argument("--size", type=int, default=100, metavar="N", help="individuals of a population (default 100)")
-    parser.add_argument("--generations", type=int, default=300, metavar="N", help="generations of a search (default 300)")
+    parser.add_argument("--generations", type=int, default=300, metavar="N", help="generations of a search at most (default 300)")
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="seed of all random numbers (default 1)")
     parser.add_argument("--starts", type=int, default=6, metavar="N", help="starts of the gradient polish (default 6)")
     parser.add_argument("--no-polish", action="store_true", help="stop after the genetic search, as the paper does; gives no intervals")

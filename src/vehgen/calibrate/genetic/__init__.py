@@ -1,4 +1,4 @@
-"""How are parameters searched? Genetic algorithms over the unit cube: one file an operator, one for the search itself."""
+"""How are parameters searched? Genetic algorithms over the unit cube: their operators, and the search itself."""
 
 from vehgen.calibrate.genetic.search import GeneticSearch, SearchState
 

@@ -9,16 +9,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.calibrate.genetic.crossover import recombine
 from vehgen.calibrate.genetic.migration import migrate
-from vehgen.calibrate.genetic.mutation import mutate
 from vehgen.calibrate.genetic.selection import rank_fitness, sample_parents
+from vehgen.calibrate.genetic.variation import mutate, recombine
 from vehgen.errors import InputError
 
 Array = NDArray[np.float64]
 Objective = Callable[[Array], Array]
 CROSSOVER_RATES = (0.7, 0.9)
 MUTATION_RATES = (0.01, 0.05)
+SETTLED_GENERATIONS = 50
+SETTLED_SHARE = 0.2
+"""A search is settled once so many generations in a row took no more than this share off its best objective."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +40,11 @@ class SearchState:
     rates: Array
     history: tuple[float, ...]
     random: dict[str, Any]
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether a fit from here gains more than further generations would."""
+        return len(self.history) > SETTLED_GENERATIONS and self.history[-1] >= (1 - SETTLED_SHARE) * self.history[-1 - SETTLED_GENERATIONS]
 
     def to_data(self) -> dict[str, Any]:
         """Return the state as numbers, texts and lists, which JSON keeps and :meth:`from_data` reads back exactly."""
@@ -72,7 +79,7 @@ class GeneticSearch:
     size
         Individuals of a population, even.
     generations
-        How many generations follow the first.
+        How many generations follow the first, at most.
     """
 
     populations: int = 3
