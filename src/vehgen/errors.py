@@ -80,7 +80,6 @@ class InputError(Exception):
         What is wrong and what would be right, in one sentence or two.
     position
         Where in a file, or in which argument.
-
     """
 
     def __init__(self, message: str, position: Position | None = None) -> None:
@@ -98,7 +97,6 @@ class ArgumentError(InputError):
         What is wrong and what would be right. Arguments stand in it in backquotes.
     names
         Those arguments: the command line writes its options in their places.
-
     """
 
     def __init__(self, message: str, *names: str) -> None:

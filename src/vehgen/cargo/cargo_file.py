@@ -130,7 +130,6 @@ def load_cargo(path: str | Path) -> Cargo:
     ------
     InputError
         With file, line and column, what is wrong and what would be right.
-
     """
     path = Path(path)
     file, document = read_entries(CargoFile, path)

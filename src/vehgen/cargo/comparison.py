@@ -60,7 +60,6 @@ def compare_laden(vehicle: Vehicle, laden: Vehicle, on: str, parameter_set: str 
     ------
     InputError
         When the vehicle has no such set, rests on nothing, or a motion has no inertia.
-
     """
     before, after = derive(vehicle), derive(laden)
     light, heavy = vehicle.values(parameter_set), laden.values(parameter_set)

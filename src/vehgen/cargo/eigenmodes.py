@@ -100,7 +100,6 @@ def eigenmodes(matrices: ElementMatrices, held: NDArray[np.int64], count: int | 
     ------
     InputError
         When the structure is a mechanism, or ARPACK finds no modes.
-
     """
     n_dof = matrices.K.shape[0]
     free = np.setdiff1d(np.arange(n_dof), held)

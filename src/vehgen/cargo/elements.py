@@ -39,7 +39,6 @@ def assemble(mesh: Mesh) -> ElementMatrices:
     ------
     InputError
         When pyfe3d is not installed.
-
     """
     fe = _package()
     x = np.ascontiguousarray(mesh.nodes, dtype=float).ravel()

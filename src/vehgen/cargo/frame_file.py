@@ -169,7 +169,6 @@ def load_frame(path: str | Path) -> FrameModule:
     ------
     InputError
         With file, line and column, what is wrong and what would be right.
-
     """
     path = Path(path)
     file, document = read_entries(FrameFile, path)

@@ -84,7 +84,6 @@ def laden_text(vehicle: Vehicle, cargo: Cargo, folder: Path, name: str) -> str:
     ------
     InputError
         When the vehicle has no such body, hinge or axle, or already uses the cargo's name.
-
     """
     x, z = _reference(vehicle, cargo)
     load, body = cargo.load, _body_name(vehicle, cargo)

@@ -81,7 +81,6 @@ def module_model(frame: FrameModule, mesh_size: float | None = None, mass: str |
     ------
     InputError
         When pyfe3d is missing, the mesh is too fine for the memory, a bottom corner has nothing to hold, or the structure is a mechanism.
-
     """
     size = frame.file.mesh.size if mesh_size is None else mesh_size
     _check_size(frame, size)

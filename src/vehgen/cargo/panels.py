@@ -38,7 +38,6 @@ def equivalent_layer(layers: Sequence[Layer], bonded: bool = True) -> Layer:
     Poisson's ratio is that of the membrane, A12/A11; for layers that differ in it, D12 is only near the stack's. The coupling of stretching
     and bending of an unsymmetric stack vanishes, because A and D are taken about the neutral axis. Shear deformation of a soft core is not
     kept: a sandwich comes out too stiff.
-
     """
     plane = [layer.modulus / (1 - layer.poisson**2) for layer in layers]
     membrane = sum(q * layer.thickness for q, layer in zip(plane, layers, strict=True))

@@ -78,7 +78,6 @@ def import_kernel(text: str, folder: Path | None = None) -> ModuleType:
         The source of :func:`vehgen.codegen.kernel_source.write_kernel`.
     folder
         Where compiled code is kept (default: the user's cache folder). One that cannot be trusted, read or written costs time only.
-
     """
     name = kernel_name(text)
     folder = folder or cache_folder()

@@ -28,7 +28,6 @@ def prune(folder: Path, max_unused_days: float = MAX_UNUSED_DAYS, max_bytes: int
         Kernels unused for longer are removed [days].
     max_bytes
         Beyond this total the least recently used are removed.
-
     """
     now = time.time()
     stamp = folder / STAMP

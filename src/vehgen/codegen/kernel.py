@@ -64,7 +64,6 @@ class Kernel:
     precision
         `double`, or `single`: twice the individuals in a vector, with errors of about 1e-4 (docs/performance.md). Differences of
         nearly equal responses, such as derivatives by small steps, need double.
-
     """
 
     def __init__(

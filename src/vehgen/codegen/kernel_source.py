@@ -96,7 +96,6 @@ def write_kernel(
         Whether runs start from rest; else the state is displacements and velocities.
     own_drives
         Whether each lane has drives of its own; else all share theirs.
-
     """
     nonlinear = any(element.laws for element in model.elements)
     step = cheapest_step(model, sweeps) if from_rest else write_step(model, sweeps)

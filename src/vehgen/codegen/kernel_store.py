@@ -112,7 +112,6 @@ def read_parts(folder: Path, name: str) -> dict[str, bytes]:
         A cache folder; it need not exist.
     name
         A kernel's name.
-
     """
     places = [folder] if os.getpid() not in _private else [folder, private_folder()]
     for place in places:

@@ -32,7 +32,6 @@ def compile_all(kernels: Iterable[Kernel], workers: int | None = None) -> None:
     ------
     InputError
         When a process ends before it has compiled its kernel.
-
     """
     wanted = {kernel.name: kernel for kernel in kernels}
     missing = [kernel for kernel in wanted.values() if not kernel.is_compiled]

@@ -30,7 +30,6 @@ class PythonPrinter:
         A leaf that is the same for all lanes and stays a plain variable: the time step.
     single
         Whether the loops' numbers are of single precision (a plain one would make its expression double); SETUP_PHASE stays double.
-
     """
 
     functions: ClassVar[Mapping[str, str]] = {"min": "lower", "max": "upper", "sqrt": "math.sqrt"}
@@ -95,7 +94,6 @@ class PythonPrinter:
             Nodes that must end up in a variable.
         load
             How a leaf (or a constant from SETUP_PHASE) is read; None for what is already a variable.
-
         """
         own = set(nodes)
         in_loop = any(self.program.phases[node] != SETUP_PHASE for node in nodes)

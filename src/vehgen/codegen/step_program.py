@@ -47,7 +47,6 @@ class EquationTerms:
     ----------
     model
         The model; its names never reach the program, only their numbers do.
-
     """
 
     def __init__(self, model: EquationsOfMotion) -> None:

@@ -40,7 +40,6 @@ def end_of(work: Callable[[], int | None], debug: bool = False) -> int:
         What the command does; it may return an exit code.
     debug
         Print where it ended, too.
-
     """
     try:
         with _terminable():

@@ -127,7 +127,6 @@ def read_document(path: Path) -> Located:
     ------
     InputError
         For a missing, oversized, malformed or hostile file (a pipe, aliases that multiply, custom tags, deep nesting, duplicate keys).
-
     """
     return read_text(reading.read_text(path, MAX_DOCUMENT_BYTES, "a YAML file"), path)
 

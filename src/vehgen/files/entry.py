@@ -75,7 +75,6 @@ def read_entries(model: type[Model], path: str | Path) -> tuple[Model, Located]:
     ------
     InputError
         As :func:`vehgen.files.document.read_document` and :func:`validate`.
-
     """
     document = read_document(Path(path))
     return validate(model, document.plain(), document), document

@@ -30,7 +30,6 @@ def read_tree(text: str) -> SyntaxNode:
     ------
     ExpressionError
         For calls other than those of FUNCTIONS, attributes, subscripts, comparisons, unknown units, too long a text and the like.
-
     """
     if len(text) > MAX_LENGTH:
         raise ExpressionError(f"an expression of {len(text)} characters is too long (at most {MAX_LENGTH})")

@@ -44,7 +44,6 @@ def open_regular(path: Path, most: int, kind: str = "a file", *, state: bool = F
     ------
     InputError
         For a file that is missing, a folder, a pipe or device, unreadable or too large, and a path that cannot be one.
-
     """
     name = short_path(path)
     if not state:
@@ -100,7 +99,6 @@ def read_text(path: Path, most: int, kind: str = "a text file", *, state: bool =
     ------
     InputError
         As :func:`open_regular`, and at the line and column of bytes that are not UTF-8.
-
     """
     data = read_bytes(path, most, kind, state=state)
     try:
@@ -116,7 +114,6 @@ def read_lines(path: Path, most: int, kind: str = "a text file") -> Iterator[str
     ------
     InputError
         As :func:`open_regular`, for a line beyond LONGEST_LINE, and at the line and column of bytes that are not UTF-8.
-
     """
     with open_regular(path, most, kind) as stream, io.TextIOWrapper(stream, encoding="utf-8-sig", newline="") as text:
         total = 0

@@ -131,7 +131,6 @@ def read_unit(text: str, start: int = 0) -> tuple[float, Dimension, int] | None:
     ------
     InputError
         For an exponent beyond MAX_EXPONENT.
-
     """
     factor, dimension, end = 1.0, NONE, start
     divide = False

@@ -39,7 +39,6 @@ def derive(vehicle: VehicleLike, outputs: Iterable[Output] = (), forces: Iterabl
     ------
     InputError
         For an output or force at a place that the vehicle lacks, or a vehicle whose parts are nowhere.
-
     """
     vehicle, outputs, forces = as_vehicle(vehicle), tuple(outputs), tuple(forces)
     layout = lay_out(vehicle)

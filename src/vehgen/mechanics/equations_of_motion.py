@@ -168,7 +168,6 @@ class EquationsOfMotion:
         ----------
         values
             SI values by parameter name, as :meth:`values` gives them.
-
         """
         found = iter(self._entry_steps(self._ordered(values or self.values())))
         own, read = ({key: _filled(entries, shape, found) for key, (entries, shape) in item.items()} for item in self._matrices)
@@ -208,7 +207,6 @@ class EquationsOfMotion:
             Of symbols of `parameters` and of those that follow from them.
         values
             The value of every one of `parameters` [SI].
-
         """
         return [float(value) for value in self._steps(tuple(expressions))(self._ordered(values))]
 

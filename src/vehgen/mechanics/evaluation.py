@@ -96,7 +96,6 @@ class PopulationValues:
         Whose parameters they are.
     parameters
         In the order of `model.parameters`.
-
     """
 
     def __init__(self, model: EquationsOfMotion, parameters: Array) -> None:

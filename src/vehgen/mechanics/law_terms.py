@@ -42,7 +42,6 @@ class LawTerm:
             Stiffness [N/m] and damping [N s/m] of the element that carries it.
         states
             The symbols of the law's states (default: symbols of their names).
-
         """
         states = states if states is not None else {name: sp.Symbol(f"_{name}", real=True) for name in self.law.states}
         if self.origin == "static":

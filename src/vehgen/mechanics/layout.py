@@ -36,7 +36,6 @@ def lay_out(vehicle: Vehicle) -> Layout:
     ------
     InputError
         For a body that nothing connects to the first and that has no `at`.
-
     """
     bodies: dict[str, tuple[sp.Expr, sp.Expr | None]] = {}
     for index, (name, body) in enumerate(vehicle.bodies.items()):

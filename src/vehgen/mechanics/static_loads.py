@@ -63,7 +63,6 @@ def static_loads(model: ModelLike, values: Mapping[str, float] | None = None, *,
     ------
     InputError
         When K is singular (part of the vehicle rests on nothing), or when those laws cannot carry the weight.
-
     """
     model = as_model(model)
     values = all_values(model, values, parameter_set)

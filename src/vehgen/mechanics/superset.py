@@ -51,7 +51,6 @@ def add_laws(vehicle: Vehicle, candidates: Iterable[CandidateLaw]) -> Superset:
     ------
     InputError
         For a place or law that does not exist, a law that does not belong there, or a candidate given twice.
-
     """
     names: dict[CandidateLaw, dict[str, str]] = {}
     parameters = dict(vehicle.parameters)

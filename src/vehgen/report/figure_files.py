@@ -37,7 +37,6 @@ def save_figure(figure: Figure, path: Path) -> None:
     ------
     InputError
         For a suffix other than those of FORMATS, or a file that cannot be written.
-
     """
     kind = figure_format(path)
     stream = io.BytesIO()

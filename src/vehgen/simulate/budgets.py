@@ -49,7 +49,6 @@ def check_run(run: Run, duration: float, way: float, n_wheels: int) -> None:
     ------
     InputError
         At the quantity of the run file that decides, with the number found and the limit.
-
     """
     file = run.file
     steps = duration / file.step
@@ -83,7 +82,6 @@ def check_population(n_individuals: int, n_samples: float, n_channels: int) -> N
     ------
     InputError
         With the number found and the limit.
-
     """
     if (numbers := n_individuals * n_samples * n_channels) > MOST_RESPONSES:
         raise InputError(

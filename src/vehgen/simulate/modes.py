@@ -91,7 +91,6 @@ def natural_modes(model: ModelLike, values: Mapping[str, float] | None = None, *
     ------
     InputError
         When M is not positive definite at these values.
-
     """
     coordinates, numeric = _evaluated(model, values, parameter_set)
     try:

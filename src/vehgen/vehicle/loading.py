@@ -63,7 +63,6 @@ def find_vehicle_file(name: str | Path, beside: Path | None = None) -> Path:
     ------
     InputError
         When there is none, with the nearest bundled names.
-
     """
     path = Path(name)
     local = path if path.is_absolute() or beside is None else beside / path
@@ -99,7 +98,6 @@ def load_vehicle(name: str | Path, beside: Path | None = None) -> Vehicle:
     ------
     InputError
         With file, line and column, what is wrong and what would be right.
-
     """
     path = find_vehicle_file(name, beside)
     document, files = _read_extended(path, ())

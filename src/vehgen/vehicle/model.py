@@ -146,7 +146,6 @@ class Vehicle(FileModel):
         ------
         InputError
             For a set or parameter that the vehicle does not have.
-
         """
         values = {name: self.parameters[name].definition.evaluate({}) for name in self.free_parameters}
         if parameter_set is not None:
@@ -166,7 +165,6 @@ class Vehicle(FileModel):
         ------
         InputError
             Where an `equals` has no value for these, such as 1/0.
-
         """
         values = dict(free)
 

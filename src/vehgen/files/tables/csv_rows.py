@@ -29,7 +29,6 @@ def csv_rows(lines: Iterable[str], where: Path | str, delimiter: str = ",") -> I
     ------
     InputError
         At a row beyond MOST_ROWS or of more than LONGEST_LINE characters, and at what is no CSV.
-
     """
     pending = 0
 

@@ -123,7 +123,6 @@ class Canvas:
             What it names [m]; a thin line leads there from a label that had to go far away.
         home
             The outline of what it names; beside it no line is needed.
-
         """
         frame = (self.left, self.bottom, self.right, self.top)
 

@@ -53,7 +53,6 @@ def plot_response(
     ------
     ValueError
         When the shapes do not belong together.
-
     """
     if values.shape != (needed := (len(time), len(channels))):
         raise ValueError(f"values have the shape {values.shape}; that many times and channels need {needed}")

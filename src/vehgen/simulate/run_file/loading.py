@@ -67,7 +67,6 @@ def load_run(path: str | Path, vehicle: Vehicle | None = None) -> Run:
     ------
     InputError
         With file, line and column, what is wrong and what would be right.
-
     """
     path = Path(path)
     file, document = read_entries(RunFile, path)

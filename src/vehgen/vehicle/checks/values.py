@@ -54,7 +54,6 @@ def check_values(vehicle: Vehicle, free: Mapping[str, float], where: str = "") -
     ------
     InputError
         At the quantity that is not physical; `where` is added to its message.
-
     """
     try:
         values = vehicle.all_values(free)
