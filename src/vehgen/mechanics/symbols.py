@@ -27,10 +27,17 @@ def _exact(value: sp.Expr) -> sp.Expr:
     return value if value.is_Rational else sp.Rational(*Fraction(repr(float(value))).as_integer_ratio())
 
 
-_FUNCTIONS = {"sqrt": sp.sqrt, "abs": sp.Abs, "sign": sp.sign, "min": sp.Min, "max": sp.Max}
-_OPERATORS = {**ARITHMETIC, **_FUNCTIONS, "**": lambda base, exponent: base ** _exact(exponent)}
+_OF_SYMBOLS = {
+    **ARITHMETIC,
+    "**": lambda base, exponent: base ** _exact(exponent),
+    "sqrt": sp.sqrt,
+    "abs": sp.Abs,
+    "sign": sp.sign,
+    "min": sp.Min,
+    "max": sp.Max,
+}
 
 
 def to_sympy(expression: Expression) -> sp.Expr:
     """Return an expression of a vehicle or run file in SI units as a sympy expression."""
-    return expression.fold(number, parameter, _OPERATORS)
+    return expression.fold(number, parameter, _OF_SYMBOLS)

@@ -19,7 +19,7 @@ Objective = Callable[[Array], Array]
 CROSSOVER_RATES = (0.7, 0.9)
 MUTATION_RATES = (0.01, 0.05)
 SETTLED_GENERATIONS = 50
-SETTLED_SHARE = 0.2
+SETTLED_FALL = 0.2
 """A search is settled once so many generations in a row took no more than this share off its best objective."""
 
 
@@ -44,7 +44,7 @@ class SearchState:
     @property
     def is_settled(self) -> bool:
         """Whether a fit from here gains more than further generations would."""
-        return len(self.history) > SETTLED_GENERATIONS and self.history[-1] >= (1 - SETTLED_SHARE) * self.history[-1 - SETTLED_GENERATIONS]
+        return len(self.history) > SETTLED_GENERATIONS and self.history[-1] >= (1 - SETTLED_FALL) * self.history[-1 - SETTLED_GENERATIONS]
 
     def to_data(self) -> dict[str, Any]:
         """Return the state as numbers, texts and lists, which JSON keeps and :meth:`from_data` reads back exactly."""
