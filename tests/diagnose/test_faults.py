@@ -10,6 +10,7 @@ import scipy.signal
 from benchmarks.hidden_effects.generator import Effect, Hump, RunSpec, nominal, perturbed
 
 from vehgen.diagnose.detect.detection import detect
+from vehgen.diagnose.inputs import judging
 from vehgen.diagnose.inputs.amplitudes import dead_hypotheses, hidden_units, unit_hypotheses
 from vehgen.diagnose.inputs.conditions import alike_in_all_runs, findings_of_conditions, moved_roads
 from vehgen.diagnose.inputs.judging import explain_gap, plain_mistakes, recorded_mistakes, supposed_mistakes
@@ -145,6 +146,13 @@ def test_a_unit_is_told_where_nothing_seems_to_be_missing(plain):
     (fault,) = recorded_mistakes(quiet)
     assert told([fault]) == [("unit", EVERY, ("R_q",))]
     assert fault.value == pytest.approx(57.3, rel=0.01)
+
+
+def test_a_unit_is_told_where_a_bent_base_leaves_too_little_for_refits_to_tell(plain, monkeypatch):
+    monkeypatch.setattr(judging, "find_mistakes", lambda detection, plain_only: SimpleNamespace(faults=()))
+    bent = SimpleNamespace(trials=edited(plain, times(57.3, R_Q)), band=(0.5, 25.0), chi=1.2)
+    assert told(plain_mistakes(bent)) == [("unit", EVERY, ("R_q",))]
+    assert plain_mistakes(SimpleNamespace(trials=plain, band=bent.band, chi=bent.chi)) == ()
 
 
 def test_a_unit_in_one_run_alone_is_left_to_the_refits(plain):

@@ -200,8 +200,12 @@ def odd_mistake(odd: OddRun | OddChannel) -> MeasurementFault:
 
 
 def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
-    """Return mistakes that no effect of the library looks like; a slow recorder where the base leaves next to nothing behind it."""
-    return (_slow(detection) if detection.chi <= WEAK else ()) or find_mistakes(detection, plain_only=True).faults
+    """Return mistakes that no effect of the library looks like; a slow recorder where the base leaves next to nothing behind it.
+
+    A base that has bent to other units may leave so little that refits do not tell: then the vehicle file's predictions do.
+    """
+    slow = _slow(detection) if detection.chi <= WEAK else ()
+    return slow or find_mistakes(detection, plain_only=True).faults or hidden_units(detection.trials, detection.band)
 
 
 def moved_axles(detection: Detection) -> tuple[MeasurementFault, ...]:

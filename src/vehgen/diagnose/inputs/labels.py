@@ -93,19 +93,25 @@ def _sources(trial: Trial) -> Iterator[tuple[int, ...]]:
 
 
 def label_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
-    """Yield that sensors were exchanged or channels turned, as each run's correlations have it, and as most runs have it."""
+    """Yield that sensors were exchanged or channels turned: as each run has it, as most runs have it, and as all have it together."""
     found = {trial.name: true_labels(trial, item.within(LAG)) for trial, item in zip(case.trials, case.comparisons, strict=True)}
     wrong = {name: pattern for name, pattern in found.items() if not pattern.trivial}
-    if not wrong:
-        return
     hypotheses = [wrong]
-    common, count = Counter(wrong.values()).most_common(1)[0]
-    if count > len(case.trials) / 2 and len({trial.channels for trial in case.trials}) == 1:
-        hypotheses.append({trial.name: common for trial in case.trials})
-    for hypothesis in hypotheses[: 1 if hypotheses[-1] == wrong else 2]:
-        trials = tuple(hypothesis[trial.name].undo(trial) if trial.name in hypothesis else trial for trial in case.trials)
-        faults = tuple(_relabelled(case.trials, hypothesis))
-        yield Hypothesis(trials, always(*faults), RELABELLED)
+    if len({trial.channels for trial in case.trials}) == 1:
+        common, count = Counter(found.values()).most_common(1)[0]
+        shared = [common] if count > len(case.trials) / 2 else []
+        hypotheses += [dict.fromkeys(found, pattern) for pattern in (*shared, _turned_together(case)) if not pattern.trivial]
+    for number, hypothesis in enumerate(hypotheses):
+        if hypothesis and hypothesis not in hypotheses[:number]:
+            trials = tuple(hypothesis[trial.name].undo(trial) if trial.name in hypothesis else trial for trial in case.trials)
+            faults = tuple(_relabelled(case.trials, hypothesis))
+            yield Hypothesis(trials, always(*faults), RELABELLED)
+
+
+def _turned_together(case: BaseRefits) -> Labels:
+    """Return the signs that all runs have in the mean: parameters that are off may spoil the correlation of a turned channel in each."""
+    own = np.mean([item.own[item.best] for item in case.comparisons], axis=0)
+    return Labels(tuple(range(len(own))), tuple(-1 if value < 0 else 1 for value in own))
 
 
 def _whole_sensors(channels: Sequence[RecordedChannel], source: Sequence[int]) -> bool:

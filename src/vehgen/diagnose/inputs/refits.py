@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.detect.noise_floor import find_noise_floor
 from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, JACOBIAN_REFRESH, NUISANCES
 from vehgen.diagnose.inputs.comparison import Comparison, compare
 from vehgen.diagnose.inputs.fault import Hypothesis
@@ -155,13 +154,11 @@ class BaseRefits:
 
     def _noises(self, trials: Sequence[Trial], blind: frozenset[tuple[str, str]]) -> Noises:
         known = {id(trial.recording): self.base.misfit.noises[trial.name] for trial in self.detected}  # noise goes with the recording
-        of_rigs = {trial.name: trial for trial in self.detected if not trial.scenario.track.parts}
-        found = {trial.name: known[id(trial.recording)] for trial in trials if id(trial.recording) in known}
-        for trial in trials:
-            if trial.name not in found and trial.name in of_rigs:  # no lead-in tells it anew
-                found[trial.name] = _as_loud(self.base.misfit.noises[trial.name], of_rigs[trial.name], trial)
-        if len(found) < len(trials):
-            found = find_noise_floor(trials, self.band).noises
+        before = {trial.name: trial for trial in self.detected}
+        found = {
+            trial.name: known.get(id(trial.recording)) or _as_loud(self.base.misfit.noises[trial.name], before[trial.name], trial)
+            for trial in trials
+        }
         blinded: Noises = {}
         for trial in trials:
             own = found[trial.name]
