@@ -11,7 +11,7 @@ from benchmarks.hidden_effects.generator import Effect, Hump, RunSpec, nominal, 
 
 from vehgen.diagnose.detect.detection import detect
 from vehgen.diagnose.inputs import judging
-from vehgen.diagnose.inputs.amplitudes import dead_hypotheses, hidden_units, unit_hypotheses
+from vehgen.diagnose.inputs.amplitudes import dead_hypotheses, hidden_mistakes, unit_hypotheses
 from vehgen.diagnose.inputs.conditions import alike_in_all_runs, findings_of_conditions, moved_roads
 from vehgen.diagnose.inputs.judging import explain_gap, plain_mistakes, recorded_mistakes, supposed_mistakes
 from vehgen.diagnose.inputs.recorders import slow_recorder
@@ -155,8 +155,18 @@ def test_a_unit_is_told_where_a_bent_base_leaves_too_little_for_refits_to_tell(p
     assert plain_mistakes(SimpleNamespace(trials=plain, band=bent.band, chi=bent.chi)) == ()
 
 
+def test_a_dead_channel_is_told_where_the_base_bent_until_it_hardly_moves_there(plain):
+    """Of one run alone it is left to the refits."""
+    quiet = SimpleNamespace(floor=detect(plain).floor, band=(0.5, 25.0), is_quiet=True)
+    quiet.trials = edited(plain, noise_only(R_AZ, 0.01))
+    assert told(recorded_mistakes(quiet)) == [("dead", EVERY, ("R_az",))]
+    for trials in (plain, edited(plain, noise_only(R_AZ, 0.01), "high")):
+        quiet.trials = trials
+        assert recorded_mistakes(quiet) == ()
+
+
 def test_a_unit_in_one_run_alone_is_left_to_the_refits(plain):
-    assert hidden_units(edited(plain, times(57.3, R_Q), "high"), (0.5, 25.0)) == ()
+    assert hidden_mistakes(edited(plain, times(57.3, R_Q), "high"), (0.5, 25.0)) == ()
 
 
 def test_a_unit_holds_in_runs_that_hardly_follow_their_prediction(plain):
@@ -172,7 +182,7 @@ def test_a_unit_holds_in_runs_that_hardly_follow_their_prediction(plain):
 def test_a_unit_is_told_of_a_channel_on_a_road_that_raises_all_channels(plain):
     """A run over a low hump, 1.8 times as loud as predicted: by itself its channel is 103 times too loud, which no unit makes."""
     doubled = edited(edited(plain, times(57.3, R_Q)), times(1.8, *range(4)), "low")
-    (fault,) = hidden_units(doubled, (0.5, 25.0))
+    (fault,) = hidden_mistakes(doubled, (0.5, 25.0))
     assert told([fault]) == [("unit", EVERY, ("R_q",))]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
@@ -61,16 +62,19 @@ def unit_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     yield Hypothesis(tuple(trials), always(*faults), OTHER_UNIT)
 
 
-def hidden_units(trials: Sequence[Trial], band: tuple[float, float]) -> tuple[MeasurementFault, ...]:
-    """Return channels in other units than stated in all of their runs, by the vehicle file's predictions alone.
+def hidden_mistakes(trials: Sequence[Trial], band: tuple[float, float]) -> tuple[MeasurementFault, ...]:
+    """Return channels in other units than stated, and dead ones, in all of their runs, by the vehicle file's predictions alone.
 
-    Where the lead-in is loud, a channel that reads 57 times too much passes for one with a noisy sensor: nothing seems to be missing.
+    A loud lead-in makes noise of a channel that reads 57 times too much, and a base may bend until it hardly moves where one is dead.
     """
     predictions = [np.asarray(item.simulator.run(item.simulator.parameters(item.values), item.scenario).responses[0]) for item in trials]
     comparisons = [compare(trial, own, band) for trial, own in zip(trials, predictions, strict=True)]
-    names, found = tuple(trial.name for trial in trials), _other_units(trials, comparisons)
-    everywhere = {key: tuple(runs) for key, runs in found.items() if len(runs) == sum(key[0] in trial.channels for trial in trials)}
-    return tuple(_unit_fault(names, *key, runs) for key, runs in everywhere.items())
+    names, count = tuple(trial.name for trial in trials), Counter(name for trial in trials for name in trial.channels)
+    units, dead = _other_units(trials, comparisons), _dead(trials, comparisons)
+    return (
+        *(_unit_fault(names, *key, tuple(runs)) for key, runs in units.items() if len(runs) == count[key[0]]),
+        *(_dead_fault(names, name, tuple(runs)) for name, runs in dead.items() if len(runs) == count[name]),
+    )
 
 
 def _other_units(trials: Sequence[Trial], comparisons: Sequence[Comparison]) -> dict[tuple[str, str, float], list[str]]:
@@ -96,8 +100,17 @@ def _other_units(trials: Sequence[Trial], comparisons: Sequence[Comparison]) -> 
 
 def dead_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     """Yield that channels recorded noise only, those of all runs together."""
+    found = _dead(case.trials, case.comparisons)
+    if found:
+        faults = tuple(_dead_fault(case.runs, name, tuple(runs)) for name, runs in found.items())
+        blind = frozenset((run, name) for name, runs in found.items() for run in runs)
+        yield Hypothesis(case.trials, always(*faults), ONE_CHANNEL, blind=blind)
+
+
+def _dead(trials: Sequence[Trial], comparisons: Sequence[Comparison]) -> dict[str, list[str]]:
+    """Return channels that follow neither their prediction nor another channel, and the runs in which they do not."""
     found: dict[str, list[str]] = {}
-    for trial, item in zip(case.trials, case.comparisons, strict=True):
+    for trial, item in zip(trials, comparisons, strict=True):
         reach = round(NEIGHBOURS / item.dt)
         around = np.abs(item.own[max(item.best - reach, 0) : item.best + reach + 1]).max(axis=0)
         channels = trial.recording.channels
@@ -108,20 +121,13 @@ def dead_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
             unlike = around[i] < DEAD and not late and like and around[like].min() > ALIVE
             if unlike and not _follows_another(trial, i, reach) and not _bursts(trial.recording.values[:, i], item.dt):
                 found.setdefault(channel.name, []).append(trial.name)
-    if not found:
-        return
-    faults = tuple(
-        MeasurementFault(
-            "dead",
-            tuple(runs),
-            (name,),
-            f"{name} holds nothing but noise {place_words(tuple(runs), case.runs)}: it does not follow what the other channels felt",
-            "leave this channel out of the run file, or record again with a sensor that works",
-        )
-        for name, runs in found.items()
-    )
-    blind = frozenset((run, name) for name, runs in found.items() for run in runs)
-    yield Hypothesis(case.trials, always(*faults), ONE_CHANNEL, blind=blind)
+    return found
+
+
+def _dead_fault(names: tuple[str, ...], channel: str, runs: tuple[str, ...]) -> MeasurementFault:
+    message = f"{channel} holds nothing but noise {place_words(runs, names)}: it does not follow what the other channels felt"
+    cure = "leave this channel out of the run file, or record again with a sensor that works"
+    return MeasurementFault("dead", runs, (channel,), message, cure)
 
 
 def _follows_another(trial: Trial, channel: int, reach: int) -> bool:

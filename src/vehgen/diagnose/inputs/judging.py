@@ -11,7 +11,14 @@ import numpy as np
 
 from vehgen.diagnose.detect.odd_run import OddChannel, OddRun
 from vehgen.diagnose.detect.road_error import measured_profiles
-from vehgen.diagnose.inputs.amplitudes import dead_hypotheses, drift_hypotheses, gain_hypotheses, hidden_units, other_gain, unit_hypotheses
+from vehgen.diagnose.inputs.amplitudes import (
+    dead_hypotheses,
+    drift_hypotheses,
+    gain_hypotheses,
+    hidden_mistakes,
+    other_gain,
+    unit_hypotheses,
+)
 from vehgen.diagnose.inputs.checks import check_inputs
 from vehgen.diagnose.inputs.clocks import clock_hypotheses
 from vehgen.diagnose.inputs.conditions import BEYOND, findings_of_conditions, moved_roads
@@ -163,8 +170,8 @@ def _pair(case: BaseRefits, judged: Sequence[_Judged]) -> tuple[_Judged, ...]:
 
 
 def recorded_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
-    """Return what recordings show by themselves: clipped and stuck channels, copies of one pass, and units that noise hides."""
-    hidden = hidden_units(detection.trials, detection.band) if detection.is_quiet else ()
+    """Return what recordings show by themselves: clipped and stuck channels, copies of a pass, units that noise hides, dead channels."""
+    hidden = hidden_mistakes(detection.trials, detection.band) if detection.is_quiet else ()
     return (*check_inputs(detection.trials), *find_copies(detection.trials, detection.floor.noises, detection.band), *hidden)
 
 
@@ -202,19 +209,17 @@ def odd_mistake(odd: OddRun | OddChannel) -> MeasurementFault:
 def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
     """Return mistakes that no effect of the library looks like; a slow recorder where the base leaves next to nothing behind it.
 
-    A base that has bent to other units may leave so little that refits do not tell: then the vehicle file's predictions do.
+    Where a base has bent to a mistake so far that refits do not tell, the vehicle file's predictions do.
     """
     slow = _slow(detection) if detection.chi <= WEAK else ()
-    return slow or find_mistakes(detection, plain_only=True).faults or hidden_units(detection.trials, detection.band)
+    return slow or find_mistakes(detection, plain_only=True).faults or hidden_mistakes(detection.trials, detection.band)
 
 
 def moved_axles(detection: Detection) -> tuple[MeasurementFault, ...]:
-    """Return that axles are elsewhere than the vehicle file says, where that alone leaves noise, and no clock that runs too fast does."""
+    """Return that axles are elsewhere than the vehicle file says, where that alone leaves noise."""
     case = BaseRefits(detection)
     best = _least(_judge(case, (axle_hypotheses,)), case.excess)
-    if best is None or not best.explains(case.excess):
-        return ()
-    return () if _least(_judge(case, (rate_hypotheses,)), case.excess) else best.faults
+    return best.faults if best is not None and best.explains(case.excess) else ()
 
 
 def explain_gap(
@@ -245,9 +250,9 @@ def explain_gap(
     undone = undone or find_mistakes(detection)
     found = undone.faults
     kinds = {item.kind for item in found}
-    better = 1.0 if kinds == {"clock_or_speed"} else CLEARLY_BETTER  # a tie with the effect is a tie
-    better = 1 / CLEARLY_BETTER if vehicle and kinds == {"low_pass"} else better
-    if found and (leading is None or better * undone.left < (leading.chi**2 - 1) / (detection.chi**2 - 1)):
+    better = 1 / CLEARLY_BETTER if vehicle and kinds == {"low_pass"} else CLEARLY_BETTER
+    tie = kinds == {"clock_or_speed"} and undone.case.excess <= FLOOR  # with the effect
+    if found and (leading is None or tie or better * undone.left < (leading.chi**2 - 1) / (detection.chi**2 - 1)):
         return found
     if found or not vehicle:
         return ()

@@ -109,7 +109,7 @@ def label_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
 
 
 def _turned_together(case: BaseRefits) -> Labels:
-    """Return the signs that all runs have in the mean: parameters that are off may spoil the correlation of a turned channel in each."""
+    """Return the signs that runs have in the mean: parameters that are off spoil each one's correlation."""
     own = np.mean([item.own[item.best] for item in case.comparisons], axis=0)
     return Labels(tuple(range(len(own))), tuple(-1 if value < 0 else 1 for value in own))
 

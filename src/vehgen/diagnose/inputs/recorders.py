@@ -26,6 +26,7 @@ RATE_NOTICED, LEAST_RATE_ERROR = 0.02, 0.02
 """Gain in correlation from which another rate of the clock is fitted, and the smallest such rate less one."""
 AS_WELL = 3.0
 """A clock is told from a speed where it leaves less by this factor; where it leaves less at all, the two are a tie."""
+CLOCK = ClockRate("", 0.01, 1.0, low=0.7, high=1.4)
 SLOW_BAND_HZ, FAST_BAND_HZ = (0.5, 4.0), (15.0, 35.0)
 """A filtered channel follows the prediction in the lower band, and lacks most of it in the upper."""
 FILTERED_SHARE = 0.35
@@ -36,19 +37,24 @@ SLOW_RECORDER_HZ = 20.0
 FILTER_CURE = "switch the recorder's filter off, or record faster than it filters; else compare below the cut-off with `band`"
 
 
-def rate_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
-    """Yield that the recorder's clock is too fast or too slow; a tie with the speed is told as such."""
-    change = ClockRate("", 0.01, 1.0, low=0.7, high=1.4)
+def other_rate(case: BaseRefits) -> tuple[float, float] | None:
+    """Return the rate of a clock that is too fast or too slow, and the share of the excess that it leaves, where it explains the runs."""
     scores = []
     for rate in RATES:
-        own = [compare(trial, case.predict(trial, (change,), (rate,)), case.band).score for trial in case.trials]
+        own = [compare(trial, case.predict(trial, (CLOCK,), (rate,)), case.band).score for trial in case.trials]
         scores.append(float(np.mean(own)))
     best = RATES[int(np.argmax(scores))]
     if max(scores) < scores[RATES.index(1.0)] + RATE_NOTICED or abs(best - 1) < LEAST_RATE_ERROR:
+        return None
+    left = case.refit(case.problem, (CLOCK,), (best,))[1]
+    return (best, left) if left <= max(RATE_LEFT, case.noise) else None
+
+
+def rate_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
+    """Yield that the recorder's clock is too fast or too slow; a tie with the speed is told as such."""
+    if (known := other_rate(case)) is None:
         return
-    by_clock = case.refit(case.problem, (change,), (best,))[1]
-    if by_clock > RATE_LEFT:
-        return
+    best, by_clock = known
     by_speed = min(case.refit(case.problem, (SpeedScale("runs", 0.01, 1.0),), (start,))[1] for start in (1 / best, 1.0))
     if by_speed < by_clock:
         return
@@ -57,11 +63,11 @@ def rate_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
         rate = float(numbers[-1])
         words = f"the recorder's clock seems to run {100 * abs(rate - 1):.1f} % too {'fast' if rate > 1 else 'slow'} in all runs"
         cure = "check the recorder's sampling rate against a stopwatch, and the speed against a measured stretch"
-        if by_speed < AS_WELL * by_clock:
+        if by_speed < max(AS_WELL * by_clock, case.noise):
             return (MeasurementFault("clock_or_speed", (), (), f"{words}, or the speeds are stated wrong by as much", cure, rate),)
         return (MeasurementFault("clock_rate", (), (), words, cure, rate),)
 
-    yield Hypothesis(case.trials, describe, RATE_LEFT, (change,), (best,))
+    yield Hypothesis(case.trials, describe, max(RATE_LEFT, case.noise), (CLOCK,), (best,))
 
 
 def slow_recorder(recorder: FoundRecorder | None, runs: tuple[str, ...]) -> tuple[MeasurementFault, ...]:

@@ -68,6 +68,11 @@ class BaseRefits:
             self.trials, self.problem, self.refit_band, self.excess = known
 
     @property
+    def noise(self) -> float:
+        """The share of the excess at which what is left counts as noise."""
+        return (NOISE_FLOOR**2 - 1) / self.excess
+
+    @property
     def runs(self) -> tuple[str, ...]:
         """The runs' names."""
         return tuple(trial.name for trial in self.trials)

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from vehgen.diagnose.fits.model_fit import BASE_RANGE
 from vehgen.diagnose.inputs.comparison import Comparison, compare
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always
+from vehgen.diagnose.inputs.recorders import other_rate
 from vehgen.diagnose.inputs.refits import BaseRefits
-from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.fit.adjustments import SpeedScale
 from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.problem import make_problem
@@ -47,11 +47,11 @@ FEW = 2
 STRANGE = 0.1
 """Largest share of the excess that the other runs may leave without it."""
 SPEED_FITS_TOO = 2.0
-"""Where another speed leaves less than so many times what other axles leave, the axles are not blamed."""
+"""Where another speed or clock leaves noise, or less than so many times what other axles leave, the axles are not blamed."""
 
 
 def axle_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
-    """Yield that axles are another distance apart, where that makes the recordings correlate better and no speed does."""
+    """Yield that axles are another distance apart, where that makes the recordings correlate better, and no speed or clock does."""
     found = []
     for name in _distances(case):
         value = case.trials[0].values[name]
@@ -72,7 +72,8 @@ def axle_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
         for scale in SPEED_SCALES
     }
     scale = max(scores, key=lambda key: scores[key])
-    if case.refit(case.problem, (speed,), (scale,))[1] < SPEED_FITS_TOO * left:
+    enough, clock = max(SPEED_FITS_TOO * left, case.noise), other_rate(case)
+    if case.refit(case.problem, (speed,), (scale,))[1] < enough or (clock is not None and clock[1] < enough):
         return
     stated, value = case.trials[0].values[name], trials[0].values[name]
     shift = value - stated
@@ -145,7 +146,7 @@ def _has_own_vehicle(case: BaseRefits, trial: Trial, together: LeastSquaresFit) 
     filed = np.asarray(wide.space.unit(wide.space.start))
     drawn = filed + np.random.default_rng(0).uniform(-OWN_REACH, OWN_REACH, (OWN_STARTS, len(filed)))
     starts = [filed, np.asarray(wide.space.unit(np.asarray(near))), *np.clip(drawn, 0.0, 1.0)]
-    enough = max(OTHER, (NOISE_FLOOR**2 - 1) / case.excess)
+    enough = max(OTHER, case.noise)
     return any(case.refit(wide, unit=unit)[1] <= enough for unit in starts)
 
 
@@ -162,7 +163,7 @@ def other_vehicle(case: BaseRefits) -> tuple[MeasurementFault, ...]:
         return ()
     wide = replace(make_problem(case.detected), trials=case.trials)
     fit, left = case.refit(wide, unit=np.asarray(wide.space.unit(case.base.values)))
-    if left > max(OTHER, (NOISE_FLOOR**2 - 1) / case.excess):
+    if left > max(OTHER, case.noise):
         return ()
     ratios = {
         name: value / start
