@@ -10,7 +10,6 @@ import scipy.signal
 from benchmarks.hidden_effects.generator import Effect, Hump, RunSpec, nominal, perturbed
 
 from vehgen.diagnose.detect.detection import detect
-from vehgen.diagnose.inputs import judging
 from vehgen.diagnose.inputs.amplitudes import dead_hypotheses, hidden_mistakes, unit_hypotheses
 from vehgen.diagnose.inputs.conditions import alike_in_all_runs, findings_of_conditions, moved_roads
 from vehgen.diagnose.inputs.judging import explain_gap, plain_mistakes, recorded_mistakes, supposed_mistakes
@@ -146,23 +145,6 @@ def test_a_unit_is_told_where_nothing_seems_to_be_missing(plain):
     (fault,) = recorded_mistakes(quiet)
     assert told([fault]) == [("unit", EVERY, ("R_q",))]
     assert fault.value == pytest.approx(57.3, rel=0.01)
-
-
-def test_a_unit_is_told_where_a_bent_base_leaves_too_little_for_refits_to_tell(plain, monkeypatch):
-    monkeypatch.setattr(judging, "find_mistakes", lambda detection, plain_only: SimpleNamespace(faults=()))
-    bent = SimpleNamespace(trials=edited(plain, times(57.3, R_Q)), band=(0.5, 25.0), chi=1.2)
-    assert told(plain_mistakes(bent)) == [("unit", EVERY, ("R_q",))]
-    assert plain_mistakes(SimpleNamespace(trials=plain, band=bent.band, chi=bent.chi)) == ()
-
-
-def test_a_dead_channel_is_told_where_the_base_bent_until_it_hardly_moves_there(plain):
-    """Of one run alone it is left to the refits."""
-    quiet = SimpleNamespace(floor=detect(plain).floor, band=(0.5, 25.0), is_quiet=True)
-    quiet.trials = edited(plain, noise_only(R_AZ, 0.01))
-    assert told(recorded_mistakes(quiet)) == [("dead", EVERY, ("R_az",))]
-    for trials in (plain, edited(plain, noise_only(R_AZ, 0.01), "high")):
-        quiet.trials = trials
-        assert recorded_mistakes(quiet) == ()
 
 
 def test_a_unit_in_one_run_alone_is_left_to_the_refits(plain):

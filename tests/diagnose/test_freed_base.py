@@ -10,8 +10,7 @@ from benchmarks.hidden_effects.generator import Effect, nominal
 
 from tests.diagnose.conftest import CUBIC, HUMPS
 from vehgen.diagnose.decision import Decision
-from vehgen.diagnose.fits.candidate import build_problem, carried, list_candidates
-from vehgen.diagnose.fits.freedom import freed_alone
+from vehgen.diagnose.fits.candidate import build_problem, carried, freed_alone, list_candidates
 from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, base_priors, narrow
 from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.select.fitter import Fitter

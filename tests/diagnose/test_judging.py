@@ -82,8 +82,10 @@ def test_another_vehicle_is_not_told_where_one_force_at_a_place_explains_the_gap
         ("speed", ("low", "high", "fast"), True, False),
         ("hump", ("high",), True, False),
         ("low_pass", ("low", "high", "fast"), True, True),
+        ("clock_or_speed", (), True, True),
+        ("clock_or_speed", (), False, False),
     ],
-    ids=["one run's speed", "not all of the gap", "all speeds", "a hump", "a low-pass"],
+    ids=["one run's speed", "not all of the gap", "all speeds", "a hump", "a low-pass", "a clock", "a clock and more"],
 )
 def test_a_wrong_speed_of_some_runs_is_told_before_effects_are_tried(monkeypatch, detection_of, kind, runs, at_once, told):
     """A truck's strained base had supposed four things of a run 9 % too fast, and effects were tried for ten minutes beside it."""

@@ -92,14 +92,15 @@ class Ending:
     def _one_mistake(self) -> Decided | None:
         """Return the verdict that a mistake is made which alone explains all, and which no effect of a vehicle looks like.
 
-        That is a wrong speed of some runs, or, where runs differ in speed, a low-pass: what tyres or bodies smooth goes with the speed.
+        That is a wrong speed of some runs, a clock, or, where runs differ in speed, a low-pass: what tyres smooth goes with the speed.
         """
         found, trials = self._undone(), self.detection.trials
         speeds = [trial.scenario.top_speed for trial in trials]
         varied = max(speeds) > limit.VARIED_SPEEDS * min(speeds)
-        some = all(item.kind == "speed" and len(item.runs) < len(trials) for item in found.faults)
-        cut_off = varied and all(item.kind == "low_pass" for item in found.faults)
-        return self._mistaken(found.faults) if found.at_once and (some or cut_off) else None
+        kinds = {item.kind for item in found.faults}
+        some = kinds == {"speed"} and all(len(item.runs) < len(trials) for item in found.faults)
+        alone = some or kinds == {"clock_or_speed"} or (varied and kinds == {"low_pass"})
+        return self._mistaken(found.faults) if found.at_once and alone else None
 
     def _end(self, verdict: VerdictName, reason: str, next_experiment: str | None = None) -> Decided:
         found = Verdict(verdict, reason, (), self._gap(), self._places(), next_experiment=next_experiment, notes=tuple(self.notes))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.effects import Effect, EffectLocator
-from vehgen.effects.places import members
+from vehgen.effects.places import members, nowhere
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.misfit import Noises
 from vehgen.fit.problem import Problem
@@ -68,6 +68,23 @@ class Candidate:
             or not own.isdisjoint((type(other), other.place) for other in item.shared)
             for item in others
         )
+
+
+@dataclass(frozen=True, kw_only=True)
+class FreedBase(Effect):
+    """No effect at all, but the freedom that another one gives the base parameters at its place: something that can be fitted, too."""
+
+    def n_numbers(self, n_runs: int) -> int:
+        """Return 0: it adds no parameter."""
+        return 0
+
+
+FREED_BASE = FreedBase(name="freed_base", title="Base parameters beyond the file's", attaches="base", places=nowhere)
+
+
+def freed_alone(names: tuple[str, ...]) -> Candidate:
+    """Return the candidate that sets base parameters free and adds nothing."""
+    return Candidate(FREED_BASE, ", ".join(names), (), (), names)
 
 
 def list_candidates(vehicle: Vehicle, trials: Sequence[Trial], effects: Sequence[Effect], noises: Noises | None = None) -> list[Candidate]:

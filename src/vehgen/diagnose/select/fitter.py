@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.detect.detection import Detection
-from vehgen.diagnose.fits.candidate import Candidate, build_problem
-from vehgen.diagnose.fits.freedom import freed_alone
+from vehgen.diagnose.fits.candidate import Candidate, build_problem, freed_alone
 from vehgen.diagnose.fits.model_fit import CurrentModel, ModelFit, evaluate_fit, refine
 from vehgen.diagnose.fits.multi_start import fit_candidate
 from vehgen.diagnose.fits.occurring import occurring

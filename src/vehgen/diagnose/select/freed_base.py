@@ -12,8 +12,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from vehgen.diagnose import thresholds as limit
-from vehgen.diagnose.fits.candidate import Candidate
-from vehgen.diagnose.fits.freedom import freed_alone
+from vehgen.diagnose.fits.candidate import Candidate, freed_alone
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.estimates import p_value
 from vehgen.diagnose.select.merit import merit, own_numbers
