@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.detect.detection import Detection
-from vehgen.diagnose.fits.candidate import Candidate
-from vehgen.diagnose.fits.freedom import freed_alone
+from vehgen.diagnose.fits.candidate import Candidate, freed_alone
 from vehgen.diagnose.fits.model_fit import ModelFit, base_priors
 from vehgen.diagnose.fits.multi_start import fit_candidate
 from vehgen.diagnose.select.criteria import passes
