@@ -9,6 +9,7 @@ from benchmarks.hidden_effects.generator import perturbed
 
 from tests.diagnose.conftest import HUMPS
 from vehgen.diagnose.inputs import judging, vehicle
+from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.judging import plain_mistakes, recorded_mistakes
 from vehgen.diagnose.inputs.labels import label_hypotheses
 from vehgen.diagnose.inputs.refits import BaseRefits
@@ -83,3 +84,13 @@ def test_axles_are_not_blamed_where_a_clock_leaves_noise(detection_of, monkeypat
     parameters["wheelbase"] *= 1.15
     monkeypatch.setattr(vehicle, "other_rate", lambda case: clock)
     assert bool(list(axle_hypotheses(BaseRefits(detection_of(parameters=parameters, runs=HUMPS))))) is blamed
+
+
+@pytest.mark.parametrize(("excess", "told_as_tie"), [(0.1, True), (0.2, False)])
+def test_a_clock_that_leaves_noise_is_a_tie_with_the_effect_that_explains_more(excess, told_as_tie):
+    """A sedan's clock that ran 10 % fast was named a speed 8 % off, which leaves chi 1.04 of 3.2."""
+    fault = MeasurementFault("clock_or_speed", (), (), "the clock seems to run 9 % too fast", "check it")
+    undone = judging.Undone((fault,), 0.42, True, SimpleNamespace(excess=excess))
+    detection, leading = SimpleNamespace(is_quiet=False, chi=3.2), SimpleNamespace(chi=1.04)
+    found = judging.explain_gap(detection, leading, vehicle=False, undone=undone)
+    assert found == ((fault,) if told_as_tie else ())
