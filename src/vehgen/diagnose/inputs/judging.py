@@ -250,8 +250,10 @@ def explain_gap(
     undone = undone or find_mistakes(detection)
     found = undone.faults
     kinds = {item.kind for item in found}
-    better = 1 / CLEARLY_BETTER if vehicle and kinds == {"low_pass"} else CLEARLY_BETTER
-    tie = kinds == {"clock_or_speed"} and undone.case.excess <= FLOOR  # with the effect
+    clock = kinds == {"clock_or_speed"}
+    better = 1.0 if clock else CLEARLY_BETTER  # a tie with the effect is a tie
+    better = 1 / CLEARLY_BETTER if vehicle and kinds == {"low_pass"} else better
+    tie = clock and undone.case.excess <= FLOOR
     if found and (leading is None or tie or better * undone.left < (leading.chi**2 - 1) / (detection.chi**2 - 1)):
         return found
     if found or not vehicle:
