@@ -18,7 +18,7 @@ import tempfile
 from functools import partial
 from pathlib import Path
 
-from benchmarks.jobs.inputs import MANY_CROSSINGS, ROOT, import_phones, write_recordings
+from benchmarks.jobs.inputs import LONG, MANY_CROSSINGS, ROOT, import_phones, write_recordings
 from benchmarks.jobs.tables import Taken, shortest, split, totals
 
 HERE = ROOT / "src"
@@ -30,7 +30,7 @@ INPUTS = {
     "sedan_friction": partial(write_recordings, vehicle="sedan2", friction=True),
     "truck": partial(write_recordings, vehicle="tractor5", friction=False),
     "truck_friction": partial(write_recordings, vehicle="tractor5", friction=True),
-    "truck_many": partial(write_recordings, vehicle="tractor5", friction=True, many=True),
+    "truck_many": partial(write_recordings, vehicle="tractor5", friction=True, crossings=MANY_CROSSINGS, duration=LONG),
 }
 """What writes a folder of runs."""
 JOBS = {

@@ -43,6 +43,7 @@ SENSORS = {
     "  L2: {body: semitrailer, behind: fifth_wheel, distance: 9.115 m, channels: {acceleration: L2_az, pitch_rate: L2_q}}\n",
 }
 DURATIONS = {"sedan2": 6, "tractor5": 13}
+"""Of each run [s]."""
 LONG = 25
 """Duration of each of MANY_CROSSINGS [s]."""
 FRICTION = {
@@ -56,10 +57,12 @@ PHONE_SENSORS = (
 )
 
 
-def write_recordings(folder: Path, vehicle: str, friction: bool, many: bool = False) -> None:
+def write_recordings(
+    folder: Path, vehicle: str, friction: bool, crossings: dict[str, tuple[float, float]] = CROSSINGS, duration: float | None = None
+) -> None:
     """Write run files and recordings of a bundled vehicle whose parameters are off, with or without friction that the file lacks.
 
-    `many` asks for the long MANY_CROSSINGS.
+    `crossings` as CROSSINGS; each lasts `duration` [s], or the vehicle's of DURATIONS.
     """
     random = np.random.default_rng(SEED)
     folder.mkdir()
@@ -69,10 +72,10 @@ def write_recordings(folder: Path, vehicle: str, friction: bool, many: bool = Fa
     laws = f"axles:\n{FRICTION[vehicle]}" if friction else ""
     truth = folder / "truth.yaml"
     truth.write_text(f"extends: {vehicle}\nname: truth\nparameters:\n{off}{laws}", encoding="utf-8")
-    duration = LONG if many else DURATIONS[vehicle]
-    for name, (speed, height) in (MANY_CROSSINGS if many else CROSSINGS).items():
+    for name, (speed, height) in crossings.items():
         run = folder / f"{name}.yaml"
-        text = RUN.format(vehicle=vehicle, speed=speed, duration=duration, name=name, height=height, sensors=SENSORS[vehicle])
+        lasts = duration or DURATIONS[vehicle]
+        text = RUN.format(vehicle=vehicle, speed=speed, duration=lasts, name=name, height=height, sensors=SENSORS[vehicle])
         run.write_text(text, encoding="utf-8")
         response = vehgen.simulate(run, vehicle=truth)
         noise = np.array([NOISE[channel.quantity] for channel in response.channels])

@@ -3,6 +3,7 @@
 import contextlib
 import io
 import json
+from dataclasses import replace
 
 import pytest
 from benchmarks.hidden_effects.generator import Case, Effect, Hump, RandomRoad, RunSpec, write_case
@@ -21,6 +22,16 @@ HUMPS = RUNS[:3]
 """Without the rough road: what needs no more than humps takes half as long without it."""
 CUBIC = Effect("cubic_stiffness", "rear", {"k3": 1e8})
 """A spring that most tests hide."""
+
+
+def edited(trials, change, only=None):
+    """Return trials with changed values `shape (n_samples, 4)`, in all runs or in one."""
+    return [
+        replace(trial, recording=replace(trial.recording, values=change(trial.recording.values.copy())))
+        if only in (None, trial.name)
+        else trial
+        for trial in trials
+    ]
 
 
 def once(make):

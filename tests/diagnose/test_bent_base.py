@@ -1,13 +1,12 @@
 """What a base hides that has bent its parameters and the errors of its runs to a mistake of the measurement."""
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from benchmarks.hidden_effects.generator import perturbed
 
-from tests.diagnose.conftest import HUMPS
+from tests.diagnose.conftest import HUMPS, edited
 from vehgen.diagnose.inputs import judging, vehicle
 from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.judging import plain_mistakes, recorded_mistakes
@@ -17,12 +16,6 @@ from vehgen.diagnose.inputs.vehicle import axle_hypotheses
 
 BAND = (0.5, 25.0)
 R_AZ, R_Q = 2, 3
-
-
-def edited(trials, change, only=None):
-    """Return trials with changed values `shape (n_samples, 4)`, in all runs or in one."""
-    changed = [replace(trial, recording=replace(trial.recording, values=change(trial.recording.values.copy()))) for trial in trials]
-    return [new if only in (None, trial.name) else trial for trial, new in zip(trials, changed, strict=True)]
 
 
 def in_degrees(values):

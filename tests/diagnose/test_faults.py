@@ -9,6 +9,7 @@ import scipy.interpolate
 import scipy.signal
 from benchmarks.hidden_effects.generator import Effect, Hump, RunSpec, nominal, perturbed
 
+from tests.diagnose.conftest import edited
 from vehgen.diagnose.detect.detection import detect
 from vehgen.diagnose.inputs.amplitudes import dead_hypotheses, hidden_mistakes, unit_hypotheses
 from vehgen.diagnose.inputs.conditions import alike_in_all_runs, findings_of_conditions, moved_roads
@@ -34,16 +35,6 @@ F_AZ, F_Q, R_AZ, R_Q = range(4)
 @pytest.fixture(scope="module")
 def plain(trials_of):
     return trials_of(runs=RUNS)
-
-
-def edited(trials, change, only=None):
-    """Return trials with changed values `shape (n_samples, 4)`, in all runs or in one."""
-    return [
-        replace(trial, recording=replace(trial.recording, values=change(trial.recording.values.copy())))
-        if only in (None, trial.name)
-        else trial
-        for trial in trials
-    ]
 
 
 def times(factor, *channels):
