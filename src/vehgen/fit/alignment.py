@@ -13,8 +13,8 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.fit.bounded import LinearisedPoint, minimise
-from vehgen.fit.linearisation import linearise
+from vehgen.fit.descent import descend
+from vehgen.fit.linearisation import Lineariser
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.window import transform
 
@@ -38,6 +38,8 @@ LATEST = 1.0
 STEPS = 10
 """So many steps at most in each band."""
 TOLERANCE = 1e-3
+SLOPES_SERVE, FORETOLD = 2, 1
+"""Derivatives by a run's errors serve so often, and so many between follow from the step (`refresh` and `secants` of Lineariser)."""
 
 
 def align(misfit: Misfit, unit: Array, begun: Sequence[float] = (), bands: Sequence[float] = BANDS_HZ) -> Array:
@@ -105,14 +107,8 @@ def _fitted(alone: Misfit, start: Array) -> Array:
     shared = np.full(len(alone.shared), MOST_SIGMAS)
     low, high = error_bounds(alone)
     begun = np.concatenate([np.zeros(len(alone.shared)), start])
-
-    def square(x: Array) -> float:
-        return float(np.sum(alone.residuals(x) ** 2))
-
-    def linearised(x: Array) -> LinearisedPoint:
-        return LinearisedPoint(*linearise(alone, x, one_sided=True).normal(alone.whitened_spectrum(x), x))
-
-    return minimise(square, linearised, begun, (np.append(-shared, low), np.append(shared, high)), TOLERANCE, STEPS)[len(alone.shared) :]
+    bounds = np.append(-shared, low), np.append(shared, high)
+    return descend(alone, begun, Lineariser(alone, SLOPES_SERVE, secants=FORETOLD), bounds, TOLERANCE, STEPS)[len(alone.shared) :]
 
 
 def best_delay(measured: Array, simulated: Array, dt: float, band: tuple[float, float]) -> tuple[float, float]:

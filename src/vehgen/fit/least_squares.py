@@ -11,18 +11,16 @@ from numpy.typing import NDArray
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.alignment import MOST_SIGMAS, align, error_bounds
 from vehgen.fit.band import CALIBRATION_BAND_HZ
-from vehgen.fit.bounded import LinearisedPoint, minimise
+from vehgen.fit.descent import descend
 from vehgen.fit.linearisation import Linearisation, Lineariser
 from vehgen.fit.misfit import Misfit, Noises, flatten
 from vehgen.fit.noise import EVEN, Noise, estimate_noise
 from vehgen.fit.nuisances import Condition, Nuisances
-from vehgen.fit.one_thread import one_blas_thread
 from vehgen.fit.prior_data import PriorData
 from vehgen.fit.problem import Problem
 from vehgen.fit.rig_noise import RunResidual, likeliest_noises, unstated_sizes
 
 Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 AT_BOUND = 1e-3
 """Nearer than this to 0 or 1 in the unit cube, a parameter counts as on its bound."""
 WEAK_PRIOR_SIGMA = 2.0
@@ -167,38 +165,14 @@ def fit_least_squares(
 
 def _fit(
     misfit: Misfit, x: Array, prior_data: PriorData | None, options: FitOptions, tolerance: float, nearby: Linearisation | None
-) -> tuple[Array, Linearisation]:
-    n, space = misfit.n_parameters, misfit.problem.space
-    middle, weights = space.unit(space.start), options.priors(n) ** -2.0
-    renewed = options.jacobian_refresh > 1 and tolerance < COARSE_TOLERANCE
-    derive = Lineariser(misfit, options.jacobian_refresh, nearby, SECANTS if renewed else 0)
-    last: list[tuple[Array, list[Complex]]] = []
-    kept: list[Linearisation] = []
-
-    def square(x: Array) -> float:
-        lines = misfit.whitened_spectrum(x)
-        last[:] = [*last[-1:], (x, lines)]
-        errors = misfit.split(x)[1]
-        total = sum(float(np.vdot(line, line).real) * 2 for line in lines) + float(errors @ errors + weights @ (x[:n] - middle) ** 2)
-        return total if prior_data is None else total + float((prior_data.residuals(space.values(x[:n])) ** 2).sum())
-
-    def linearised(x: Array, how: Callable[[Array, list[Complex]], Linearisation] = derive) -> LinearisedPoint:
-        lines = next((own for at, own in last if at is x), None) or misfit.whitened_spectrum(x)
-        kept[:] = [how(x, lines)]
-        information, gradient = kept[0].normal(lines, x)
-        information[:n, :n] += np.diag(weights)
-        gradient[:n] += weights * (x[:n] - middle)
-        if prior_data is not None:
-            values = space.values(x[:n])
-            slopes = prior_data.jacobian(values) * space.slopes(values)
-            information[:n, :n] += slopes.T @ slopes
-            gradient[:n] += slopes.T @ prior_data.residuals(values)
-        return LinearisedPoint(information, gradient)
-
-    with one_blas_thread():  # small matrices: more threads only wait for one another
-        renew = (lambda x: linearised(x, derive.linearise_anew)) if renewed else None
-        found = minimise(square, linearised, x, unknown_bounds(misfit, options.most_sigmas), tolerance, options.max_steps, renew)
-    return found, kept[0]
+) -> tuple[Array, Linearisation | None]:
+    renewed, priors = options.jacobian_refresh > 1 and tolerance < COARSE_TOLERANCE, options.priors(misfit.n_parameters)
+    derive, bounds = (
+        Lineariser(misfit, options.jacobian_refresh, nearby, SECANTS if renewed else 0),
+        unknown_bounds(misfit, options.most_sigmas),
+    )
+    found = descend(misfit, x, derive, bounds, tolerance, options.max_steps, priors=priors, prior_data=prior_data, renewed=renewed)
+    return found, derive.last
 
 
 def unknown_bounds(misfit: Misfit, most_sigmas: float = MOST_SIGMAS) -> tuple[Array, Array]:

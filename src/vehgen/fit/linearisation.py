@@ -200,6 +200,11 @@ class Lineariser:
         self._last, self._age, self._moves = nearby, 1 if nearby is not None else 0, 0
         self._begun: tuple[Array, list[Complex]] | None = None
 
+    @property
+    def last(self) -> Linearisation | None:
+        """The last linearisation, if there has been one."""
+        return self._last
+
     def __call__(self, x: Array, lines: list[Complex] | None = None) -> Linearisation:
         """Return the linearisation at unknowns x `shape (n_unknowns,)`; without the whitened residuals `lines` there it is computed."""
         moved = None

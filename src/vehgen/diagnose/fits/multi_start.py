@@ -31,8 +31,8 @@ from vehgen.fit.trial import Trial
 from vehgen.simulate import SimulatorPool
 
 Array = NDArray[np.float64]
-HOPELESS = 0.5
-"""A candidate that leaves more than this share of the excess after the rough fits is not refined."""
+HOPELESS, BESIDE_SETTLED = 0.5, 0.1
+"""A candidate that leaves more than this share of the excess after the rough fits is not refined; the same beside one that leaves noise."""
 SLOW_FIRST = ((4.0, 4, 8), (10.0, 2, 8), (20.0, 1, 6), (None, 1, 8))
 """Stages of a fit to slow motions first: highest frequency [Hz] (None: the band's), how many of the best are followed, steps of each."""
 AT_ONCE = ((None, 8, 4), (None, 2, 8))
@@ -60,13 +60,14 @@ def fit_candidate(
     begin: Sequence[tuple[float, ...]] | None = None,
     laid: Array | None = None,
     slow_first: bool = True,
+    hopeless: float = HOPELESS,
 ) -> ModelFit | None:
     """Fit a candidate's effect together with what it is added to.
 
     Parameters
     ----------
     candidate, current
-        What to add, and to what. A candidate that leaves HOPELESS of the current model's excess after the rough fits is not refined.
+        What to add, and to what.
     validation_runs, noises, band, locator, simulators
         As elsewhere.
     origins
@@ -78,6 +79,8 @@ def fit_candidate(
         the origins, with all errors).
     slow_first
         Fit slow motions first, not all at once.
+    hopeless
+        A candidate that leaves more than this share of the current model's excess after the rough fits is not refined.
 
     Returns
     -------
@@ -89,7 +92,7 @@ def fit_candidate(
     if best is None:
         return None
     effects = (*current.effects, candidate)
-    if best.chi2 - 1 > HOPELESS * max(current.training - 1, 0.0):
+    if best.chi2 - 1 > hopeless * max(current.training - 1, 0.0):
         return evaluate_fit(effects, best, (), noises)
     fit = without_strain(refine(resolve(best.misfit, best.x), best, best.x, effects), effects)
     candidate, fit = release(candidate, current, fit, locator, simulators)

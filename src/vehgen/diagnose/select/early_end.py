@@ -9,6 +9,7 @@ import numpy as np
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
+from vehgen.diagnose.fits.multi_start import BESIDE_SETTLED
 from vehgen.diagnose.fits.screening import FirstOrderGains
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import idle_instead
@@ -34,6 +35,7 @@ def settle(
     """Fit the candidates of the largest first-order gains until one settles the gap of the base; those at `kept_at` stay its rivals.
 
     Every fit is handed to `each` as soon as it is made. Beside a base at its bounds none settles that does no more than what it set free.
+    Where one settles the gap, the fitter refines from then on only what leaves next to nothing, too.
 
     Returns
     -------
@@ -48,6 +50,7 @@ def settle(
         tried.add(fit.key[-1])
         if _settles(fit) and not (strained and idle_instead(fit, fitter.fit_without)):
             own = next(gain for gain, _, item in ranked if (item.effect.name, item.place) == fit.key[-1])
+            fitter.hopeless = BESIDE_SETTLED
             rest = [(gain, item) for gain, _, item in ranked if (item.effect.name, item.place) not in tried]
             return [item for gain, item in rest if gain >= RIVAL * own or item.place == kept_at or _is_inseparable(item, fit.last)]
     return list(candidates)

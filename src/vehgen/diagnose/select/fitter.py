@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, build_problem, freed_alone
 from vehgen.diagnose.fits.model_fit import CurrentModel, ModelFit, evaluate_fit, refine
-from vehgen.diagnose.fits.multi_start import fit_candidate
+from vehgen.diagnose.fits.multi_start import HOPELESS, fit_candidate
 from vehgen.diagnose.fits.occurring import occurring
 from vehgen.diagnose.fits.released import release
 from vehgen.diagnose.fits.restarts import restart
@@ -31,10 +31,13 @@ Array = NDArray[np.float64]
 
 
 class Fitter:
-    """Fits candidates on top of a fit; `passed` are the places that suffice to explain what it leaves."""
+    """Fits candidates on top of a fit; `passed` are the places that suffice to explain what it leaves.
+
+    `hopeless` is the share of the fit's excess beyond which a candidate is not refined.
+    """
 
     def __init__(self, detection: Detection, base: ModelFit, passed: Sequence[PlaceResult]) -> None:
-        self.detection, self.current, self.simulators = detection, CurrentModel.of(base), SimulatorPool()
+        self.detection, self.current, self.simulators, self.hopeless = detection, CurrentModel.of(base), SimulatorPool(), HOPELESS
         trial = self.current.problem.trials[0]
         self.locator = EffectLocator(trial.run.vehicle, dict(trial.values), occurring(base))
         self.origins = _origins(base, self.current, passed)
@@ -106,6 +109,7 @@ class Fitter:
             starts,
             laid,
             slow_first,
+            self.hopeless,
         )
 
     def fit_again(self, fit: ModelFit) -> ModelFit:
