@@ -36,7 +36,7 @@ def test_of_mistakes_that_leave_noise_one_that_supposes_nothing_else_is_told(mon
     monkeypatch.setattr(judging, "PLAIN", ())
     monkeypatch.setattr(judging, "SUBTLE", tuple(lambda case, item=item: [item] for item, _ in both))
     case = SimpleNamespace(excess=3.0, first_excess=3.0, judge=lambda item: fits[id(item)], accept=lambda *_: setattr(case, "excess", 0.0))
-    monkeypatch.setattr(judging, "BaseRefits", lambda detection: case)
+    monkeypatch.setattr(judging, "base_refits", lambda detection: case)
     undone = judging.find_mistakes(None)
     assert [fault.kind for fault in undone.faults] == [told]
     assert undone.at_once == (told == "easy"), "what supposes something beyond belief does not tell all"

@@ -30,7 +30,7 @@ from vehgen.diagnose.inputs.humps import hump_hypotheses, road_heights
 from vehgen.diagnose.inputs.labels import label_hypotheses
 from vehgen.diagnose.inputs.levels import level_hypotheses
 from vehgen.diagnose.inputs.recorders import filter_hypotheses, rate_hypotheses, slow_recorder
-from vehgen.diagnose.inputs.refits import BaseRefits
+from vehgen.diagnose.inputs.refits import BaseRefits, base_refits
 from vehgen.diagnose.inputs.vehicle import axle_hypotheses, other_vehicle, strange_run, strange_run_hypotheses, unrelated_recording
 from vehgen.diagnose.thresholds import NOISE_FLOOR, WEAK
 from vehgen.fit.least_squares import LeastSquaresFit
@@ -108,7 +108,7 @@ class Undone:
 
 def find_mistakes(detection: Detection, plain_only: bool = False) -> Undone:
     """Return the mistakes that explain the base model's gap; with `plain_only` subtle ones only where they stand beside plain ones."""
-    case = BaseRefits(detection)
+    case = base_refits(detection)
     found: list[MeasurementFault] = []
     at_once = False
     while len(found) < MOST_MISTAKES:
@@ -190,7 +190,7 @@ def supposed_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
 
 def _mislabelled(detection: Detection) -> tuple[MeasurementFault, ...]:
     """Return the wrong labels that leave least once they are put right, where recordings are no stranger's then."""
-    case = BaseRefits(detection)
+    case = base_refits(detection)
     right = [(hypothesis, *case.judge(hypothesis)) for hypothesis in label_hypotheses(case)]
     known = [item for item in right if not unrelated_recording(item[1])]
     return min(known, key=lambda item: item[2])[0].describe(np.zeros(0)) if known else ()
@@ -217,7 +217,7 @@ def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
 
 def moved_axles(detection: Detection) -> tuple[MeasurementFault, ...]:
     """Return that axles are elsewhere than the vehicle file says, where that alone leaves noise."""
-    case = BaseRefits(detection)
+    case = base_refits(detection)
     best = _least(_judge(case, (axle_hypotheses,)), case.excess)
     return best.faults if best is not None and best.explains(case.excess) else ()
 

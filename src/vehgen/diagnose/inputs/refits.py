@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -170,6 +171,16 @@ class BaseRefits:
             factors = np.array([BLINDING if (trial.name, channel) in blind else 1.0 for channel in trial.channels])
             blinded[trial.name] = replace(own, sigma=own.sigma * factors)
         return blinded
+
+
+def base_refits(detection: Detection) -> BaseRefits:
+    """Return refits of a detection's base with no mistake undone yet; how they begin is found once."""
+    return copy(_begun(detection))
+
+
+@lru_cache(maxsize=2)
+def _begun(detection: Detection) -> BaseRefits:
+    return BaseRefits(detection)
 
 
 def _as_loud(noise: Noise, trial: Trial, changed: Trial) -> Noise:
