@@ -201,17 +201,18 @@ def refine(
     band: tuple[float, float] | None = None,
     known_errors: Sequence[LeastSquaresFit] = (),
     most_sigmas: float = MOST_SIGMAS,
+    tolerance: float = DIAGNOSIS_TOLERANCE,
 ) -> LeastSquaresFit:
     """Fit finely from the unknowns `x` of another fit, on a problem with the same unknowns, of which the last are the effects'.
 
-    With its noise and band, or with other ones, and errors of `most_sigmas` standard deviations at most. Where the runs are others,
-    `known_errors` are fits that tell where their errors begin.
+    With its noise and band, or with other ones, and errors of `most_sigmas` standard deviations at most; it ends at a relative change of
+    the sum of squares of `tolerance`. Where the runs are others, `known_errors` are fits that tell where their errors begin.
     """
     misfit = fit.misfit
     n_effect_parameters = sum(len(item.parameters) for item in effects)
     names = problem.space.names[: problem.space.size - n_effect_parameters]
     unit, errors = misfit.split(x)
-    options = replace(OPTIONS, band=band or misfit.band, max_steps=40, n_effect_parameters=n_effect_parameters)
+    options = replace(OPTIONS, band=band or misfit.band, max_steps=40, tolerance=tolerance, n_effect_parameters=n_effect_parameters)
     options = replace(options, prior_sigma=base_priors(names, effects), most_sigmas=most_sigmas)
     numbers = tuple(misfit.adjusted(x))
     return fit_least_squares(

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit, refine
+from vehgen.fit.least_squares import COARSE_TOLERANCE
 from vehgen.fit.misfit import Noises
 from vehgen.fit.trial import Trial
 
@@ -28,7 +29,9 @@ def restart(fit: ModelFit, validation_runs: Sequence[Trial], noises: Noises, see
         begin = x.copy()
         begin[: misfit.n_parameters] += shake * random.standard_normal(misfit.n_parameters)
         begin[: misfit.n_parameters] = np.clip(begin[: misfit.n_parameters], 0.01, 0.99)
-        found.append(refine(misfit.problem, fit.least_squares, begin, fit.effects))
+        found.append(refine(misfit.problem, fit.least_squares, begin, fit.effects, tolerance=COARSE_TOLERANCE))
     best = min(found, key=lambda item: item.loss)
+    if best is not fit.least_squares:
+        best = refine(misfit.problem, best, best.x, fit.effects)
     equals = tuple(item.x for item in found if item.chi2 <= best.chi2 + AS_GOOD)
     return replace(evaluate_fit(fit.effects, best, validation_runs, noises, near=fit.parts[1:]), equivalent_minima=equals)
