@@ -15,6 +15,7 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.checks import variety_notes
 from vehgen.diagnose.inputs.conditions import alike_in_all_runs
 from vehgen.diagnose.inputs.fault import MeasurementFault
+from vehgen.diagnose.inputs.humps import exchanged_humps
 from vehgen.diagnose.inputs.judging import moved_axles, odd_mistake, plain_mistakes, recorded_mistakes, supposed_mistakes
 from vehgen.diagnose.localise.localisation import localise
 from vehgen.diagnose.result import Decided
@@ -57,6 +58,8 @@ class Decision(Ending):
         if mistakes := recorded_mistakes(detection):
             return self._mistaken(mistakes)
         if detection.is_quiet:
+            if mistakes := exchanged_humps(detection):
+                return self._mistaken(mistakes)
             if mistakes := supposed_mistakes(detection):
                 return self._strained(mistakes)
             return self._quiet()

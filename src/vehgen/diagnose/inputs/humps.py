@@ -5,15 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache, partial
+from itertools import combinations
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.inputs.comparison import compare
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always, place_words
-from vehgen.diagnose.inputs.refits import BaseRefits
+from vehgen.diagnose.inputs.refits import BaseRefits, base_refits
 from vehgen.fit.trial import Trial
 from vehgen.road import Hump
+
+if TYPE_CHECKING:
+    from vehgen.diagnose.detect.detection import Detection
 
 Array = NDArray[np.float64]
 RunScore = Callable[[int, str, float], float]
@@ -28,6 +33,8 @@ HUMP_LEFT = 0.25
 """Largest share of the excess that another hump may leave."""
 ONE_HUMP = 0.02
 """Humps whose lengths and heights agree within this share are one."""
+TOWARDS, EXCHANGE_TOLD = 2.0, 36.0
+"""Two heights, each so many standard deviations nearer to the other, may have been exchanged; so much -2 ln L must then fall at least."""
 
 
 def hump_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
@@ -110,3 +117,35 @@ def _top(hump: Hump) -> float:
 def road_heights(trials: Sequence[Trial]) -> dict[str, float]:
     """Return the height of every run's highest hump [m] by its name; runs without humps are left out."""
     return {trial.name: max(_top(hump) for hump in trial.scenario.humps) for trial in trials if trial.scenario.humps}
+
+
+def exchanged_humps(detection: Detection) -> tuple[MeasurementFault, ...]:
+    """Return which two runs' humps were exchanged, where the base supposes heights nearer to one another's and fits better over them."""
+    heights = {item.run: item.sigmas for part in detection.base.parts for item in part.conditions() if item.name == "height"}
+    single = [i for i, trial in enumerate(detection.trials) if trial.scenario.over_humps_alone and len(trial.scenario.humps) == 1]
+    tops = {i: _top(detection.trials[i].scenario.humps[0]) for i in single}
+    rising = [(i, j) if tops[i] < tops[j] else (j, i) for i, j in combinations(tops, 2) if tops[i] != tops[j]]
+    names = [trial.name for trial in detection.trials]
+    suspected = [(i, j) for i, j in rising if min(heights.get(names[i], 0.0), -heights.get(names[j], 0.0)) >= TOWARDS]
+    if not suspected:
+        return ()
+    case = base_refits(detection)
+    losses = {pair: case.refit(case.problem.with_trials(_exchanged(case.trials, *pair)))[0].loss for pair in suspected}
+    best = min(losses, key=lambda pair: losses[pair])
+    if case.refit(case.problem)[0].loss - losses[best] < EXCHANGE_TOLD:
+        return ()
+    pair = names[best[0]], names[best[1]]
+    message = f"the humps of {pair[0]} and {pair[1]} have been exchanged: each suits the other's recording"
+    return (
+        MeasurementFault("exchanged_heights", pair, (), message, "put the humps of the two run files right, or exchange their recordings"),
+    )
+
+
+def _exchanged(trials: Sequence[Trial], i: int, j: int) -> list[Trial]:
+    """Return trials of which two, by number, have one another's hump where their own is."""
+    found = list(trials)
+    for number, other in ((i, j), (j, i)):
+        own, hump = trials[number].scenario, trials[other].scenario.humps[0]
+        track = replace(own.track, parts=(replace(hump, at=own.humps[0].at),))
+        found[number] = replace(trials[number], scenario=replace(own, track=track))
+    return found
