@@ -124,10 +124,13 @@ class Ending:
         return self._end("insufficient_data", wording.out_of_range(freed_ratios(freed)), "check the file, or calibrate first")
 
     def _unknown(self, first: SearchRound, reason: str = "") -> Decided:
+        supposed = supposed_mistakes(self.detection)
+        if not reason and {item.kind for item in supposed} == {"low_pass"}:  # no effect does as much
+            return self._mistaken(supposed)
         best = (len(first.fits), self._words(first.fits[0].last), float(np.sqrt(first.fits[0].training))) if first.fits else None
         self.notes += self._edge()
-        if strained := [item.message for item in supposed_mistakes(self.detection)]:
-            self.notes.append(wording.supposed(strained))
+        if supposed:
+            self.notes.append(wording.supposed([item.message for item in supposed]))
         if first.fits:
             self.notes.append(wording.ranked([(self._words(fit.last), share) for fit, share in explained_shares(first, self.base)]))
         causes = [wording.force_words(item.place.kind, item.place.name) for item in first.passed[:3]]
