@@ -55,11 +55,9 @@ class Decision(Ending):
     def _decide(self) -> Decided:
         detection = self.detection
         self.notes += variety_notes(detection.trials)
-        if mistakes := recorded_mistakes(detection):
+        if mistakes := recorded_mistakes(detection) or exchanged_humps(detection):
             return self._mistaken(mistakes)
         if detection.is_quiet:
-            if mistakes := exchanged_humps(detection):
-                return self._mistaken(mistakes)
             if mistakes := supposed_mistakes(detection):
                 return self._strained(mistakes)
             return self._quiet()

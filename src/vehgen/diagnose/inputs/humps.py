@@ -120,7 +120,7 @@ def road_heights(trials: Sequence[Trial]) -> dict[str, float]:
 
 
 def exchanged_humps(detection: Detection) -> tuple[MeasurementFault, ...]:
-    """Return which two runs' humps were exchanged, where the base supposes heights nearer to one another's and fits better over them."""
+    """Return which two runs' humps were exchanged, where the base supposes heights nearer to one another's, and leaves noise over them."""
     heights = {item.run: item.sigmas for part in detection.base.parts for item in part.conditions() if item.name == "height"}
     single = [i for i, trial in enumerate(detection.trials) if trial.scenario.over_humps_alone and len(trial.scenario.humps) == 1]
     tops = {i: _top(detection.trials[i].scenario.humps[0]) for i in single}
@@ -130,9 +130,10 @@ def exchanged_humps(detection: Detection) -> tuple[MeasurementFault, ...]:
     if not suspected:
         return ()
     case = base_refits(detection)
-    losses = {pair: case.refit(case.problem.with_trials(_exchanged(case.trials, *pair)))[0].loss for pair in suspected}
-    best = min(losses, key=lambda pair: losses[pair])
-    if case.refit(case.problem)[0].loss - losses[best] < EXCHANGE_TOLD:
+    refits = {pair: case.refit(case.problem.with_trials(_exchanged(case.trials, *pair))) for pair in suspected}
+    best = min(refits, key=lambda pair: refits[pair][0].loss)
+    fit, left = refits[best]
+    if left > case.noise or case.refit(case.problem)[0].loss - fit.loss < EXCHANGE_TOLD:
         return ()
     pair = names[best[0]], names[best[1]]
     message = f"the humps of {pair[0]} and {pair[1]} have been exchanged: each suits the other's recording"
