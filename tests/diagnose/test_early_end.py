@@ -9,7 +9,7 @@ from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.select import early_end
 from vehgen.diagnose.select.early_end import settle
 from vehgen.diagnose.select.fitter import Fitter
-from vehgen.diagnose.select.merit import numbers_at_ends
+from vehgen.diagnose.select.ranking import numbers_at_ends
 from vehgen.diagnose.select.search import fit_candidates
 from vehgen.effects import EFFECTS
 from vehgen.fit.misfit import Misfit

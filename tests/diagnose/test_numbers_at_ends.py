@@ -8,8 +8,7 @@ from vehgen.diagnose import decision
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.select.fitter import Fitter
-from vehgen.diagnose.select.merit import numbers_at_ends
-from vehgen.diagnose.select.special_cases import simplest_first
+from vehgen.diagnose.select.ranking import numbers_at_ends, simplest_first
 from vehgen.effects import EFFECTS
 
 TRUE_K3 = CUBIC.values["k3"]

@@ -2,7 +2,7 @@
 
 import hashlib
 
-from vehgen.diagnose.origin import origin_of
+from vehgen.diagnose.collecting import origin_of
 from vehgen.fit.trial import load_trials
 
 RUN = """\

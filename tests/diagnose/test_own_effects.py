@@ -11,7 +11,7 @@ from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.localise.localisation import shortlist
 from vehgen.diagnose.localise.unknown_force import Place, PlaceResult
 from vehgen.diagnose.select import early_end
-from vehgen.diagnose.select.merit import own_numbers
+from vehgen.diagnose.select.ranking import own_numbers
 from vehgen.diagnose.select.search import fit_candidates
 from vehgen.effects import EFFECTS, load_effects, registry
 

@@ -14,7 +14,7 @@ from vehgen.diagnose.fits.screening import chosen_with_holders
 from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.select.criteria import same, tied
 from vehgen.diagnose.select.fitter import Fitter
-from vehgen.diagnose.select.special_cases import holding, simplest_first
+from vehgen.diagnose.select.ranking import holding, simplest_first
 from vehgen.effects import EFFECTS
 
 BASE = SimpleNamespace(training=20.0)

@@ -15,7 +15,7 @@ from vehgen.diagnose.fits.multi_start import fit_candidate
 from vehgen.diagnose.select.criteria import passes
 from vehgen.diagnose.select.estimates import fitted_numbers, p_value
 from vehgen.diagnose.select.fitter import Fitter
-from vehgen.diagnose.select.merit import own_numbers
+from vehgen.diagnose.select.ranking import own_numbers
 from vehgen.diagnose.select.validation import gain_interval
 from vehgen.effects.evidence import StartingPoint
 from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA

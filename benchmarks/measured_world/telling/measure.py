@@ -18,7 +18,7 @@ from vehgen.diagnose.detect.detection import Detection, detect
 from vehgen.diagnose.detect.splitting import kind_of_run
 from vehgen.diagnose.fits.candidate import Candidate, has_room, list_candidates
 from vehgen.effects import library
-from vehgen.fit.one_thread import one_blas_thread
+from vehgen.fit.parallel import one_blas_thread
 from vehgen.fit.trial import load_trials
 from vehgen.vehicle import as_vehicle
 

@@ -18,8 +18,7 @@ from vehgen.errors import ArgumentError, did_you_mean
 from vehgen.files.limits import check_count, check_seed, check_share
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.nuisances import asked_nuisances
-from vehgen.fit.one_thread import one_blas_thread
-from vehgen.fit.parallel import runner_at
+from vehgen.fit.parallel import one_blas_thread, runner_at
 from vehgen.fit.prior_data import load_prior_data
 from vehgen.fit.problem import Problem, make_problem
 from vehgen.fit.trial import TrialLike, load_trials

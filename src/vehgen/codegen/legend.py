@@ -1,9 +1,30 @@
-"""The legend of a kernel: what its numbered names stand for, as text for people."""
+"""What quantities of a file are called in a kernel's source: numbers, never their names, as the source is imported as code; and the legend.
+
+Labels of a kind are equally long, so that the layout of the source, which follows the length of its lines, does not follow the numbers.
+"""
 
 from __future__ import annotations
 
-from vehgen.codegen.labels import dependent_label, drive_labels, parameter_label
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
+
+
+def parameter_label(number: int) -> str:
+    """Return the label of a parameter that is a column of the population."""
+    return f"p_{number:02d}"
+
+
+def dependent_label(number: int) -> str:
+    """Return the label of a parameter that follows from others."""
+    return f"q_{number:02d}"
+
+
+def drive_labels(n_inputs: int, n_forces: int) -> list[str]:
+    """Return the labels of the displacement inputs, of their rates and of the applied forces."""
+    return [
+        *(f"w_input_{i:04d}" for i in range(n_inputs)),
+        *(f"dw_input_{i:04d}" for i in range(n_inputs)),
+        *(f"f_{i:02d}" for i in range(n_forces)),
+    ]
 
 
 def kernel_legend(model: EquationsOfMotion) -> str:

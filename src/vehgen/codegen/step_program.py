@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from vehgen.codegen.factorisation import Matrix
-from vehgen.codegen.labels import dependent_label, drive_labels, parameter_label
+from vehgen.codegen.legend import dependent_label, drive_labels, parameter_label
 from vehgen.codegen.program import SETUP_PHASE, STEP_PHASE, Node, Program
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.rows import Row, SparseMatrix

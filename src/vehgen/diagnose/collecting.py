@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from datetime import UTC, datetime
+from pathlib import Path
 
 import numpy as np
 
@@ -18,6 +20,7 @@ from vehgen.diagnose.evidence import (
     FittedCandidate,
     ForceEvidence,
     LawCurve,
+    Origin,
     PlaceEvidence,
     RoundEvidence,
     RunAsks,
@@ -29,13 +32,16 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.localise.free_form import Curve, FreeForm, fit_free_form, recover, strongest
 from vehgen.diagnose.localise.recovered_force import RecoveredForce
 from vehgen.diagnose.localise.unknown_force import PlaceResult
-from vehgen.diagnose.origin import origin_of
 from vehgen.diagnose.result import DiagnosisModels
 from vehgen.diagnose.select.estimates import estimate, estimates_by_run
 from vehgen.diagnose.select.search import SearchRound
 from vehgen.diagnose.verdict import RunChi
+from vehgen.files.provenance import file_hashes, versions
 from vehgen.files.result_fields import Array1D, rounded
 from vehgen.files.units import NONE
+from vehgen.fit.trial import Trial
+from vehgen.simulate.run_file.files_read import files_read
+from vehgen.vehicle.writing import plain_data
 
 MAX_KEPT_CANDIDATES = 12
 """So many candidates of a look are kept at most."""
@@ -79,6 +85,19 @@ def collect(models: DiagnosisModels, quick: bool = False) -> Evidence:
         force=None if quick else _force(models),
         responses=response_curves(models),
         origin=origin_of(detection.trials, models.libraries),
+    )
+
+
+def origin_of(trials: Sequence[Trial], libraries: Sequence[str] = ()) -> Origin:
+    """Return the origin of a diagnosis of these runs, with files of own effects, without the command that asked for it."""
+    vehicle = trials[0].run.vehicle
+    return Origin(
+        command="",
+        made_on=datetime.now(UTC).isoformat(sep=" ", timespec="seconds"),
+        inputs=file_hashes(files_read([trial.run for trial in trials], also=[Path(name) for name in libraries])),
+        versions=versions(),
+        vehicle=plain_data(vehicle),
+        values=vehicle.values(),
     )
 
 

@@ -25,11 +25,11 @@ from vehgen.diagnose.select.faint import faint_exchange, faint_look_again, faint
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.diagnose.select.group_members import with_members
-from vehgen.diagnose.select.merit import numbers_at_ends, own_numbers
 from vehgen.diagnose.select.needless import without_needless
 from vehgen.diagnose.select.one_cause import BEFORE, one_cause
 from vehgen.diagnose.select.one_error import explains_easily, one_error
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
+from vehgen.diagnose.select.ranking import numbers_at_ends, own_numbers
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
 from vehgen.diagnose.select.search import LEADING, LOOKS_AGAIN, SearchRound, fit_leading_again, search_round
 from vehgen.diagnose.select.validation import gain_interval, seen_again, validation_fall

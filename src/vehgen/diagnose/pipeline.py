@@ -12,8 +12,7 @@ from vehgen.diagnose.localise.localisation import localise, shortlist
 from vehgen.diagnose.result import Decided, Diagnosis
 from vehgen.diagnose.select.search import DiagnosisProgress, search_round
 from vehgen.effects import Effect, library
-from vehgen.fit.one_thread import one_blas_thread
-from vehgen.fit.parallel import HERE, Runner
+from vehgen.fit.parallel import HERE, Runner, one_blas_thread
 from vehgen.fit.trial import Trial
 
 

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehgen.codegen.c_printing import C_HELPERS, CPrinter
 from vehgen.codegen.kernel import UNCONVERGED
 from vehgen.codegen.newmark import write_step
+from vehgen.codegen.printing import C_HELPERS, CPrinter
 from vehgen.codegen.program import SAMPLE_PHASE, STEP_PHASE, Node
 from vehgen.codegen.step_program import StepProgram
 from vehgen.errors import InputError

@@ -20,7 +20,7 @@ from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
 from vehgen.fit.noise import Noise
 from vehgen.fit.nuisances import LOW_PASS
-from vehgen.fit.one_thread import one_blas_thread
+from vehgen.fit.parallel import one_blas_thread
 from vehgen.fit.road_answer import road_answer
 from vehgen.fit.trial import Trial
 from vehgen.fit.window import taper

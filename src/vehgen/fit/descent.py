@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from vehgen.fit.bounded import LinearisedPoint, minimise
 from vehgen.fit.linearisation import Linearisation, Lineariser
 from vehgen.fit.misfit import Misfit
-from vehgen.fit.one_thread import one_blas_thread
+from vehgen.fit.parallel import one_blas_thread
 from vehgen.fit.prior_data import PriorData
 
 Array = NDArray[np.float64]

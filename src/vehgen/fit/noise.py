@@ -19,7 +19,7 @@ import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
 
-from vehgen.fit.one_thread import one_blas_thread
+from vehgen.fit.parallel import one_blas_thread
 from vehgen.fit.road_answer import KNOT_WAVENUMBERS, RoadAnswer, adjoint, knot_weights
 from vehgen.fit.whittle import loss_and_slopes
 

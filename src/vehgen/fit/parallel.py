@@ -7,15 +7,16 @@ import pickle
 import sys
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Executor
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from importlib import import_module
 from itertools import islice
 from typing import Any, TypeVar
 
+from threadpoolctl import ThreadpoolController
+
 from vehgen.errors import ArgumentError, InputError
-from vehgen.fit.one_thread import one_blas_thread
 
 Input = TypeVar("Input")
 R = TypeVar("R")
@@ -32,6 +33,19 @@ def can_be_sent(value: object) -> bool:
     except Exception:  # what a value's own way to be packed may raise is not known
         return False
     return b"__main__" not in packed or os.path.isfile(getattr(sys.modules["__main__"], "__file__", None) or "")
+
+
+def one_blas_thread() -> AbstractContextManager[Any]:
+    """Return a context in which linear algebra runs on one thread: small matrices, for which more threads only wait for one another."""
+    limit: AbstractContextManager[Any] = _libraries().limit(limits=1, user_api="blas")
+    return limit
+
+
+@cache
+def _libraries() -> ThreadpoolController:
+    """Return the libraries that are limited; looking them up takes as long as a small fit's step."""
+    import_module("scipy.linalg")  # which brings a BLAS of its own
+    return ThreadpoolController()
 
 
 def on_one_thread(function: Callable[[Input], R], item: Input) -> R:

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.calibrate.genetic.migration import migrate
-from vehgen.calibrate.genetic.selection import rank_fitness, sample_parents
+from vehgen.calibrate.genetic.selection import migrate, rank_fitness, sample_parents
 from vehgen.calibrate.genetic.variation import mutate, recombine
 from vehgen.errors import InputError
 

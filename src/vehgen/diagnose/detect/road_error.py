@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.fit.misfit import Noises
 from vehgen.fit.noise import EVEN, LARGEST_LEVEL, SMALLEST_LEVEL, Noise
-from vehgen.fit.one_thread import one_blas_thread
+from vehgen.fit.parallel import one_blas_thread
 from vehgen.fit.road_answer import KNOT_WAVENUMBERS, RoadAnswer
 from vehgen.fit.trial import Trial
 from vehgen.road import MeasuredProfile

@@ -13,7 +13,7 @@ from vehgen.diagnose.fits.multi_start import BESIDE_SETTLED
 from vehgen.diagnose.fits.screening import FirstOrderGains
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import idle_instead
-from vehgen.diagnose.select.merit import numbers_at_ends
+from vehgen.diagnose.select.ranking import numbers_at_ends
 from vehgen.fit.parallel import HERE, Runner
 
 MOST_AT_ONCE = 4

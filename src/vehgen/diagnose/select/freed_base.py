@@ -15,7 +15,7 @@ from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import Candidate, freed_alone
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.estimates import p_value
-from vehgen.diagnose.select.merit import merit, own_numbers
+from vehgen.diagnose.select.ranking import merit, own_numbers
 
 FitOne = Callable[[Candidate], ModelFit | None]
 """Fits one candidate on top of the current model."""

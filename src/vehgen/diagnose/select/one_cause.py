@@ -12,8 +12,8 @@ from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit, refine
 from vehgen.diagnose.inputs.conditions import alike_conditions
 from vehgen.diagnose.select.fitter import Fitter
-from vehgen.diagnose.select.merit import merit
 from vehgen.diagnose.select.one_error import SUPPOSED_AS, leaves_noise, taken_over
+from vehgen.diagnose.select.ranking import merit
 from vehgen.effects.evidence import StartingPoint
 from vehgen.files.quantities import Spread
 from vehgen.fit.nuisances import Condition

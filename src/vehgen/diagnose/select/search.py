@@ -17,8 +17,7 @@ from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.diagnose.select.early_end import MOST_AT_ONCE, settle
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
-from vehgen.diagnose.select.merit import merit
-from vehgen.diagnose.select.special_cases import does_as_well, simplest_first
+from vehgen.diagnose.select.ranking import does_as_well, merit, simplest_first
 from vehgen.fit.parallel import HERE, Runner
 
 DiagnosisProgress = Callable[[str, int, int, str], None]
