@@ -31,8 +31,6 @@ LEAST_RATIO = 5
 """Kept steps per sample, at least, of what a FIR filter decimates ..."""
 LEAST_RATE = 500.0
 """... and kept steps per second [Hz], where the internal step is as short."""
-DIRECT_PRODUCTS = 1_000_000
-"""Products up to which a column is convolved directly: a hump is short."""
 _FILTERED = LastUsed[Excitation](lambda item: item.nbytes)
 
 
@@ -164,26 +162,29 @@ def _filtered(raw: Excitation, chain: AcquisitionChain, lead: int, last: int) ->
 
 
 def _convolved(signal: Array, taps: Array, start: int, count: int) -> Array:
-    """Return numbers `start` to `start + count` of the convolution of signals `shape (n, k)`, zero before their beginning."""
-    found = np.zeros((count, signal.shape[1]))
-    moving = [np.flatnonzero(column) for column in signal.T]
-    spans = [(int(own[0]), int(own[-1]) + 1) if len(own) else (0, 0) for own in moving]
-    if sum(end - begin for begin, end in spans) * len(taps) <= DIRECT_PRODUCTS:
-        parts = [(begin, np.convolve(signal[begin:end, k], taps)) for k, (begin, end) in enumerate(spans) if end]
-        columns = [k for k, (_, end) in enumerate(spans) if end]
-    else:
-        n = len(signal) + len(taps) - 1
-        size = scipy.fft.next_fast_len(n, real=True)
-        lines = scipy.fft.rfft(signal, size, axis=0) * _spectrum(taps.tobytes(), size)[:, None]
-        parts, columns = [(0, column) for column in scipy.fft.irfft(lines, size, axis=0)[:n].T], list(range(signal.shape[1]))
-    for k, (begin, part) in zip(columns, parts, strict=True):
-        low, high = max(begin, start), min(begin + len(part), start + count)
+    """Return numbers `start` to `start + count` of the convolution of signals `shape (n, k)`, zero before their beginning.
+
+    A hump is short: of each signal only what lies between its first and its last number is transformed.
+    """
+    found, moving = np.zeros((count, signal.shape[1])), signal != 0.0
+    begins, ends = moving.argmax(axis=0).tolist(), (len(signal) - moving[::-1].argmax(axis=0)).tolist()
+    columns = [k for k, begin in enumerate(begins) if moving[begin, k]]
+    if not columns:
+        return found
+    parts = np.zeros((len(columns), max(ends[k] - begins[k] for k in columns)))
+    for part, k in zip(parts, columns, strict=True):
+        part[: ends[k] - begins[k]] = signal[begins[k] : ends[k], k]
+    n = parts.shape[1] + len(taps) - 1
+    size = scipy.fft.next_fast_len(n, real=True)
+    parts = scipy.fft.irfft(scipy.fft.rfft(parts, size) * _spectrum(taps.tobytes(), size), size)[:, :n]
+    for part, k in zip(parts, columns, strict=True):
+        low, high = max(begins[k], start), min(begins[k] + n, start + count)
         if low < high:
-            found[low - start : high - start, k] = part[low - begin : high - begin]
+            found[low - start : high - start, k] = part[low - begins[k] : high - begins[k]]
     return found
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=64)
 def _spectrum(taps: bytes, size: int) -> Complex:
     return np.asarray(scipy.fft.rfft(np.frombuffer(taps), size), dtype=np.complex128)
 
