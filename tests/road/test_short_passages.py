@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vehgen.road import AdjustedSpeed, ConstantSpeed, Hump, MeasuredProfile, Track, Wander, nearby_inputs, wheel_inputs
+from vehgen.road import AdjustedSpeed, ConstantSpeed, Hump, MeasuredProfile, Track, Wander, WheelInputs, nearby_inputs, wheel_inputs
 
 TIME = np.arange(0, 12, 1e-3)
 OFFSETS = np.array([0.0, 3.46, 4.8, 12.25])
@@ -15,6 +15,12 @@ ROADS |= {
     "a hump on a rough road": (ONE, PROFILE),
     "a train of humps": tuple(Hump.from_shape("versine", at, 0.9, 0.01) for at in range(30)),
 }
+
+
+def nearby(track, tracks, ways):
+    found = [WheelInputs(*np.zeros((2, len(TIME), len(OFFSETS)))) for _ in (*tracks, *ways)]
+    nearby_inputs(track, SPEED, tracks, ways, OFFSETS, TIME, found)
+    return found
 
 
 @pytest.mark.parametrize("footprint", [0.0, 0.24])
@@ -36,8 +42,9 @@ def test_drives_nearby_are_those_drives_to_the_first_order(parts, footprint):
     faster = AdjustedSpeed(SPEED.law, SPEED.delay, SPEED.scale + 1e-7, SPEED.anchor, SPEED.wander)
     farther = OFFSETS + np.array([0.0, 1e-7, 0.0, -1e-7])
     ways = [(faster, OFFSETS), (SPEED, farther)]
-    over_near, at_faster, behind = nearby_inputs(track, SPEED, [near], ways, OFFSETS, TIME)
+    over_near, at_faster, behind = nearby(track, [near], ways)
     assert over_near.heights == pytest.approx(wheel_inputs(near, SPEED, OFFSETS, TIME).heights, abs=1e-12)
+    assert over_near.rates == pytest.approx(wheel_inputs(near, SPEED, OFFSETS, TIME).rates, abs=1e-9)
     assert at_faster.heights == pytest.approx(wheel_inputs(track, faster, OFFSETS, TIME).heights, abs=1e-8)
     assert behind.heights == pytest.approx(wheel_inputs(track, SPEED, farther, TIME).heights, abs=1e-9)
 
@@ -54,7 +61,7 @@ def test_a_track_says_where_its_humps_reach():
 def test_a_hump_that_no_wheel_reaches_moves_none(footprint):
     far = Track((Hump.from_shape("versine", 400.0, 0.9, 0.01),), footprint)
     assert not wheel_inputs(far, SPEED, OFFSETS, TIME).heights.any()
-    for found in nearby_inputs(far, SPEED, [far], [(SPEED, OFFSETS)], OFFSETS, TIME):
+    for found in nearby(far, [far], [(SPEED, OFFSETS)]):
         assert not found.heights.any()
         assert not found.rates.any()
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,8 +15,9 @@ from vehgen.road.track import Track
 Array = NDArray[np.float64]
 LONGEST_PASS_S = 1e6
 """Longer than this nobody drives to a hump [s]."""
-SHORT_PASSAGE = 0.3
-"""Humps are looked up where they are alone, unless that is more than this share of a run."""
+SHORT_PASSAGE, LOOKED_EVERY = 0.3, 32
+"""Humps are looked up where they are alone, unless that is more than this share of a run; every so many moments the way is looked at for
+where that is."""
 _SLOPE_STEP_M = 1e-6
 """Distance over which a road's slope is taken [m]: a wheel's way between two simulations of a difference is as short."""
 
@@ -47,14 +48,22 @@ def wheel_inputs(track: Track, speed: SpeedLaw, offsets: Array, time: Array) -> 
     -------
     Heights at these times, and central differences over half a step to both sides (second order).
     """
-    found = _Passage.of([track], speed.distance(_moments(time)), offsets)
-    return _inputs(found.spread(track.height(found.under)), _step(time))
+    found = _Passage.of([track], speed, offsets, time)
+    inputs = WheelInputs(*(np.zeros((len(time), len(offsets))) for _ in range(2)))
+    found.write(track.height(found.under), inputs)
+    return inputs
 
 
 def nearby_inputs(
-    track: Track, speed: SpeedLaw, tracks: Sequence[Track], ways: Sequence[tuple[SpeedLaw, Array]], offsets: Array, time: Array
-) -> Iterator[WheelInputs]:
-    """Return the road under every axle in drives that hardly differ from another one.
+    track: Track,
+    speed: SpeedLaw,
+    tracks: Sequence[Track],
+    ways: Sequence[tuple[SpeedLaw, Array]],
+    offsets: Array,
+    time: Array,
+    inputs: Sequence[WheelInputs],
+) -> None:
+    """Find the road under every axle in drives that hardly differ from another one.
 
     Over other tracks the ways are the same. At other speeds, or with axles at other distances, heights change as the road slopes where
     the wheels are: exact to the first order in how far the ways differ, which derivatives by differences need, at the price of two looks
@@ -66,63 +75,84 @@ def nearby_inputs(
         As in :func:`wheel_inputs`.
     tracks, ways
         Other tracks at this speed; speeds with distances `shape (n_axles,)`, both hardly different, over this track.
-
-    Returns
-    -------
-    Heights and rates over the tracks, then by the other ways, each in turn.
+    inputs
+        Zeros, in which heights and rates over the tracks, then by the other ways, are written, each in turn.
     """
-    moments = _moments(time)
-    way, step = speed.distance(moments), _step(time)
-    found = _Passage.of([track, *tracks], way, offsets)
-    for other in tracks:
-        yield _inputs(found.spread(other.height(found.under)), step)
+    found = _Passage.of([track, *tracks], speed, offsets, time)
+    for other, own in zip(tracks, inputs[: len(tracks)], strict=True):
+        found.write(other.height(found.under), own)
     if ways:
         heights = track.height(found.under)
         slopes = (track.height(found.under + _SLOPE_STEP_M) - heights) / _SLOPE_STEP_M
-        at, own = moments[found.moments], way[found.moments]
-        for law, behind in ways:
-            ahead = law.distance(at) - own - found.of_axles(np.asarray(behind - offsets))
-            yield _inputs(found.spread(heights + slopes * ahead), step)
+        for (law, behind), own in zip(ways, inputs[len(tracks) :], strict=True):
+            ahead = law.distance(found.moments) - found.way - found.of_axles(np.asarray(behind - offsets))
+            found.write(heights + slopes * ahead, own)
 
 
 @dataclass(frozen=True)
 class _Passage:
-    """Where axles are [m] when tracks may move them: `under`, at the moments with these numbers.
+    """Where axles are [m] when tracks may move them: `under`, at the times `moments` [s], when the first axle has come a `way` [m].
 
-    Over humps, that is little of a run, and `under` and `moments shape (n,)` go through the axles one after another, which `axles shape
-    (n,)` numbers. Elsewhere `under` is `shape (n_axles, n_moments)`, axle by axle, as looking up neighbours in a table is quick.
+    Over humps, that is little of a run: `pieces` are an axle's number each, with the numbers of its first and last moment, both even, and
+    `under`, `moments` and `way shape (n,)` go through them one after another. Elsewhere there are none: `under` is `shape (n_axles,
+    n_moments)`, axle by axle, as looking up neighbours in a table is quick, and the others are `shape (n_moments,)`.
     """
 
     under: Array
-    moments: NDArray[np.intp] | slice
-    axles: NDArray[np.intp] | None
-    shape: tuple[int, int]
+    moments: Array
+    way: Array
+    pieces: tuple[tuple[int, int, int], ...]
+    step: float
 
     @classmethod
-    def of(cls, tracks: Sequence[Track], way: Array, offsets: Array) -> _Passage:
-        """Return the passage of a way `shape (n_moments,)` [m] over any of some tracks; one that turns back is looked at as a whole."""
-        offsets, shape = np.asarray(offsets, dtype=np.float64), (len(offsets), len(way))
-        spans = _spans(tracks)
-        if spans is not None:
-            ends = np.searchsorted(way, spans[None] + offsets[:, None, None])
-            counts = (ends[..., 1] - ends[..., 0]).sum(axis=1)
-            if 0 < counts.sum() < SHORT_PASSAGE * len(offsets) * len(way) and np.all(way[1:] >= way[:-1]):
-                moments = np.concatenate([np.arange(first, last) for first, last in ends.reshape(-1, 2)])
-                axles = np.repeat(np.arange(len(offsets)), counts)
-                return cls(way[moments] - offsets[axles], moments, axles, shape)
-        return cls(np.asarray(way[None, :] - offsets[:, None]), slice(None), None, shape)
+    def of(cls, tracks: Sequence[Track], speed: SpeedLaw, offsets: Array, time: Array) -> _Passage:
+        """Return the passage at a speed over any of some tracks; one that turns back is looked at as a whole."""
+        moments, step = _moments(time), _step(time)
+        offsets = np.asarray(offsets, dtype=np.float64)
+        pieces = _pieces(_spans(tracks), speed, offsets, moments)
+        if 0 < sum(last + 1 - first for _, first, last in pieces) < SHORT_PASSAGE * len(offsets) * len(moments):
+            own = np.concatenate([moments[first : last + 1] for _, first, last in pieces])
+            way = speed.distance(own)
+            return cls(way - _of_axles(pieces, offsets), own, way, pieces, step)
+        way = speed.distance(moments)
+        return cls(np.asarray(way[None, :] - offsets[:, None]), moments, way, (), step)
 
     def of_axles(self, values: Array) -> Array:
         """Return each axle's value `shape (n_axles,)` where that axle is under way, to be used with `under`."""
-        return values[:, None] if self.axles is None else values[self.axles]
+        return _of_axles(self.pieces, values) if self.pieces else values[:, None]
 
-    def spread(self, heights: Array) -> Array:
-        """Return heights at `under` as those of all axles at all moments, `shape (n_axles, n_moments)`."""
-        if self.axles is None:
-            return heights
-        found = np.zeros(self.shape)
-        found[self.axles, self.moments] = heights
-        return found
+    def write(self, heights: Array, inputs: WheelInputs) -> None:
+        """Write what heights at `under` make where inputs are zeros."""
+        if not self.pieces:
+            inputs.heights[:], inputs.rates[:] = heights[:, 1::2].T, ((heights[:, 2::2] - heights[:, :-2:2]) / self.step).T
+        begin = 0
+        for axle, first, last in self.pieces:
+            own = heights[begin : begin + last + 1 - first]
+            begin += len(own)
+            inputs.heights[first // 2 : last // 2, axle] = own[1::2]
+            inputs.rates[first // 2 : last // 2, axle] = (own[2::2] - own[:-2:2]) / self.step
+
+
+def _pieces(spans: Array | None, speed: SpeedLaw, offsets: Array, moments: Array) -> tuple[tuple[int, int, int], ...]:
+    """Return every axle's number with the numbers of the first and last moment of its way through each span, or a little more.
+
+    Nothing where the way turns back, and where there are no spans.
+    """
+    if spans is None:
+        return ()
+    numbers = np.append(np.arange(0, len(moments) - 1, LOOKED_EVERY), len(moments) - 1)
+    way = speed.distance(moments[numbers])
+    if np.any(way[1:] < way[:-1]):
+        return ()
+    ends = np.searchsorted(way, spans[None] + offsets[:, None, None])
+    firsts = numbers[np.maximum(ends[..., 0] - 1, 0)].tolist()
+    lasts = numbers[np.minimum(ends[..., 1], len(numbers) - 1)].tolist()
+    pairs = ((axle, zip(*own, strict=True)) for axle, own in enumerate(zip(firsts, lasts, strict=True)))
+    return tuple((axle, first, last) for axle, own in pairs for first, last in own if first < last)
+
+
+def _of_axles(pieces: Sequence[tuple[int, int, int]], values: Array) -> Array:
+    return np.repeat(values[[axle for axle, _, _ in pieces]], [last + 1 - first for _, first, last in pieces])
 
 
 def _moments(time: Array) -> Array:
@@ -135,11 +165,6 @@ def _moments(time: Array) -> Array:
 
 def _step(time: Array) -> float:
     return float(time[1] - time[0]) if len(time) > 1 else 1.0
-
-
-def _inputs(heights: Array, step: float) -> WheelInputs:
-    """Return what heights `shape (n_axles, n_moments)` at the moments of a run make."""
-    return WheelInputs(heights[:, 1::2].T, ((heights[:, 2::2] - heights[:, :-2:2]) / step).T)
 
 
 def _spans(tracks: Sequence[Track]) -> Array | None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from vehgen.codegen import Excitation
-from vehgen.road import nearby_inputs
+from vehgen.road import WheelInputs, nearby_inputs
 from vehgen.simulate.scenario import Array, Scenario
 
 
@@ -26,7 +26,7 @@ def nearby_excitation(scenario: Scenario, others: Sequence[Scenario], offsets: A
         Each axle's distance behind the first to arrive `shape (n_axles,)` [m].
     """
     centre, n_axles = scenario.excitation(offsets), len(offsets)
-    inputs, rates = (np.empty((1 + len(others), *centre.inputs.shape)) for _ in range(2))
+    inputs, rates = (np.zeros((1 + len(others), *centre.inputs.shape)) for _ in range(2))
     forces = np.repeat(centre.forces[None], 1 + len(others), axis=0)
     for own, item in ((inputs, centre.inputs), (rates, centre.rates)):
         own[0], own[1:, :, n_axles:] = item, item[:, n_axles:]
@@ -46,7 +46,6 @@ def nearby_excitation(scenario: Scenario, others: Sequence[Scenario], offsets: A
             inputs[i], rates[i], forces[i] = found.inputs, found.rates, found.forces
     tracks = [others[i - 1].track for i in by_road]
     ways = [(others[i - 1].speed, others[i - 1].axle_offsets(offsets)) for i in by_way]
-    near = nearby_inputs(scenario.track, scenario.speed, tracks, ways, scenario.axle_offsets(offsets), scenario.time)
-    for i, wheels in zip((*by_road, *by_way), near, strict=True):
-        inputs[i, :, :n_axles], rates[i, :, :n_axles] = wheels.heights, wheels.rates
+    near = [WheelInputs(inputs[i, :, :n_axles], rates[i, :, :n_axles]) for i in (*by_road, *by_way)]
+    nearby_inputs(scenario.track, scenario.speed, tracks, ways, scenario.axle_offsets(offsets), scenario.time, near)
     return Excitation(centre.dt, inputs, rates, forces)

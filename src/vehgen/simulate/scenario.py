@@ -179,8 +179,8 @@ class Scenario:
         """Return what :meth:`excitation` does, neither looked up nor remembered."""
         wheels = wheel_inputs(self.track, self.speed, self.axle_offsets(offsets), self.time)
         n_axles, half = wheels.heights.shape[1], self.dt / 2
-        inputs, rates = (np.zeros((len(self.time), n_axles + len(self.ground))) for _ in range(2))
-        inputs[:, :n_axles], rates[:, :n_axles] = wheels.heights, wheels.rates
+        further = np.zeros((len(self.time), len(self.ground)))
+        inputs, rates = (np.hstack([own, further]) if self.ground else own for own in (wheels.heights, wheels.rates))
         for i, signal in enumerate(self.ground, start=n_axles):
             if signal is not None:
                 inputs[:, i] = signal.at(self.time)
