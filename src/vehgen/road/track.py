@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -80,9 +81,15 @@ class Track:
     @property
     def reaches(self) -> tuple[tuple[float, float], ...] | None:
         """From where to where [m] each of its humps moves a wheel's centre; None where a part that is no hump may do so anywhere."""
-        humps = [part.deformed(*self.deformation) for part in self.parts if isinstance(part, Hump)]
+        humps = [part for part in self._shaped if isinstance(part, Hump)]
         half = self.footprint / 2 + GRID if self.footprint > 0 else 0.0
         return tuple((item.at - half, item.end + half) for item in humps) if len(humps) == len(self.parts) else None
+
+    @cached_property
+    def _shaped(self) -> tuple[Profile, ...]:
+        """The parts, humps deformed."""
+        changed = self.deformation != UNDEFORMED
+        return tuple(part.deformed(*self.deformation) if changed and isinstance(part, Hump) else part for part in self.parts)
 
     def height(self, s: Array) -> Array:
         """Return the height [m], averaged over the footprint, under a wheel centred at s [m]."""
@@ -110,7 +117,6 @@ class Track:
 
     def _raw(self, s: Array) -> Array:
         total = np.zeros_like(s)
-        for part in self.parts:
-            shaped = part.deformed(*self.deformation) if isinstance(part, Hump) and self.deformation != UNDEFORMED else part
-            total += shaped.height(s)
+        for part in self._shaped:
+            total += part.height(s)
         return self.scale * total
