@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from vehgen.simulate.frequency_response import FrequencyResponse, frequency_response
     from vehgen.simulate.lint import lint
     from vehgen.simulate.modes import Mode, Modes, natural_modes
-    from vehgen.simulate.pool import SimulatorPool
     from vehgen.simulate.response import Response, write_csv
     from vehgen.simulate.road_response import RoadResponse, road_response
     from vehgen.simulate.run_file import Run, load_run
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
     from vehgen.simulate.run_scenario import make_scenario
     from vehgen.simulate.scenario import Scenario
     from vehgen.simulate.signals import Signal
-    from vehgen.simulate.simulator import Simulator, simulate
+    from vehgen.simulate.simulator import Simulator, SimulatorPool, simulate
     from vehgen.simulate.state_space import StateSpace, state_space
 
 __all__ = [
@@ -67,7 +66,6 @@ import_late(
             "Modes",
             "natural_modes",
         ),
-        "vehgen.simulate.pool": ("SimulatorPool",),
         "vehgen.simulate.response": (
             "Response",
             "write_csv",
@@ -89,6 +87,7 @@ import_late(
         "vehgen.simulate.signals": ("Signal",),
         "vehgen.simulate.simulator": (
             "Simulator",
+            "SimulatorPool",
             "simulate",
         ),
         "vehgen.simulate.state_space": (

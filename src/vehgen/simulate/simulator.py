@@ -1,4 +1,4 @@
-"""One vehicle or a population over a run."""
+"""One vehicle or a population over a run; and simulators that trials and candidates share."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from vehgen.simulate.run_like import RunLike, as_run
 from vehgen.simulate.run_scenario import make_scenario
 from vehgen.simulate.scenario import Scenario
 from vehgen.simulate.warnings import lift_off, spectral_nulls, step_too_coarse
-from vehgen.vehicle import VehicleLike
+from vehgen.vehicle import Vehicle, VehicleLike
 
 Array = NDArray[np.float64]
 REMEMBERED = 1000
@@ -262,3 +262,29 @@ def _distinct_rows(rows: Array) -> tuple[Array, NDArray[np.intp]]:
         return rows[:1], np.zeros(len(rows), dtype=np.intp)
     distinct, group = np.unique(rows, axis=0, return_inverse=True)
     return distinct, group.ravel()
+
+
+class SimulatorPool:
+    """Makes a simulator where it has none for what is asked, and returns the same one whenever the same is asked again."""
+
+    def __init__(self) -> None:
+        self._simulators: dict[str, list[tuple[Vehicle, Simulator]]] = {}
+
+    def simulator(self, vehicle: Vehicle, outputs: Iterable[Output], forces: Iterable[Place] = ()) -> Simulator:
+        """Return the simulator of a vehicle with these channels and forces; equal vehicles share one."""
+        channels, acting = tuple(outputs), tuple(forces)
+        alike = self._simulators.setdefault(_key(channels, acting), [])
+        for known, simulator in alike:
+            if known is vehicle or known == vehicle:
+                return simulator
+        alike.append((vehicle, Simulator(vehicle, channels, acting)))
+        return alike[-1][1]
+
+    def add(self, vehicle: Vehicle, outputs: Iterable[Output], forces: Iterable[Place], simulator: Simulator) -> None:
+        """Keep a simulator that was made elsewhere for this vehicle, these channels and forces."""
+        self._simulators.setdefault(_key(tuple(outputs), tuple(forces)), []).append((vehicle, simulator))
+
+
+def _key(outputs: tuple[Output, ...], forces: tuple[Place, ...]) -> str:
+    """Expressions within places cannot be hashed: their texts can."""
+    return repr((outputs, forces))

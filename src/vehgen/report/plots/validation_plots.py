@@ -50,7 +50,7 @@ def plot_band_rms(validation: Validation) -> Figure:
         top = max(item.measured_rms.max(), item.simulated_rms.max())
         pairs = zip(item.measured_rms, item.simulated_rms, item.errors, item.audible, strict=True)
         for x, (measured, simulated, error, audible) in enumerate(pairs):
-            text = f"{100 * error:+.0f} %" if audible else "noise"
+            text = (f"{number:+d} %" if (number := round(100 * error)) else "0 %") if audible else "noise"
             axes.text(x, max(measured, simulated) + 0.02 * top, text, ha="center", fontsize=8.5, color=INK)
         axes.set_ylim(0, 1.15 * top)
         axes.set_xticks(place, [f"{low:g}-{high:g}" for low, high in validation.bands])
