@@ -49,8 +49,9 @@ def wheel_inputs(track: Track, speed: SpeedLaw, offsets: Array, time: Array) -> 
     Heights at these times, and central differences over half a step to both sides (second order).
     """
     found = _Passage.of([track], speed, offsets, time)
+    heights = track.height(found.under)
     inputs = WheelInputs(*(np.zeros((len(time), len(offsets))) for _ in range(2)))
-    found.write(track.height(found.under), inputs)
+    found.write(heights, inputs)
     return inputs
 
 
@@ -84,23 +85,23 @@ def nearby_inputs(
     if ways:
         heights = track.height(found.under)
         slopes = (track.height(found.under + _SLOPE_STEP_M) - heights) / _SLOPE_STEP_M
+        moments = _looked_at(found.pieces, _moments(time))
+        way = speed.distance(moments)
         for (law, behind), own in zip(ways, inputs[len(tracks) :], strict=True):
-            ahead = law.distance(found.moments) - found.way - found.of_axles(np.asarray(behind - offsets))
+            ahead = law.distance(moments) - way - found.of_axles(np.asarray(behind - offsets))
             found.write(heights + slopes * ahead, own)
 
 
 @dataclass(frozen=True)
 class _Passage:
-    """Where axles are [m] when tracks may move them: `under`, at the times `moments` [s], when the first axle has come a `way` [m].
+    """Where axles are [m] when tracks may move them: `under`, at moments `step` / 2 [s] apart.
 
     Over humps, that is little of a run: `pieces` are an axle's number each, with the numbers of its first and last moment, both even, and
-    `under`, `moments` and `way shape (n,)` go through them one after another. Elsewhere there are none: `under` is `shape (n_axles,
-    n_moments)`, axle by axle, as looking up neighbours in a table is quick, and the others are `shape (n_moments,)`.
+    `under shape (n,)` goes through them one after another. Elsewhere there are none: `under` is `shape (n_axles, n_moments)`, axle by
+    axle, as looking up neighbours in a table is quick.
     """
 
     under: Array
-    moments: Array
-    way: Array
     pieces: tuple[tuple[int, int, int], ...]
     step: float
 
@@ -111,11 +112,8 @@ class _Passage:
         offsets = np.asarray(offsets, dtype=np.float64)
         pieces = _pieces(_spans(tracks), speed, offsets, moments)
         if 0 < sum(last + 1 - first for _, first, last in pieces) < SHORT_PASSAGE * len(offsets) * len(moments):
-            own = np.concatenate([moments[first : last + 1] for _, first, last in pieces])
-            way = speed.distance(own)
-            return cls(way - _of_axles(pieces, offsets), own, way, pieces, step)
-        way = speed.distance(moments)
-        return cls(np.asarray(way[None, :] - offsets[:, None]), moments, way, (), step)
+            return cls(speed.distance(_looked_at(pieces, moments)) - _of_axles(pieces, offsets), pieces, step)
+        return cls(np.asarray(speed.distance(moments)[None, :] - offsets[:, None]), (), step)
 
     def of_axles(self, values: Array) -> Array:
         """Return each axle's value `shape (n_axles,)` where that axle is under way, to be used with `under`."""
@@ -149,6 +147,11 @@ def _pieces(spans: Array | None, speed: SpeedLaw, offsets: Array, moments: Array
     lasts = numbers[np.minimum(ends[..., 1], len(numbers) - 1)].tolist()
     pairs = ((axle, zip(*own, strict=True)) for axle, own in enumerate(zip(firsts, lasts, strict=True)))
     return tuple((axle, first, last) for axle, own in pairs for first, last in own if first < last)
+
+
+def _looked_at(pieces: Sequence[tuple[int, int, int]], moments: Array) -> Array:
+    """Return the moments of all pieces one after another; all moments where there are none."""
+    return np.concatenate([moments[first : last + 1] for _, first, last in pieces]) if pieces else moments
 
 
 def _of_axles(pieces: Sequence[tuple[int, int, int]], values: Array) -> Array:
