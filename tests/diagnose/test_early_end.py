@@ -2,10 +2,12 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from tests.diagnose.conftest import CUBIC, HUMPS
 from vehgen.diagnose.fits.candidate import list_candidates
+from vehgen.diagnose.fits.multi_start import BESIDE_SETTLED, HOPELESS
 from vehgen.diagnose.select import early_end
 from vehgen.diagnose.select.early_end import settle
 from vehgen.diagnose.select.fitter import Fitter
@@ -30,6 +32,21 @@ def test_the_law_that_was_hidden_settles_and_leaves_only_its_rivals(detection_of
     assert fits[-1].training < 1.06**2
     assert fits[-1].last not in rivals
     assert len(fits) + len(rivals) < len(candidates) / 2
+
+
+@pytest.mark.parametrize(("ends", "hopeless"), [(True, BESIDE_SETTLED), (False, HOPELESS)])
+def test_beside_what_settles_a_gap_only_what_leaves_next_to_nothing_is_refined(detection_of, monkeypatch, ends, hopeless):
+    detection = detection_of(CUBIC, runs=HUMPS)
+    monkeypatch.setattr(early_end, "_settles", lambda fit: ends)
+    fitter = Fitter(detection, detection.base, ())
+    candidates = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS["cubic_stiffness"]])
+    settle(fitter, fitter.first_order_gains(), candidates, lambda fit: None)
+    assert fitter.hopeless == hopeless
+    refined = [fitter.fit(item, checked=True, slow_first=False) for item in candidates if item.place == "front"]
+    assert [np.isfinite(fit.validation) for fit in refined] == [False]
+    fitter.hopeless = np.inf
+    refined = [fitter.fit(item, checked=True, slow_first=False) for item in candidates if item.place == "front"]
+    assert [np.isfinite(fit.validation) for fit in refined] == [True]
 
 
 def test_what_was_fitted_until_ctrl_c_is_kept(detection_of, monkeypatch):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from benchmarks.hidden_effects.generator import Effect, Hump, RunSpec, nominal, perturbed
 
+from tests.diagnose.conftest import edited
 from vehgen.diagnose.inputs.checks import check_inputs, variety_notes
 from vehgen.diagnose.inputs.comparison import compare
 from vehgen.diagnose.inputs.exchanges import exchanged
@@ -27,16 +28,6 @@ FRICTION = Effect("dry_friction", "front", {"force": 1100.0})
 @pytest.fixture(scope="module")
 def plain(trials_of):
     return trials_of(runs=RUNS)
-
-
-def edited(trials, change, only=None):
-    """Return trials whose values `shape (n_samples, 4)` have been changed, in all runs or in one."""
-    return [
-        replace(trial, recording=replace(trial.recording, values=change(trial.recording.values.copy())))
-        if only in (None, trial.name)
-        else trial
-        for trial in trials
-    ]
 
 
 def exchange(values):
