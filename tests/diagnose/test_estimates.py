@@ -73,14 +73,28 @@ def test_numbers_exclude_one_another_where_each_run_is_sure_of_its_own(monkeypat
     alone = [RunEstimate("one", "k", 8e4, 1e3), RunEstimate("two", "k", 9e4, 1e3), RunEstimate("three", "k", -2e6, half_width)]
     monkeypatch.setattr(estimates, "estimates_by_run", lambda fit, candidate=None: alone)
     monkeypatch.setattr(estimates, "estimate", lambda fit, candidate=None: {"k": NamedParameter(8.5e4, None, "N/m")})
-    assert excluded(None) == told
+    assert excluded(_of("cubic_stiffness")) == told
+
+
+def _of(effect):
+    """Return a fit of which only the last effect is known."""
+    return SimpleNamespace(last=SimpleNamespace(effect=EFFECTS[effect]))
+
+
+@pytest.mark.parametrize(("interval", "told"), [((-29.0, 171.0), ["amplitude from -29 to 171 N"]), ((4.0, 138.0), []), (None, [])])
+def test_a_line_of_which_runs_tell_no_strength_is_none_of_an_engine(monkeypatch, interval, told):
+    """Another mechanism's line is as loud as each run makes it: a resonator's grows with the hump."""
+    numbers = {"frequency": NamedParameter(7.16, (7.1, 7.2), "Hz"), "amplitude": NamedParameter(71.0, interval, "N")}
+    monkeypatch.setattr(estimates, "estimates_by_run", lambda fit, candidate=None: [])
+    monkeypatch.setattr(estimates, "estimate", lambda fit, candidate=None: numbers)
+    assert excluded(_of("engine_harmonic")) == told
 
 
 def test_numbers_that_differ_by_less_than_themselves_are_of_one_law(monkeypatch):
     alone = [RunEstimate(str(value), "k", value, 1e2) for value in (8e4, 9e4, 4e4)]
     monkeypatch.setattr(estimates, "estimates_by_run", lambda fit, candidate=None: alone)
     monkeypatch.setattr(estimates, "estimate", lambda fit, candidate=None: {"k": NamedParameter(8e4, None, "N/m")})
-    assert excluded(None) == []
+    assert excluded(_of("cubic_stiffness")) == []
 
 
 def test_runs_without_a_gap_speak_by_their_squares():

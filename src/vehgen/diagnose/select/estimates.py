@@ -252,9 +252,13 @@ def estimates_by_run(fit: ModelFit, candidate: Candidate | None = None) -> list[
 
 
 def excluded(fit: ModelFit) -> list[str]:
-    """Return the parameters of the last effect of which runs ask for numbers that exclude one another: the law is not of that form."""
+    """Return the parameters of the last effect of which runs ask for numbers that exclude one another: the law is not of that form.
+
+    So they do, too, of what is solved for in every run where the interval of all, which is their scatter, holds 0.
+    """
     joint, alone = estimate(fit), estimates_by_run(fit)
-    told = []
+    solved = [(item.name, joint[item.name].interval, item.unit) for item in fit.last.effect.solved_parameters]
+    told = [f"{name} from {ends[0]:.3g} to {ends[1]:.3g} {unit}" for name, ends, unit in solved if ends and ends[0] <= 0 <= ends[1]]
     for name, item in joint.items():
         own = [one for one in alone if one.parameter == name]
         if disagreement(own) > EXCLUDE_ONE_ANOTHER * abs(item.value):
