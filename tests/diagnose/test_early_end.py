@@ -19,11 +19,11 @@ from vehgen.fit.misfit import Misfit
 NAMES = ("cubic_stiffness", "quadratic_damping", "hysteresis", "progressive_stiffness", "sensor_gain")
 
 
-def settled(detection, names=NAMES, kept_at=""):
+def settled(detection, names=NAMES, kept_at="", nowhere=False):
     candidates = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS[name] for name in names])
     fitter = Fitter(detection, detection.base, ())
     fits = []
-    return candidates, fits, settle(fitter, fitter.first_order_gains(), candidates, fits.append, kept_at=kept_at)
+    return candidates, fits, settle(fitter, fitter.first_order_gains(), candidates, fits.append, kept_at=kept_at, nowhere=nowhere)
 
 
 def test_the_law_that_was_hidden_settles_and_leaves_only_its_rivals(detection_of):
@@ -68,6 +68,14 @@ def test_laws_at_a_place_that_is_kept_stay_rivals(detection_of):
     candidates, fits, rivals = settled(detection_of(CUBIC, runs=HUMPS), kept_at="front")
     assert {item.label for item in candidates if item.place == "front"} <= {item.label for item in rivals}
     assert fits[-1].last.place == "rear"
+
+
+@pytest.mark.parametrize("nowhere", [True, False])
+def test_laws_of_bodies_are_tried_at_once_where_no_single_force_explains_the_gap(detection_of, monkeypatch, nowhere):
+    monkeypatch.setattr(early_end, "MOST_AT_ONCE", 1)
+    monkeypatch.setattr(early_end, "_settles", lambda fit: False)
+    _, fits, _ = settled(detection_of(CUBIC, runs=HUMPS), ("cubic_stiffness", "frame_bending", "tyre_footprint"), nowhere=nowhere)
+    assert [fit.last.effect.name for fit in fits] == ["cubic_stiffness", "frame_bending"][: 1 + nowhere]
 
 
 def test_special_cases_and_candidates_that_no_run_tells_apart_stay_rivals(detection_of):

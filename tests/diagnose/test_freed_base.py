@@ -124,6 +124,15 @@ def test_beside_freed_parameters_that_leave_noise_an_effect_does_as_much_more_as
         assert (kept, left) == (([], [freed]) if idle else ([law], []))
 
 
+@pytest.mark.parametrize(("best", "left"), [(1.0, 9.0), (1.0, 1.5), (4.0, 9.0)])
+def test_beside_a_fit_that_leaves_noise_nobody_asks_what_leaves_twice_as_much(best, left):
+    first, other = fitted(best, 1000 * best), fitted(left, 1000 * left)
+    first.last.freed, asked = (), []
+    kept, _ = split_idle([first, other], lambda candidate: asked.append(candidate.freed), 3)
+    assert kept == [first, other]
+    assert bool(asked) == (best > 1.2 or left < 2 * best)
+
+
 def test_nothing_is_sought_from_where_a_fit_ended_that_freed_nothing():
     law = fitted(0.8, 800.0)
     law.last.freed = ()

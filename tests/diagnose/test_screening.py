@@ -45,6 +45,20 @@ def test_every_law_at_a_place_that_is_kept_is_worth_a_fit(detection_of, monkeypa
     assert len(found) < len(candidates)
 
 
+@pytest.mark.parametrize("nowhere", [True, False])
+def test_a_bending_frame_is_worth_a_fit_where_no_single_force_explains_the_gap(detection_of, monkeypatch, nowhere):
+    """A base that bent to it tells a first order of it that any friction beats."""
+    monkeypatch.setattr(screening, "MAX_CANDIDATES", 3)
+    detection = detection_of(Effect("dry_friction", "front", {"force": 150.0}), runs=HUMPS)
+    trial = detection.trials[0]
+    candidates = list_candidates(trial.run.vehicle, detection.trials, [*LAWS, EFFECTS["frame_bending"], EFFECTS["tyre_damping"]])
+    locator = EffectLocator(trial.run.vehicle, dict(trial.values))
+    gains = screening.FirstOrderGains(detection.base, CurrentModel.of(detection.base), locator, SimulatorPool())
+    found = screening.screen(candidates, gains, nowhere=nowhere)
+    assert any(item.effect.name == "frame_bending" for item in found) == nowhere
+    assert len(found) < len(candidates)
+
+
 def test_laws_of_tyres_are_worth_a_fit_where_their_axles_parameters_are_at_bounds(detection_of, monkeypatch):
     """An unsprung mass at its bound does part of what tyre damping does, which then gains nothing to the first order."""
     monkeypatch.setattr(screening, "MAX_CANDIDATES", 1)

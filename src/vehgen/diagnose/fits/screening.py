@@ -35,12 +35,12 @@ INSIDE = 0.01
 """A number begins so far within its range, of 1."""
 
 
-def screen(candidates: Sequence[Candidate], gains: FirstOrderGains, kept_at: str = "") -> list[Candidate]:
+def screen(candidates: Sequence[Candidate], gains: FirstOrderGains, kept_at: str = "", nowhere: bool = False) -> list[Candidate]:
     """Return the candidates worth fitting: all that leave the vehicle alone, of the others those with the largest first-order gain.
 
     A first order scales what it moves: it says nothing of candidates without a number of their own, which are kept, nor of laws that the
     base's parameters at their bounds may stand in for. What holds another candidate as a special case is kept with it, and takes no place
-    of its own.
+    of its own. A frame that bends is kept where no single force explains the gap, whatever a base says that has bent to it.
 
     Parameters
     ----------
@@ -48,6 +48,8 @@ def screen(candidates: Sequence[Candidate], gains: FirstOrderGains, kept_at: str
         What to choose from, and what each gains beside a fit.
     kept_at
         A place all of whose candidates are kept, whatever their first order says.
+    nowhere
+        Whether a single force explains the gap at no place.
     """
     always = [item for item in candidates if not _is_scaled(item)]
     forces = [item for item in candidates if _is_scaled(item) and not any(map(item.holds, candidates))]
@@ -55,10 +57,15 @@ def screen(candidates: Sequence[Candidate], gains: FirstOrderGains, kept_at: str
     if len(forces) <= most:
         return list(candidates)
     ranked = sorted(forces, key=lambda item: -gains.of(item)[0])
-    placed = [item for item in forces if item.place == kept_at]
+    placed = [item for item in forces if item.place == kept_at or (nowhere and reaches_a_body(item))]
     held = () if gains.base.effects else gains.base.least_squares.on_bound
     behind = [item for item in ranked[most:] if hides_behind(item, set(held), gains.locator.vehicle)]
     return chosen_with_holders(candidates, [*always, *placed, *ranked[:most], *behind[:MOST_BEHIND]])
+
+
+def reaches_a_body(item: Candidate) -> bool:
+    """Return whether a candidate is a law that is no single force, but acts on a body or its axles at several places."""
+    return item.effect.changes_vehicle and item.effect.is_global and item.effect.attaches != "tyre"
 
 
 def hides_behind(item: Candidate, held: set[str], vehicle: Vehicle) -> bool:

@@ -10,7 +10,7 @@ from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.fits.multi_start import BESIDE_SETTLED
-from vehgen.diagnose.fits.screening import FirstOrderGains
+from vehgen.diagnose.fits.screening import FirstOrderGains, reaches_a_body
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import idle_instead
 from vehgen.diagnose.select.ranking import numbers_at_ends
@@ -31,11 +31,13 @@ def settle(
     each: Callable[[ModelFit], None],
     runner: Runner = HERE,
     kept_at: str = "",
+    nowhere: bool = False,
 ) -> list[Candidate]:
     """Fit the candidates of the largest first-order gains until one settles the gap of the base; those at `kept_at` stay its rivals.
 
-    Every fit is handed to `each` as soon as it is made. Beside a base at its bounds none settles that does no more than what it set free.
-    Where one settles the gap, the fitter refines from then on only what leaves next to nothing, too.
+    Where a single force explains the gap at no place (`nowhere`), they are followed by laws of bodies that are none. Every fit is handed to
+    `each` as soon as it is made. Beside a base at its bounds none settles that does no more than what it set free. Where one settles the
+    gap, the fitter refines from then on only what leaves next to nothing, too.
 
     Returns
     -------
@@ -44,8 +46,9 @@ def settle(
     ranked = [(*gains.of(item), item) for item in candidates]
     ranked.sort(key=lambda known: -known[0])
     strained = bool(fitter.base.least_squares.on_bound)
+    others = [known for known in ranked[MOST_AT_ONCE:] if nowhere and reaches_a_body(known[-1])]
     tried = set()
-    for fit in fitter.fit_all_begun([(item, begin) for _, begin, item in ranked[:MOST_AT_ONCE]], runner):
+    for fit in fitter.fit_all_begun([(item, begin) for _, begin, item in ranked[:MOST_AT_ONCE] + others[:MOST_AT_ONCE]], runner):
         each(fit)
         tried.add(fit.key[-1])
         if _settles(fit) and not (strained and idle_instead(fit, fitter.fit_without)):

@@ -17,6 +17,9 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.estimates import p_value
 from vehgen.diagnose.select.ranking import merit, own_numbers
 
+FAR_BEHIND = 2.0
+"""Beside a fit that leaves noise, those that leave so many times its mean square are not asked: nothing hangs on them."""
+
 FitOne = Callable[[Candidate], ModelFit | None]
 """Fits one candidate on top of the current model."""
 FitWithout = Callable[[ModelFit], ModelFit | None]
@@ -45,15 +48,15 @@ def split_idle(
     kept: list[ModelFit] = []
     idle: dict[tuple[str, ...], ModelFit] = {}
     for fit in fits:
-        does_nothing = False
-        for names in dict.fromkeys((fit.last.freed, edge)) if len(kept) < count else ():
+        does_nothing, asked = False, len(kept) < count and not _is_far_behind(fit, kept)
+        for names in dict.fromkeys((fit.last.freed, edge)) if asked else ():
             if names and names not in alone:
                 alone[names] = fitted_freed(names, fit_one)
             freed = alone.get(names)
             if freed is not None and _does_as_well(freed, fit):
                 idle[names] = freed
                 does_nothing = True
-        if edge and fit_without is not None and not does_nothing and len(kept) < count:
+        if edge and fit_without is not None and not does_nothing and asked:
             freed = idle_instead(fit, fit_without)
             if freed is not None:
                 idle[freed.last.freed] = freed
@@ -61,6 +64,10 @@ def split_idle(
         if not does_nothing:
             kept.append(fit)
     return kept, sorted(idle.values(), key=_price)
+
+
+def _is_far_behind(fit: ModelFit, kept: Sequence[ModelFit]) -> bool:
+    return any(item.training <= limit.NOISE_FLOOR**2 and fit.training > FAR_BEHIND * item.training for item in kept[:1])
 
 
 def idle_instead(fit: ModelFit, fit_without: FitWithout) -> ModelFit | None:
