@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.calibrate.calibration import Calibration, StepResult
-from vehgen.calibrate.intervals import LEAST_INFORMATION, LEVEL, Estimate, Uncertainty, recorded_information
+from vehgen.calibrate.intervals import LEAST_INFORMATION, LEVEL, Estimate, Uncertainty
 from vehgen.fit.alignment import error_bounds
 from vehgen.fit.least_squares import FitOptions, LeastSquaresFit, fit_least_squares
 from vehgen.fit.parallel import Runner
 from vehgen.fit.prior_data import PriorData
+from vehgen.fit.stationary import draw, recorded_information
 
 Array = NDArray[np.float64]
 LEFT_OPEN = 0.3
@@ -101,7 +102,7 @@ def refit(
     unit, errors = misfit.split(fit.x)
     low, high = error_bounds(misfit)
     errors = np.where(left_open, np.clip(random.standard_normal(len(errors)), low, high), errors)
-    drawn = misfit.draw(np.concatenate([fit.x[: len(fit.x) - len(errors)], errors]), random)
+    drawn = draw(misfit, np.concatenate([fit.x[: len(fit.x) - len(errors)], errors]), random)
     trials = [
         replace(trial, recording=replace(trial.recording, values=values))
         for trial, values in zip(misfit.problem.trials, drawn, strict=True)

@@ -1,10 +1,10 @@
 """Intervals from the Fisher information, for parameters, combinations and natural frequencies.
 
-The information of a fit is J'J of its whitened residuals, less what the taper of a record takes: neighbouring lines of a tapered record are
-not independent. Nuisances are marginalised. Along unidentifiable directions there is none, and
-what depends on them gets no interval; for all else the covariance is V (V' F V)^-1 V', V a basis of the identifiable combinations.
-Where the residuals of a run are larger than the noise model says (its chi2 above 1), the recordings' information is divided by chi2:
-intervals grow by its root. The noise is estimated from all runs together, so that chi2 of all is near 1 wherever a fit ends.
+The information of a fit counts how the lines of a windowed record hang together (:mod:`vehgen.fit.stationary`). Nuisances are
+marginalised. Along unidentifiable directions there is none, and what depends on them gets no interval; for all else the covariance is
+V (V' F V)^-1 V', V a basis of the identifiable combinations. Where the residuals of a run are larger than the noise model says (its chi2
+above 1), the recordings' information is divided by chi2: intervals grow by its root. The noise is estimated from all runs together, so that
+chi2 of all is near 1 wherever a fit ends.
 
 Intervals of positive quantities are symmetric on a logarithmic scale.
 """
@@ -23,10 +23,9 @@ from vehgen.errors import InputError, shown
 from vehgen.files.expressions import Expression, ExpressionError, parse
 from vehgen.files.units import Dimension
 from vehgen.fit.least_squares import LeastSquaresFit
-from vehgen.fit.linearisation import linearise
 from vehgen.fit.prior_data import PriorData
 from vehgen.fit.problem import Problem
-from vehgen.fit.window import seen_share
+from vehgen.fit.stationary import recorded_information
 from vehgen.simulate import Mode, natural_modes
 from vehgen.vehicle import Vehicle
 
@@ -252,17 +251,6 @@ class Uncertainty:
             factor = float(np.exp(min(spread / value, 50.0)))
             return Estimate(name, value, value / factor, value * factor)
         return Estimate(name, value, value - spread, value + spread)
-
-
-def recorded_information(fit: LeastSquaresFit) -> Array:
-    """Return the information of the recordings and of the errors' priors about all unknowns of a fit, `shape (n_unknowns, n_unknowns)`."""
-    found, linearised = np.zeros((fit.misfit.n_unknowns, fit.misfit.n_unknowns)), linearise(fit.misfit, fit.x)
-    for number, (trial, columns) in enumerate(zip(fit.misfit.problem.trials, linearised.columns, strict=True)):
-        rows, time = linearised.rows(number), trial.recording.time
-        found[np.ix_(columns, columns)] += 2 * seen_share(len(time), trial.recording.dt, trial.fade_in) * rows @ rows.T
-    errors = np.arange(fit.misfit.n_unknowns - fit.misfit.n_errors, fit.misfit.n_unknowns)
-    found[errors, errors] += 1.0
-    return found
 
 
 def _with_frozen(information: Array, names: Sequence[str], frozen: Frozen) -> Array:

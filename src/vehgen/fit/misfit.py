@@ -100,11 +100,17 @@ class Misfit:
         trial, dt = self.problem.trials[number], self.problem.trials[number].recording.dt
         frequency = np.asarray(np.fft.rfftfreq(len(trial.recording.time), dt), dtype=np.float64)
         inside = (frequency >= self.band[0]) & (frequency <= self.band[1])
-        own = {name: value for name, value in reference.items() if name not in trial.fixed}
-        reading = self.errors[number].reading(frequency[inside], self.errors_of(x, number))
-        answer = as_read(road_answer(trial, frequency[inside], trial.values | own, self.nuisances.speed_spread(trial)), reading)
+        answer = self.answer(number, frequency[inside], reference, x)
         measured = transform(trial.recording.values, dt, inside, seen=trial.window)
         return _Weight(inside, measured, answer, self.noises[trial.name].whitener(answer))
+
+    def answer(self, number: int, frequency: Array, reference: Mapping[str, float], x: Array, *, windowed: bool = True) -> RoadAnswer:
+        """Return how roughness comes into trial `number`'s channels, at reference values [SI] and errors of x; not `windowed`: as it is."""
+        trial = self.problem.trials[number]
+        own = {name: value for name, value in reference.items() if name not in trial.fixed}
+        reading = self.errors[number].reading(frequency, self.errors_of(x, number))
+        spread = self.nuisances.speed_spread(trial)
+        return as_read(road_answer(trial, frequency, trial.values | own, spread, windowed=windowed), reading)
 
     @property
     def n_parameters(self) -> int:
@@ -278,14 +284,6 @@ class Misfit:
     def residuals(self, x: Array) -> Array:
         """Return the whitened residuals, the errors' priors last: each of unit variance where model and noise are right."""
         return np.concatenate([*(flatten(lines) for lines in self.whitened_spectrum(x)), x[self.n_parameters + len(self.shared) :]])
-
-    def draw(self, x: Array, random: np.random.Generator) -> list[Array]:
-        """Return measurements as they might have come out: the response plus noise, one array a trial (for a bootstrap)."""
-        found = []
-        for trial, weight, simulated in zip(self.problem.trials, self._weights, self.simulate(x), strict=True):
-            noise = self.noises[trial.name]
-            found.append(simulated + noise.draw(weight.answer, len(simulated), np.flatnonzero(weight.inside), random))
-        return found
 
 
 def _apply(whitener: Complex, lines: Complex) -> Complex:

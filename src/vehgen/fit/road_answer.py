@@ -58,13 +58,15 @@ class RoadAnswer:
         return knot_weights(self.wavenumber)
 
 
-def road_answer(trial: Trial, frequency: Array, values: dict[str, float], speed_spread: float = 0.0) -> RoadAnswer:
+def road_answer(
+    trial: Trial, frequency: Array, values: dict[str, float], speed_spread: float = 0.0, *, windowed: bool = True
+) -> RoadAnswer:
     """Return the channels' answer to a road of level 1 that all axles follow, at frequencies `shape (n,)` [Hz].
 
-    `speed_spread` is the standard deviation of the run's speed, relative.
+    `speed_spread` is the standard deviation of the run's speed, relative. What is not `windowed` is as an endless record would show it.
     """
     model, speed, dt = trial.simulator.model, trial.scenario.top_speed, trial.recording.dt
-    spread = _WindowSpread.of(trial, frequency)
+    spread = _WindowSpread.of(trial, frequency) if windowed else _WindowSpread(frequency, np.arange(len(frequency)), np.ones(1))
     branches = maxwell_branches(model, values)
     late = model.wheel_offsets(values) / speed
     between = np.abs(late[:, None] - late[None, :])

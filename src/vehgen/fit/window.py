@@ -60,6 +60,18 @@ def transform(values: Array, dt: float, inside: NDArray[np.bool_], late: Array |
     return np.asarray(np.fft.rfft(values * scale, axis=-2)[..., _stretch(inside), :])
 
 
+def pulled_back(lines: Complex, n_samples: int, dt: float, numbers: NDArray[np.intp], seen: Window = Window()) -> Array:
+    """Return histories g `shape (..., n_samples, n_channels)` by which sum(g v) is Re sum(lines* V), V what :func:`transform` makes of v.
+
+    `numbers shape (n_lines,)` are those of the lines `shape (..., n_lines, n_channels)` among the spectrum's.
+    """
+    windows, scale = _windows(n_samples, dt, seen.fade_in, None)
+    spectrum = np.zeros((*lines.shape[:-2], n_samples, lines.shape[-1]), dtype=np.complex128)
+    spectrum[..., numbers, :] = lines
+    found = np.fft.ifft(spectrum, axis=-2).real * n_samples * scale
+    return np.asarray(found - windows * found.sum(axis=-2, keepdims=True) / windows.sum() if seen.zeroed else found)
+
+
 @lru_cache(maxsize=64)
 def _windows(n_samples: int, dt: float, fade_in: float, late: tuple[float, ...] | None) -> tuple[Array, Array]:
     """Return the windows of channels, `shape (n_samples, n_channels)` or, without delays, (n_samples, 1); and these scaled."""
