@@ -9,8 +9,13 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from vehgen.effects import EFFECTS, Effect
+from vehgen.measure import record_psd
+from vehgen.measure.curves import ChannelCurves
+from vehgen.report.drawing.canvas import INK
+from vehgen.report.plots.comparison import MEASURED, PSD_DECADES, QUANTITY_UNITS, SIMULATED, busy
 from vehgen.simulate import SimulatorPool
 
 HERE = Path(__file__).parents[1]
@@ -113,6 +118,7 @@ that take part in arithmetic: `{"c": site.spring.c + 2*symbols["c"]}`. A `RunEff
 [vehgen.fit.adjustments](../src/vehgen/fit/adjustments.py) or one of your own; a `LineEffect` says between which frequencies lines are
 `looked_for`; what is neither is a class of your own with the methods of [`Effect`](../src/vehgen/effects/base.py). Each may set
 `is_global`, and name in `special_case` the effect that it is at some value of its parameters: where both do as well, that one is named."""
+SHOWN_HZ = (0.5, 25.0)
 SHOWN = {"hinge_friction": "L2_q", "hinge_stiffness": "L2_q", "walking_beam": "L2_az", "cargo_module": "L2_az", "sensor_delay": "L2_az"}
 """The channel that shows an effect best; L1_az otherwise."""
 FREED = {"k": "the stiffness", "c": "the damping", "kt": "the tyre's stiffness"}
@@ -199,18 +205,34 @@ def draw() -> None:
         save_figure(_figure(effect, trial.recording.time, base, changed, list(trial.channels)), IMAGES / f"{effect.name}.svg")
 
 
-def _figure(effect: Effect, t: np.ndarray, base: np.ndarray, changed: np.ndarray, channels: list[str]):
-    from vehgen.measure import record_psd
-    from vehgen.measure.curves import ChannelCurves
-    from vehgen.report.plots.comparison import plot_pair
-
+def _figure(effect: Effect, t: np.ndarray, base: np.ndarray, changed: np.ndarray, channels: list[str]) -> Figure:
+    """Plot one channel's history beside its PSD, without and with an effect."""
     channel = SHOWN.get(effect.name, "L1_az")
     i = channels.index(channel)
     quantity = "acceleration" if channel.endswith("az") else "pitch_rate"
-    frequency, before = record_psd(base[:, i], 0.01)
-    after = record_psd(changed[:, i], 0.01)[1]
     history = ChannelCurves("", channel, quantity, t, base[:, i], changed[:, i])
-    return plot_pair(history, ChannelCurves("", channel, quantity, frequency, before, after), (0.5, 25.0), ("without", "with"))
+    frequency, before = record_psd(base[:, i], 0.01)
+    density = ChannelCurves("", channel, quantity, frequency, before, record_psd(changed[:, i], 0.01)[1])
+    figure = Figure(figsize=(9.0, 2.3), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    unit = QUANTITY_UNITS.get(history.quantity, "")
+    left.plot(history.x, history.measured, color=MEASURED, lw=2.0, label="without")
+    left.plot(history.x, history.simulated, color=SIMULATED, lw=0.9, label="with")
+    left.set_xlim(*busy([history]))
+    left.set_xlabel("time [s]", color=INK)
+    left.set_ylabel(f"{history.channel} [{unit}]", color=INK, parse_math=False)
+    inside = (density.x >= SHOWN_HZ[0]) & (density.x <= SHOWN_HZ[1])
+    right.semilogy(density.x[inside], density.measured[inside], color=MEASURED, lw=2.0)
+    right.semilogy(density.x[inside], density.simulated[inside], color=SIMULATED, lw=0.9)
+    top = max(density.measured[inside].max(), density.simulated[inside].max())
+    right.set_ylim(top * 10.0**-PSD_DECADES, 3 * top)
+    right.set_xlabel("frequency [Hz]", color=INK)
+    right.set_ylabel(f"PSD [({unit})²/Hz]", color=INK)
+    for axes in (left, right):
+        axes.grid(color="#e3e7ea", lw=0.6)
+        axes.spines[["top", "right"]].set_visible(False)
+    figure.legend(loc="outside upper right", ncols=2, frameon=False, fontsize=9)
+    return figure
 
 
 if __name__ == "__main__":

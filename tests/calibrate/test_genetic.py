@@ -7,8 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehgen.calibrate.genetic import GeneticSearch, SearchState
-from vehgen.calibrate.genetic.selection import migrate, rank_fitness, sample_parents
-from vehgen.calibrate.genetic.variation import mutate, recombine
+from vehgen.calibrate.genetic.operators import migrate, mutate, rank_fitness, recombine, sample_parents
 from vehgen.errors import InputError
 
 

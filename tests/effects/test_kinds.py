@@ -80,9 +80,6 @@ def test_a_place_test_speaks_for_the_effects_that_it_can_see(name, place, eviden
 def test_an_effect_made_global_is_tried_wherever_one_force_does_not_suffice():
     everywhere = replace(FRICTION, is_global=True)
     assert everywhere.is_likely("rear", found(parts=["front"], one_force=False))
-    assert not everywhere.is_single_force
-    assert FRICTION.is_single_force
-    assert not GAIN.is_single_force
 
 
 def test_a_sensor_of_an_axle_has_no_position_to_be_wrong_about():

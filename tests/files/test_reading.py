@@ -11,7 +11,7 @@ from vehgen.errors import InputError
 from vehgen.files.document import read_document
 from vehgen.files.reading import LONGEST_LINE, open_regular, read_bytes, read_text
 from vehgen.files.tables import read_columns
-from vehgen.files.tables.csv_rows import MOST_ROWS
+from vehgen.files.tables.csv_table import MOST_ROWS
 from vehgen.phones.archive import read_members
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="needs pipes and devices")

@@ -28,7 +28,7 @@ def folder(tmp_path, monkeypatch):
 def derived(folder, monkeypatch):
     """Return the names of vehicles as they are derived."""
     names = []
-    import_module("vehgen.mechanics.model_like")  # keeps the function itself
+    import_module("vehgen.mechanics.derivation")  # keeps the function itself
     monkeypatch.setattr(derivation, "derive", lambda vehicle: names.append(vehicle.name) or derive(vehicle))
     return names
 

@@ -136,11 +136,6 @@ class Effect(ABC):
         return False
 
     @property
-    def is_single_force(self) -> bool:
-        """Whether it acts as a force at its place, so that the place test speaks for or against it."""
-        return not self.is_global
-
-    @property
     def solved_parameters(self) -> tuple[EffectParameter, ...]:
         """Return those of its parameters that are not searched but solved for in every run (see :meth:`solve`)."""
         return ()

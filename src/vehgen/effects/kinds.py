@@ -118,11 +118,6 @@ class RunEffect(Effect):
         if not self.parameters:
             raise ValueError(f"{self.name}: an effect of runs or sensors has a parameter, found none")
 
-    @property
-    def is_single_force(self) -> bool:
-        """False: no force explains a wrong reading or a wrong speed."""
-        return False
-
     def n_numbers(self, n_runs: int) -> int:
         """Return the number of its parameters: they hold in all runs."""
         return len(self.parameters)

@@ -9,9 +9,8 @@ from vehgen.late_imports import import_late
 
 if TYPE_CHECKING:
     from vehgen.mechanics.coordinates import Coordinate
-    from vehgen.mechanics.derivation import derive
+    from vehgen.mechanics.derivation import ModelLike, all_values, as_model, derive
     from vehgen.mechanics.equations_of_motion import GRAVITY, Channel, EquationsOfMotion
-    from vehgen.mechanics.model_like import ModelLike, all_values, as_model
     from vehgen.mechanics.numeric_model import NumericModel
     from vehgen.mechanics.outputs import ElementOutput, Output, Place, PointOutput
     from vehgen.mechanics.static_loads import StaticLoads, is_held, static_loads
@@ -38,17 +37,17 @@ __all__ = [
 import_late(
     __name__,
     {
-        "vehgen.mechanics.derivation": ("derive",),
         "vehgen.mechanics.equations_of_motion": (
             "GRAVITY",
             "Channel",
             "EquationsOfMotion",
         ),
         "vehgen.mechanics.coordinates": ("Coordinate",),
-        "vehgen.mechanics.model_like": (
+        "vehgen.mechanics.derivation": (
             "ModelLike",
             "all_values",
             "as_model",
+            "derive",
         ),
         "vehgen.mechanics.numeric_model": ("NumericModel",),
         "vehgen.mechanics.outputs": (

@@ -9,7 +9,7 @@ where h is a body's fore-aft row relative to its group.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import sympy as sp
 
@@ -125,3 +125,27 @@ def _definitions(vehicle: Vehicle) -> tuple[tuple[sp.Symbol, sp.Expr], ...]:
     for name in vehicle.parameters:
         define(name)
     return tuple((parameter(name), expression) for name, expression in ordered.items())
+
+
+ModelLike = EquationsOfMotion | VehicleLike
+"""Equations of motion, or a vehicle to derive them of."""
+
+
+def as_model(model: ModelLike, outputs: Iterable[Output] = ()) -> EquationsOfMotion:
+    """Return the equations of motion that an argument means; those of a vehicle are derived, with `outputs`."""
+    return model if isinstance(model, EquationsOfMotion) else derive(model, outputs)
+
+
+def all_values(
+    model: EquationsOfMotion, values: Mapping[str, float] | None = None, parameter_set: str | None = None
+) -> Mapping[str, float]:
+    """Return the values [SI] of all of a model's parameters: those given, then those of the set, then those of the file.
+
+    Raises
+    ------
+    InputError
+        For a parameter or a set that the vehicle does not have.
+    """
+    if values is not None and parameter_set is None and all(name in values for name in model.parameters):
+        return values
+    return model.values(parameter_set, values)

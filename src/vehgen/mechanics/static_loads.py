@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from vehgen.errors import InputError
 from vehgen.files.result_fields import Array1D, PairKeys
 from vehgen.files.results import Result, Table
+from vehgen.mechanics.derivation import ModelLike, all_values, as_model
 from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
 from vehgen.mechanics.hinge_forces import far_side, lifted_travel
-from vehgen.mechanics.model_like import ModelLike, all_values, as_model
 from vehgen.mechanics.quantities import WITH_STATIC
 
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError, Position, did_you_mean, shortened, shown
 from vehgen.files.reading import split_lines
-from vehgen.files.tables.csv_rows import csv_rows
+from vehgen.files.tables.csv_table import csv_rows
 from vehgen.files.tables.headings import name_and_unit
 from vehgen.files.units import ACCELERATION, FREQUENCY, TIME, Dimension, factor_to_si, parse_unit
 from vehgen.files.units import SPEED as SPEED_DIMENSION

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from vehgen.simulate.response import Response, write_csv
     from vehgen.simulate.road_response import RoadResponse, road_response
     from vehgen.simulate.run_file import Run, load_run
-    from vehgen.simulate.run_like import RunLike, as_run
+    from vehgen.simulate.run_file.loading import RunLike, as_run
     from vehgen.simulate.run_scenario import make_scenario
     from vehgen.simulate.scenario import Scenario
     from vehgen.simulate.signals import Signal
@@ -78,7 +78,7 @@ import_late(
             "Run",
             "load_run",
         ),
-        "vehgen.simulate.run_like": (
+        "vehgen.simulate.run_file.loading": (
             "RunLike",
             "as_run",
         ),

@@ -18,7 +18,7 @@ from vehgen.simulate.acquired import acquire, kept_samples
 from vehgen.simulate.budgets import check_population
 from vehgen.simulate.profile_warnings import doubtful_profiles
 from vehgen.simulate.response import Response, ResponseChannel
-from vehgen.simulate.run_like import RunLike, as_run
+from vehgen.simulate.run_file.loading import RunLike, as_run
 from vehgen.simulate.run_scenario import make_scenario
 from vehgen.simulate.scenario import Scenario
 from vehgen.simulate.warnings import lift_off, spectral_nulls, step_too_coarse

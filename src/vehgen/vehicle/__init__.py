@@ -3,10 +3,9 @@
 Bodies, hinges, axles, links and parameters, `extends`, parameter sets, bundled models; all checks of names, units and values.
 """
 
-from vehgen.vehicle.loading import bundled_models, find_vehicle_file, load_vehicle, parse_vehicle
+from vehgen.vehicle.loading import VehicleLike, as_vehicle, bundled_models, find_vehicle_file, load_vehicle, parse_vehicle
 from vehgen.vehicle.model import Vehicle
 from vehgen.vehicle.parts import Axle, Bending, Body, CarriedBy, Hinge, Link, Parameter, Point, Size, Spring
-from vehgen.vehicle.vehicle_like import VehicleLike, as_vehicle
 
 __all__ = [
     "Axle",

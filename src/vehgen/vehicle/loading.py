@@ -1,4 +1,4 @@
-"""From a file (or a bundled model's name) to a checked Vehicle."""
+"""From a file (or a bundled model's name), or whatever an argument may be, to a checked Vehicle."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from importlib import resources
 from pathlib import Path
 
-from vehgen.errors import InputError, Position, did_you_mean, shown, trail_text
+from vehgen.errors import ArgumentError, InputError, Position, did_you_mean, shown, trail_text
 from vehgen.files.document import Located, read_document, read_text
 from vehgen.files.entry import NO_MAPPING
 from vehgen.files.names import as_name
@@ -16,6 +16,8 @@ from vehgen.vehicle.changes import merge
 from vehgen.vehicle.model import Vehicle
 
 MAX_EXTENDS = 20
+VehicleLike = Vehicle | str | os.PathLike[str]
+"""A vehicle, its file, or the name of a bundled model."""
 NOT_INHERITED = ("description", "source")
 """Said of one file: what extends it is another vehicle, from elsewhere."""
 
@@ -143,3 +145,19 @@ def _extend(document: Located, path: Path | None, seen: tuple[Path, ...]) -> tup
     assert isinstance(merged.value, dict)
     kept = {key: item for key, item in merged.value.items() if key in own or key not in NOT_INHERITED}
     return Located(kept, merged.position, merged.key_position), (*files, *base_files)
+
+
+def as_vehicle(vehicle: VehicleLike) -> Vehicle:
+    """Return the vehicle that an argument means.
+
+    Raises
+    ------
+    InputError
+        For a file that cannot be used, and for anything else than a vehicle, a file or a name.
+    """
+    if isinstance(vehicle, Vehicle):
+        return vehicle
+    if isinstance(vehicle, str | os.PathLike):
+        return load_vehicle(Path(vehicle))
+    found = type(vehicle).__name__
+    raise ArgumentError(f"`vehicle`: a Vehicle, a file or the name of a bundled model was expected, found {found}", "vehicle")

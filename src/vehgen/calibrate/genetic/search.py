@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.calibrate.genetic.selection import migrate, rank_fitness, sample_parents
-from vehgen.calibrate.genetic.variation import mutate, recombine
+from vehgen.calibrate.genetic.operators import migrate, mutate, rank_fitness, recombine, sample_parents
 from vehgen.errors import InputError
 
 Array = NDArray[np.float64]

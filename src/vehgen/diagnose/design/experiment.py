@@ -7,22 +7,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import partial
 from itertools import combinations, permutations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.design.candidate_runs import CandidateRun, free_places, list_runs
 from vehgen.diagnose.design.discrimination import FittedModel, Separation, at_most, peak, separate
-from vehgen.diagnose.design.proposal import Proposal, drive, sensor_text
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.search import DiagnosisProgress
 from vehgen.diagnose.wording import join_names
 from vehgen.fit.recording import RecordedChannel
 from vehgen.fit.trial import Trial
+from vehgen.mechanics.outputs import PointOutput
 
 if TYPE_CHECKING:
     from vehgen.diagnose.detect.detection import Detection
@@ -42,6 +42,44 @@ REPEATS = 20
 LEAST_TRAVEL_M = 1e-3
 """Difference of travel [m] that a displacement sensor across a suspension shows."""
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """What to measure next.
+
+    Attributes
+    ----------
+    models
+        What is to be told apart.
+    height, length, speed
+        The hump [m] and the speed over it [m/s]; None where no run helps.
+    distance
+        Expected difference of chi-squared, after a refit of the wrong model to all runs.
+    channel, times
+        Where the predictions then differ most, and by how many standard deviations of its noise.
+    added
+        A sensor to add, in words; None where those of the runs suffice.
+    separates
+        Whether one such run is enough.
+    text
+        All this in a sentence.
+    """
+
+    models: tuple[str, ...]
+    height: float | None
+    length: float | None
+    speed: float | None
+    distance: float
+    channel: str
+    times: float
+    added: str | None
+    separates: bool
+    text: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain data for JSON."""
+        return {**asdict(self), "models": list(self.models)}
 
 
 @dataclass(frozen=True)
@@ -223,3 +261,16 @@ def _peak(found: _Found) -> tuple[str, float]:
 def _proposal(names: tuple[str, ...], found: _Found, channel: str, times: float, separates: bool, told: str) -> Proposal:
     run = found.run
     return Proposal(names, run.height, run.length, run.speed, found.separation.distance, channel, times, found.added, separates, told)
+
+
+def drive(run: CandidateRun, added: str | None = None) -> str:
+    """Return what to do, in words."""
+    which = "the same hump" if run.same else f"a hump {run.length:.3g} m long"
+    first = f"add {added} and " if added else ""
+    return f"{first}drive over {which}, {run.height:.3g} m high, at {run.speed:.3g} m/s"
+
+
+def sensor_text(output: PointOutput) -> str:
+    """Return a sensor to add, in words."""
+    quantity = "an accelerometer" if output.quantity == "acceleration" else "a pitch-rate sensor"
+    return f"{quantity} on {output.place.body} at {output.place.behind}"

@@ -1,19 +1,21 @@
-"""Tables as text: separated by comma, semicolon or tab, with a decimal point or, where the comma separates nothing, a decimal comma."""
+"""Tables as text, read row by row: separated by comma, semicolon or tab, with a decimal point or, where it separates nothing, a comma."""
 
 from __future__ import annotations
 
 import csv
 import itertools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from vehgen.files.reading import read_lines
+from vehgen.errors import InputError, Position
+from vehgen.files.reading import LONGEST_LINE, read_lines
 from vehgen.files.tables.columns import MAX_TABLE_BYTES, TableColumns
-from vehgen.files.tables.csv_rows import csv_rows
 from vehgen.files.tables.headings import name_and_unit
 from vehgen.files.tables.rows import read_rows
 
+MOST_ROWS = 2_000_000
+"""No table is longer: at 200 samples a second, two and three quarter hours."""
 _QUOTED = re.compile(r'"[^"]*"')
 
 
@@ -31,6 +33,46 @@ def read_csv(path: Path, names: tuple[str, ...]) -> TableColumns:
     rows: Iterator[tuple[int, list[str]]] = csv_rows(itertools.chain([first], lines), path, separator)
     header = [cell.strip() for cell in next(rows, (1, []))[1]]
     return read_rows(path, header, ((line, list(row)) for line, row in rows), names, comma=separator != ",")
+
+
+def csv_rows(lines: Iterable[str], where: Path | str, delimiter: str = ",") -> Iterator[tuple[int, list[str]]]:
+    """Yield each row of a CSV text with the number of its last line, which counts from 1.
+
+    Parameters
+    ----------
+    lines
+        The text's lines with their ends.
+    where
+        What errors call the text.
+    delimiter
+        What stands between cells.
+
+    Raises
+    ------
+    InputError
+        At a row beyond MOST_ROWS or of more than LONGEST_LINE characters, and at what is no CSV.
+    """
+    pending = 0
+
+    def counted() -> Iterator[str]:
+        nonlocal pending
+        for line in lines:
+            pending += len(line)
+            if pending > LONGEST_LINE:
+                raise InputError(
+                    f"a row of more than {LONGEST_LINE} characters: is a quote not closed?", Position(where, reader.line_num + 1, 1)
+                )
+            yield line
+
+    reader = csv.reader(counted(), delimiter=delimiter)
+    try:
+        for count, row in enumerate(reader):
+            if count > MOST_ROWS:
+                raise InputError(f"more than {MOST_ROWS} rows; cut the recording to the pass", Position(where, reader.line_num, 1))
+            yield reader.line_num, row
+            pending = 0
+    except csv.Error as error:
+        raise InputError(f"not a CSV table: {error}", Position(where, max(reader.line_num, 1), 1)) from error
 
 
 def _separator(first: str, names: tuple[str, ...]) -> str:

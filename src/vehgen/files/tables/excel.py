@@ -9,7 +9,7 @@ from typing import Any
 
 from vehgen.errors import InputError, Position
 from vehgen.files.tables.columns import TableColumns
-from vehgen.files.tables.csv_rows import MOST_ROWS
+from vehgen.files.tables.csv_table import MOST_ROWS
 from vehgen.files.tables.foreign import faults_of, items_of, library, without_warnings
 from vehgen.files.tables.rows import Cell, Rows, read_rows
 from vehgen.files.tables.workbook_parts import EXCEL_KIND, check_parts

@@ -12,7 +12,7 @@ import numpy as np
 from vehgen.errors import InputError, Position, shown
 from vehgen.files.reading import read_bytes
 from vehgen.files.tables.columns import MAX_TABLE_BYTES, TableColumns
-from vehgen.files.tables.csv_rows import MOST_ROWS
+from vehgen.files.tables.csv_table import MOST_ROWS
 from vehgen.files.tables.sheet import Sheet
 
 GPX_KIND = "a GPX file"

@@ -11,7 +11,7 @@ import numpy as np
 from vehgen.errors import InputError, Position, shown
 from vehgen.files.reading import read_lines
 from vehgen.files.tables.columns import MAX_TABLE_BYTES, TableColumns
-from vehgen.files.tables.csv_rows import MOST_ROWS
+from vehgen.files.tables.csv_table import MOST_ROWS
 from vehgen.files.tables.sheet import Sheet
 
 KNOT = 1852.0 / 3600.0

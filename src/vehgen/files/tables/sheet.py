@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from vehgen.errors import InputError, Position, shown
 from vehgen.files.tables.columns import LARGEST_MEASURED, MAX_TABLE_NUMBERS, TableColumns
-from vehgen.files.tables.csv_rows import MOST_ROWS
+from vehgen.files.tables.csv_table import MOST_ROWS
 from vehgen.files.tables.headings import declared_unit, find_heading, may_be_word, name_and_unit
 
 

@@ -71,7 +71,7 @@ def plot_histories(curves: Sequence[ChannelCurves], labels: tuple[str, str] = LA
     for axes, curve in zip(panels, curves, strict=False):
         axes.plot(curve.x, curve.measured, color=MEASURED, lw=2.2, label=labels[0])
         axes.plot(curve.x, curve.simulated, color=SIMULATED, lw=0.9, label=labels[1])
-        axes.set_xlim(*_busy([item for item in curves if item.run == curve.run]))
+        axes.set_xlim(*busy([item for item in curves if item.run == curve.run]))
         axes.set_ylabel(f"{curve.quantity.replace('_', ' ')} [{QUANTITY_UNITS.get(curve.quantity, '')}]", color=INK, parse_math=False)
         axes.set_xlabel("time [s]", color=INK)
         _finish(axes, curve)
@@ -79,31 +79,7 @@ def plot_histories(curves: Sequence[ChannelCurves], labels: tuple[str, str] = LA
     return figure
 
 
-def plot_pair(history: ChannelCurves, density: ChannelCurves, band: tuple[float, float], labels: tuple[str, str] = LABELS) -> Figure:
-    """Plot one channel's history beside its PSD, each as two curves."""
-    figure = Figure(figsize=(9.0, 2.3), layout="constrained")
-    left, right = figure.subplots(1, 2)
-    unit = QUANTITY_UNITS.get(history.quantity, "")
-    left.plot(history.x, history.measured, color=MEASURED, lw=2.0, label=labels[0])
-    left.plot(history.x, history.simulated, color=SIMULATED, lw=0.9, label=labels[1])
-    left.set_xlim(*_busy([history]))
-    left.set_xlabel("time [s]", color=INK)
-    left.set_ylabel(f"{history.channel} [{unit}]", color=INK, parse_math=False)
-    inside = (density.x >= band[0]) & (density.x <= band[1])
-    right.semilogy(density.x[inside], density.measured[inside], color=MEASURED, lw=2.0)
-    right.semilogy(density.x[inside], density.simulated[inside], color=SIMULATED, lw=0.9)
-    top = max(density.measured[inside].max(), density.simulated[inside].max())
-    right.set_ylim(top * 10.0**-PSD_DECADES, 3 * top)
-    right.set_xlabel("frequency [Hz]", color=INK)
-    right.set_ylabel(f"PSD [({unit})²/Hz]", color=INK)
-    for axes in (left, right):
-        axes.grid(color="#e3e7ea", lw=0.6)
-        axes.spines[["top", "right"]].set_visible(False)
-    figure.legend(loc="outside upper right", ncols=2, frameon=False, fontsize=9)
-    return figure
-
-
-def _busy(curves: Sequence[ChannelCurves]) -> tuple[float, float]:
+def busy(curves: Sequence[ChannelCurves]) -> tuple[float, float]:
     """Return the part of a run's time in which any channel shows more than its noise, half a second around it."""
     first, last = [], []
     for curve in curves:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import os
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from vehgen.errors import InputError
+from vehgen.errors import ArgumentError, InputError
 from vehgen.files import note_read
 from vehgen.files.document import Located
 from vehgen.files.entry import read_entries
@@ -13,7 +14,7 @@ from vehgen.mechanics.outputs import Output, Place, PointOutput
 from vehgen.mechanics.quantities import QUANTITIES
 from vehgen.simulate.run_file.checks import check_run
 from vehgen.simulate.run_file.entries import RunFile
-from vehgen.vehicle.loading import load_vehicle
+from vehgen.vehicle.loading import VehicleLike, as_vehicle, load_vehicle
 from vehgen.vehicle.model import Vehicle
 
 DEFAULT_DECIMATION = 10
@@ -81,3 +82,23 @@ def load_run(path: str | Path, vehicle: Vehicle | None = None) -> Run:
     run = Run(file, vehicle, path.parent, document)
     check_run(run)
     return run
+
+
+RunLike = Run | str | os.PathLike[str]
+"""A run or its file."""
+
+
+def as_run(run: RunLike, vehicle: VehicleLike | None = None) -> Run:
+    """Return the run that an argument means; `vehicle` takes the place of the one that it names.
+
+    Raises
+    ------
+    InputError
+        For a file that cannot be used, and for anything else than a run or a file.
+    """
+    own = None if vehicle is None else as_vehicle(vehicle)
+    if isinstance(run, Run):
+        return run if own is None else replace(run, vehicle=own)
+    if isinstance(run, str | os.PathLike):
+        return load_run(Path(run), own)
+    raise ArgumentError(f"`run`: a Run or a run file was expected, found {type(run).__name__}", "run")
