@@ -23,7 +23,8 @@ _FUSED = "contract nsz"
 def write_function(name: str, bodies: Sequence[Sequence[ast.stmt]], width: int, row: int, number: str) -> str:
     """Return the text of a function `(work, active, dt, rows, steps)`.
 
-    In each step it runs the bodies one after the other, each for all lanes that are active, with the next row of drives.
+    Lanes that are computed at once take all steps before the next ones begin, so that less has to stay near; a step runs the bodies one
+    after the other with its row of drives.
 
     Parameters
     ----------
@@ -45,33 +46,30 @@ def write_function(name: str, bodies: Sequence[Sequence[ast.stmt]], width: int, 
         for statement in body:
             writer.write(statement)
         declared |= writer.declared
-        before, after = f"body{i - 1}" if i else "step", f"body{i + 1}" if i < len(bodies) - 1 else "done"
-        lines += [
-            f"  br label %body{i}" if i == 0 else "",
-            f"body{i}:",
-            f"  %j{i} = phi i64 [0, %{before}], [%next{i}, %body{i}]",
-            f"  %b{i}.lanes = getelementptr {number}, {number}* %work, i64 %j{i}",
-            f"  %b{i}.own = getelementptr {number}, {number}* %drives, i64 %j{i}",
-            *(f"  {line}" for line in writer.lines),
-            f"  %next{i} = add i64 %j{i}, {width}",
-            f"  %more{i} = icmp slt i64 %next{i}, %active",
-            f"  br i1 %more{i}, label %body{i}, label %{after}",
-        ]
+        lines += [f"  br label %body{i}", f"body{i}:", *(f"  {line}" for line in writer.lines)]
     text = "\n".join(lines)
     return f"""{"".join(f"declare {item}" + chr(10) for item in sorted(declared))}
 define weak_odr void @"{name}"({number}* noalias %work, i64 %active, {number} %dt, {number}* noalias %rows, i64 %steps) noinline nounwind {{
 begin:
   %some = icmp sgt i64 %steps, 0
-  br i1 %some, label %step, label %end
+  br i1 %some, label %group, label %end
+group:
+  %j = phi i64 [0, %begin], [%next, %done]
+  %lanes = getelementptr {number}, {number}* %work, i64 %j
+  br label %step
 step:
-  %n = phi i64 [0, %begin], [%later, %done]
+  %n = phi i64 [0, %group], [%later, %body{len(bodies) - 1}]
   %start = mul i64 %n, {row}
   %drives = getelementptr {number}, {number}* %rows, i64 %start
+  %own = getelementptr {number}, {number}* %drives, i64 %j
 {text}
-done:
   %later = add i64 %n, 1
   %again = icmp slt i64 %later, %steps
-  br i1 %again, label %step, label %end
+  br i1 %again, label %step, label %done
+done:
+  %next = add i64 %j, {width}
+  %more = icmp slt i64 %next, %active
+  br i1 %more, label %group, label %end
 end:
   ret void
 }}
@@ -208,8 +206,9 @@ class _Writer:
         start, vector = item.slice.left.value, f"<{self.lanes} x {self.number}>"
         assert isinstance(start, int)
         assert start % self.lanes == 0
-        base = f"%{self.prefix}lanes" if item.value.id == "work" else f"%{self.prefix}own"
-        wide = self._new(f"bitcast {self._address(base, start)} to {vector}*", self.number, False)
+        wide = self._new(
+            f"bitcast {self._address('%lanes' if item.value.id == 'work' else '%own', start)} to {vector}*", self.number, False
+        )
         return f"{vector}* {wide.text}, align {min(CACHE_LINE, self.lanes * _BYTES[self.number])}"
 
     def _address(self, base: str, place: object) -> str:
