@@ -42,6 +42,7 @@ def _parser() -> argparse.ArgumentParser:
     show.add_argument("results", type=Path, nargs="+")
     short = commands.add_parser("glance", help="print one row for every set of scored effects")
     short.add_argument("results", type=Path, nargs="+")
+    short.add_argument("--kinds", action="store_true", help="print one row for each thing hidden instead")
     short.add_argument("--misses", action="store_true", help="print the intervals that miss the truth instead")
     tell = commands.add_parser("tellable", help="fit the true law at its true place: could the recordings tell it?")
     tell.add_argument("folder", type=Path, help="what `make` wrote")
@@ -80,9 +81,9 @@ def main() -> None:
     elif options.command == "tellable":
         _tell(options)
     elif options.command == "glance":
-        from benchmarks.measured_world.telling.glance import glance, misses
+        from benchmarks.measured_world.telling.glance import glance, kinds, misses
 
-        print(misses(options.results) if options.misses else glance(options.results))
+        print((misses if options.misses else kinds if options.kinds else glance)(options.results))
     elif options.command == "told":
         from benchmarks.measured_world.telling.table import telling_page
 

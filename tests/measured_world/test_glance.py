@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
-from benchmarks.measured_world.telling.glance import glance, intervals, misses
+from benchmarks.measured_world.telling.glance import glance, intervals, kinds, misses
 
 FRICTION = {"name": "dry_friction", "place": "rear", "values": {"force": 500.0}}
 PLAY = {"name": "damper_free_play", "place": "rear", "values": {"play": 0.002}}
@@ -26,7 +26,7 @@ def scored(tmp_path):
         record("ambiguous, truth among them", interval=[400.0, 480.0]),
         record("too_weak"),
         record("not_in_library", PLAY),
-        {"case": "healthy_000", "kind": "healthy", "effects": [], "judged": "no_missing_effect", "answer": {}},
+        {"case": "healthy_000", "kind": "healthy", "effects": [], "fault": None, "judged": "no_missing_effect", "answer": {}},
     ]
     second = [record("several_effects"), record("measurement_fault", PLAY), record("import_refused", PLAY)]
     paths = [tmp_path / "one.jsonl", tmp_path / "two.jsonl"]
@@ -40,6 +40,21 @@ def test_each_set_has_a_row_and_all_together_one(scored):
         "| one | 5 | 3 | 1 | 0 | 1 | 0 | 1 | 1 | 0 | 0 | 0 | 1 of 2 |",
         "| two | 1 | 0 | 0 | 0 | 0 | 1 | 2 | 0 | 1 | 0 | 1 | 0 of 0 |",
         "| all | 6 | 3 | 1 | 0 | 1 | 1 | 3 | 1 | 1 | 0 | 1 | 1 of 2 |",
+    ]
+
+
+def test_each_thing_hidden_has_a_row(scored, tmp_path):
+    faults = [
+        {"case": "faults_000", "kind": "faults", "effects": [], "fault": {"kind": "low_passed"}, "judged": judged, "answer": {}}
+        for judged in ("fault named right, place too", "refused, fault told", "named as a false effect", "not_in_library")
+    ]
+    path = tmp_path / "faults.jsonl"
+    path.write_text("".join(json.dumps(item) + "\n" for item in faults), encoding="utf-8")
+    assert kinds([*scored, path]).splitlines()[2:] == [
+        "| damper_free_play | 3 | 0 | 0 | 1 | 0 | 2 |",
+        "| dry_friction | 6 | 3 | 1 | 0 | 1 | 1 |",
+        "| low_passed | 4 | 2 | 0 | 1 | 0 | 1 |",
+        "| nothing | 1 | 1 | 0 | 0 | 0 | 0 |",
     ]
 
 

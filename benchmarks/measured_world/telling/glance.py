@@ -1,8 +1,8 @@
-"""Scored sets of effects at a glance: a row each, and what the intervals of the numbers named hold."""
+"""Scored sets at a glance: a row for each set of effects or for each thing hidden, and what the intervals of the numbers named hold."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,8 @@ WRONG = ("named wrong", "ambiguous, wrong", "named right, elsewhere", "measureme
 """Causes told that are not there; a mistake of measuring is none of the generator's."""
 OF_THE_WHOLE_EXPORT = ("engine_harmonic_frequency", "engine_harmonic_drift")
 """The truth states these for the start and the length of a phone's export, of which an import keeps a part."""
+FAULT_RIGHT = ("fault named right, place too", "fault named right", "refused, fault told")
+FAULT_WRONG = ("another fault named", "named as a false effect")
 UNTOLD = ("no_missing_effect", "too_weak", "insufficient_data")
 """A gap of which nothing is claimed."""
 
@@ -53,7 +55,24 @@ def _row(records: Sequence[Data]) -> list[str]:
     return [*map(str, counts), f"{sum(held)} of {len(held)}"]
 
 
-def _count(judged: Iterable[str], outcomes: Sequence[str]) -> int:
+def kinds(paths: Sequence[Path]) -> str:
+    """Return a table of scored effects, mistakes and healthy vehicles, a row for each thing that was hidden."""
+    judged: dict[str, list[str]] = {}
+    for record in read(paths):
+        if record["kind"] in ("effects", "faults", "healthy"):
+            hidden = record["effects"][0]["name"] if record["effects"] else (record["fault"] or {"kind": "nothing"})["kind"]
+            judged.setdefault(hidden, []).append(record["judged"])
+    header = ("hidden", "cases", "told right", "right one tied", "a wrong cause", "none claimed", "other")
+    return table(header, ([name, *_outcomes(name, judged[name])] for name in sorted(judged)))
+
+
+def _outcomes(hidden: str, judged: Sequence[str]) -> list[str]:
+    right = ("no_missing_effect",) if hidden == "nothing" else (RIGHT, *FAULT_RIGHT)
+    counts = [_count(judged, outcomes) for outcomes in (right, (TIED,), (*WRONG, *FAULT_WRONG), set(UNTOLD) - set(right))]
+    return [*map(str, (len(judged), *counts, len(judged) - sum(counts)))]
+
+
+def _count(judged: Iterable[str], outcomes: Collection[str]) -> int:
     return sum(item in outcomes for item in judged)
 
 
