@@ -12,6 +12,7 @@ from tests.diagnose.conftest import HUMPS
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.screening import chosen_with_holders
 from vehgen.diagnose.pipeline import diagnose_trials
+from vehgen.diagnose.select import criteria
 from vehgen.diagnose.select.criteria import same, tied
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.ranking import holding, simplest_first
@@ -46,6 +47,15 @@ def test_a_special_case_that_leaves_more_stays_where_it_is():
     fits = [fit("asymmetric_friction", "rear", 1.02), fit("dry_friction", "rear", 2.0)]
     assert simplest_first(fits, BASE) == fits
     assert holding([fits[1], fits[0]], fits[0], BASE) == []
+
+
+@pytest.mark.parametrize(("name", "place"), [("sensor_delay", "R"), ("engine_harmonic", "body")])
+@pytest.mark.parametrize("told", [True, False])
+def test_a_wrong_clock_or_a_line_that_may_be_none_is_no_tie(monkeypatch, name, place, told):
+    """A law may be of any size; a fit of an error of none explains as much only because it was begun elsewhere."""
+    monkeypatch.setattr(criteria, "is_told", lambda item: told)
+    fits = [fit("sensor_gain", "R_az", 1.02), fit(name, place, 1.02), fit("hysteresis", "rear", 1.02)]
+    assert tied(SimpleNamespace(faint=False, current=BASE, fits=fits), fits[0]) == (fits[1:] if told else fits[2:])
 
 
 def test_friction_elsewhere_is_no_special_case():

@@ -93,11 +93,11 @@ class Decision(Ending):
         found = one_cause(self.detection, self._candidates(self.base))
         if found is None:
             return None
-        sure, fit = found
+        sure, fits = found
         other = Decision(sure, self.effects, self.everything, self.progress, self.runner)
         other.notes += [*self.notes, BEFORE]
-        other.rounds = [SearchRound(sure.base, (), (), (fit,))]
-        return other._name([fit])
+        other.rounds = [SearchRound(sure.base, (), (), fits)]
+        return other._name([fits[0]])
 
     def _faint(self, found: SearchRound | None = None) -> Decided | None:
         """Return the verdict where an effect too small for chi is told by how far -2 ln of the likelihood falls with it.

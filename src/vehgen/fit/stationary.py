@@ -1,8 +1,8 @@
-"""What a road and sensors do in a recording as no window shows it: noise drawn at random, and what recordings truly tell.
+"""Noise as no window shows it: drawn at random, and what recordings in it truly tell.
 
-A fit weighs the lines of a windowed record as if they were independent. They are not: much of a line is road from beside it, which one
-axle passed before the record began or another will pass after it ends. Where derivatives come from the middle of a record, as those of a
-hump do, that cancels from line to line. With H = J'J of the fit, its priors included, and B the covariance of its score on stationary noise
+A fit weighs the lines of a windowed record as if they were independent. They are not: much of a line is road from beside it, which an
+axle passes before the record begins or after it ends. In derivatives from the middle of a record, as those of a hump, that cancels
+from line to line. With H = J'J of the fit, its priors included, and B the covariance of its score on stationary noise
 of density S(f),
 
     B_ab = 4 int Re(G_a* S G_b) df,
@@ -25,7 +25,7 @@ from vehgen.fit.window import pulled_back
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 SMALLEST_SHARE = 1e-12
-"""What recordings tell by a smaller share of what they tell most of counts as nothing."""
+"""What is told by a smaller share of what is told most counts as nothing."""
 
 
 def draw(misfit: Misfit, x: Array, random: np.random.Generator) -> list[Array]:
@@ -56,9 +56,9 @@ def recorded_information(fit: LeastSquaresFit) -> Array:
 
 
 def score_covariance(misfit: Misfit, x: Array, number: int, slopes: Complex) -> Array:
-    """Return the covariance of trial `number`'s part of the score, `shape (n, n)`, by derivatives of its whitened lines.
+    """Return the covariance of trial `number`'s part of the score, `shape (n, n)`, at unknowns x.
 
-    `slopes shape (n, n_lines, n_channels)`; the errors of unknowns x say how its sensors read the road.
+    `slopes shape (n, n_lines, n_channels)` are the derivatives of its whitened lines.
     """
     trial = misfit.problem.trials[number]
     n_samples, dt = trial.recording.values.shape[0], trial.recording.dt
@@ -76,7 +76,7 @@ def score_covariance(misfit: Misfit, x: Array, number: int, slopes: Complex) -> 
 
 
 def _unwindowed(misfit: Misfit, number: int, x: Array, beside: int) -> tuple[NDArray[np.intp], RoadAnswer]:
-    """Return the lines of a record twice as long within trial `number`'s band, and so many of its own to each side, and the road there."""
+    """Return the lines of a record twice as long in trial `number`'s band and so many of its own to each side, and the road there."""
     trial = misfit.problem.trials[number]
     n, numbers = trial.recording.values.shape[0], _numbers(misfit, number)
     lines = np.arange(max(2 * (int(numbers[0]) - beside), 1), min(2 * (int(numbers[-1]) + beside), n) + 1)

@@ -85,13 +85,17 @@ def falls_as_far(found: SearchRound, fit: ModelFit, best: ModelFit) -> bool:
 def tied(found: SearchRound, best: ModelFit) -> list[ModelFit]:
     """Return the fits of a round that do as well as the best: within the slack of TIE, or of FAINT_TIE where chi shows no gap.
 
-    Not those that do no better, but ask of the base what its file does not allow.
+    Not those that do no better, but ask of the base what its file does not allow, nor an error of all runs or of a sensor, or a
+    line, that may be none.
     """
     before = excess(found.current.training)
     others = [item for item in found.fits if item.key != best.key and not same(item.last, best.last) and not _asks_for_more(item, best)]
-    if found.faint:
-        return [item for item in others if falls_as_far(found, item, best)]
-    return [item for item in others if does_as_well(item.training, best.training, before)]
+    as_well = [
+        item for item in others if (falls_as_far(found, item, best) if found.faint else does_as_well(item.training, best.training, before))
+    ]
+    return [
+        item for item in as_well if not (isinstance(item.last.effect, RunEffect) or item.last.effect.solved_parameters) or is_told(item)
+    ]
 
 
 def _asks_for_more(fit: ModelFit, best: ModelFit) -> bool:

@@ -11,12 +11,14 @@ from vehgen.diagnose.detect.detection import Detection, with_runs
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit, refine
 from vehgen.diagnose.inputs.conditions import alike_conditions
+from vehgen.diagnose.select.estimates import fitted_numbers
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.one_error import SUPPOSED_AS, leaves_noise, taken_over
 from vehgen.diagnose.select.ranking import merit
 from vehgen.effects.evidence import StartingPoint
 from vehgen.files.quantities import Spread
 from vehgen.fit.nuisances import Condition
+from vehgen.fit.parallel import HERE
 from vehgen.fit.trial import Trial
 from vehgen.simulate.run_file.knowledge import UncertaintyEntry
 
@@ -31,8 +33,10 @@ BEFORE = "each run might have had such an error of its own, but all agree: chi b
 """What is told beside it."""
 
 
-def one_cause(detection: Detection, candidates: Sequence[Candidate]) -> tuple[Detection, ModelFit] | None:
+def one_cause(detection: Detection, candidates: Sequence[Candidate]) -> tuple[Detection, tuple[ModelFit, ...]] | None:
     """Return the error of a sensor's clock, or of all speeds, that explains what every run supposes, and the gap of runs that suppose none.
+
+    It is followed by what no run tells from it: that another sensor's clock is as much off the other way.
 
     Clocks that are set run by run, and speeds that are read run by run, are off by as many different amounts. Where all agree, one cause
     made them, and no run needs an error of its own. Where all are off the same way, and far together, one number of all runs is likelier,
@@ -57,8 +61,16 @@ def one_cause(detection: Detection, candidates: Sequence[Candidate]) -> tuple[De
         sure = with_runs(detection, *([_sure_of(OF_ONE_KIND[alike[0].name], trial) for trial in part] for part in parts))
         fit = None if sure.is_quiet else _instead(sure, candidate, alike, begin[1]) or _beside(detection, candidate, alike, begin)
         if fit is not None:
-            return sure, fit
+            return sure, (fit, *_other_way(sure, fit, candidates))
     return None
+
+
+def _other_way(sure: Detection, fit: ModelFit, candidates: Sequence[Candidate]) -> list[ModelFit]:
+    """Return fits of what no run tells from a fit, as its effect says, off as much the other way, where they leave noise, too."""
+    last, (number,) = fit.last, fitted_numbers(fit, fit.last)
+    others = [item for item in candidates if last.effect.tie_advice and item.effect.tie_advice == last.effect.tie_advice]
+    begun = [(item, (-number,)) for item in others if item.place != last.place]
+    return [other for other in Fitter(sure, sure.base, ()).fit_all_begun(begun, HERE) if leaves_noise(other, sure)]
 
 
 def _instead(sure: Detection, candidate: Candidate, alike: Sequence[Condition], number: tuple[float]) -> ModelFit | None:
