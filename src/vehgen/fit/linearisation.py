@@ -89,15 +89,22 @@ class Linearisation:
 
         `lines` are each trial's whitened residuals at the unknowns x.
         """
-        information, gradient = np.zeros((self.n_unknowns, self.n_unknowns)), np.zeros(self.n_unknowns)
+        gradient = np.zeros(self.n_unknowns)
         for number, (columns, line) in enumerate(zip(self.columns, lines, strict=True)):
-            rows = self.rows(number)
-            information[np.ix_(columns, columns)] += 2 * rows @ rows.T
-            gradient[columns] += 2 * rows @ real_rows(line[None])[0]
+            gradient[columns] += 2 * self.rows(number) @ real_rows(line[None])[0]
         held = np.arange(self.n_unknowns - self.n_priors, self.n_unknowns)
-        information[held, held] += 1.0
         gradient[held] += x[held]
-        return information, gradient
+        return self.information(), gradient
+
+    def information(self) -> Array:
+        """Return J'J `shape (n_unknowns, n_unknowns)`, priors of the errors included."""
+        found = np.zeros((self.n_unknowns, self.n_unknowns))
+        for number, columns in enumerate(self.columns):
+            rows = self.rows(number)
+            found[np.ix_(columns, columns)] += 2 * rows @ rows.T
+        held = np.arange(self.n_unknowns - self.n_priors, self.n_unknowns)
+        found[held, held] += 1.0
+        return found
 
 
 def real_rows(lines: Complex) -> Array:

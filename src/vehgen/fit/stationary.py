@@ -41,15 +41,10 @@ def draw(misfit: Misfit, x: Array, random: np.random.Generator) -> list[Array]:
 def recorded_information(fit: LeastSquaresFit) -> Array:
     """Return the information of the recordings and of the errors' priors about all unknowns of a fit, `shape (n_unknowns, n_unknowns)`."""
     misfit, linearised = fit.misfit, linearise(fit.misfit, fit.x)
-    n = misfit.n_unknowns
-    own, scattered = np.zeros((n, n)), np.zeros((n, n))
-    for number, columns in enumerate(linearised.columns):
-        rows = linearised.rows(number)
-        own[np.ix_(columns, columns)] += 2 * rows @ rows.T
-        scattered[np.ix_(columns, columns)] += score_covariance(misfit, fit.x, number, linearised.blocks[number])
-    errors = np.arange(n - misfit.n_errors, n)
-    own[errors, errors] += 1.0
-    scattered[errors, errors] += 1.0
+    priors = np.arange(misfit.n_unknowns) >= misfit.n_unknowns - misfit.n_errors
+    own, scattered = linearised.information(), np.diag(priors.astype(np.float64))
+    for number, (columns, block) in enumerate(zip(linearised.columns, linearised.blocks, strict=True)):
+        scattered[np.ix_(columns, columns)] += score_covariance(misfit, fit.x, number, block)
     size = 1 / np.sqrt(np.maximum(np.diagonal(scattered), 1e-300))
     inverse = np.linalg.pinv(size[:, None] * scattered * size, SMALLEST_SHARE, hermitian=True)
     return np.asarray(own @ (size[:, None] * inverse * size) @ own)
