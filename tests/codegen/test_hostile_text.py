@@ -112,14 +112,15 @@ def check_source(text: str) -> None:
         elif isinstance(statement, ast.Assign):
             target = ast.unparse(statement.targets[0])
             if target in ("setup", "sample", "advance"):
-                assert re.fullmatch(rf"{target} = emit_llvm\(({target}_\d+, )+width=\d+, row=\d+\)", ast.unparse(statement))
+                call = rf"{target} = emit_llvm\((constants|sample|step)_lane, width=\d+, row=\d+(, together=\d)?\)"
+                assert re.fullmatch(call, ast.unparse(statement))
                 continue
-            assert target in {"LANES", "PARAMETERS", "CONSTANTS", "STATE", "KEPT", "SCRATCH", "WORK"}
+            assert target in {"LANES", "PARAMETERS", "CONSTANTS", "STATE", "KEPT", "WORK"}
             assert type(statement.value.value) is int
         else:
             assert isinstance(statement, ast.FunctionDef)
             if statement.name != "run":
-                assert re.fullmatch(r"(setup|sample|advance)_\d+", statement.name)
+                assert statement.name in {"constants_lane", "step_lane", "sample_lane"}
                 assert statement.decorator_list == []
                 assert ast.unparse(statement.args) == "work, j, dt, drives"
                 check_function(statement, ARITHMETIC, OWN)

@@ -272,19 +272,21 @@ def test_many_kernels_are_compiled_by_several_processes(tmp_path):
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize("laws", ["", "laws: [{dry_friction: {force: 300 N}}]"])
 def test_few_individuals_respond_as_they_do_among_many(precision, laws):
-    """A block of few computes half of its lanes: the same numbers bit by bit. Drives of their own are read otherwise."""
+    """Fewer lanes are computed at once: the same numbers bit by bit. Drives of their own are read otherwise."""
     vehicle = parse_vehicle(f"extends: quarter_car\naxles: {{axle1: {{suspension: {{{laws}}}}}}}\n" if laws else "extends: quarter_car\n")
     model = derive(vehicle, (PointOutput("a", Place("s", "body"), "acceleration"),))
     kernel = Kernel(model, precision=precision)
     rng = np.random.default_rng(3)
     parameters = np.array(list(model.values().values())) * rng.uniform(0.9, 1.1, (35, len(model.parameters)))
     road = rng.normal(0, 0.001, (204, 1)).cumsum(axis=0)
-    shared = Excitation(1e-3, road, np.gradient(road, 1e-3, axis=0), np.zeros((204, 0)))
-    own = Excitation(1e-3, *(np.repeat(item[None], 35, axis=0) for item in (shared.inputs, shared.rates, shared.forces)))
-    whole = kernel.run(parameters, shared, 10).responses
-    assert kernel.run(parameters, own, 10).responses == pytest.approx(whole, abs=1e-6 if precision == "single" else 1e-12)
+    items, scale = (road, np.gradient(road, 1e-3, axis=0), np.zeros((204, 0))), np.linspace(0.5, 1.5, 35)
+    shared, own = Excitation(1e-3, *items), Excitation(1e-3, *(scale[:, None, None] * item for item in items))
+    whole, others = (kernel.run(parameters, excitation, 10).responses for excitation in (shared, own))
     for few in (slice(0, 1), slice(3, 11), slice(20, 29)):
         assert np.array_equal(kernel.run(parameters[few], shared, 10).responses, whole[few])
+    for i in (0, 9, 17, 34):
+        alone = kernel.run(parameters[i], Excitation(1e-3, *(scale[i] * item for item in items)), 10).responses[0]
+        assert others[i] == pytest.approx(alone, abs=1e-6 if precision == "single" else 1e-12)
 
 
 SINGLE_LAWS = "laws: [{dry_friction: {force: 300 N}}, {bump_stop: {k: 1 MN/m, clearance: 8 mm}}, {quadratic_damping: {c2: 5e3 N s^2/m^2}}]"

@@ -6,7 +6,7 @@ import scipy.signal
 
 from tests.oracles.layouts import random_layout, to_yaml
 from vehgen.codegen import Excitation, Kernel, write_kernel
-from vehgen.codegen.kernel_source import LANES, SINGLE_LANES
+from vehgen.codegen.population_run import BLOCK_SIZE
 from vehgen.mechanics import Place, PointOutput, derive
 from vehgen.simulate import newmark_response
 from vehgen.vehicle import load_vehicle, parse_vehicle
@@ -41,12 +41,12 @@ def test_bundled_vehicles_err_by_less_than_1e_4_of_the_peak(name):
     excitation = humps(len(model.inputs), 4000)
     kernel = Kernel(model, precision="single")
     assert kernel.source.from_rest
-    parameters = np.repeat([list(model.values().values())], SINGLE_LANES + 3, axis=0)
+    parameters = np.repeat([list(model.values().values())], BLOCK_SIZE + 3, axis=0)
     found = kernel.run(parameters, excitation, 10)
     assert not found.failures
     textbook = newmark_response(model, excitation, 10)
     double = Kernel(model).run(parameters[:1], excitation, 10).responses[0]
-    for individual in (0, SINGLE_LANES, SINGLE_LANES + 2):
+    for individual in (0, BLOCK_SIZE, BLOCK_SIZE + 2):
         assert error_over_peak(found.responses[individual], textbook).max() < 1e-4
         assert 0 < error_over_peak(found.responses[individual], double).max() < 1e-4
 
@@ -92,14 +92,14 @@ def test_a_reduction_gets_the_numbers_of_the_kernel_and_run_gives_double():
     kernel = Kernel(model, precision="single")
     peaks, failures = kernel.reduce(parameters, excitation, peak, threads=2)
     whole = kernel.run(parameters, excitation)
-    assert seen == {(np.float32, SINGLE_LANES), (np.float32, 70 - 2 * SINGLE_LANES)}
+    assert seen == {(np.float32, BLOCK_SIZE), (np.float32, 70 - 2 * BLOCK_SIZE)}
     assert whole.responses.dtype == np.float64
     np.testing.assert_array_equal(peaks, np.abs(whole.responses).max(axis=(1, 2)))
     assert list(failures) == list(whole.failures) == [40]
 
 
-def test_lanes_fill_two_vectors_in_either_precision():
-    model = sensed(load_vehicle("sedan2"))
-    assert write_kernel(model).lanes == LANES == SINGLE_LANES // 2
-    assert write_kernel(model, precision="single").lanes == SINGLE_LANES
-    assert write_kernel(model).text != write_kernel(model, precision="single", lanes=LANES).text
+def test_lanes_fill_a_vector_in_either_precision_or_two_where_a_step_is_short():
+    short, long = sensed(load_vehicle("sedan2")), sensed(load_vehicle("tractor5"))
+    assert [write_kernel(model).lanes for model in (short, long)] == [16, 8]
+    assert [write_kernel(model, precision="single").lanes for model in (short, long)] == [32, 16]
+    assert write_kernel(short).text != write_kernel(short, precision="single", lanes=16).text

@@ -1,11 +1,11 @@
 """Straight-line functions of generated kernels, turned into machine code without numba's front end.
 
 A kernel's steps hold hundreds of assignments. numba would trace, type and lower every one of them, and LLVM would have to find out that
-neighbouring lanes can be computed together. What :func:`emit_llvm` joins is read by Python's own parser instead, and written as a function
+neighbouring lanes can be computed together. What :func:`emit_llvm` is given is read by Python's own parser, and written as a function
 of LLVM that computes several lanes at once: each name is a vector, or one number where all lanes share it. A body may hold nothing but
 
     name = expression                   each name once
-    work[16 + j] = expression
+    work[16 + j] = expression           each place once, or pass
 
 with + - * / **, lower, upper, sign, step, abs, math.sqrt, float32 and float64 in the expressions, of names, constants, work[16 + j],
 drives[16 + j], drives[3] (the same for all lanes) and dt. Places of lanes are multiples of their number, and arrays start on a cache line,
@@ -56,21 +56,20 @@ def _fits(width: int) -> int:
     return width if llvm.get_host_cpu_features().get("avx512f", False) else width // 2
 
 
-def emit_llvm(*bodies: Callable[..., None], width: int, row: int) -> Any:
-    """Join bodies `(work, j, dt, drives)` to a function `(work, active, dt, drives, steps)`: so many steps of all active lanes.
+def emit_llvm(body: Callable[..., None], *, width: int, row: int, together: int = 1) -> Any:
+    """Turn a body `(work, j, dt, drives)` into a function `(work, active, dt, drives, steps)`: so many steps of all active lanes.
 
-    At most `width` lanes are computed at once, and a step has `row` numbers of `drives`. numba's code can call it; where numba is told
-    not to compile (NUMBA_DISABLE_JIT), it is plain Python, lane by lane.
+    At most `width` lanes are computed at once, or `together` times as many where more are left, and a step has `row` numbers of `drives`.
+    numba's code can call it; where numba is told not to compile (NUMBA_DISABLE_JIT), it is plain Python, lane by lane.
     """
     if not compiles():
-        return _plain(bodies, width, row)
+        return _plain(body, width, row)
 
     def choose(_context: Any, work: Any, active: Any, dt: Any, drives: Any, steps: Any) -> Any:
         def code(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
-            if not bodies:  # a vehicle without channels
-                return context.get_dummy_value()
-            name = f"{bodies[0].__module__}.{bodies[0].__name__}"
-            text = write_function(name, [_statements(body) for body in bodies], _fits(width), row, str(context.get_data_type(work.dtype)))
+            name, fits = f"{body.__module__}.{body.__name__}", _fits(width)
+            widths = sorted({fits, fits * together}, reverse=True)
+            text = write_function(name, _statements(body), widths, row, str(context.get_data_type(work.dtype)))
             context.active_code_library.add_llvm_module(llvm.parse_assembly(text))
             kind = ir.FunctionType(ir.VoidType(), [argument.type for argument in arguments])
             builder.call(ir.Function(builder.module, kind, name), arguments)
@@ -84,18 +83,16 @@ def emit_llvm(*bodies: Callable[..., None], width: int, row: int) -> Any:
 def _statements(function: Callable[..., None]) -> list[ast.stmt]:
     definition = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
     assert isinstance(definition, ast.FunctionDef)
-    return definition.body
+    return [statement for statement in definition.body if not isinstance(statement, ast.Pass)]
 
 
-def _plain(bodies: tuple[Callable[..., None], ...], width: int, row: int) -> Callable[..., None]:
+def _plain(body: Callable[..., None], width: int, row: int) -> Callable[..., None]:
     def run(work: Any, active: int, dt: float, drives: Any, steps: int) -> None:
         for step in range(steps):
-            for body in bodies:
-                for j in range(-(-active // width) * width):
-                    body(work, j, dt, drives[step * row :])
+            for j in range(-(-active // width) * width):
+                body(work, j, dt, drives[step * row :])
 
-    for body in bodies:
-        body.__globals__.update(_PLAIN_FUNCTIONS)
+    body.__globals__.update(_PLAIN_FUNCTIONS)
     return run
 
 

@@ -10,12 +10,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import accumulate
 from typing import Any, Literal
 
 import numpy as np
 
 from vehgen.codegen.drive_reads import DriveReads, drive_reads
-from vehgen.codegen.lane_loops import split_loop
 from vehgen.codegen.legend import kernel_legend
 from vehgen.codegen.newmark import write_step
 from vehgen.codegen.printing import PythonPrinter
@@ -26,14 +26,10 @@ from vehgen.codegen.step_program import StepProgram
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 
 Precision = Literal["double", "single"]
-LANES = 16
-"""Individuals that advance side by side in the innermost loop."""
-SINGLE_LANES = 32
-"""The same in single precision: two vectors of 16 numbers, one of which computes while the other one waits."""
 VECTOR = 64
 """Bytes of what a lane's instructions compute at once, in the numbers of the loops: 8 lanes, or 16 in single precision."""
-NONLINEAR_LANES = 16
-"""Individuals side by side with force laws, whose many constants would not stay in the first cache otherwise."""
+SHORT_STEP = 60
+"""Instructions of a step up to which two vectors are computed side by side, one of which computes while the other one waits."""
 MOST_REWRITTEN = 2500
 """A step of more operations is not tried in residual form: long chains of hinges couple all with all, and take seconds to write."""
 MOST_UNKNOWNS = 40
@@ -87,7 +83,7 @@ def write_kernel(
     model
         A derived model.
     lanes
-        Individuals side by side (default: LANES, in single precision SINGLE_LANES, with force laws NONLINEAR_LANES).
+        Individuals side by side (default: a vector of them, or two where a step is as short as SHORT_STEP).
     sweeps
         How often a step solves for the forces of the laws (default: 2 or 3, as the laws need).
     precision
@@ -99,7 +95,8 @@ def write_kernel(
     """
     nonlinear = any(element.laws for element in model.elements)
     step = cheapest_step(model, sweeps) if from_rest else write_step(model, sweeps)
-    lanes = lanes or (NONLINEAR_LANES if nonlinear else SINGLE_LANES if precision == "single" else LANES)
+    vector = VECTOR // (4 if precision == "single" else 8)
+    lanes = lanes or (vector * 2 if step.step_cost()[1] <= SHORT_STEP else vector)
     printer = PythonPrinter(
         step.program, {STEP_PHASE: [node for _, node in step.states], SAMPLE_PHASE: step.channels}, step.time_step, precision == "single"
     )
@@ -201,33 +198,33 @@ class _WorkArray:
             return self.place("STATE", self.states[name])
         return None
 
-    def loops(
-        self, nodes: list[Node], results: list[Node], section: str, read: Callable[[Node], str | None]
-    ) -> tuple[list[list[str]], int]:
-        """Return the bodies of the loops that compute nodes and store results in a section, and how many scratch rows they need."""
+    def body(self, nodes: list[Node], results: list[Node], section: str, read: Callable[[Node], str | None]) -> list[str]:
+        """Return the body of the loop that computes nodes and stores results in a section."""
         lines, texts = self.printer.statements(nodes, results, read)
-        stores = [f"{self.place(section, row)} = {texts[node]}" for row, node in enumerate(results)]
-        return split_loop(lines, stores, self.lanes)
+        return [*lines, *(f"{self.place(section, row)} = {texts[node]}" for row, node in enumerate(results))]
 
 
 def _code(step: StepProgram, printer: PythonPrinter, work: _WorkArray) -> list[str]:
     """Return the lines of a kernel after its imports: sections of the work array, bodies of its loops over lanes, and what joins them."""
     constants, states, lanes = list(printer.constants), [node for _, node in step.states], work.lanes
-    setup, setup_scratch = work.loops(printer.setup, constants, "CONSTANTS", work.setup_read)
-    advance, advance_scratch = work.loops(printer.needed[STEP_PHASE], states, "STATE", work.step_read)
-    sample, sample_scratch = work.loops(printer.needed[SAMPLE_PHASE], step.channels, "KEPT", work.sample_read)
-    scratch = max(setup_scratch, advance_scratch, sample_scratch)
-    sections = _sections(len(work.parameters), len(constants), len(states), len(step.channels), scratch)
-    calls = ["        advance(work, active, dt, drives, steps)", "        sample(work, active, dt, kept, 1)"]
-    when = "after" if work.reads.ends else "before"
     width, each = VECTOR // (4 if printer.single else 8), lanes if work.own else 1
+    when = "after" if work.reads.ends else "before"
+    calls = ["        advance(work, active, dt, drives, steps)", "        sample(work, active, dt, kept, 1)"]
     return [
         "",
         "LANES = " + str(lanes),
-        *(f"{name} = {start * lanes}" for name, start in sections.items()),
-        *_functions("setup", setup, VECTOR // 8, 0),
-        *_functions("advance", advance, width, work.reads.step_row * each),
-        *_functions("sample", sample, width, work.reads.sample_row * each),
+        *(
+            f"{name} = {start * lanes}"
+            for name, start in _sections(len(work.parameters), len(constants), len(states), len(step.channels)).items()
+        ),
+        *_function("constants", work.body(printer.setup, constants, "CONSTANTS", work.setup_read)),
+        *_function("step", work.body(printer.needed[STEP_PHASE], states, "STATE", work.step_read)),
+        *_function("sample", work.body(printer.needed[SAMPLE_PHASE], step.channels, "KEPT", work.sample_read)),
+        "",
+        "",
+        f"setup = emit_llvm(constants_lane, width={VECTOR // 8}, row=0)",
+        f"advance = emit_llvm(step_lane, width={width}, row={work.reads.step_row * each}, together={max(1, lanes // width)})",
+        f"sample = emit_llvm(sample_lane, width={width}, row={work.reads.sample_row * each})",
         "",
         "",
         f'@entry("{"f4" if printer.single else "f8"}")',
@@ -240,30 +237,21 @@ def _code(step: StepProgram, printer: PythonPrinter, work: _WorkArray) -> list[s
     ]
 
 
-def _functions(name: str, bodies: list[list[str]], width: int, row: int) -> list[str]:
-    """Return functions of one lane with these bodies, and how they are joined, `width` lanes at once, `row` drives for a step."""
-    lines, names = [], []
-    for i, body in enumerate(body for body in bodies if body):
-        names.append(f"{name}_{i}")
-        lines += ["", "", f"def {names[-1]}(work, j, dt, drives):", *(f"    {line}" for line in body)]
-    return [*lines, "", "", f"{name} = emit_llvm({', '.join([*names, f'width={width}', f'row={row}'])})"]
+def _function(name: str, body: list[str]) -> list[str]:
+    """Return a function of one lane."""
+    return ["", "", f"def {name}_lane(work, j, dt, drives):", *(f"    {line}" for line in body or ["pass"])]
 
 
 def _fold(text: str) -> str:
     """Write `work[STATE + 96 + j]` as `work[1248 + j]`, the one form of it that :func:`vehgen.codegen.emit_llvm.emit_llvm` reads."""
-    starts = {name: int(value) for name, value in re.findall(r"^(PARAMETERS|CONSTANTS|STATE|KEPT|SCRATCH) = (\d+)$", text, re.M)}
+    starts = {name: int(value) for name, value in re.findall(r"^(PARAMETERS|CONSTANTS|STATE|KEPT) = (\d+)$", text, re.M)}
     return re.sub(r"work\[([A-Z]+) \+ (\d+) \+ j\]", lambda match: f"work[{starts[match[1]] + int(match[2])} + j]", text)
 
 
-def _sections(n_parameters: int, n_constants: int, n_states: int, n_channels: int, n_scratch: int) -> dict[str, int]:
+def _sections(n_parameters: int, n_constants: int, n_states: int, n_channels: int) -> dict[str, int]:
     """Return where each section of the work array starts, in rows of lanes; WORK is its whole length.
 
     One array instead of several lets the compiler see from constant distances that no two accesses overlap.
     """
-    sizes = {"PARAMETERS": n_parameters, "CONSTANTS": n_constants, "STATE": n_states, "KEPT": n_channels}
-    sizes["SCRATCH"] = n_scratch
-    starts, start = {}, 0
-    for name, size in sizes.items():
-        starts[name] = start
-        start += size
-    return {**starts, "WORK": start}
+    sizes = (n_parameters, n_constants, n_states, n_channels)
+    return dict(zip(("PARAMETERS", "CONSTANTS", "STATE", "KEPT", "WORK"), accumulate(sizes, initial=0), strict=True))

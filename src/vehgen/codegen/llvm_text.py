@@ -20,57 +20,38 @@ _FUSED = "contract nsz"
 """Products may be fused with sums, and the sign of zero may be lost."""
 
 
-def write_function(name: str, bodies: Sequence[Sequence[ast.stmt]], width: int, row: int, number: str) -> str:
+def write_function(name: str, body: Sequence[ast.stmt], widths: Sequence[int], row: int, number: str) -> str:
     """Return the text of a function `(work, active, dt, rows, steps)`.
 
-    Lanes that are computed at once take all steps before the next ones begin, so that less has to stay near; a step runs the bodies one
-    after the other with its row of drives.
+    Lanes that are computed at once take all steps before the next ones begin, each step with its row of drives. What a step changes is
+    read before the first and written after the last, so that it may stay in registers.
 
     Parameters
     ----------
     name
         What it is called; another function of that name must be the same.
-    bodies
-        Their statements.
-    width
-        Lanes that are computed at once.
+    body
+        Its statements.
+    widths
+        Lanes that are computed at once: the first number while more lanes are left than the next one could take, and so on.
     row
         Numbers in a row of drives.
     number
         Type of all numbers: "float" or "double".
     """
-    lines: list[str] = []
-    declared: set[str] = set()
-    for i, body in enumerate(bodies):
-        writer = _Writer(width, number, f"b{i}.")
-        for statement in body:
-            writer.write(statement)
-        declared |= writer.declared
-        lines += [f"  br label %body{i}", f"body{i}:", *(f"  {line}" for line in writer.lines)]
-    text = "\n".join(lines)
-    return f"""{"".join(f"declare {item}" + chr(10) for item in sorted(declared))}
-define weak_odr void @"{name}"({number}* noalias %work, i64 %active, {number} %dt, {number}* noalias %rows, i64 %steps) noinline nounwind {{
+    writers = [_Writer(width, number) for width in widths]
+    loops = "".join(writer.loops(body, row, spare) for writer, spare in zip(writers, [*widths[1:], 0], strict=True))
+    declared = sorted({item for writer in writers for item in writer.declared})
+    array = f"{number}* noalias"
+    arguments = f"{array} %work, i64 %active, {number} %dt, {array} %rows, i64 %steps"
+    return f"""{"".join(f"declare {item}{chr(10)}" for item in declared)}
+define weak_odr void @"{name}"({arguments}) noinline nounwind {{
 begin:
+  %first = alloca i64
+  store i64 0, i64* %first
   %some = icmp sgt i64 %steps, 0
-  br i1 %some, label %group, label %end
-group:
-  %j = phi i64 [0, %begin], [%next, %done]
-  %lanes = getelementptr {number}, {number}* %work, i64 %j
-  br label %step
-step:
-  %n = phi i64 [0, %group], [%later, %body{len(bodies) - 1}]
-  %start = mul i64 %n, {row}
-  %drives = getelementptr {number}, {number}* %rows, i64 %start
-  %own = getelementptr {number}, {number}* %drives, i64 %j
-{text}
-  %later = add i64 %n, 1
-  %again = icmp slt i64 %later, %steps
-  br i1 %again, label %step, label %done
-done:
-  %next = add i64 %j, {width}
-  %more = icmp slt i64 %next, %active
-  br i1 %more, label %group, label %end
-end:
+  br i1 %some, label %w{widths[0]}.check, label %w0.check
+{loops}w0.check:
   ret void
 }}
 """
@@ -86,14 +67,66 @@ class _Value:
 
 
 class _Writer:
-    """Writes statements as instructions; `known` are values by name."""
+    """Writes statements as instructions; `known` are values by name, `held` those of places that are written."""
 
-    def __init__(self, lanes: int, number: str, prefix: str) -> None:
-        self.lanes, self.number, self.prefix = lanes, number, prefix
+    def __init__(self, lanes: int, number: str) -> None:
+        self.lanes, self.number, self.vector, self.prefix = lanes, number, f"<{lanes} x {number}>", f"w{lanes}."
         self.known = {"dt": _Value("%dt", number, False)}
+        self.held: dict[int, _Value] = {}
         self.lines: list[str] = []
         self.declared: set[str] = set()
         self._splats: dict[str, _Value] = {}
+        self._names = 0
+
+    def loops(self, body: Sequence[ast.stmt], row: int, spare: int) -> str:
+        """Return the loops over groups of lanes, as long as more than `spare` are left, and over the steps of each."""
+        w, number = self.prefix, self.number
+        targets = [statement.targets[0] for statement in body if isinstance(statement, ast.Assign)]
+        places = {self._start(item): self._place(item) for item in targets if isinstance(item, ast.Subscript)}
+        self.held = {start: _Value(f"%{w}held{start}", number, True) for start in places}
+        group = self._taken() + [f"%{w}from{start} = load {self.vector}, {place}" for start, place in places.items()]
+        for statement in body:
+            self.write(statement)
+        states = [
+            f"%{w}held{start} = phi {self.vector} [%{w}from{start}, %{w}group], [{value.text}, %{w}step]"
+            for start, value in self.held.items()
+        ]
+        blocks = {
+            "check": [
+                f"%{w}j = load i64, i64* %first",
+                f"%{w}past = add i64 %{w}j, {spare}",
+                f"%{w}more = icmp slt i64 %{w}past, %active",
+                f"br i1 %{w}more, label %{w}group, label %w{spare}.check",
+            ],
+            "group": [
+                f"%{w}work = getelementptr {number}, {number}* %work, i64 %{w}j",
+                *group,
+                f"br label %{w}step",
+            ],
+            "step": [
+                f"%{w}n = phi i64 [0, %{w}group], [%{w}later, %{w}step]",
+                *states,
+                f"%{w}start = mul i64 %{w}n, {row}",
+                f"%{w}shared = getelementptr {number}, {number}* %rows, i64 %{w}start",
+                f"%{w}drives = getelementptr {number}, {number}* %{w}shared, i64 %{w}j",
+                *self._taken(),
+                f"%{w}later = add i64 %{w}n, 1",
+                f"%{w}again = icmp slt i64 %{w}later, %steps",
+                f"br i1 %{w}again, label %{w}step, label %{w}done",
+            ],
+            "done": [
+                *(f"store {self.vector} {value.text}, {places[start]}" for start, value in self.held.items()),
+                f"%{w}next = add i64 %{w}j, {self.lanes}",
+                f"store i64 %{w}next, i64* %first",
+                f"br label %{w}check",
+            ],
+        }
+        return "".join(f"{w}{name}:\n" + "".join(f"  {line}\n" for line in lines) for name, lines in blocks.items())
+
+    def _taken(self) -> list[str]:
+        """Return the lines written so far, and begin anew."""
+        lines, self.lines = self.lines, []
+        return lines
 
     def write(self, statement: ast.stmt) -> None:
         """Write one statement."""
@@ -103,9 +136,8 @@ class _Writer:
         if isinstance(target, ast.Name):
             self.known[target.id] = value
             return
-        value = self._wide(self._as(value, self.number))
-        place = self._place(target)
-        self.lines.append(f"store {self._kind(value)} {value.text}, {place}")
+        assert isinstance(target, ast.Subscript), ast.dump(target)
+        self.held[self._start(target)] = self._wide(self._as(value, self.number))
 
     def value(self, item: ast.expr) -> _Value:
         """Return an expression's value."""
@@ -116,8 +148,10 @@ class _Writer:
             return _Value(_literal(float(item.value)), "double", False)
         if isinstance(item, ast.Subscript):
             if isinstance(item.slice, ast.Constant):
-                return self._new(f"load {self.number}, {self._address('%drives', item.slice.value)}", self.number, False)
-            return self._new(f"load <{self.lanes} x {self.number}>, {self._place(item)}", self.number, True)
+                return self._new(f"load {self.number}, {self._address('shared', item.slice.value)}", self.number, False)
+            if _array(item) == "work" and self._start(item) in self.held:
+                return self.held[self._start(item)]
+            return self._new(f"load {self.vector}, {self._place(item)}", self.number, True)
         if isinstance(item, ast.UnaryOp):
             assert isinstance(item.op, ast.USub), ast.dump(item)
             value = self.value(item.operand)
@@ -161,7 +195,8 @@ class _Writer:
         return self._new(f"call {kind} {full}({', '.join(f'{kind} {item.text}' for item in arguments)})", value.number, value.wide)
 
     def _new(self, instruction: str, number: str, wide: bool) -> _Value:
-        name = f"%{self.prefix}{len(self.lines)}"
+        self._names += 1
+        name = f"%{self.prefix}{self._names}"
         self.lines.append(f"{name} = {instruction}")
         return _Value(name, number, wide)
 
@@ -197,23 +232,30 @@ class _Writer:
             self._splats[value.text] = self._new(splat, value.number, True)
         return self._splats[value.text]
 
-    def _place(self, item: ast.expr) -> str:
-        """Return the address of work[number + j] or drives[number + j] with its alignment."""
-        assert isinstance(item, ast.Subscript)
+    def _start(self, item: ast.Subscript) -> int:
+        """Return the number of array[number + j]."""
         assert isinstance(item.slice, ast.BinOp)
         assert isinstance(item.slice.left, ast.Constant)
-        assert isinstance(item.value, ast.Name)
-        start, vector = item.slice.left.value, f"<{self.lanes} x {self.number}>"
+        start = item.slice.left.value
         assert isinstance(start, int)
         assert start % self.lanes == 0
-        wide = self._new(
-            f"bitcast {self._address('%lanes' if item.value.id == 'work' else '%own', start)} to {vector}*", self.number, False
-        )
-        return f"{vector}* {wide.text}, align {min(CACHE_LINE, self.lanes * _BYTES[self.number])}"
+        return start
+
+    def _place(self, item: ast.Subscript) -> str:
+        """Return the address of array[number + j] with its alignment."""
+        address = self._address(_array(item), self._start(item))
+        wide = self._new(f"bitcast {address} to {self.vector}*", self.number, False)
+        return f"{self.vector}* {wide.text}, align {min(CACHE_LINE, self.lanes * _BYTES[self.number])}"
 
     def _address(self, base: str, place: object) -> str:
         """Return the address of a number that is `place` numbers beyond another one."""
-        return f"{self.number}* {self._new(f'getelementptr {self.number}, {self.number}* {base}, i64 {place}', self.number, False).text}"
+        start = f"{self.number}* %{self.prefix}{base}"
+        return f"{self.number}* {self._new(f'getelementptr {self.number}, {start}, i64 {place}', self.number, False).text}"
+
+
+def _array(item: ast.Subscript) -> str:
+    assert isinstance(item.value, ast.Name)
+    return item.value.id
 
 
 def _literal(value: float) -> str:

@@ -22,6 +22,8 @@ Consume = Callable[[slice, NDArray[Any], Array], None]
 """Given which individuals a block holds, their responses, and their residuals; several threads call it."""
 OWN_ROWS = 64
 """Steps whose drives are read at once where each lane has its own: few enough for the first cache."""
+BLOCK_SIZE = 32
+"""Individuals that a thread takes at once."""
 WORTH_THREADS = 250_000
 """Blocks times steps times coordinates below which one core is as quick as several."""
 
@@ -71,7 +73,7 @@ class PopulationRun:
         """
         drives = self._drives()
         shared = [] if self.own_drives else self._shared(drives)
-        starts = range(0, len(self.columns), self.source.lanes)
+        starts = range(0, len(self.columns), BLOCK_SIZE)
         many = len(starts) > 1 and len(starts) * self.excitation.n_steps * self.source.n_dof > WORTH_THREADS
         workers = min(threads or os.cpu_count() or 1, len(starts)) if many else 1
         left = iter(starts)
@@ -123,22 +125,21 @@ class PopulationRun:
         from vehgen.codegen.emit_llvm import compiles
 
         source, module, lanes = self.source, self.module, self.source.lanes
-        last = min(first + lanes, len(self.columns))
-        rows = np.minimum(np.arange(first, first + lanes), last - 1)
-        work = aligned(module.WORK, source.number)
-        work[: self.columns.shape[1] * lanes] = np.ascontiguousarray(self.columns[rows].T).ravel()
-        state = work[module.STATE : module.KEPT]
+        block = slice(first, min(first + BLOCK_SIZE, len(self.columns)))
+        columns = self.columns[block]
+        beginnings = np.zeros((len(columns), module.KEPT // lanes), source.number)
+        beginnings[:, : columns.shape[1]] = columns
         if self.initial is not None:
-            state[: self.initial.shape[1] * lanes] = np.ascontiguousarray(self.initial[rows].T).ravel()
+            beginnings[:, module.STATE // lanes :][:, : self.initial.shape[1]] = self.initial[block]
         if into is None:
-            target = np.empty((last - first, self.excitation.n_steps // self.decimation + 1, source.n_channels), dtype=source.number)
+            target = np.empty((len(columns), self.excitation.n_steps // self.decimation + 1, source.n_channels), dtype=source.number)
         else:
-            target = into[first:last]
-        own = (item if len(item) == 1 else item[first:last] for item in drives)
-        loop = compile_time_loop(self.source.single)[0]
+            target = into[block]
+        own = (item if len(item) == 1 else item[block] for item in drives)
+        loop = compile_time_loop(source.single)[0]
         kernel: Any = module.run.address if compiles() else module.run
         places, shares = shared or self._space(), int(bool(shared))
         reads, ends = source.reads.array(), int(source.from_rest)
-        loop(kernel, work, lanes, self.excitation.dt, *places, shares, *own, reads, module.KEPT, self.decimation, ends, target)
-        residuals = state[-lanes:] if source.nonlinear else np.zeros(lanes)
-        consume(slice(first, last), target, residuals[: last - first])
+        work, residuals = aligned(module.WORK, source.number), np.empty(len(columns), source.number)
+        loop(kernel, work, lanes, self.excitation.dt, beginnings, *places, shares, *own, reads, self.decimation, ends, target, residuals)
+        consume(block, target, residuals if source.nonlinear else np.zeros(len(columns)))
