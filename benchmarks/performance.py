@@ -144,7 +144,7 @@ def cold_starts() -> list[tuple[str, float]]:
         path = Path(folder) / "laws.yaml"
         path.write_text(f"extends: tractor5\naxles:\n{axles}")
         for name, vehicle in (("five axles, linear", "tractor5"), ("five axles, four laws on each suspension", str(path))):
-            program = f"from vehgen import *; k = Kernel(derive(load_vehicle({vehicle!r}))); k.compile()"
+            program = f"from vehgen import Kernel, derive, load_vehicle; k = Kernel(derive(load_vehicle({vehicle!r}))); k.compile()"
             for state in ("cold", "warm"):
                 environment = {**os.environ, "VEHGEN_CACHE": str(Path(folder) / "cache")}
                 start = time.perf_counter()
@@ -152,7 +152,7 @@ def cold_starts() -> list[tuple[str, float]]:
                 rows.append((f"{name}, {state}", time.perf_counter() - start))
     model = derive(load_vehicle("road_train"), ())
     start = time.perf_counter()
-    Kernel(model)
+    _ = Kernel(model).source
     rows.append((f"road_train ({model.n_dof} degrees of freedom), generating its kernel", time.perf_counter() - start))
     return rows
 
@@ -175,19 +175,24 @@ def tables(rows, axles, starts) -> str:
 def draw(axles, populations, path: Path) -> None:
     """Draw how the cost scales with axles, population and threads."""
     from matplotlib.figure import Figure
+    from matplotlib.ticker import LogLocator, NullFormatter
 
     figure = Figure(figsize=(9, 3.4), layout="constrained")
     left, right = figure.subplots(1, 2)
     left.plot(*zip(*axles, strict=True), "o-", color="#0b5fa5")
     left.set_xlabel("axles")
     left.set_ylabel("ns per step, individual and axle")
-    left.set_ylim(bottom=0)
+    left.set_ylim(0, 1.1 * max(ns for _, ns in axles))
     left.set_title("An axle costs the same on a long vehicle", loc="left", fontsize=10)
     for threads, style, colour in ((1, "o-", "#0b5fa5"), (max(row[1] for row in populations), "s--", "#d55e00")):
         points = [(count, ns) for count, used, ns in populations if used == threads]
         right.loglog(*zip(*points, strict=True), style, color=colour, label=f"{threads} thread{'s' if threads > 1 else ''}")
     right.set_xlabel("individuals")
     right.set_ylabel("ns per step and individual")
+    for axis in (right.xaxis, right.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
+        axis.set_major_formatter("{x:,g}")
+        axis.set_minor_formatter(NullFormatter())
     right.set_title("Full lanes, then full cores", loc="left", fontsize=10)
     right.legend(frameon=False)
     for axes in (left, right):
