@@ -112,7 +112,8 @@ def check_source(text: str) -> None:
         elif isinstance(statement, ast.Assign):
             target = ast.unparse(statement.targets[0])
             if target in ("setup", "sample", "advance"):
-                call = rf"{target} = emit_llvm\((constants|sample|step)_lane, width=\d+, row=\d+(, together=\d)?\)"
+                options = r"widths=\((\d+, )*\d+,?\), row=\d+(, near=(True|False))?"
+                call = rf"{target} = emit_llvm\((constants|sample|step)_lane, {options}\)"
                 assert re.fullmatch(call, ast.unparse(statement))
                 continue
             assert target in {"LANES", "PARAMETERS", "CONSTANTS", "STATE", "KEPT", "WORK"}

@@ -32,6 +32,8 @@ from numba.np.arrayobj import make_array
 
 from vehgen.codegen.llvm_text import write_function
 
+LEAST_WIDTH = 4
+"""Lanes that any machine computes at once."""
 _PLAIN_FUNCTIONS = {
     "math": SimpleNamespace(sqrt=np.sqrt),  # of a negative number: not a number, as when compiled
     "lower": lambda a, b: a if a < b else b,
@@ -48,28 +50,29 @@ def compiles() -> bool:
 
 
 @cache
-def _fits(width: int) -> int:
-    """Return how many of `width` lanes this machine computes at once: half of them where its vectors are shorter than a cache line.
+def _fitting(widths: tuple[int, ...]) -> list[int]:
+    """Return how many lanes this machine computes at once: half as many where its vectors are shorter than a cache line, but at least 4.
 
     Twice as many instructions would need twice the registers, which hold half as much there.
     """
-    return width if llvm.get_host_cpu_features().get("avx512f", False) else width // 2
+    part = 1 if llvm.get_host_cpu_features().get("avx512f", False) else 2
+    return sorted({max(LEAST_WIDTH, width // part) for width in widths}, reverse=True)
 
 
-def emit_llvm(body: Callable[..., None], *, width: int, row: int, together: int = 1) -> Any:
+def emit_llvm(body: Callable[..., None], *, widths: tuple[int, ...], row: int, near: bool = False) -> Any:
     """Turn a body `(work, j, dt, drives)` into a function `(work, active, dt, drives, steps)`: so many steps of all active lanes.
 
-    At most `width` lanes are computed at once, or `together` times as many where more are left, and a step has `row` numbers of `drives`.
-    numba's code can call it; where numba is told not to compile (NUMBA_DISABLE_JIT), it is plain Python, lane by lane.
+    At most `widths` lanes are computed at once, and a step has `row` numbers of `drives`; these and `near` are those of
+    :func:`vehgen.codegen.llvm_text.write_function`. numba's code can call it; where numba is told not to compile (NUMBA_DISABLE_JIT), it is
+    plain Python, lane by lane.
     """
     if not compiles():
-        return _plain(body, width, row)
+        return _plain(body, row)
 
     def choose(_context: Any, work: Any, active: Any, dt: Any, drives: Any, steps: Any) -> Any:
         def code(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
-            name, fits = f"{body.__module__}.{body.__name__}", _fits(width)
-            widths = sorted({fits, fits * together}, reverse=True)
-            text = write_function(name, _statements(body), widths, row, str(context.get_data_type(work.dtype)))
+            name, number = f"{body.__module__}.{body.__name__}", str(context.get_data_type(work.dtype))
+            text = write_function(name, _statements(body), _fitting(widths), row, number, near)
             context.active_code_library.add_llvm_module(llvm.parse_assembly(text))
             kind = ir.FunctionType(ir.VoidType(), [argument.type for argument in arguments])
             builder.call(ir.Function(builder.module, kind, name), arguments)
@@ -86,10 +89,10 @@ def _statements(function: Callable[..., None]) -> list[ast.stmt]:
     return [statement for statement in definition.body if not isinstance(statement, ast.Pass)]
 
 
-def _plain(body: Callable[..., None], width: int, row: int) -> Callable[..., None]:
+def _plain(body: Callable[..., None], row: int) -> Callable[..., None]:
     def run(work: Any, active: int, dt: float, drives: Any, steps: int) -> None:
         for step in range(steps):
-            for j in range(-(-active // width) * width):
+            for j in range(active):
                 body(work, j, dt, drives[step * row :])
 
     body.__globals__.update(_PLAIN_FUNCTIONS)

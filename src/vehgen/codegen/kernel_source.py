@@ -30,6 +30,8 @@ VECTOR = 64
 """Bytes of what a lane's instructions compute at once, in the numbers of the loops: 8 lanes, or 16 in single precision."""
 SHORT_STEP = 60
 """Instructions of a step up to which two vectors are computed side by side, one of which computes while the other one waits."""
+MOST_HELD = 24
+"""States that stay in registers, of which a machine has 16 or 32, if constants do not."""
 MOST_REWRITTEN = 2500
 """A step of more operations is not tried in residual form: long chains of hinges couple all with all, and take seconds to write."""
 MOST_UNKNOWNS = 40
@@ -83,7 +85,7 @@ def write_kernel(
     model
         A derived model.
     lanes
-        Individuals side by side (default: a vector of them, or two where a step is as short as SHORT_STEP).
+        Individuals side by side (default: a vector of them, or two where a step is short).
     sweeps
         How often a step solves for the forces of the laws (default: 2 or 3, as the laws need).
     precision
@@ -96,17 +98,18 @@ def write_kernel(
     nonlinear = any(element.laws for element in model.elements)
     step = cheapest_step(model, sweeps) if from_rest else write_step(model, sweeps)
     vector = VECTOR // (4 if precision == "single" else 8)
-    lanes = lanes or (vector * 2 if step.step_cost()[1] <= SHORT_STEP else vector)
+    most = lanes or (vector * 2 if step.step_cost()[1] <= SHORT_STEP else vector)
+    widths = tuple(sorted({most, min(most, vector), min(most, vector if nonlinear else vector // 2)}, reverse=True))
     printer = PythonPrinter(
         step.program, {STEP_PHASE: [node for _, node in step.states], SAMPLE_PHASE: step.channels}, step.time_step, precision == "single"
     )
-    work = _WorkArray(step, printer, lanes, len(model.inputs), own_drives)
+    work = _WorkArray(step, printer, widths, len(model.inputs), own_drives)
     lines = [_header(model, printer, bool(step.sample_means)), *_code(step, printer, work)]
     text = _fold("\n".join(lines) + "\n")
     return KernelSource(
         text,
         kernel_legend(model),
-        lanes,
+        most,
         printer.operation_counts,
         len(printer.constants),
         len(step.states),
@@ -156,8 +159,8 @@ from vehgen.codegen.emit_llvm import emit_llvm, entry'''
 class _WorkArray:
     """Where the values of a kernel stand in its one array, in rows of lanes."""
 
-    def __init__(self, step: StepProgram, printer: PythonPrinter, lanes: int, n_inputs: int, own: bool) -> None:
-        self.step, self.printer, self.lanes, self.own = step, printer, lanes, own
+    def __init__(self, step: StepProgram, printer: PythonPrinter, widths: tuple[int, ...], n_inputs: int, own: bool) -> None:
+        self.step, self.printer, self.widths, self.lanes, self.own = step, printer, widths, widths[0], own
         self.parameters = {node: i for i, node in enumerate([*step.parameters.values(), *step.static_travels.values()])}
         self.states = {step.program.labels[leaf]: i for i, (leaf, _) in enumerate(step.states)}
         used = [set(printer.needed[STEP_PHASE]), set(printer.needed[SAMPLE_PHASE])]
@@ -207,7 +210,7 @@ class _WorkArray:
 def _code(step: StepProgram, printer: PythonPrinter, work: _WorkArray) -> list[str]:
     """Return the lines of a kernel after its imports: sections of the work array, bodies of its loops over lanes, and what joins them."""
     constants, states, lanes = list(printer.constants), [node for _, node in step.states], work.lanes
-    width, each = VECTOR // (4 if printer.single else 8), lanes if work.own else 1
+    each, near = lanes if work.own else 1, len(states) <= MOST_HELD
     when = "after" if work.reads.ends else "before"
     calls = ["        advance(work, active, dt, drives, steps)", "        sample(work, active, dt, kept, 1)"]
     return [
@@ -222,9 +225,9 @@ def _code(step: StepProgram, printer: PythonPrinter, work: _WorkArray) -> list[s
         *_function("sample", work.body(printer.needed[SAMPLE_PHASE], step.channels, "KEPT", work.sample_read)),
         "",
         "",
-        f"setup = emit_llvm(constants_lane, width={VECTOR // 8}, row=0)",
-        f"advance = emit_llvm(step_lane, width={width}, row={work.reads.step_row * each}, together={max(1, lanes // width)})",
-        f"sample = emit_llvm(sample_lane, width={width}, row={work.reads.sample_row * each})",
+        f"setup = emit_llvm(constants_lane, widths=({VECTOR // 8},), row=0)",
+        f"advance = emit_llvm(step_lane, widths={work.widths}, row={work.reads.step_row * each}, near={near})",
+        f"sample = emit_llvm(sample_lane, widths={work.widths}, row={work.reads.sample_row * each})",
         "",
         "",
         f'@entry("{"f4" if printer.single else "f8"}")',

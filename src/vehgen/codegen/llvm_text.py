@@ -20,11 +20,12 @@ _FUSED = "contract nsz"
 """Products may be fused with sums, and the sign of zero may be lost."""
 
 
-def write_function(name: str, body: Sequence[ast.stmt], widths: Sequence[int], row: int, number: str) -> str:
+def write_function(name: str, body: Sequence[ast.stmt], widths: Sequence[int], row: int, number: str, near: bool = False) -> str:
     """Return the text of a function `(work, active, dt, rows, steps)`.
 
     Lanes that are computed at once take all steps before the next ones begin, each step with its row of drives. What a step changes is
-    read before the first and written after the last, so that it may stay in registers.
+    read before the first and written after the last, so that it may stay in registers; what it does not change may take them up instead,
+    unless it is read anew every step.
 
     Parameters
     ----------
@@ -38,8 +39,10 @@ def write_function(name: str, body: Sequence[ast.stmt], widths: Sequence[int], r
         Numbers in a row of drives.
     number
         Type of all numbers: "float" or "double".
+    near
+        Whether what a step does not change is read anew every step, where it is used.
     """
-    writers = [_Writer(width, number) for width in widths]
+    writers = [_Writer(width, number, near) for width in widths]
     loops = "".join(writer.loops(body, row, spare) for writer, spare in zip(writers, [*widths[1:], 0], strict=True))
     declared = sorted({item for writer in writers for item in writer.declared})
     array = f"{number}* noalias"
@@ -69,7 +72,8 @@ class _Value:
 class _Writer:
     """Writes statements as instructions; `known` are values by name, `held` those of places that are written."""
 
-    def __init__(self, lanes: int, number: str) -> None:
+    def __init__(self, lanes: int, number: str, near: bool) -> None:
+        self.near = near
         self.lanes, self.number, self.vector, self.prefix = lanes, number, f"<{lanes} x {number}>", f"w{lanes}."
         self.known = {"dt": _Value("%dt", number, False)}
         self.held: dict[int, _Value] = {}
@@ -106,6 +110,8 @@ class _Writer:
             "step": [
                 f"%{w}n = phi i64 [0, %{w}group], [%{w}later, %{w}step]",
                 *states,
+                f"%{w}here = phi {number}* [%{w}work, %{w}group], [%{w}{'there' if self.near else 'here'}, %{w}step]",
+                f'%{w}there = call {number}* asm "", "=r,0"({number}* %{w}here)',  # the same place, which LLVM cannot know
                 f"%{w}start = mul i64 %{w}n, {row}",
                 f"%{w}shared = getelementptr {number}, {number}* %rows, i64 %{w}start",
                 f"%{w}drives = getelementptr {number}, {number}* %{w}shared, i64 %{w}j",
@@ -151,7 +157,7 @@ class _Writer:
                 return self._new(f"load {self.number}, {self._address('shared', item.slice.value)}", self.number, False)
             if _array(item) == "work" and self._start(item) in self.held:
                 return self.held[self._start(item)]
-            return self._new(f"load {self.vector}, {self._place(item)}", self.number, True)
+            return self._new(f"load {self.vector}, {self._place(item, 'here')}", self.number, True)
         if isinstance(item, ast.UnaryOp):
             assert isinstance(item.op, ast.USub), ast.dump(item)
             value = self.value(item.operand)
@@ -241,9 +247,9 @@ class _Writer:
         assert start % self.lanes == 0
         return start
 
-    def _place(self, item: ast.Subscript) -> str:
+    def _place(self, item: ast.Subscript, work: str = "work") -> str:
         """Return the address of array[number + j] with its alignment."""
-        address = self._address(_array(item), self._start(item))
+        address = self._address(work if _array(item) == "work" else _array(item), self._start(item))
         wide = self._new(f"bitcast {address} to {self.vector}*", self.number, False)
         return f"{self.vector}* {wide.text}, align {min(CACHE_LINE, self.lanes * _BYTES[self.number])}"
 
