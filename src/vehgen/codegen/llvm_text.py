@@ -95,6 +95,10 @@ class _Writer:
             f"%{w}held{start} = phi {self.vector} [%{w}from{start}, %{w}group], [{value.text}, %{w}step]"
             for start, value in self.held.items()
         ]
+        anew = [
+            f"%{w}here = phi {number}* [%{w}work, %{w}group], [%{w}there, %{w}step]",
+            f'%{w}there = call {number}* asm "", "=r,0"({number}* %{w}here)',  # the same place, which LLVM cannot know
+        ]
         blocks = {
             "check": [
                 f"%{w}j = load i64, i64* %first",
@@ -110,8 +114,7 @@ class _Writer:
             "step": [
                 f"%{w}n = phi i64 [0, %{w}group], [%{w}later, %{w}step]",
                 *states,
-                f"%{w}here = phi {number}* [%{w}work, %{w}group], [%{w}{'there' if self.near else 'here'}, %{w}step]",
-                f'%{w}there = call {number}* asm "", "=r,0"({number}* %{w}here)',  # the same place, which LLVM cannot know
+                *(anew if self.near else []),
                 f"%{w}start = mul i64 %{w}n, {row}",
                 f"%{w}shared = getelementptr {number}, {number}* %rows, i64 %{w}start",
                 f"%{w}drives = getelementptr {number}, {number}* %{w}shared, i64 %{w}j",
@@ -157,7 +160,7 @@ class _Writer:
                 return self._new(f"load {self.number}, {self._address('shared', item.slice.value)}", self.number, False)
             if _array(item) == "work" and self._start(item) in self.held:
                 return self.held[self._start(item)]
-            return self._new(f"load {self.vector}, {self._place(item, 'here')}", self.number, True)
+            return self._new(f"load {self.vector}, {self._place(item, 'here' if self.near else 'work')}", self.number, True)
         if isinstance(item, ast.UnaryOp):
             assert isinstance(item.op, ast.USub), ast.dump(item)
             value = self.value(item.operand)
