@@ -22,8 +22,9 @@ NAMES = ("cubic_stiffness", "quadratic_damping", "hysteresis", "progressive_stif
 def settled(detection, names=NAMES, kept_at="", nowhere=False):
     candidates = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS[name] for name in names])
     fitter = Fitter(detection, detection.base, ())
+    fitter.nowhere = nowhere
     fits = []
-    return candidates, fits, settle(fitter, fitter.first_order_gains(), candidates, fits.append, kept_at=kept_at, nowhere=nowhere)
+    return candidates, fits, settle(fitter, fitter.first_order_gains(), candidates, fits.append, kept_at=kept_at)
 
 
 def test_the_law_that_was_hidden_settles_and_leaves_only_its_rivals(detection_of):

@@ -31,11 +31,10 @@ def settle(
     each: Callable[[ModelFit], None],
     runner: Runner = HERE,
     kept_at: str = "",
-    nowhere: bool = False,
 ) -> list[Candidate]:
     """Fit the candidates of the largest first-order gains until one settles the gap of the base; those at `kept_at` stay its rivals.
 
-    Where a single force explains the gap at no place (`nowhere`), they are followed by laws of bodies that are none. Every fit is handed to
+    Where a single force explains the gap at no place, they are followed by laws of bodies that are none. Every fit is handed to
     `each` as soon as it is made. Beside a base at its bounds none settles that does no more than what it set free. Where one settles the
     gap, the fitter refines from then on only what leaves next to nothing, too.
 
@@ -46,7 +45,7 @@ def settle(
     ranked = [(*gains.of(item), item) for item in candidates]
     ranked.sort(key=lambda known: -known[0])
     strained = bool(fitter.base.least_squares.on_bound)
-    others = [known for known in ranked[MOST_AT_ONCE:] if nowhere and reaches_a_body(known[-1])]
+    others = [known for known in ranked[MOST_AT_ONCE:] if fitter.nowhere and reaches_a_body(known[-1])]
     tried = set()
     for fit in fitter.fit_all_begun([(item, begin) for _, begin, item in ranked[:MOST_AT_ONCE] + others[:MOST_AT_ONCE]], runner):
         each(fit)

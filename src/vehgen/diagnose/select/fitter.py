@@ -33,14 +33,15 @@ Array = NDArray[np.float64]
 class Fitter:
     """Fits candidates on top of a fit; `passed` are the places that suffice to explain what it leaves.
 
-    `hopeless` is the share of the fit's excess beyond which a candidate is not refined.
+    `nowhere` says that a single force explains it at no place; `hopeless` is the share of the fit's excess beyond which a candidate is not
+    refined.
     """
 
     def __init__(self, detection: Detection, base: ModelFit, passed: Sequence[PlaceResult]) -> None:
         self.detection, self.current, self.simulators, self.hopeless = detection, CurrentModel.of(base), SimulatorPool(), HOPELESS
         trial = self.current.problem.trials[0]
         self.locator = EffectLocator(trial.run.vehicle, dict(trial.values), occurring(base))
-        self.origins = _origins(base, self.current, passed)
+        self.origins, self.nowhere = _origins(base, self.current, passed), not any(item.place.rows for item in passed)
         self.base, self.residual = base, Residual(base.least_squares.misfit, base.least_squares.x)
 
     @cached_property

@@ -121,7 +121,6 @@ def fit_candidates(
     fitter = Fitter(detection, base, passed)
     fits: list[ModelFit] = []
     candidates = [item for item in candidates if has_room(item, fitter.locator)]
-    nowhere = not any(item.place.rows for item in passed)
 
     def add(fit: ModelFit) -> None:
         fits.append(fit)
@@ -132,8 +131,8 @@ def fit_candidates(
             progress("screen", 0, 1, "")
             gains = fitter.first_order_gains()
             if not base.effects:
-                candidates = settle(fitter, gains, candidates, add, runner, kept_at, nowhere)
-            candidates = screen(candidates, gains, kept_at, nowhere)
+                candidates = settle(fitter, gains, candidates, add, runner, kept_at)
+            candidates = screen(candidates, gains, kept_at, fitter.nowhere)
             progress("screen", 1, 1, f"{len(candidates)} candidates")
         for slow_first in (True, False):
             chosen = [item for item in candidates if slow_first or (fitter.laid is not None and item.effect.shows_in_slow_motions)]
