@@ -8,6 +8,7 @@ import pytest
 from tests.diagnose.conftest import CUBIC, HUMPS
 from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.fits.multi_start import BESIDE_SETTLED, HOPELESS
+from vehgen.diagnose.localise.unknown_force import Place, PlaceResult
 from vehgen.diagnose.select import early_end
 from vehgen.diagnose.select.early_end import settle
 from vehgen.diagnose.select.fitter import Fitter
@@ -21,8 +22,8 @@ NAMES = ("cubic_stiffness", "quadratic_damping", "hysteresis", "progressive_stif
 
 def settled(detection, names=NAMES, kept_at="", nowhere=False):
     candidates = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS[name] for name in names])
-    fitter = Fitter(detection, detection.base, ())
-    fitter.nowhere = nowhere
+    places = [Place("channel", "az", channels=("az",))] if nowhere else [Place("body", "body", ({0: 1.0}, {1: 1.0}))]
+    fitter = Fitter(detection, detection.base, [PlaceResult(place, 1.0, 2, detection.base.least_squares.x) for place in places])
     fits = []
     return candidates, fits, settle(fitter, fitter.first_order_gains(), candidates, fits.append, kept_at=kept_at)
 
