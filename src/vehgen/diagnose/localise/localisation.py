@@ -50,6 +50,11 @@ def one_force(passed: Sequence[PlaceResult]) -> bool:
     return any(item.place.rows and item.unknowns == 1 for item in passed)
 
 
+def none_explains(passed: Sequence[PlaceResult]) -> bool:
+    """Return whether unknown forces suffice at no single place."""
+    return not any(item.place.rows for item in passed)
+
+
 def suffices(passed: Sequence[PlaceResult], base: ModelFit) -> bool:
     """Return whether one unknown force at a single place leaves noise, so that a second cause is not needed."""
     least = max(limit.PLACE_PASSES**2 - 1, limit.PLACE_CLEAR * max(base.training - 1, 0.0))

@@ -17,7 +17,7 @@ from vehgen.diagnose.fits.occurring import occurring
 from vehgen.diagnose.fits.released import release
 from vehgen.diagnose.fits.restarts import restart
 from vehgen.diagnose.fits.screening import FirstOrderGains
-from vehgen.diagnose.localise.localisation import one_force
+from vehgen.diagnose.localise.localisation import none_explains, one_force
 from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.effects import EffectLocator
 from vehgen.effects.evidence import Origins, Residual, StartingPoint
@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 class Fitter:
     """Fits candidates on top of a fit; `passed` are the places that suffice to explain what it leaves.
 
-    `nowhere` says that a single force explains it at no place; `hopeless` is the share of the fit's excess beyond which a candidate is not
+    `nowhere` says that forces explain it at no single place; `hopeless` is the share of the fit's excess beyond which a candidate is not
     refined.
     """
 
@@ -41,7 +41,7 @@ class Fitter:
         self.detection, self.current, self.simulators, self.hopeless = detection, CurrentModel.of(base), SimulatorPool(), HOPELESS
         trial = self.current.problem.trials[0]
         self.locator = EffectLocator(trial.run.vehicle, dict(trial.values), occurring(base))
-        self.origins, self.nowhere = _origins(base, self.current, passed), not any(item.place.rows for item in passed)
+        self.origins, self.nowhere = _origins(base, self.current, passed), none_explains(passed)
         self.base, self.residual = base, Residual(base.least_squares.misfit, base.least_squares.x)
 
     @cached_property

@@ -12,7 +12,7 @@ from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, has_room
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.fits.screening import screen
-from vehgen.diagnose.localise.localisation import localise, owner, shortlist
+from vehgen.diagnose.localise.localisation import localise, none_explains, owner, shortlist
 from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.diagnose.select.early_end import MOST_AT_ONCE, settle
 from vehgen.diagnose.select.fitter import Fitter
@@ -78,7 +78,7 @@ def search_round(
     chosen = [item for item in others if item in chosen or item.effect.name in alike]
     found, stopped = fit_candidates(detection, current, passed, chosen, say, everything, runner, _strained_place(current, places))
     rest = [item for item in others if item not in chosen]
-    if rest and not stopped and not any(item.place.rows for item in passed) and _leave_most(found, current):
+    if rest and not stopped and none_explains(passed) and _leave_most(found, current):
         wider, stopped = fit_candidates(detection, current, passed, rest, say, everything, runner)
         found = simplest_first(sorted([*found, *wider], key=merit), current)
     edge = () if current.effects else current.least_squares.on_bound
