@@ -112,7 +112,7 @@ def check_source(text: str) -> None:
         elif isinstance(statement, ast.Assign):
             target = ast.unparse(statement.targets[0])
             if target in ("setup", "sample", "advance"):
-                options = r"widths=\((\d+, )*\d+,?\), row=\d+(, near=(True|False))?"
+                options = r"widths=\((\d+, )*\d+,?\), row=\d+(, reread=(True|False))?"
                 call = rf"{target} = emit_llvm\((constants|sample|step)_lane, {options}\)"
                 assert re.fullmatch(call, ast.unparse(statement))
                 continue

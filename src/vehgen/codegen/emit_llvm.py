@@ -59,10 +59,10 @@ def _fitting(widths: tuple[int, ...]) -> list[int]:
     return sorted({max(LEAST_WIDTH, width // part) for width in widths}, reverse=True)
 
 
-def emit_llvm(body: Callable[..., None], *, widths: tuple[int, ...], row: int, near: bool = False) -> Any:
+def emit_llvm(body: Callable[..., None], *, widths: tuple[int, ...], row: int, reread: bool = False) -> Any:
     """Turn a body `(work, j, dt, drives)` into a function `(work, active, dt, drives, steps)`: so many steps of all active lanes.
 
-    At most `widths` lanes are computed at once, and a step has `row` numbers of `drives`; these and `near` are those of
+    At most `widths` lanes are computed at once, and a step has `row` numbers of `drives`; these and `reread` are those of
     :func:`vehgen.codegen.llvm_text.write_function`. numba's code can call it; where numba is told not to compile (NUMBA_DISABLE_JIT), it is
     plain Python, lane by lane.
     """
@@ -72,7 +72,7 @@ def emit_llvm(body: Callable[..., None], *, widths: tuple[int, ...], row: int, n
     def choose(_context: Any, work: Any, active: Any, dt: Any, drives: Any, steps: Any) -> Any:
         def code(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
             name, number = f"{body.__module__}.{body.__name__}", str(context.get_data_type(work.dtype))
-            text = write_function(name, _statements(body), _fitting(widths), row, number, near)
+            text = write_function(name, _statements(body), _fitting(widths), row, number, reread)
             context.active_code_library.add_llvm_module(llvm.parse_assembly(text))
             kind = ir.FunctionType(ir.VoidType(), [argument.type for argument in arguments])
             builder.call(ir.Function(builder.module, kind, name), arguments)

@@ -98,8 +98,8 @@ def write_kernel(
     nonlinear = any(element.laws for element in model.elements)
     step = cheapest_step(model, sweeps) if from_rest else write_step(model, sweeps)
     vector = VECTOR // (4 if precision == "single" else 8)
-    most = lanes or (vector * 2 if step.step_cost()[1] <= SHORT_STEP else vector)
-    widths = tuple(sorted({most, min(most, vector), min(most, vector if nonlinear else vector // 2)}, reverse=True))
+    lanes = lanes or (vector * 2 if step.step_cost()[1] <= SHORT_STEP else vector)
+    widths = tuple(sorted({lanes, min(lanes, vector), min(lanes, vector if nonlinear else vector // 2)}, reverse=True))
     printer = PythonPrinter(
         step.program, {STEP_PHASE: [node for _, node in step.states], SAMPLE_PHASE: step.channels}, step.time_step, precision == "single"
     )
@@ -109,7 +109,7 @@ def write_kernel(
     return KernelSource(
         text,
         kernel_legend(model),
-        most,
+        lanes,
         printer.operation_counts,
         len(printer.constants),
         len(step.states),
@@ -210,7 +210,7 @@ class _WorkArray:
 def _code(step: StepProgram, printer: PythonPrinter, work: _WorkArray) -> list[str]:
     """Return the lines of a kernel after its imports: sections of the work array, bodies of its loops over lanes, and what joins them."""
     constants, states, lanes = list(printer.constants), [node for _, node in step.states], work.lanes
-    each, near = lanes if work.own else 1, len(states) <= MOST_HELD
+    each, reread = lanes if work.own else 1, len(states) <= MOST_HELD
     when = "after" if work.reads.ends else "before"
     calls = ["        advance(work, active, dt, drives, steps)", "        sample(work, active, dt, kept, 1)"]
     return [
@@ -226,7 +226,7 @@ def _code(step: StepProgram, printer: PythonPrinter, work: _WorkArray) -> list[s
         "",
         "",
         f"setup = emit_llvm(constants_lane, widths=({VECTOR // 8},), row=0)",
-        f"advance = emit_llvm(step_lane, widths={work.widths}, row={work.reads.step_row * each}, near={near})",
+        f"advance = emit_llvm(step_lane, widths={work.widths}, row={work.reads.step_row * each}, reread={reread})",
         f"sample = emit_llvm(sample_lane, widths={work.widths}, row={work.reads.sample_row * each})",
         "",
         "",

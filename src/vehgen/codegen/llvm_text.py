@@ -20,7 +20,7 @@ _FUSED = "contract nsz"
 """Products may be fused with sums, and the sign of zero may be lost."""
 
 
-def write_function(name: str, body: Sequence[ast.stmt], widths: Sequence[int], row: int, number: str, near: bool = False) -> str:
+def write_function(name: str, body: Sequence[ast.stmt], widths: Sequence[int], row: int, number: str, reread: bool = False) -> str:
     """Return the text of a function `(work, active, dt, rows, steps)`.
 
     Lanes that are computed at once take all steps before the next ones begin, each step with its row of drives. What a step changes is
@@ -39,10 +39,10 @@ def write_function(name: str, body: Sequence[ast.stmt], widths: Sequence[int], r
         Numbers in a row of drives.
     number
         Type of all numbers: "float" or "double".
-    near
+    reread
         Whether what a step does not change is read anew every step, where it is used.
     """
-    writers = [_Writer(width, number, near) for width in widths]
+    writers = [_Writer(width, number, reread) for width in widths]
     loops = "".join(writer.loops(body, row, spare) for writer, spare in zip(writers, [*widths[1:], 0], strict=True))
     declared = sorted({item for writer in writers for item in writer.declared})
     array = f"{number}* noalias"
@@ -72,8 +72,8 @@ class _Value:
 class _Writer:
     """Writes statements as instructions; `known` are values by name, `held` those of places that are written."""
 
-    def __init__(self, lanes: int, number: str, near: bool) -> None:
-        self.near = near
+    def __init__(self, lanes: int, number: str, reread: bool) -> None:
+        self.reread = reread
         self.lanes, self.number, self.vector, self.prefix = lanes, number, f"<{lanes} x {number}>", f"w{lanes}."
         self.known = {"dt": _Value("%dt", number, False)}
         self.held: dict[int, _Value] = {}
@@ -114,7 +114,7 @@ class _Writer:
             "step": [
                 f"%{w}n = phi i64 [0, %{w}group], [%{w}later, %{w}step]",
                 *states,
-                *(anew if self.near else []),
+                *(anew if self.reread else []),
                 f"%{w}start = mul i64 %{w}n, {row}",
                 f"%{w}shared = getelementptr {number}, {number}* %rows, i64 %{w}start",
                 f"%{w}drives = getelementptr {number}, {number}* %{w}shared, i64 %{w}j",
@@ -160,7 +160,7 @@ class _Writer:
                 return self._new(f"load {self.number}, {self._address('shared', item.slice.value)}", self.number, False)
             if _array(item) == "work" and self._start(item) in self.held:
                 return self.held[self._start(item)]
-            return self._new(f"load {self.vector}, {self._place(item, 'here' if self.near else 'work')}", self.number, True)
+            return self._new(f"load {self.vector}, {self._place(item, 'here' if self.reread else 'work')}", self.number, True)
         if isinstance(item, ast.UnaryOp):
             assert isinstance(item.op, ast.USub), ast.dump(item)
             value = self.value(item.operand)
