@@ -40,6 +40,9 @@ LOOK_AGAIN_SHARE = 0.5
 MUCH_QUIETER = 2.0
 """Where noise is found to be less by so much than what candidates were last weighed by, all of them are weighed anew."""
 
+DEAR = 100.0
+"""Errors beyond belief without which -2 ln L rises by more are told, though chi stays quiet: by healthy runs it rose by 30 at most."""
+
 
 class Decision(Ending):
     """One diagnosis on its way: what was detected, the library, and the rounds so far."""
@@ -70,6 +73,8 @@ class Decision(Ending):
         other = Decision(believed, self.effects, self.everything, self.progress, self.runner)
         other.notes += self.notes
         if believed.is_quiet:
+            if believed.base.squares_of_all_runs - self.base.squares_of_all_runs > DEAR:
+                return other._one_mistake() or other._faint() or self._mistaken(mistakes)
             return self._mistaken(left) if (left := supposed_mistakes(believed)) else self._one_cause() or other._quiet()
         if mistaken := other._one_mistake():
             return mistaken

@@ -63,6 +63,12 @@ class FoundRecorder:
         ]
         return [self, *(item for item in others if item.chain != self.chain)]
 
+    def rivals(self) -> list[FoundRecorder]:
+        """Return the chains that do nearly as well, the best first."""
+        known = self.estimate
+        near = [item for item in known.others if item.loss - known.best.loss < CLEAR_RECORDER * known.scale]
+        return [replace(self, estimate=replace(known, best=item, is_clear=False)) for item in near]
+
     def describe(self) -> str:
         """Return it in words."""
         chain = self.chain

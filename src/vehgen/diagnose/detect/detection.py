@@ -18,6 +18,7 @@ from vehgen.diagnose.detect.road_error import measured_profiles, road_noises
 from vehgen.diagnose.detect.splitting import hump_height, split_by_gap, split_runs
 from vehgen.diagnose.detect.steady_lines import steady_lines, without_lines
 from vehgen.diagnose.fits.base_anew import base_anew
+from vehgen.diagnose.fits.errors_anew import is_strained
 from vehgen.diagnose.fits.model_fit import ModelFit, fit_base, mean_square_as_filed, narrow
 from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.errors import InputError
@@ -25,7 +26,7 @@ from vehgen.fit.band import DIAGNOSIS_BAND_HZ, compared_band
 from vehgen.fit.chain_estimate import slowest_rate
 from vehgen.fit.misfit import Noises
 from vehgen.fit.problem import Problem, make_problem
-from vehgen.fit.recorders import FoundRecorder, clearest, find_recorder, has_unknown
+from vehgen.fit.recorders import CLEAR_RECORDER, FoundRecorder, clearest, find_recorder, has_unknown
 from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
@@ -131,6 +132,8 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
         problem, validation_runs, base = tried[which]
         if before is not None and recorder.is_like(before):
             break
+    if recorder is not None and is_strained(base.least_squares) and (other := _rival(recorder, problem, validation_runs, floor.noises, base)):
+        recorder, (problem, validation_runs, base) = other
     base = base_anew(base, validation_runs, floor.noises, base.least_squares.misfit.band)  # another recorder or noise may mislead it again
     return _with_telling_runs(_detection(problem, validation_runs, floor, base, recorder, band))
 
@@ -143,11 +146,26 @@ def _fitted(
 
 
 def _recorded(
-    recorder: FoundRecorder, problem: Problem, validation_runs: Sequence[Trial], noises: Noises, base: ModelFit
+    recorder: FoundRecorder, problem: Problem, validation_runs: Sequence[Trial], noises: Noises, base: ModelFit | None
 ) -> tuple[Problem, list[Trial], ModelFit]:
     """Return the problem and the validation runs through a recorder, and the base fitted to them."""
     problem, validation_runs = problem.with_trials(recorder.applied(problem.trials)), recorder.applied(validation_runs)
     return problem, validation_runs, fit_base(problem, validation_runs, noises, recorder.band, base)
+
+
+def _rival(
+    recorder: FoundRecorder, problem: Problem, validation_runs: Sequence[Trial], noises: Noises, base: ModelFit
+) -> tuple[FoundRecorder, tuple[Problem, list[Trial], ModelFit]] | None:
+    """Return the low-pass nearest to one that stands, with a base begun anew: where the first has bent to what that takes off."""
+    rivals = (item for item in recorder.rivals() if not item.is_usual(slowest_rate(problem.trials)))
+    if (rival := next(rivals, None)) is None:
+        return None
+    anew = _recorded(rival, problem, validation_runs, noises, None)
+    if anew[2].squares > base.squares - CLEAR_RECORDER:
+        return None
+    fit = anew[2].least_squares
+    found = find_recorder(fit.misfit, fit.x, recorder.channels, recorder.band)
+    return found, _recorded(found, *anew[:2], noises, anew[2])
 
 
 def look_again(detection: Detection, fit: ModelFit) -> Detection | None:

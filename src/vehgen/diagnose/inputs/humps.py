@@ -38,11 +38,15 @@ TOWARDS, EXCHANGE_TOLD = 2.0, 36.0
 
 
 def hump_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
-    """Yield that humps have another length or shape: all of them, those of one size, or that of one run only."""
+    """Yield that humps have another length or shape: all of them, those of one size, or that of one run only, each of every shape.
+
+    Which shape is right a refit tells: a speed a little off costs more correlation than a wrong shape does.
+    """
     groups, score = _groups(case.trials), cache(partial(_score, case))  # of a run with others over its hump, then of it alone
     changed = [item for group in groups if (item := _best(case, group, score)) is not None]
-    single = [item for group in groups if len(group) > 1 for number in group if (item := _best(case, (number,), score)) is not None]
-    for items in ([changed] if len(changed) > 1 else []) + [[item] for item in (*changed, *single)]:
+    alone = [(number,) for group in groups if len(group) > 1 for number in group]
+    single = [item for runs in (*groups, *alone) for shape in SHAPES if (item := _best(case, runs, score, (shape,))) is not None]
+    for items in ([changed] if len(changed) > 1 else []) + [[item] for item in single]:
         trials, faults = list(case.trials), []
         for runs, fault in items:
             faults.append(fault)
@@ -67,14 +71,16 @@ def _groups(trials: Sequence[Trial]) -> list[tuple[int, ...]]:
     return [tuple(members) for _, members in found]
 
 
-def _best(case: BaseRefits, group: tuple[int, ...], score: RunScore) -> tuple[dict[int, Trial], MeasurementFault] | None:
+def _best(
+    case: BaseRefits, group: tuple[int, ...], score: RunScore, shapes: Sequence[str] = SHAPES
+) -> tuple[dict[int, Trial], MeasurementFault] | None:
     """Return runs, by number, over the hump that suits them best, with the fault told; None where that is the file's."""
 
     def mean(shape: str, factor: float) -> float:
         return float(np.mean([score(number, shape, factor) for number in group]))
 
     as_filed = float(np.mean([case.comparisons[i].score for i in group]))
-    scores = {(shape, factor): mean(shape, factor) for shape in SHAPES for factor in LENGTHS}
+    scores = {(shape, factor): mean(shape, factor) for shape in shapes for factor in LENGTHS}
     shape, factor = max(scores, key=lambda key: scores[key])
     fine = {(shape, factor + step): mean(shape, factor + step) for step in FINE_LENGTHS}
     shape, factor = max(fine, key=lambda key: fine[key])

@@ -30,6 +30,8 @@ Array = NDArray[np.float64]
 BLINDING = 1e4
 """The noise of a channel that is not to count is taken as so many times its own."""
 REFIT_STEPS = 20
+LEAST_RUNS = 3
+"""Of so many runs at least, one may be wrong while the others tell the vehicle."""
 REFIT_TOP_HZ = 15.0
 """Refits compare up to this frequency [Hz]: above, a low-pass that was found for a wrong model would stand in the way of the right one."""
 
@@ -46,8 +48,8 @@ class BaseRefits:
         self.base = detection.base.least_squares
         self.detected = self.trials = detection.trials
         self.problem = detection.problem.with_trials(self.trials)
-        right = detection.base.training <= NOISE_FLOOR**2  # then the vehicle is known, and a mistake is in validation runs alone
-        self.begin = self.problem.space.unit(self.base.values if right else self.problem.space.start)
+        self.begin = self.problem.space.unit(self.problem.space.start)
+        self.known: dict[str, float] = {}
         self.band = self.refit_band = self.base.misfit.band
         self.excess = max(detection.chi**2 - 1, 1e-9)
         self.shared: tuple[Adjustment, ...] = ()
@@ -56,6 +58,22 @@ class BaseRefits:
         if detection.recorder is not None and self.band[1] > REFIT_TOP_HZ:
             self._forget(detection.recorder, detection.asked_band)
         self.first_excess = self.excess
+        if detection.base.training <= NOISE_FLOOR**2:  # a mistake is in validation runs alone
+            self._know(self.base.values)
+        elif len(self.trials) >= LEAST_RUNS:
+            self._know_by_others(max(detection.base.mean_squares, key=lambda run: detection.base.mean_squares[run]))
+
+    def _know(self, values: Array) -> None:
+        """Take a vehicle as known: predictions are of it, and refits begin there."""
+        self.begin = self.problem.space.unit(values)
+        self.known = self.problem.best_values(values)
+
+    def _know_by_others(self, run: str) -> None:
+        """Take the vehicle of all runs but one as known, where that leaves noise: the base has bent to what is wrong in that run."""
+        blind = frozenset((run, channel) for trial in self.trials if trial.name == run for channel in trial.channels)
+        fit, left = self.refit(self.problem, blind=blind)
+        if left <= self.noise:
+            self._know(fit.values)
 
     def _forget(self, recorder: FoundRecorder, band: tuple[float, float]) -> None:
         """Take the low-pass that was found as unknown again, and compare slow motions, where the gap shows there."""
@@ -93,7 +111,8 @@ class BaseRefits:
         adjustments, values, scenario = (*self.shared, *shared), np.array((*self.numbers, *numbers)), trial.scenario
         for item, value in zip(adjustments, values, strict=True):
             scenario = item.scenario(scenario, float(value))
-        response = np.asarray(trial.simulator.run(trial.simulator.parameters(trial.values), scenario).responses)
+        vehicle = trial.values | {name: value for name, value in self.known.items() if name not in trial.fixed}
+        response = np.asarray(trial.simulator.run(trial.simulator.parameters(vehicle), scenario).responses)
         for i, item in enumerate(adjustments):
             response = item.response(trial, response, values[i:])
         return np.asarray(response[0])

@@ -15,7 +15,7 @@ from vehgen.diagnose.fits.model_fit import BASE_RANGE
 from vehgen.diagnose.inputs.comparison import Comparison, compare
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always
 from vehgen.diagnose.inputs.recorders import other_rate
-from vehgen.diagnose.inputs.refits import BaseRefits
+from vehgen.diagnose.inputs.refits import LEAST_RUNS, BaseRefits
 from vehgen.fit.adjustments import SpeedScale
 from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.problem import make_problem
@@ -38,16 +38,17 @@ SPEED_SCALES = tuple(round(0.8 + 0.01 * i, 2) for i in range(41))
 """True speeds over stated ones that are tried in the axles' place."""
 NUDGE = 1e-3
 """Parameters are changed by this share to see which axles they move."""
-LEAST_RUNS, SUSPECTS = 3, 2
-"""Of so many runs at least, so many that the base fits worst may be of another vehicle."""
+SUSPECTS = 2
+"""So many runs that the base fits worst may be of another vehicle."""
 OWN_STARTS, OWN_REACH = 8, 0.3
 """So many more starts of a run's own vehicle, each parameter up to this share of its range from the file's."""
 FEW = 2
 """So few parameters far off may stand for what the model lacks there."""
 STRANGE = 0.1
 """Largest share of the excess that the other runs may leave without it."""
-SPEED_FITS_TOO = 2.0
-"""Where another speed or clock leaves noise, or less than so many times what other axles leave, the axles are not blamed."""
+SPEED_FITS_TOO, DEARER = 2.0, 36.0
+"""Where another speed or clock leaves noise, or less than so many times what other axles leave, the axles are not blamed; but for a speed
+with which -2 ln L is higher by so much: errors beyond belief make up for it."""
 
 
 def axle_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
@@ -63,7 +64,7 @@ def axle_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     if score < _mean(case.comparisons) + NOTICED:
         return
     trials = _best(case, [_restated(case, name, trials[0].values[name] + i * FINE_STEP) for i in range(-5, 6)])[1]
-    left = case.refit(case.problem.with_trials(trials))[1]
+    moved, left = case.refit(case.problem.with_trials(trials))
     if left > MOVED:
         return
     speed = SpeedScale("runs", 0.01, 1.0)
@@ -73,7 +74,8 @@ def axle_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     }
     scale = max(scores, key=lambda key: scores[key])
     enough, clock = max(SPEED_FITS_TOO * left, case.noise), other_rate(case)
-    if case.refit(case.problem, (speed,), (scale,))[1] < enough or (clock is not None and clock[1] < enough):
+    faster, by_speed = case.refit(case.problem, (speed,), (scale,))
+    if (by_speed < enough and faster.loss < moved.loss + DEARER) or (clock is not None and clock[1] < enough):
         return
     stated, value = case.trials[0].values[name], trials[0].values[name]
     shift = value - stated
