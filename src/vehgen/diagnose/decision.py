@@ -27,7 +27,7 @@ from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.diagnose.select.group_members import with_members
 from vehgen.diagnose.select.needless import without_needless
 from vehgen.diagnose.select.one_cause import BEFORE, one_cause
-from vehgen.diagnose.select.one_error import explains_easily, one_error
+from vehgen.diagnose.select.one_error import explains_easily, one_error, price_of_belief
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.ranking import numbers_at_ends, own_numbers
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
@@ -39,7 +39,6 @@ LOOK_AGAIN_SHARE = 0.5
 """Where the best candidate leaves no more than this share of the excess, recorder and profiles are judged by it."""
 MUCH_QUIETER = 2.0
 """Where noise is found to be less by so much than what candidates were last weighed by, all of them are weighed anew."""
-
 DEAR = 100.0
 """Errors beyond belief without which -2 ln L rises by more are told, though chi stays quiet: by healthy runs it rose by 30 at most."""
 
@@ -73,7 +72,7 @@ class Decision(Ending):
         other = Decision(believed, self.effects, self.everything, self.progress, self.runner)
         other.notes += self.notes
         if believed.is_quiet:
-            if believed.base.squares_of_all_runs - self.base.squares_of_all_runs > DEAR:
+            if price_of_belief(self.base, believed.base) > DEAR:
                 return other._one_mistake() or other._faint() or self._mistaken(mistakes)
             return self._mistaken(left) if (left := supposed_mistakes(believed)) else self._one_cause() or other._quiet()
         if mistaken := other._one_mistake():

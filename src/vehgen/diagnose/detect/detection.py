@@ -132,7 +132,7 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
         problem, validation_runs, base = tried[which]
         if before is not None and recorder.is_like(before):
             break
-    if recorder is not None and is_strained(base.least_squares) and (other := _rival(recorder, problem, validation_runs, floor.noises, base)):
+    if recorder is not None and (other := _rival(recorder, problem, validation_runs, floor.noises, base)):
         recorder, (problem, validation_runs, base) = other
     base = base_anew(base, validation_runs, floor.noises, base.least_squares.misfit.band)  # another recorder or noise may mislead it again
     return _with_telling_runs(_detection(problem, validation_runs, floor, base, recorder, band))
@@ -156,9 +156,9 @@ def _recorded(
 def _rival(
     recorder: FoundRecorder, problem: Problem, validation_runs: Sequence[Trial], noises: Noises, base: ModelFit
 ) -> tuple[FoundRecorder, tuple[Problem, list[Trial], ModelFit]] | None:
-    """Return the low-pass nearest to one that stands, with a base begun anew: where the first has bent to what that takes off."""
+    """Return another low-pass with a base begun anew, where the base has bent to what it takes off; None where it has not."""
     rivals = (item for item in recorder.rivals() if not item.is_usual(slowest_rate(problem.trials)))
-    if (rival := next(rivals, None)) is None:
+    if not is_strained(base.least_squares) or (rival := next(rivals, None)) is None:
         return None
     anew = _recorded(rival, problem, validation_runs, noises, None)
     if anew[2].squares > base.squares - CLEAR_RECORDER:

@@ -91,21 +91,13 @@ class ModelFit:
     @property
     def squares(self) -> float:
         """-2 ln of the likelihood on the training runs and of the errors that it supposes, less a constant."""
-        return self._squares_of(self.least_squares)
-
-    @property
-    def squares_of_all_runs(self) -> float:
-        """The same of the validation runs, too."""
-        return sum(self._squares_of(part) for part in self.parts)
+        errors = self.least_squares.misfit.split(self.least_squares.x)[1]
+        return self.training * self.n_residuals + float(errors @ errors)
 
     @property
     def chi(self) -> float:
         """Its chi over all runs."""
         return float(np.sqrt(_pooled(self.mean_squares, self.counts)))
-
-    def _squares_of(self, part: LeastSquaresFit) -> float:
-        errors = part.misfit.split(part.x)[1]
-        return sum(self.mean_squares[t.name] * self.counts[t.name] for t in part.misfit.problem.trials) + float(errors @ errors)
 
 
 @dataclass(frozen=True)

@@ -41,7 +41,8 @@ class BaseRefits:
 
     `excess` is chi^2 - 1 of the base model on these runs, `first_excess` that before any mistake was undone; `shared`, `numbers` and
     `blind` undo what was found, as in :class:`Hypothesis`. Recorders whose low-pass is not known count as unknown again, and refits
-    compare slow motions, where these show the gap: the low-pass was found for a model that does not fit.
+    compare slow motions, where these show the gap: the low-pass was found for a model that does not fit. `known` are parameters that are
+    known better than by the vehicle file, as all runs but one tell them: predictions are of them.
     """
 
     def __init__(self, detection: Detection) -> None:
@@ -55,12 +56,13 @@ class BaseRefits:
         self.shared: tuple[Adjustment, ...] = ()
         self.numbers: tuple[float, ...] = ()
         self.blind: frozenset[tuple[str, str]] = frozenset()
+        right = detection.base.training <= NOISE_FLOOR**2  # a mistake is in validation runs alone
+        if right:
+            self._know(self.base.values)
         if detection.recorder is not None and self.band[1] > REFIT_TOP_HZ:
             self._forget(detection.recorder, detection.asked_band)
         self.first_excess = self.excess
-        if detection.base.training <= NOISE_FLOOR**2:  # a mistake is in validation runs alone
-            self._know(self.base.values)
-        elif len(self.trials) >= LEAST_RUNS:
+        if not right and len(self.trials) >= LEAST_RUNS:
             self._know_by_others(max(detection.base.mean_squares, key=lambda run: detection.base.mean_squares[run]))
 
     def _know(self, values: Array) -> None:
@@ -98,7 +100,7 @@ class BaseRefits:
 
     @cached_property
     def predictions(self) -> list[Array]:
-        """What the vehicle file predicts for every run, `shape (n_samples, n_channels)`."""
+        """What is predicted for every run, `shape (n_samples, n_channels)`."""
         return [self.predict(trial) for trial in self.trials]
 
     @cached_property
@@ -107,7 +109,7 @@ class BaseRefits:
         return [compare(trial, own, self.band) for trial, own in zip(self.trials, self.predictions, strict=True)]
 
     def predict(self, trial: Trial, shared: Sequence[Adjustment] = (), numbers: Sequence[float] = ()) -> Array:
-        """Return what the vehicle file predicts for a trial, adjusted also by `shared` at `numbers`, `shape (n_samples, n_channels)`."""
+        """Return what the vehicle file, or what is known better, predicts for a trial, adjusted also by `shared` at `numbers`, `shape (n_samples, n_channels)`."""
         adjustments, values, scenario = (*self.shared, *shared), np.array((*self.numbers, *numbers)), trial.scenario
         for item, value in zip(adjustments, values, strict=True):
             scenario = item.scenario(scenario, float(value))

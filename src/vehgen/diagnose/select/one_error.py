@@ -25,6 +25,16 @@ SUPPOSED_AS = {"speed_error": "speed", "sensor_delay": "clock", "sensor_gain": "
 """What a base supposes of each run, or of a sensor, by the name of the error that says it of all runs."""
 
 
+def price_of_belief(strained: ModelFit, believed: ModelFit) -> float:
+    """Return by how much -2 ln of the likelihood, of all runs and of the errors supposed, rises where errors are to be believed."""
+    return _squares_of_all_runs(believed) - _squares_of_all_runs(strained)
+
+
+def _squares_of_all_runs(fit: ModelFit) -> float:
+    errors = [part.misfit.split(part.x)[1] for part in fit.parts]
+    return sum(fit.mean_squares[run] * count for run, count in fit.counts.items()) + sum(float(item @ item) for item in errors)
+
+
 def explains_easily(found: Decided) -> bool:
     """Return whether effects of the vehicle were found, and beside them no error of a run or a sensor is beyond belief."""
     chain = found.models.chosen
