@@ -1,6 +1,7 @@
 """A base that locked in a wrong minimum is fitted anew; one that is good, without strain, or no better anew, stays as it is."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,9 @@ from vehgen.diagnose.detect import detection as detecting
 from vehgen.diagnose.fits import base_anew as module
 from vehgen.diagnose.fits.base_anew import base_anew
 from vehgen.diagnose.fits.model_fit import evaluate_fit
+from vehgen.fit.chain_estimate import ChainEstimate, ChainFit
+from vehgen.fit.recorders import FoundRecorder
+from vehgen.measure.acquisition import AcquisitionChain
 
 
 @pytest.fixture(scope="module")
@@ -65,3 +69,37 @@ def test_a_base_that_another_noise_led_astray_comes_back(detection, trials_of, m
     monkeypatch.setattr(detecting, "split_by_gap", lambda base, trials: None)
     found = detecting.detect(trials_of(runs=HUMPS))
     assert found.base.training == pytest.approx(detection.base.training, rel=0.02)
+
+
+def recorder_of(cut_off, loss):
+    """Return a recorder that stands, with another chain of a loss beside it."""
+    stands, other = AcquisitionChain("bessel", 4, 43.0), AcquisitionChain("butterworth", 4, cut_off)
+    return FoundRecorder(ChainEstimate(ChainFit(stands, 100.0), (ChainFit(other, loss),), 1.0, True), (0.5, 25.0), False, ("F_az",))
+
+
+@pytest.mark.parametrize(
+    ("cut_off", "loss", "squares", "strained", "other"),
+    [
+        (8.0, 110.0, 60.0, True, True),
+        (8.0, 110.0, 60.0, False, False),
+        (8.0, 110.0, 80.0, True, False),
+        (8.0, 140.0, 60.0, True, False),
+        (42.0, 110.0, 60.0, True, False),
+    ],
+    ids=["clearly better", "no strain", "hardly better", "no rival", "as usual"],
+)
+def test_a_strained_base_is_begun_anew_with_a_low_pass_that_does_as_well(monkeypatch, detection, cut_off, loss, squares, strained, other):
+    """A truck's base had bent to what a low-pass at 8 Hz took off, at ten edges of its range, and no other one was found from there."""
+    anew, asked = SimpleNamespace(squares=squares, least_squares=SimpleNamespace(misfit=None, x=None)), []
+
+    def recorded(recorder, problem, validation_runs, noises, begin):
+        asked.append((recorder.chain.cut_off, begin))
+        return problem, list(validation_runs), anew
+
+    monkeypatch.setattr(detecting, "_recorded", recorded)
+    monkeypatch.setattr(detecting, "is_strained", lambda fit: strained)
+    monkeypatch.setattr(detecting, "find_recorder", lambda misfit, x, channels, band: recorder_of(7.9, 1.0))
+    base = SimpleNamespace(squares=100.0, least_squares=None)
+    found = detecting._rival(recorder_of(cut_off, loss), detection.problem, detection.validation_runs, detection.floor.noises, base)
+    assert (found is not None) == other
+    assert asked[:1] == ([(8.0, None)] if strained and loss < 130.0 and cut_off < 35.0 else [])

@@ -10,6 +10,7 @@ from vehgen.diagnose import decision
 from vehgen.diagnose.decision import Decision
 from vehgen.diagnose.detect.detection import Detection, believable
 from vehgen.diagnose.inputs.fault import MeasurementFault
+from vehgen.diagnose.select.one_error import price_of_belief
 from vehgen.effects import EFFECTS
 
 FAULT = MeasurementFault("hump_height", ("high",), (), "the road in high is 12 % higher than stated", "measure it")
@@ -35,6 +36,20 @@ def test_what_believable_errors_leave_is_told(monkeypatch, detection_of):
     detection = detection_of(runs=HUMPS)
     found = verdict_of(monkeypatch, detection, believable(detection), ["cubic_stiffness"], (FAULT,))
     assert (found.verdict, found.faults) == ("measurement_fault", (FAULT,))
+
+
+@pytest.mark.parametrize(("dearer", "verdict"), [(90.0, "no_missing_effect"), (110.0, "measurement_fault")])
+def test_what_runs_insist_on_is_told_though_believable_errors_leave_noise(monkeypatch, detection_of, dearer, verdict):
+    """A truck's speed 18 % off went unseen: pooled with three others, its run left chi 1.03, with -2 ln L 222 higher."""
+    detection = detection_of(runs=HUMPS)
+    believed = believable(detection)
+    squares = dict(believed.base.mean_squares)
+    squares["fast"] += (dearer - price_of_belief(detection.base, believed.base)) / believed.base.counts["fast"]
+    monkeypatch.setattr(Decision, "_one_mistake", lambda self: None)
+    monkeypatch.setattr(Decision, "_faint", lambda self: None)
+    found = verdict_of(monkeypatch, detection, replace(believed, base=replace(believed.base, mean_squares=squares)), ["cubic_stiffness"])
+    assert found.verdict == verdict
+    assert found.faults == ((FAULT,) if verdict == "measurement_fault" else ())
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,9 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from benchmarks.hidden_effects.generator import nominal, perturbed
 
 from tests.diagnose.conftest import CUBIC, HUMPS
 from vehgen.diagnose import decision, ending
@@ -108,6 +110,20 @@ def test_refits_begin_at_a_vehicle_that_is_known(detection_of):
     space = known.problem.space
     assert BaseRefits(known).begin == pytest.approx(space.unit(known.base.least_squares.values))
     assert BaseRefits(lacking).begin == pytest.approx(space.unit(space.start))
+
+
+def test_the_vehicle_is_known_by_the_other_runs_where_one_is_wrong(trials_of):
+    """The base bends to a run that was driven faster than stated; those without it tell the vehicle, and what it does in that run."""
+    truth = perturbed("sedan2", 3)
+    wrong = [replace(item, scenario=item.scenario.adjusted(speed=0.8)) if item.name == "high" else item for item in trials_of(runs=HUMPS)]
+    case = BaseRefits(detect(wrong))
+    off = {name: abs(np.log(case.known[name] / truth[name])) for name in ("kf", "kr", "cf", "cr")}
+    filed = {name: abs(np.log(nominal("sedan2")[name] / truth[name])) for name in off}
+    assert sum(off.values()) < 0.5 * sum(filed.values())
+    low = next(item for item in case.trials if item.name == "low")
+    by_known, by_file = case.predict(low), BaseRefits.predict(SimpleNamespace(known={}, shared=(), numbers=()), low)
+    recorded = low.recording.values
+    assert np.sum((by_known - recorded) ** 2) < 0.5 * np.sum((by_file - recorded) ** 2)
 
 
 @pytest.mark.parametrize(("effects", "told"), [((), "mistake"), ((CUBIC,), "out of range")], ids=["unseen", "seen"])

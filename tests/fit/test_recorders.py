@@ -139,6 +139,14 @@ def test_an_unusually_low_cut_off_is_compared_with_a_usual_one(chain, cut_offs):
         assert abs(group_delay(usual) + tried[1].chain.delay) < 1e-9
 
 
+def test_rivals_are_chains_that_do_nearly_as_well():
+    low, other = ChainFit(AcquisitionChain("butterworth", 4, 8.5), 107.0), ChainFit(AcquisitionChain("bessel", 2, 7.2), 129.0)
+    known = ChainEstimate(ChainFit(IDEAL, 100.0), (low, other, ChainFit(POINT_SAMPLES, 131.0)), 1.0, True)
+    recorder = FoundRecorder(known, (0.5, 40.0), False, ("F_az",))
+    assert [item.chain for item in recorder.rivals()] == [low.chain, other.chain]
+    assert not any(item.estimate.is_clear for item in recorder.rivals())
+
+
 def test_errors_are_held_about_none_when_a_low_pass_is_sought(tmp_path, rough):
     """Where a fit has sensors tilted by 3 standard deviations that stand level, no low-pass is the worse for setting them level again."""
     road, channels = rough

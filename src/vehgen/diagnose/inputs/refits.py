@@ -109,7 +109,7 @@ class BaseRefits:
         return [compare(trial, own, self.band) for trial, own in zip(self.trials, self.predictions, strict=True)]
 
     def predict(self, trial: Trial, shared: Sequence[Adjustment] = (), numbers: Sequence[float] = ()) -> Array:
-        """Return what the vehicle file, or what is known better, predicts for a trial, adjusted also by `shared` at `numbers`, `shape (n_samples, n_channels)`."""
+        """Return what is predicted for a trial, adjusted also by `shared` at `numbers`, `shape (n_samples, n_channels)`."""
         adjustments, values, scenario = (*self.shared, *shared), np.array((*self.numbers, *numbers)), trial.scenario
         for item, value in zip(adjustments, values, strict=True):
             scenario = item.scenario(scenario, float(value))
