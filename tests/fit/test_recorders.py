@@ -143,8 +143,8 @@ def test_rivals_are_chains_that_do_nearly_as_well():
     low, other = ChainFit(AcquisitionChain("butterworth", 4, 8.5), 107.0), ChainFit(AcquisitionChain("bessel", 2, 7.2), 129.0)
     known = ChainEstimate(ChainFit(IDEAL, 100.0), (low, other, ChainFit(POINT_SAMPLES, 131.0)), 1.0, True)
     recorder = FoundRecorder(known, (0.5, 40.0), False, ("F_az",))
-    assert [item.chain for item in recorder.rivals()] == [low.chain, other.chain]
-    assert not any(item.estimate.is_clear for item in recorder.rivals())
+    assert [item.chain for item in recorder.nearly_as_good()] == [low.chain, other.chain]
+    assert not any(item.estimate.is_clear for item in recorder.nearly_as_good())
 
 
 def test_errors_are_held_about_none_when_a_low_pass_is_sought(tmp_path, rough):

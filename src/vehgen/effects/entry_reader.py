@@ -12,10 +12,7 @@ from vehgen.effects.entry_model import SIZES, EffectEntry, LawPlace, LineEntry, 
 from vehgen.effects.kinds import LineEffect, RunEffect, VehicleEffect
 from vehgen.effects.library.engine_harmonic import ENGINE_HARMONIC_EFFECT
 from vehgen.effects.library.law_effect import LawEdit
-from vehgen.effects.library.sensor_delay import SENSOR_DELAY_EFFECT
-from vehgen.effects.library.sensor_gain import SENSOR_GAIN_EFFECT
-from vehgen.effects.library.sensor_position import SENSOR_POSITION_EFFECT
-from vehgen.effects.library.sensor_tilt import SENSOR_TILT_EFFECT
+from vehgen.effects.library.sensors import SENSOR_DELAY_EFFECT, SENSOR_GAIN_EFFECT, SENSOR_POSITION_EFFECT, SENSOR_TILT_EFFECT
 from vehgen.effects.library.speed_error import SPEED_ERROR_EFFECT
 from vehgen.effects.library.tyre_footprint import TYRE_FOOTPRINT_EFFECT
 from vehgen.effects.locator import EffectSite

@@ -21,10 +21,7 @@ from vehgen.effects.library.hysteresis import HYSTERESIS_EFFECT
 from vehgen.effects.library.progressive_stiffness import PROGRESSIVE_STIFFNESS_EFFECT
 from vehgen.effects.library.quadratic_damping import QUADRATIC_DAMPING_EFFECT
 from vehgen.effects.library.relaxation import RELAXATION_EFFECT
-from vehgen.effects.library.sensor_delay import SENSOR_DELAY_EFFECT
-from vehgen.effects.library.sensor_gain import SENSOR_GAIN_EFFECT
-from vehgen.effects.library.sensor_position import SENSOR_POSITION_EFFECT
-from vehgen.effects.library.sensor_tilt import SENSOR_TILT_EFFECT
+from vehgen.effects.library.sensors import SENSOR_DELAY_EFFECT, SENSOR_GAIN_EFFECT, SENSOR_POSITION_EFFECT, SENSOR_TILT_EFFECT
 from vehgen.effects.library.speed_error import SPEED_ERROR_EFFECT
 from vehgen.effects.library.suspended_cab import SUSPENDED_CAB_EFFECT
 from vehgen.effects.library.tyre_damping import TYRE_DAMPING_EFFECT

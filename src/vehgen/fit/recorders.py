@@ -63,7 +63,7 @@ class FoundRecorder:
         ]
         return [self, *(item for item in others if item.chain != self.chain)]
 
-    def rivals(self) -> list[FoundRecorder]:
+    def nearly_as_good(self) -> list[FoundRecorder]:
         """Return the chains that do nearly as well, the best first."""
         known = self.estimate
         near = [item for item in known.others if item.loss - known.best.loss < CLEAR_RECORDER * known.scale]

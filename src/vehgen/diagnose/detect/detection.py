@@ -157,7 +157,7 @@ def _rival(
     recorder: FoundRecorder, problem: Problem, validation_runs: Sequence[Trial], noises: Noises, base: ModelFit
 ) -> tuple[FoundRecorder, tuple[Problem, list[Trial], ModelFit]] | None:
     """Return another low-pass with a base begun anew, where the base has bent to what it takes off; None where it has not."""
-    rivals = (item for item in recorder.rivals() if not item.is_usual(slowest_rate(problem.trials)))
+    rivals = (item for item in recorder.nearly_as_good() if not item.is_usual(slowest_rate(problem.trials)))
     if not is_strained(base.least_squares) or (rival := next(rivals, None)) is None:
         return None
     anew = _recorded(rival, problem, validation_runs, noises, None)
