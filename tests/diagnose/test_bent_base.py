@@ -5,13 +5,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from benchmarks.hidden_effects.generator import Hump, RunSpec, perturbed
+from benchmarks.hidden_effects.generator import Effect, Hump, RunSpec, perturbed
 
 from tests.diagnose.conftest import CUBIC, HUMPS, edited
 from vehgen.diagnose import ending
 from vehgen.diagnose.decision import Decision
 from vehgen.diagnose.detect.detection import detect
 from vehgen.diagnose.inputs import humps, judging, vehicle
+from vehgen.diagnose.inputs.amplitudes import silent_hypotheses
 from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.humps import exchanged_humps
 from vehgen.diagnose.inputs.judging import plain_mistakes, recorded_mistakes
@@ -53,6 +54,15 @@ def test_a_dead_channel_is_told_where_the_base_hardly_moves_there(trials_of, det
     for trials in (plain, edited(plain, dead, plain[0].name)):
         quiet.trials = trials
         assert recorded_mistakes(quiet) == ()
+
+
+def test_a_channel_of_which_the_others_foretell_nothing_is_silent(trials_of, detection_of):
+    """Whatever the vehicle file foretells: a truck's had been too far off, and a sensor's tilt imitated its dead accelerometer."""
+    case = BaseRefits(detect(edited(trials_of(runs=HUMPS), dead)))
+    (found,) = silent_hypotheses(case)
+    assert told(found.describe(np.zeros(0))) == [("dead", len(HUMPS), ("R_az",))]
+    assert found.blind == {(run.name, "R_az") for run in HUMPS}
+    assert list(silent_hypotheses(BaseRefits(detection_of(Effect("sensor_gain", "R_az", {"error": 0.3}), runs=HUMPS)))) == []
 
 
 @pytest.mark.parametrize(("least", "turned"), [(-0.1, True), (0.1, False)])

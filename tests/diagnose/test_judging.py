@@ -126,6 +126,17 @@ def test_the_vehicle_is_known_by_the_other_runs_where_one_is_wrong(trials_of):
     assert np.sum((by_known - recorded) ** 2) < 0.5 * np.sum((by_file - recorded) ** 2)
 
 
+@pytest.mark.parametrize("mistake", ["mistake", None])
+def test_a_mistake_that_an_effect_imitates_is_told(monkeypatch, detection_of, mistake):
+    found = Decision(detection_of(CUBIC, runs=HUMPS), [], False, lambda *_: None)
+    monkeypatch.setattr(decision, "passes", lambda fit, base: True)
+    monkeypatch.setattr(Decision, "_too_weak", lambda self, *_: None)
+    monkeypatch.setattr(Decision, "_imitation", lambda self, best: "it imitates what the model misses")
+    monkeypatch.setattr(Decision, "_other_mistakes", lambda self, first: mistake)
+    monkeypatch.setattr(Decision, "_unknown", lambda self, first, reason: reason)
+    assert found._add(SimpleNamespace(fits=("tilt",))) == (mistake or "it imitates what the model misses")
+
+
 @pytest.mark.parametrize(("effects", "told"), [((), "mistake"), ((CUBIC,), "out of range")], ids=["unseen", "seen"])
 def test_a_gap_of_validation_runs_alone_is_first_held_against_mistakes(monkeypatch, detection_of, effects, told):
     decision_of = Decision(detection_of(*effects, runs=HUMPS), list(EFFECTS.values()), False, lambda *_: None)

@@ -15,8 +15,7 @@ from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import NoReturn, TextIO
 
-from vehgen.commands.streams import say_on_stderr, silence
-from vehgen.commands.terminal import one_line
+from vehgen.commands.terminal import one_line, say_on_stderr, silence
 from vehgen.errors import CacheWarning, InputError, ModelWarning, shortened
 
 UNUSABLE, STOPPED, TERMINATED = 2, 130, 143

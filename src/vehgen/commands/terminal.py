@@ -1,4 +1,4 @@
-"""What the commands share: the vehicle argument, text and tables for people, JSON for programs.
+"""What the commands share: the vehicle argument, text and tables for people, JSON for programs, and streams that may be closed.
 
 Names, titles and messages may come from a stranger's file: here, and only here, they become what a terminal shows.
 """
@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import re
+import sys
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, TextIO
 
-from vehgen.commands.streams import say_on_stderr
 from vehgen.errors import escaped, printable
 from vehgen.files.number_text import kilonewtons, on_terminal, thousands
 
@@ -109,3 +111,21 @@ def warn(messages: Iterable[str]) -> None:
             shown.print(Text.assemble(("warning: ", "bold yellow"), line))
         else:
             say_on_stderr(f"warning: {line}")
+
+
+def say_on_stderr(line: str) -> None:
+    """Print a line on stderr; where it is closed or full nothing is said, and the exit code must tell."""
+    try:
+        print(line, file=sys.stderr, flush=True)
+    except (OSError, ValueError):
+        silence(sys.stderr)
+
+
+def silence(stream: TextIO) -> None:
+    """Send what is still to be written nowhere, so that Python does not complain of it when it ends."""
+    with suppress(OSError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        try:
+            os.dup2(nowhere, stream.fileno())
+        finally:
+            os.close(nowhere)

@@ -180,7 +180,7 @@ class Decision(Ending):
         if weak is not None and weak.verdict.verdict != "measurement_fault" and (faint := self._faint(first)) is not None:
             return faint
         if weak is None and good and (imitation := self._imitation(best)):
-            return self._unknown(first, imitation)
+            return self._other_mistakes(first) or self._unknown(first, imitation)
         if weak is None and good:
             self.chain = self._combiner().further([best])
             if not self.interrupted and max(self.chain[-1].training, self.chain[-1].validation) > limit.NAMED_LEFT**2:

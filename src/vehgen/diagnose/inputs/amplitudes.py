@@ -107,12 +107,35 @@ def dead_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
         yield Hypothesis(case.trials, always(*faults), ONE_CHANNEL, blind=blind)
 
 
+def silent_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
+    """Yield that a channel recorded noise only in all of its runs: the base fits the others without it, and foretells none of it then.
+
+    The vehicle file may foretell too little of a channel and its like for :func:`dead_hypotheses`.
+    """
+    for name in dict.fromkeys(name for trial in case.trials for name in trial.channels):
+        trials = [trial for trial in case.trials if name in trial.channels]
+        runs = tuple(trial.name for trial in trials)
+        silent = always(_dead_fault(case.runs, name, runs))
+        hypothesis = Hypothesis(case.trials, silent, ONE_CHANNEL, blind=frozenset((run, name) for run in runs))
+        fit, left = case.judge(hypothesis)
+        if left <= ONE_CHANNEL:
+            by_others = case.of_vehicle(fit.values)
+            comparisons = (compare(trial, by_others.predict(trial), case.band) for trial in trials)
+            if all(_around(item)[trial.channels.index(name)] < DEAD for trial, item in zip(trials, comparisons, strict=True)):
+                yield hypothesis
+
+
+def _around(item: Comparison) -> Array:
+    """Return how well each channel follows its prediction at about the lag of all, `shape (n_channels,)`."""
+    reach = round(NEIGHBOURS / item.dt)
+    return np.asarray(np.abs(item.own[max(item.best - reach, 0) : item.best + reach + 1]).max(axis=0))
+
+
 def _dead(trials: Sequence[Trial], comparisons: Sequence[Comparison]) -> dict[str, list[str]]:
     """Return channels that follow neither their prediction nor another channel, and the runs in which they do not."""
     found: dict[str, list[str]] = {}
     for trial, item in zip(trials, comparisons, strict=True):
-        reach = round(NEIGHBOURS / item.dt)
-        around = np.abs(item.own[max(item.best - reach, 0) : item.best + reach + 1]).max(axis=0)
+        reach, around = round(NEIGHBOURS / item.dt), _around(item)
         channels = trial.recording.channels
         for i, channel in enumerate(channels):
             others = [j for j in range(len(channels)) if j != i]

@@ -17,6 +17,7 @@ from vehgen.diagnose.inputs.amplitudes import (
     gain_hypotheses,
     hidden_mistakes,
     other_gain,
+    silent_hypotheses,
     unit_hypotheses,
 )
 from vehgen.diagnose.inputs.checks import check_inputs
@@ -61,6 +62,7 @@ PLAIN: tuple[Generator, ...] = (
 )
 """What no effect of the library looks like: looked for before any effect is."""
 SUBTLE: tuple[Generator, ...] = (
+    silent_hypotheses,
     speed_hypotheses,
     lambda case: clock_hypotheses(case, decisive=False),
     gain_hypotheses,

@@ -65,6 +65,14 @@ class BaseRefits:
         if not right and len(self.trials) >= LEAST_RUNS:
             self._know_by_others(max(detection.base.mean_squares, key=lambda run: detection.base.mean_squares[run]))
 
+    def of_vehicle(self, values: Array) -> BaseRefits:
+        """Return the same with the vehicle known, by its searched parameters `shape (n,)`."""
+        other = copy(self)
+        for name in ("predictions", "comparisons"):
+            other.__dict__.pop(name, None)
+        other._know(values)
+        return other
+
     def _know(self, values: Array) -> None:
         """Take a vehicle as known: predictions are of it, and refits begin there."""
         self.begin = self.problem.space.unit(values)
