@@ -71,24 +71,27 @@ def test_a_base_that_another_noise_led_astray_comes_back(detection, trials_of, m
     assert found.base.training == pytest.approx(detection.base.training, rel=0.02)
 
 
-def recorder_of(cut_off, loss):
-    """Return a recorder that stands, with another chain of a loss beside it."""
-    stands, other = AcquisitionChain("bessel", 4, 43.0), AcquisitionChain("butterworth", 4, cut_off)
-    return FoundRecorder(ChainEstimate(ChainFit(stands, 100.0), (ChainFit(other, loss),), 1.0, True), (0.5, 25.0), False, ("F_az",))
+def recorder_of(stands, *others):
+    """Return a recorder of cut-offs [Hz], with other chains of cut-offs and losses beside it."""
+    best, *beside = (ChainFit(AcquisitionChain("butterworth", 4, cut_off), loss) for cut_off, loss in ((stands, 100.0), *others))
+    return FoundRecorder(ChainEstimate(best, tuple(beside), 1.0, True), (0.5, 25.0), False, ("F_az",))
 
 
 @pytest.mark.parametrize(
-    ("cut_off", "loss", "squares", "strained", "other"),
+    ("cut_off", "loss", "squares", "strained", "found_then", "other"),
     [
-        (8.0, 110.0, 60.0, True, True),
-        (8.0, 110.0, 60.0, False, False),
-        (8.0, 110.0, 80.0, True, False),
-        (8.0, 140.0, 60.0, True, False),
-        (42.0, 110.0, 60.0, True, False),
+        (8.0, 110.0, 60.0, True, 7.9, 7.9),
+        (8.0, 110.0, 60.0, True, 43.0, 8.0),
+        (8.0, 110.0, 60.0, False, 7.9, None),
+        (8.0, 110.0, 80.0, True, 7.9, None),
+        (8.0, 140.0, 60.0, True, 7.9, None),
+        (42.0, 110.0, 60.0, True, 7.9, None),
     ],
-    ids=["clearly better", "no strain", "hardly better", "no rival", "as usual"],
+    ids=["clearly better", "found elsewhere then", "no strain", "hardly better", "no rival", "as usual"],
 )
-def test_a_strained_base_is_begun_anew_with_a_low_pass_that_does_as_well(monkeypatch, detection, cut_off, loss, squares, strained, other):
+def test_a_strained_base_is_begun_anew_with_a_low_pass_that_does_as_well(
+    monkeypatch, detection, cut_off, loss, squares, strained, found_then, other
+):
     """A truck's base had bent to what a low-pass at 8 Hz took off, at ten edges of its range, and no other one was found from there."""
     anew, asked = SimpleNamespace(squares=squares, least_squares=SimpleNamespace(misfit=None, x=None)), []
 
@@ -98,8 +101,9 @@ def test_a_strained_base_is_begun_anew_with_a_low_pass_that_does_as_well(monkeyp
 
     monkeypatch.setattr(detecting, "_recorded", recorded)
     monkeypatch.setattr(detecting, "is_strained", lambda fit: strained)
-    monkeypatch.setattr(detecting, "find_recorder", lambda misfit, x, channels, band: recorder_of(7.9, 1.0))
+    monkeypatch.setattr(detecting, "find_recorder", lambda misfit, x, channels, band: recorder_of(found_then))
     base = SimpleNamespace(squares=100.0, least_squares=None)
-    found = detecting._rival(recorder_of(cut_off, loss), detection.problem, detection.validation_runs, detection.floor.noises, base)
-    assert (found is not None) == other
+    runs = detection.problem, detection.validation_runs
+    found = detecting._rival(recorder_of(43.0, (cut_off, loss)), *runs, detection.floor.noises, base, detection.band)
+    assert (found and found[0].chain.cut_off) == other
     assert asked[:1] == ([(8.0, None)] if strained and loss < 130.0 and cut_off < 35.0 else [])

@@ -132,7 +132,7 @@ def detect(trials: Sequence[Trial], band: tuple[float, float] | None = None) -> 
         problem, validation_runs, base = tried[which]
         if before is not None and recorder.is_like(before):
             break
-    if recorder is not None and (other := _rival(recorder, problem, validation_runs, floor.noises, base)):
+    if recorder is not None and (other := _rival(recorder, problem, validation_runs, floor.noises, base, band)):
         recorder, (problem, validation_runs, base) = other
     base = base_anew(base, validation_runs, floor.noises, base.least_squares.misfit.band)  # another recorder or noise may mislead it again
     return _with_telling_runs(_detection(problem, validation_runs, floor, base, recorder, band))
@@ -154,7 +154,7 @@ def _recorded(
 
 
 def _rival(
-    recorder: FoundRecorder, problem: Problem, validation_runs: Sequence[Trial], noises: Noises, base: ModelFit
+    recorder: FoundRecorder, problem: Problem, validation_runs: Sequence[Trial], noises: Noises, base: ModelFit, band: tuple[float, float]
 ) -> tuple[FoundRecorder, tuple[Problem, list[Trial], ModelFit]] | None:
     """Return another low-pass with a base begun anew, where the base has bent to what it takes off; None where it has not."""
     rivals = (item for item in recorder.nearly_as_good() if not item.is_usual(slowest_rate(problem.trials)))
@@ -164,8 +164,8 @@ def _rival(
     if anew[2].squares > base.squares - CLEAR_RECORDER:
         return None
     fit = anew[2].least_squares
-    found = find_recorder(fit.misfit, fit.x, recorder.channels, recorder.band)
-    return found, _recorded(found, *anew[:2], noises, anew[2])
+    found = find_recorder(fit.misfit, fit.x, recorder.channels, band)
+    return (found, _recorded(found, *anew[:2], noises, anew[2])) if found.is_like(rival) else (rival, anew)
 
 
 def look_again(detection: Detection, fit: ModelFit) -> Detection | None:
