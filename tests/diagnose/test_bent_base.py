@@ -65,6 +65,11 @@ def test_a_channel_of_which_the_others_foretell_nothing_is_silent(trials_of, det
     assert list(silent_hypotheses(BaseRefits(detection_of(Effect("sensor_gain", "R_az", {"error": 0.3}), runs=HUMPS)))) == []
 
 
+def test_a_channel_alone_is_not_left_out():
+    case = SimpleNamespace(trials=[SimpleNamespace(channels=("R_az",))])
+    assert list(silent_hypotheses(case)) == []
+
+
 @pytest.mark.parametrize(("least", "turned"), [(-0.1, True), (0.1, False)])
 def test_a_channel_that_follows_its_opposite_in_the_mean_of_runs_is_tried_as_turned(trials_of, least, turned):
     """In each run by itself it follows too little: -0.3 is asked there."""

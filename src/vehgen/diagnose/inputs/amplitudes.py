@@ -112,7 +112,8 @@ def silent_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
 
     The vehicle file may foretell too little of a channel and its like for :func:`dead_hypotheses`.
     """
-    for name in dict.fromkeys(name for trial in case.trials for name in trial.channels):
+    names = dict.fromkeys(name for trial in case.trials for name in trial.channels)
+    for name in names if len(names) > 1 else ():
         trials = [trial for trial in case.trials if name in trial.channels]
         runs = tuple(trial.name for trial in trials)
         silent = always(_dead_fault(case.runs, name, runs))
