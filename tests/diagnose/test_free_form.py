@@ -90,6 +90,15 @@ def test_places_without_a_travel_have_no_law(cubic):
     assert fit_free_form(()) is None
 
 
+def test_a_place_tested_before_another_recorder_was_found_is_tested_anew(cubic):
+    """A second look may change the recorder, and with it how many unknowns a fit has: the diagnosis ended in a traceback."""
+    detection, results = cubic
+    known = pick(results, "suspension rear")
+    earlier = replace(known, x=np.append(known.x, 0.0), chi=9.0)
+    for force, again in zip(recover(detection, known), recover(detection, earlier), strict=True):
+        np.testing.assert_allclose(again.force, force.force, rtol=1e-6, atol=1e-6 * np.abs(force.force).max())
+
+
 def test_a_suspension_is_shown_rather_than_its_tyre(cubic):
     assert strongest(cubic[1]).place.label == "suspension rear"
     assert strongest([item for item in cubic[1] if not item.place.rows]) is None

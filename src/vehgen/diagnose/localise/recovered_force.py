@@ -134,6 +134,8 @@ def recover(detection: Detection, result: PlaceResult, component: int = 0) -> tu
     if component >= len(result.place.rows):
         return ()
     misfit = detection.base.least_squares.misfit
+    if len(result.x) != misfit.n_unknowns:  # tested before a second look found another recorder
+        (result,) = score_locations(misfit, detection.base.least_squares.x, [result.place])
     directions = np.asarray(np.linalg.cholesky(posterior(misfit, result)), dtype=np.float64)
     found = _recover(misfit, result, directions, component, False)
     n, known = misfit.n_parameters, misfit.common_errors(result.x)
