@@ -39,7 +39,7 @@ LOOK_AGAIN_SHARE = 0.5
 """Where the best candidate leaves no more than this share of the excess, recorder and profiles are judged by it."""
 MUCH_QUIETER = 2.0
 """Where noise is found to be less by so much than what candidates were last weighed by, all of them are weighed anew."""
-DEAR = 100.0
+BELIEF_TOO_DEAR = 100.0
 """Errors beyond belief without which -2 ln L rises by more are told, though chi stays quiet: by healthy runs it rose by 30 at most."""
 
 
@@ -72,7 +72,7 @@ class Decision(Ending):
         other = Decision(believed, self.effects, self.everything, self.progress, self.runner)
         other.notes += self.notes
         if believed.is_quiet:
-            if price_of_belief(self.base, believed.base) > DEAR:
+            if price_of_belief(self.base, believed.base) > BELIEF_TOO_DEAR:
                 return other._one_mistake() or other._faint() or self._mistaken(mistakes)
             return self._mistaken(left) if (left := supposed_mistakes(believed)) else self._one_cause() or other._quiet()
         if mistaken := other._one_mistake():

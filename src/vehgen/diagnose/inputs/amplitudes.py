@@ -108,9 +108,9 @@ def dead_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
 
 
 def silent_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
-    """Yield that a channel recorded noise only in all of its runs: the base fits the others without it, and foretells none of it then.
+    """Yield that a channel recorded noise only in all of its runs: without it the base fits the others, and foretells none of it.
 
-    The vehicle file may foretell too little of a channel and its like for :func:`dead_hypotheses`.
+    The vehicle file may foretell too little for :func:`dead_hypotheses`.
     """
     names = dict.fromkeys(name for trial in case.trials for name in trial.channels)
     for name in names if len(names) > 1 else ():

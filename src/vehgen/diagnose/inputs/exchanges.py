@@ -27,7 +27,7 @@ EXCHANGED_LEFT = 0.5
 """Largest share of the excess that may be left."""
 WRONG_SPEED_LEFT = 0.25
 UNITS_OF_SPEED = {"km/h": 1 / 3.6, "mph": 0.44704}
-UNSTEADY = tuple(1 + 0.005 * i for i in range(-8, 9))
+BESIDE_UNIT = tuple(1 + 0.005 * i for i in range(-8, 9))
 """Beside another unit, the speed is off by so much: over a long road even that is told."""
 SPEED_FACTORS = tuple(round(0.7 + 0.01 * i, 2) for i in range(66))
 """True speeds over stated ones that are tried."""
@@ -81,7 +81,9 @@ def speed_unit_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
         tried = {}
         for unit, worth in UNITS_OF_SPEED.items():
             for factor in (worth, 1 / worth):
-                near = [_compared(case, trial, factor * own, anchor) for anchor in (0.0, trial.scenario.first_arrival) for own in UNSTEADY]
+                near = [
+                    _compared(case, trial, factor * own, anchor) for anchor in (0.0, trial.scenario.first_arrival) for own in BESIDE_UNIT
+                ]
                 tried[unit, factor] = min(near, key=lambda pair: pair[1].unexplained)
         key = min(tried, key=lambda key: tried[key][1].unexplained)
         changed, own = tried[key]

@@ -40,7 +40,7 @@ TOWARDS, EXCHANGE_TOLD = 2.0, 36.0
 def hump_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     """Yield that humps have another length or shape: all of them, those of one size, or that of one run only, each of every shape.
 
-    Which shape is right a refit tells: a speed a little off costs more correlation than a wrong shape does.
+    A refit tells which: a speed a little off costs more correlation than a wrong shape.
     """
     groups, score = _groups(case.trials), cache(partial(_score, case))  # of a run with others over its hump, then of it alone
     changed = [item for group in groups if (item := _best(case, group, score)) is not None]

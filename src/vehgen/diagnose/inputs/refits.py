@@ -42,7 +42,7 @@ class BaseRefits:
     `excess` is chi^2 - 1 of the base model on these runs, `first_excess` that before any mistake was undone; `shared`, `numbers` and
     `blind` undo what was found, as in :class:`Hypothesis`. Recorders whose low-pass is not known count as unknown again, and refits
     compare slow motions, where these show the gap: the low-pass was found for a model that does not fit. `known` are parameters that are
-    known better than by the vehicle file, as all runs but one tell them: predictions are of them.
+    known better than by the vehicle file: predictions are of them.
     """
 
     def __init__(self, detection: Detection) -> None:
@@ -68,8 +68,6 @@ class BaseRefits:
     def of_vehicle(self, values: Array) -> BaseRefits:
         """Return the same with the vehicle known, by its searched parameters `shape (n,)`."""
         other = copy(self)
-        for name in ("predictions", "comparisons"):
-            other.__dict__.pop(name, None)
         other._know(values)
         return other
 
@@ -77,6 +75,11 @@ class BaseRefits:
         """Take a vehicle as known: predictions are of it, and refits begin there."""
         self.begin = self.problem.space.unit(values)
         self.known = self.problem.best_values(values)
+        self._predict_anew()
+
+    def _predict_anew(self) -> None:
+        for name in ("predictions", "comparisons"):
+            self.__dict__.pop(name, None)
 
     def _know_by_others(self, run: str) -> None:
         """Take the vehicle of all runs but one as known, where that leaves noise: the base has bent to what is wrong in that run."""
@@ -133,8 +136,7 @@ class BaseRefits:
         self.numbers = tuple(float(value) for value in fit.misfit.adjusted(fit.x))
         self.problem = self.problem.with_trials(self.trials)
         self.excess = max(self.excess * left, 1e-9)
-        for name in ("predictions", "comparisons"):
-            self.__dict__.pop(name, None)
+        self._predict_anew()
 
     def judge(self, hypothesis: Hypothesis) -> tuple[LeastSquaresFit, float]:
         """Return the refit with a mistake undone, and the share of the excess that it leaves."""

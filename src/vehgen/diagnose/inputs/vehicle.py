@@ -46,7 +46,7 @@ FEW = 2
 """So few parameters far off may stand for what the model lacks there."""
 STRANGE = 0.1
 """Largest share of the excess that the other runs may leave without it."""
-SPEED_FITS_TOO, DEARER = 2.0, 36.0
+SPEED_FITS_TOO, SPEED_DEARER = 2.0, 36.0
 """Where another speed or clock leaves noise, or less than so many times what other axles leave, the axles are not blamed; but for a speed
 with which -2 ln L is higher by so much: errors beyond belief make up for it."""
 
@@ -75,7 +75,7 @@ def axle_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     scale = max(scores, key=lambda key: scores[key])
     enough, clock = max(SPEED_FITS_TOO * left, case.noise), other_rate(case)
     faster, by_speed = case.refit(case.problem, (speed,), (scale,))
-    if (by_speed < enough and faster.loss < moved.loss + DEARER) or (clock is not None and clock[1] < enough):
+    if (by_speed < enough and faster.loss < moved.loss + SPEED_DEARER) or (clock is not None and clock[1] < enough):
         return
     stated, value = case.trials[0].values[name], trials[0].values[name]
     shift = value - stated
