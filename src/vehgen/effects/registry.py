@@ -10,15 +10,13 @@ from vehgen.effects.library.asymmetric_damping import ASYMMETRIC_DAMPING_EFFECT
 from vehgen.effects.library.asymmetric_friction import ASYMMETRIC_FRICTION_EFFECT
 from vehgen.effects.library.bump_stop import BUMP_STOP_EFFECT
 from vehgen.effects.library.cargo_module import CARGO_MODULE_EFFECT
-from vehgen.effects.library.cubic_stiffness import CUBIC_STIFFNESS_EFFECT
 from vehgen.effects.library.damper_mount import DAMPER_MOUNT_EFFECT
 from vehgen.effects.library.dry_friction import DRY_FRICTION_EFFECT
 from vehgen.effects.library.engine_harmonic import ENGINE_HARMONIC_EFFECT
 from vehgen.effects.library.frame_bending import FRAME_BENDING_EFFECT
-from vehgen.effects.library.hinge_friction import HINGE_FRICTION_EFFECT
-from vehgen.effects.library.hinge_stiffness import HINGE_STIFFNESS_EFFECT
+from vehgen.effects.library.hardening_springs import CUBIC_STIFFNESS_EFFECT, PROGRESSIVE_STIFFNESS_EFFECT
+from vehgen.effects.library.hinges import HINGE_FRICTION_EFFECT, HINGE_STIFFNESS_EFFECT
 from vehgen.effects.library.hysteresis import HYSTERESIS_EFFECT
-from vehgen.effects.library.progressive_stiffness import PROGRESSIVE_STIFFNESS_EFFECT
 from vehgen.effects.library.quadratic_damping import QUADRATIC_DAMPING_EFFECT
 from vehgen.effects.library.relaxation import RELAXATION_EFFECT
 from vehgen.effects.library.sensors import SENSOR_DELAY_EFFECT, SENSOR_GAIN_EFFECT, SENSOR_POSITION_EFFECT, SENSOR_TILT_EFFECT

@@ -1,1 +1,1 @@
-"""Which effects does vehgen know? One file an effect."""
+"""Which effects does vehgen know? One file an effect, or a few that are alike."""
