@@ -26,7 +26,7 @@ from vehgen.fit.band import DIAGNOSIS_BAND_HZ, compared_band
 from vehgen.fit.chain_estimate import slowest_rate
 from vehgen.fit.misfit import Noises
 from vehgen.fit.problem import Problem, make_problem
-from vehgen.fit.recorders import CLEAR_RECORDER, FoundRecorder, clearest, find_recorder, has_unknown
+from vehgen.fit.recorders import CLEAR_RECORDER, MOST_LEFT, FoundRecorder, clearest, find_recorder, has_unknown
 from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
@@ -161,7 +161,7 @@ def _rival(
     if not is_strained(base.least_squares) or (rival := next(rivals, None)) is None:
         return None
     anew = _recorded(rival, problem, validation_runs, noises, None)
-    if anew[2].squares > base.squares - CLEAR_RECORDER:
+    if anew[2].squares > base.squares - CLEAR_RECORDER or anew[2].training > MOST_LEFT:
         return None
     fit = anew[2].least_squares
     found = find_recorder(fit.misfit, fit.x, recorder.channels, band)
