@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from benchmarks.hidden_effects.generator import Effect
 
 from tests.diagnose.conftest import CUBIC, HUMPS
 from vehgen.diagnose import decision
@@ -12,6 +13,7 @@ from vehgen.diagnose.detect.detection import look_again
 from vehgen.diagnose.detect.road_error import measured_profiles
 from vehgen.diagnose.fits.model_fit import fit_base
 from vehgen.diagnose.pipeline import with_evidence
+from vehgen.diagnose.select import search
 from vehgen.effects import EFFECTS
 from vehgen.fit.chain_estimate import ChainEstimate, ChainFit
 from vehgen.fit.noise import LARGEST_LEVEL
@@ -90,3 +92,29 @@ def test_what_one_look_leaves_as_it_was_is_not_looked_at_again(monkeypatch, dete
     decided = Decision(detection_of(CUBIC, runs=HUMPS), [EFFECTS["cubic_stiffness"]], False, lambda stage, done, total, best: None).decide()
     assert decided.verdict.verdict == "named"
     assert looks == ["cubic_stiffness at rear"]
+
+
+def test_noise_is_told_by_the_law_of_the_place_where_nothing_is_named_by_the_base(monkeypatch, detection_of):
+    """A truck whose fifth wheel stuck was shaken by the road as its linear model would not be: the right law left chi 1.6."""
+    friction = Effect("dry_friction", "rear", {"force": 800.0})
+    known = detection_of(friction, runs=HUMPS)
+    noises = {name: replace(noise, sigma=noise.sigma / 3) for name, noise in known.floor.noises.items()}
+    base = fit_base(known.problem, known.validation_runs, noises, known.band, known.base)
+    quiet = replace(known, base=base, floor=replace(known.floor, noises=noises))
+    monkeypatch.setattr(decision, "LOOK_AGAIN_SHARE", 0.0)
+    second = [known]
+    monkeypatch.setattr(search, "look_again", lambda detection, fit: second.pop() if second else None)
+
+    found = Decision(quiet, [EFFECTS["dry_friction"]], False, lambda stage, done, total, best: None).decide().verdict
+    assert not second
+    assert [(item.name, item.place) for item in found.effects] == [("dry_friction", "rear")]
+    assert found.gap.after < 1.05
+
+
+def test_noise_is_not_told_by_a_law_that_does_not_stick_nor_by_one_elsewhere(detection_of):
+    detection = detection_of(CUBIC, runs=HUMPS)
+    decided = Decision(detection, [EFFECTS["cubic_stiffness"]], False, lambda stage, done, total, best: None).decide()
+    (first,) = decided.models.rounds
+    assert "suspension rear" in [item.place.label for item in first.passed]
+    assert search.noise_by_its_law(detection, first) is None
+    assert search.noise_by_its_law(detection, replace(first, passed=())) is None

@@ -31,7 +31,7 @@ from vehgen.diagnose.select.one_error import explains_easily, one_error, price_o
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.ranking import numbers_at_ends, own_numbers
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
-from vehgen.diagnose.select.search import LEADING, LOOKS_AGAIN, SearchRound, fit_leading_again, search_round
+from vehgen.diagnose.select.search import LEADING, LOOKS_AGAIN, SearchRound, fit_leading_again, noise_by_its_law, search_round
 from vehgen.diagnose.select.validation import gain_interval, seen_again, validation_fall
 from vehgen.errors import InputError
 
@@ -124,7 +124,7 @@ class Decision(Ending):
         self.rounds[:], self.chain = [found], [best]
         return self._name(self.chain)
 
-    def _explain_gap(self) -> Decided:
+    def _explain_gap(self, by_law: bool = True) -> Decided:
         detection = self.detection
         if not detection.validation_runs:
             more = f"record at least three runs{', with two hump heights or speeds' if detection.trials[0].run.vehicle.axles else ''}"
@@ -148,7 +148,19 @@ class Decision(Ending):
         self._leave_out_needless()
         if self.interrupted:
             return self._name(self.chain) if self.chain else self._stopped()
-        return self._other_mistakes(first) or weak or (self._name(self.chain) if self.chain else self._unknown(first))
+        if ended := self._other_mistakes(first) or weak or (self._name(self.chain) if self.chain else None):
+            return ended
+        return (self._by_its_law(first) if by_law else None) or self._unknown(first)
+
+    def _by_its_law(self, first: SearchRound) -> Decided | None:
+        """Return the verdict by the noise of a vehicle with the law that a gap's place asks for; None where that names nothing."""
+        told = None if self.interrupted else noise_by_its_law(self.detection, first)
+        if told is None or not passes(told[1], told[0].base):
+            return None
+        other = Decision(told[0], self.effects, self.everything, self.progress, self.runner)
+        other.notes += self.notes
+        found = other._explain_gap(by_law=False)
+        return found if found.verdict.effects else None
 
     def _again(self, first: SearchRound) -> SearchRound:
         """Return a round of the leading candidates, recorder and profiles being as the best has them; the same round where they were so."""

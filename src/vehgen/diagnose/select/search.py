@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehgen.diagnose import thresholds as limit
-from vehgen.diagnose.detect.detection import Detection
+from vehgen.diagnose.detect.detection import Detection, look_again
 from vehgen.diagnose.fits.candidate import Candidate, has_room
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.fits.screening import screen
@@ -206,3 +206,24 @@ def fit_leading_again(fitter: Fitter, fits: Sequence[ModelFit], weigh: bool, run
         found += fitter.fit_all_again(contenders, runner)
         rest = [own for own, fit in weighed if all(fit is not other for other in contenders)]
     return tuple(simplest_first([*sorted(found, key=merit), *(sorted(rest, key=merit) if weigh else rest)], fitter.detection.base))
+
+
+def noise_by_its_law(detection: Detection, first: SearchRound) -> tuple[Detection, ModelFit] | None:
+    """Return a detection whose noise is told with the law that a gap's place asks for, and that law's fit; None where there is none.
+
+    A rough road shakes a vehicle that sticks otherwise than a linear one: by the noise of that, the right law may leave most of a gap.
+    """
+    places = {owner(item.place) for item in first.passed if item.place.rows and item.unknowns == 1}
+    if not first.fits or first.fits[0].last.place not in places:
+        return None
+    fitter = Fitter(detection, first.current, first.passed)
+    fitter.hopeless = np.inf
+    fit, found = fitter.fit(first.fits[0].last), detection
+    if fit is None or not any(trial.jumps for trial in fit.least_squares.misfit.problem.trials):
+        return None
+    for _ in range(LOOKS_AGAIN):
+        if (again := look_again(found, fit)) is None:
+            break
+        found = again
+        fit = Fitter(found, found.base, first.passed).fit_again(fit)
+    return found, fit
