@@ -6,7 +6,6 @@ from importlib.metadata import entry_points
 
 from vehgen.effects.base import Effect
 from vehgen.effects.library.added_stiffness import ADDED_STIFFNESS_EFFECT
-from vehgen.effects.library.asymmetric_damping import ASYMMETRIC_DAMPING_EFFECT
 from vehgen.effects.library.asymmetric_friction import ASYMMETRIC_FRICTION_EFFECT
 from vehgen.effects.library.bump_stop import BUMP_STOP_EFFECT
 from vehgen.effects.library.cargo_module import CARGO_MODULE_EFFECT
@@ -17,7 +16,7 @@ from vehgen.effects.library.frame_bending import FRAME_BENDING_EFFECT
 from vehgen.effects.library.hardening_springs import CUBIC_STIFFNESS_EFFECT, PROGRESSIVE_STIFFNESS_EFFECT
 from vehgen.effects.library.hinges import HINGE_FRICTION_EFFECT, HINGE_STIFFNESS_EFFECT
 from vehgen.effects.library.hysteresis import HYSTERESIS_EFFECT
-from vehgen.effects.library.quadratic_damping import QUADRATIC_DAMPING_EFFECT
+from vehgen.effects.library.nonlinear_dampers import ASYMMETRIC_DAMPING_EFFECT, QUADRATIC_DAMPING_EFFECT
 from vehgen.effects.library.relaxation import RELAXATION_EFFECT
 from vehgen.effects.library.sensors import SENSOR_DELAY_EFFECT, SENSOR_GAIN_EFFECT, SENSOR_POSITION_EFFECT, SENSOR_TILT_EFFECT
 from vehgen.effects.library.speed_error import SPEED_ERROR_EFFECT

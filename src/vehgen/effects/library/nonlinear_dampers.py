@@ -1,10 +1,10 @@
-"""A damper that is softer in bump than in rebound."""
+"""A damper that is softer in bump than in rebound, and one whose force grows with the square of its rate."""
 
 from __future__ import annotations
 
 from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.kinds import VehicleEffect
-from vehgen.effects.library.law_effect import on_spring
+from vehgen.effects.library.law_effect import on_spring, suspension_law
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import suspensions
 from vehgen.mechanics.laws import LAWS
@@ -31,4 +31,28 @@ ASYMMETRIC_DAMPING_EFFECT = VehicleEffect(
     ),
     frees=("c",),
     edit=_edit,
+)
+
+
+def _size(site: EffectSite) -> float:
+    return site.c / 0.2
+
+
+QUADRATIC_DAMPING_EFFECT = suspension_law(
+    name="quadratic_damping",
+    law="quadratic_damping",
+    frees=("c",),
+    signature="damping grows with amplitude and speed; odd harmonics",
+    parameters=(
+        EffectParameter(
+            "c2",
+            "N s^2/m^2",
+            "quadratic damping",
+            low=0.02,
+            high=30.0,
+            starts=(0.5, 4.0),
+            scale=_size,
+            of="the damping there over 0.2 m/s",
+        ),
+    ),
 )
