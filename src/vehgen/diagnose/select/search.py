@@ -225,5 +225,5 @@ def noise_by_its_law(detection: Detection, first: SearchRound) -> tuple[Detectio
         if (again := look_again(found, fit)) is None:
             break
         found = again
-        fit = Fitter(found, found.base, first.passed).fit_again(fit)
+        fit = Fitter(found, found.base, ()).fit_again(fit)
     return found, fit
