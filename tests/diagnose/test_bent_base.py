@@ -194,3 +194,19 @@ def test_a_slow_recorder_is_told_where_it_is_all_that_is_supposed_and_no_effect_
     decision = Decision(detection_of(CUBIC, runs=HUMPS), [], False, lambda *_: None)
     found = decision._unknown(SimpleNamespace(fits=(), passed=(), idle=()), reason).verdict
     assert (found.verdict, found.faults) == (("measurement_fault", faults) if told else ("not_in_library", ()))
+
+
+def test_another_hump_is_found_by_refits_where_correlations_may_not_tell(trials_of):
+    """Over the true hump, a trapezoid of 0.6 times the length, a truck's run was foretold with 0.62, over the file's with 0.66."""
+    trials = [humps._over(trial, "trapezoid", 1.6) if trial.name == "high" else trial for trial in trials_of(runs=HUMPS)]
+    case = BaseRefits(detect(trials))
+    case.odd = "high"
+    judged = [(case.judge(item)[1], item) for item in humps.odd_hump_hypotheses(case)]
+    left, best = min(judged, key=lambda item: item[0])
+    (fault,) = best.describe(np.zeros(0))
+    assert (fault.kind, fault.runs, len(judged)) == ("hump", ("high",), 15)
+    assert left < 0.01
+    assert "half sine" in fault.message
+    assert fault.value == pytest.approx(0.5, rel=0.12)
+    case.odd = ""
+    assert list(humps.odd_hump_hypotheses(case)) == []

@@ -117,6 +117,7 @@ def test_the_vehicle_is_known_by_the_other_runs_where_one_is_wrong(trials_of):
     truth = perturbed("sedan2", 3)
     wrong = [replace(item, scenario=item.scenario.adjusted(speed=0.8)) if item.name == "high" else item for item in trials_of(runs=HUMPS)]
     case = BaseRefits(detect(wrong))
+    assert case.odd == "high"
     off = {name: abs(np.log(case.known[name] / truth[name])) for name in ("kf", "kr", "cf", "cr")}
     filed = {name: abs(np.log(nominal("sedan2")[name] / truth[name])) for name in off}
     assert sum(off.values()) < 0.5 * sum(filed.values())

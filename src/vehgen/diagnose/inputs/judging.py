@@ -27,7 +27,7 @@ from vehgen.diagnose.inputs.copies import find_copies
 from vehgen.diagnose.inputs.driving import input_hypotheses
 from vehgen.diagnose.inputs.exchanges import exchange_hypotheses, speed_hypotheses, speed_unit_hypotheses
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault
-from vehgen.diagnose.inputs.humps import hump_hypotheses, road_heights
+from vehgen.diagnose.inputs.humps import hump_hypotheses, odd_hump_hypotheses, road_heights
 from vehgen.diagnose.inputs.labels import label_hypotheses
 from vehgen.diagnose.inputs.levels import level_hypotheses
 from vehgen.diagnose.inputs.recorders import filter_hypotheses, rate_hypotheses, slow_recorder
@@ -73,6 +73,7 @@ SUBTLE: tuple[Generator, ...] = (
     hump_hypotheses,
     rate_hypotheses,
     strange_run_hypotheses,
+    odd_hump_hypotheses,
 )
 """What an effect may look like, looked for where none explains the runs."""
 

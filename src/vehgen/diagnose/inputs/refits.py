@@ -42,7 +42,7 @@ class BaseRefits:
     `excess` is chi^2 - 1 of the base model on these runs, `first_excess` that before any mistake was undone; `shared`, `numbers` and
     `blind` undo what was found, as in :class:`Hypothesis`. Recorders whose low-pass is not known count as unknown again, and refits
     compare slow motions, where these show the gap: the low-pass was found for a model that does not fit. `known` are parameters that are
-    known better than by the vehicle file: predictions are of them.
+    known better than by the vehicle file: predictions are of them. `odd` is the run without which they became known.
     """
 
     def __init__(self, detection: Detection) -> None:
@@ -51,19 +51,22 @@ class BaseRefits:
         self.problem = detection.problem.with_trials(self.trials)
         self.begin = self.problem.space.unit(self.problem.space.start)
         self.known: dict[str, float] = {}
+        self.odd = ""
         self.band = self.refit_band = self.base.misfit.band
         self.excess = max(detection.chi**2 - 1, 1e-9)
         self.shared: tuple[Adjustment, ...] = ()
         self.numbers: tuple[float, ...] = ()
         self.blind: frozenset[tuple[str, str]] = frozenset()
         right = detection.base.training <= NOISE_FLOOR**2  # a mistake is in validation runs alone
+        worst = max(detection.base.mean_squares, key=lambda run: detection.base.mean_squares[run])
         if right:
+            self.odd = worst
             self._know(self.base.values)
         if detection.recorder is not None and self.band[1] > REFIT_TOP_HZ:
             self._forget(detection.recorder, detection.asked_band)
         self.first_excess = self.excess
         if not right and len(self.trials) >= LEAST_RUNS:
-            self._know_by_others(max(detection.base.mean_squares, key=lambda run: detection.base.mean_squares[run]))
+            self._know_by_others(worst)
 
     def of_vehicle(self, values: Array) -> BaseRefits:
         """Return the same with the vehicle known, by its searched parameters `shape (n,)`."""
@@ -86,6 +89,7 @@ class BaseRefits:
         blind = frozenset((run, channel) for trial in self.trials if trial.name == run for channel in trial.channels)
         fit, left = self.refit(self.problem, blind=blind)
         if left <= self.noise:
+            self.odd = run
             self._know(fit.values)
 
     def _forget(self, recorder: FoundRecorder, band: tuple[float, float]) -> None:
