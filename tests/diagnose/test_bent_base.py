@@ -208,5 +208,6 @@ def test_another_hump_is_found_by_refits_where_correlations_may_not_tell(trials_
     assert left < 0.01
     assert "half sine" in fault.message
     assert fault.value == pytest.approx(0.5, rel=0.12)
+    assert humps.odd_hump_hypotheses in judging.SUBTLE
     case.odd = ""
     assert list(humps.odd_hump_hypotheses(case)) == []

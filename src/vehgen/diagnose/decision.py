@@ -154,10 +154,12 @@ class Decision(Ending):
 
     def _by_its_law(self, first: SearchRound) -> Decided | None:
         """Return the verdict by the noise of a vehicle with the law that a gap's place asks for; None where that names nothing."""
-        told = None if self.interrupted else noise_by_its_law(self.detection, first)
-        if told is None or not passes(told[1], told[0].base):
+        if (told := noise_by_its_law(self.detection, first)) is None:
             return None
-        other = Decision(told[0], self.effects, self.everything, self.progress, self.runner)
+        detection, fit = told
+        if not passes(fit, detection.base):
+            return None
+        other = Decision(detection, self.effects, self.everything, self.progress, self.runner)
         other.notes += self.notes
         found = other._explain_gap(by_law=False)
         return found if found.verdict.effects else None
