@@ -15,7 +15,7 @@ from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, base_priors, narrow
 from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
-from vehgen.diagnose.select.search import SearchRound
+from vehgen.diagnose.select.ranking import SearchRound
 from vehgen.effects import EFFECTS, EffectLocator
 from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
 from vehgen.fit.problem import make_problem

@@ -10,7 +10,7 @@ from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.select.group_members import member_seeds, with_members
-from vehgen.diagnose.select.search import SearchRound
+from vehgen.diagnose.select.ranking import SearchRound
 from vehgen.effects import EFFECTS
 from vehgen.vehicle import load_vehicle
 

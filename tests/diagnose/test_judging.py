@@ -15,7 +15,7 @@ from vehgen.diagnose.detect.detection import detect
 from vehgen.diagnose.inputs import judging
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always
 from vehgen.diagnose.inputs.refits import BaseRefits
-from vehgen.diagnose.select.search import SearchRound
+from vehgen.diagnose.select.ranking import SearchRound
 from vehgen.effects import EFFECTS
 
 FAULT = MeasurementFault("hump", ("high",), (), "the hump in high is another than the file says", "measure it")

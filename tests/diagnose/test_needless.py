@@ -7,7 +7,7 @@ from tests.diagnose.conftest import CUBIC, HUMPS
 from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.needless import without_needless
-from vehgen.diagnose.select.search import SearchRound
+from vehgen.diagnose.select.ranking import SearchRound
 from vehgen.effects import EFFECTS
 
 DAMPER = Effect("quadratic_damping", "rear", {"c2": 8e3})

@@ -18,8 +18,8 @@ from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.criteria import p_value_of, passes, tied
 from vehgen.diagnose.select.placebo_laws import compare_with_placebo_laws
-from vehgen.diagnose.select.ranking import merit
-from vehgen.diagnose.select.search import SearchRound, search_round
+from vehgen.diagnose.select.ranking import SearchRound, merit
+from vehgen.diagnose.select.search import search_round
 from vehgen.diagnose.select.validation import gain_interval, seen_again
 from vehgen.effects import library
 from vehgen.fit.trial import load_trials

@@ -34,7 +34,7 @@ from vehgen.diagnose.localise.recovered_force import RecoveredForce
 from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.diagnose.result import DiagnosisModels
 from vehgen.diagnose.select.estimates import estimate, estimates_by_run
-from vehgen.diagnose.select.search import SearchRound
+from vehgen.diagnose.select.ranking import SearchRound
 from vehgen.diagnose.verdict import RunChi
 from vehgen.files.provenance import file_hashes, versions
 from vehgen.files.result_fields import Array1D, rounded

@@ -12,7 +12,7 @@ from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit
 from vehgen.diagnose.localise.localisation import suffices
 from vehgen.diagnose.select.criteria import adds, excess, is_told, needs_both, p_value_of, passes, seeds, unfinished
 from vehgen.diagnose.select.group_members import leading_group, member_seeds, with_rest
-from vehgen.diagnose.select.search import SearchRound
+from vehgen.diagnose.select.ranking import SearchRound
 from vehgen.diagnose.select.validation import seen_again
 
 MOST_EFFECTS = 3

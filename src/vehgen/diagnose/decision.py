@@ -29,9 +29,9 @@ from vehgen.diagnose.select.needless import without_needless
 from vehgen.diagnose.select.one_cause import BEFORE, one_cause
 from vehgen.diagnose.select.one_error import explains_easily, one_error, price_of_belief
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
-from vehgen.diagnose.select.ranking import numbers_at_ends, own_numbers
+from vehgen.diagnose.select.ranking import SearchRound, numbers_at_ends, own_numbers
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
-from vehgen.diagnose.select.search import LEADING, LOOKS_AGAIN, SearchRound, fit_leading_again, noise_by_its_law, search_round
+from vehgen.diagnose.select.search import LEADING, LOOKS_AGAIN, fit_leading_again, noise_by_its_law, search_round
 from vehgen.diagnose.select.validation import gain_interval, seen_again, validation_fall
 from vehgen.errors import InputError
 
@@ -154,14 +154,12 @@ class Decision(Ending):
 
     def _by_its_law(self, first: SearchRound) -> Decided | None:
         """Return the verdict by the noise of a vehicle with the law that a gap's place asks for; None where that names nothing."""
-        if (told := noise_by_its_law(self.detection, first)) is None:
-            return None
-        detection, fit = told
-        if not passes(fit, detection.base):
+        if (detection := noise_by_its_law(self.detection, first)) is None:
             return None
         other = Decision(detection, self.effects, self.everything, self.progress, self.runner)
         other.notes += self.notes
         found = other._explain_gap(by_law=False)
+        self.interrupted = found.stopped
         return found if found.verdict.effects else None
 
     def _again(self, first: SearchRound) -> SearchRound:

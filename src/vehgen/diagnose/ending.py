@@ -20,7 +20,8 @@ from vehgen.diagnose.naming import Naming
 from vehgen.diagnose.result import Decided, DiagnosisModels
 from vehgen.diagnose.select.criteria import explained_shares, passes, unfinished
 from vehgen.diagnose.select.freed_base import freed_ratios
-from vehgen.diagnose.select.search import DiagnosisProgress, SearchRound
+from vehgen.diagnose.select.ranking import SearchRound
+from vehgen.diagnose.select.search import DiagnosisProgress
 from vehgen.diagnose.verdict import Gap, NamedParameter, PlaceChi, Verdict, VerdictName
 from vehgen.effects import Effect
 from vehgen.fit.parallel import HERE, Runner

@@ -16,8 +16,8 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.alternatives import Alternative, alternatives_beside
 from vehgen.diagnose.select.criteria import excess, p_value_of, tied
 from vehgen.diagnose.select.estimates import estimate, unstable
-from vehgen.diagnose.select.ranking import holding
-from vehgen.diagnose.select.search import DiagnosisProgress, SearchRound
+from vehgen.diagnose.select.ranking import SearchRound, holding
+from vehgen.diagnose.select.search import DiagnosisProgress
 from vehgen.diagnose.select.validation import gain_interval, validation_gain
 from vehgen.diagnose.verdict import Gap, NamedEffect, NamedParameter, Verdict
 from vehgen.fit.nuisances import Condition

@@ -10,7 +10,7 @@ from vehgen.diagnose.evidence import Evidence
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.localise.free_form import FreeForm
 from vehgen.diagnose.localise.unknown_force import PlaceResult
-from vehgen.diagnose.select.search import SearchRound
+from vehgen.diagnose.select.ranking import SearchRound
 from vehgen.diagnose.verdict import Verdict
 from vehgen.errors import InputError
 from vehgen.files.result_fields import IN_MEMORY

@@ -49,7 +49,7 @@ def hump_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     alone = [(number,) for group in groups if len(group) > 1 for number in group]
     single = [item for runs in (*groups, *alone) for shape in SHAPES if (item := _best(case, runs, score, (shape,))) is not None]
     for items in ([changed] if len(changed) > 1 else []) + [[item] for item in single]:
-        yield _over_others(case, items)
+        yield _other_humps(case, items)
 
 
 def odd_hump_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
@@ -59,10 +59,10 @@ def odd_hump_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     """
     for number in (i for group in _groups(case.trials) for i in group if case.trials[i].name == case.odd):
         for shape, factor in product(SHAPES, FAR_LENGTHS):
-            yield _over_others(case, [_changed(case, (number,), shape, factor)])
+            yield _other_humps(case, [_changed(case, (number,), shape, factor)])
 
 
-def _over_others(case: BaseRefits, items: Sequence[tuple[dict[int, Trial], MeasurementFault]]) -> Hypothesis:
+def _other_humps(case: BaseRefits, items: Sequence[tuple[dict[int, Trial], MeasurementFault]]) -> Hypothesis:
     """Return that runs are over other humps."""
     changed = {number: trial for runs, _ in items for number, trial in runs.items()}
     trials = tuple(changed.get(number, trial) for number, trial in enumerate(case.trials))

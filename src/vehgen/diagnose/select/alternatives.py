@@ -15,8 +15,7 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.criteria import excess, same
 from vehgen.diagnose.select.estimates import fitted_numbers
 from vehgen.diagnose.select.fitter import Fitter
-from vehgen.diagnose.select.ranking import does_as_well
-from vehgen.diagnose.select.search import SearchRound
+from vehgen.diagnose.select.ranking import SearchRound, does_as_well
 
 RIVALS = 4
 """So many rivals of an effect are tried beside the later ones."""

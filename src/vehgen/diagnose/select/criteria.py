@@ -10,8 +10,7 @@ from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.estimates import estimate, excluded, p_value
-from vehgen.diagnose.select.ranking import does_as_well, merit, own_numbers
-from vehgen.diagnose.select.search import SearchRound
+from vehgen.diagnose.select.ranking import SearchRound, does_as_well, merit, own_numbers
 from vehgen.diagnose.select.validation import validation_fall
 from vehgen.effects import RunEffect
 

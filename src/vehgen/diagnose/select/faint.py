@@ -21,9 +21,9 @@ from vehgen.diagnose.select.criteria import fall, falls_as_far, is_told
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import fitted_freed
 from vehgen.diagnose.select.placebo_laws import like_a_placebo_law
-from vehgen.diagnose.select.ranking import merit
+from vehgen.diagnose.select.ranking import SearchRound, merit
 from vehgen.diagnose.select.reaching_runs import with_checking_run
-from vehgen.diagnose.select.search import LOOKS_AGAIN, SearchRound, fit_leading_again
+from vehgen.diagnose.select.search import LOOKS_AGAIN, fit_leading_again
 from vehgen.diagnose.select.validation import surely_falls, validation_fall
 from vehgen.fit.parallel import HERE, Runner
 

@@ -37,8 +37,8 @@ class Fitter:
     refined.
     """
 
-    def __init__(self, detection: Detection, base: ModelFit, passed: Sequence[PlaceResult]) -> None:
-        self.detection, self.current, self.simulators, self.hopeless = detection, CurrentModel.of(base), SimulatorPool(), HOPELESS
+    def __init__(self, detection: Detection, base: ModelFit, passed: Sequence[PlaceResult], hopeless: float = HOPELESS) -> None:
+        self.detection, self.current, self.simulators, self.hopeless = detection, CurrentModel.of(base), SimulatorPool(), hopeless
         trial = self.current.problem.trials[0]
         self.locator = EffectLocator(trial.run.vehicle, dict(trial.values), occurring(base))
         self.origins, self.nowhere = _origins(base, self.current, passed), none_explains(passed)

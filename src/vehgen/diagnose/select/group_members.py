@@ -11,8 +11,8 @@ from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.fitter import Fitter
-from vehgen.diagnose.select.ranking import merit, simplest_first
-from vehgen.diagnose.select.search import CONTENDER, SearchRound
+from vehgen.diagnose.select.ranking import SearchRound, merit, simplest_first
+from vehgen.diagnose.select.search import CONTENDER
 
 
 def with_members(found: SearchRound, candidates: Sequence[Candidate], fit_one: Callable[[Candidate], ModelFit | None]) -> SearchRound:

@@ -15,8 +15,7 @@ from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.select.alternatives import refit_later
 from vehgen.diagnose.select.criteria import excess, passes
-from vehgen.diagnose.select.ranking import does_as_well, merit
-from vehgen.diagnose.select.search import SearchRound
+from vehgen.diagnose.select.ranking import SearchRound, does_as_well, merit
 
 
 def without_needless(chain: Sequence[ModelFit], detection: Detection, rounds: list[SearchRound]) -> list[ModelFit]:

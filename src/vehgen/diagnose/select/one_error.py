@@ -15,8 +15,7 @@ from vehgen.diagnose.inputs.judging import supposed_mistakes
 from vehgen.diagnose.result import Decided
 from vehgen.diagnose.select.criteria import is_told
 from vehgen.diagnose.select.fitter import Fitter
-from vehgen.diagnose.select.ranking import merit
-from vehgen.diagnose.select.search import SearchRound
+from vehgen.diagnose.select.ranking import SearchRound, merit
 from vehgen.effects import RunEffect
 from vehgen.effects.evidence import StartingPoint
 from vehgen.fit.parallel import HERE, Runner

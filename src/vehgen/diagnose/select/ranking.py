@@ -1,13 +1,32 @@
-"""What ranks fits of effects; of those that do as well a special case goes first, as its general case always does as well."""
+"""Rounds of fits, and what ranks them: of effects that do as well a special case goes first, as its general case always does as well."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.model_fit import ModelFit
+from vehgen.diagnose.localise.unknown_force import PlaceResult
+
+
+@dataclass(frozen=True)
+class SearchRound:
+    """One search for one effect: what the `current` model leaves, the places tested and passed, and the candidates fitted, best first.
+
+    `idle` are fits of freed base parameters alone that do as well as an effect whose fit freed them, and which is left out. `stopped` tells
+    that Ctrl-C ended it before all candidates were fitted, `faint` that candidates are judged by falls of -2 ln L, as chi shows no gap.
+    """
+
+    current: ModelFit
+    places: tuple[PlaceResult, ...]
+    passed: tuple[PlaceResult, ...]
+    fits: tuple[ModelFit, ...]
+    idle: tuple[ModelFit, ...] = ()
+    stopped: bool = False
+    faint: bool = False
 
 
 def merit(fit: ModelFit) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,10 +13,11 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.fits.screening import screen
 from vehgen.diagnose.localise.localisation import localise, none_explains, owner, shortlist
 from vehgen.diagnose.localise.unknown_force import PlaceResult
+from vehgen.diagnose.select.criteria import passes
 from vehgen.diagnose.select.early_end import MOST_AT_ONCE, settle
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
-from vehgen.diagnose.select.ranking import does_as_well, merit, simplest_first
+from vehgen.diagnose.select.ranking import SearchRound, does_as_well, merit, simplest_first
 from vehgen.fit.parallel import HERE, Runner
 
 DiagnosisProgress = Callable[[str, int, int, str], None]
@@ -32,23 +32,6 @@ LEADING = 3
 """So many of the best fits are settled, where their response jumps ..."""
 MAY_STILL_WIN = 2.0
 """... and which leave less than so many times the mean square of the best."""
-
-
-@dataclass(frozen=True)
-class SearchRound:
-    """One search for one effect: what the `current` model leaves, the places tested and passed, and the candidates fitted, best first.
-
-    `idle` are fits of freed base parameters alone that do as well as an effect whose fit freed them, and which is left out. `stopped` tells
-    that Ctrl-C ended it before all candidates were fitted, `faint` that candidates are judged by falls of -2 ln L, as chi shows no gap.
-    """
-
-    current: ModelFit
-    places: tuple[PlaceResult, ...]
-    passed: tuple[PlaceResult, ...]
-    fits: tuple[ModelFit, ...]
-    idle: tuple[ModelFit, ...] = ()
-    stopped: bool = False
-    faint: bool = False
 
 
 def search_round(
@@ -208,16 +191,15 @@ def fit_leading_again(fitter: Fitter, fits: Sequence[ModelFit], weigh: bool, run
     return tuple(simplest_first([*sorted(found, key=merit), *(sorted(rest, key=merit) if weigh else rest)], fitter.detection.base))
 
 
-def noise_by_its_law(detection: Detection, first: SearchRound) -> tuple[Detection, ModelFit] | None:
-    """Return a detection whose noise is told with the law that a gap's place asks for, and that law's fit; None where there is none.
+def noise_by_its_law(detection: Detection, first: SearchRound) -> Detection | None:
+    """Return a detection whose noise is told with the law that a gap's place asks for; None where that law does not close the gap then.
 
     A rough road shakes a vehicle that sticks otherwise than a linear one: by the noise of that, the right law may leave most of a gap.
     """
     places = {owner(item.place) for item in first.passed if item.place.rows and item.unknowns == 1}
     if not first.fits or first.fits[0].last.place not in places:
         return None
-    fitter = Fitter(detection, first.current, first.passed)
-    fitter.hopeless = np.inf
+    fitter = Fitter(detection, first.current, first.passed, hopeless=np.inf)
     fit, found = fitter.fit(first.fits[0].last), detection
     if fit is None or not any(trial.jumps for trial in fit.least_squares.misfit.problem.trials):
         return None
@@ -226,4 +208,4 @@ def noise_by_its_law(detection: Detection, first: SearchRound) -> tuple[Detectio
             break
         found = again
         fit = Fitter(found, found.base, ()).fit_again(fit)
-    return found, fit
+    return found if passes(fit, found.base) else None
