@@ -7,7 +7,7 @@ import pytest
 from benchmarks.hidden_effects.generator import Effect
 
 from tests.diagnose.conftest import CUBIC, HUMPS
-from vehgen.diagnose.detect.detection import believable
+from vehgen.diagnose.detect.detection import BELIEVED_SIGMAS, supposing
 from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.select.estimates import estimate
 from vehgen.diagnose.select.fitter import Fitter
@@ -27,7 +27,7 @@ def candidates_of(detection, names=NAMES):
 
 
 def tried(detection, strained=None, found=NOTHING, names=NAMES):
-    believed = believable(detection)
+    believed = supposing(detection, BELIEVED_SIGMAS)
     return one_error(strained or detection, believed, found, candidates_of(detection, names))
 
 
@@ -97,7 +97,7 @@ def test_none_is_tried_after_a_stop_or_beside_an_effect_of_the_vehicle(detection
 def test_what_a_fit_supposes_beyond_belief_is_held_within(detection_of):
     """The base of runs with a wrong gain supposes other gains of four standard deviations; held within, it is the believable one."""
     detection = detection_of(GAIN, runs=HUMPS)
-    held, believed = _within_belief(detection.base, detection), believable(detection).base
+    held, believed = _within_belief(detection.base, detection), supposing(detection, BELIEVED_SIGMAS).base
     largest = [max(abs(item.sigmas) for part in fit.parts for item in part.conditions()) for fit in (detection.base, held)]
     assert largest[0] > 3.9
     assert largest[1] <= 2.5 + 1e-9

@@ -8,7 +8,7 @@ from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose import wording
 from vehgen.diagnose.combining import Combiner
 from vehgen.diagnose.design.experiment import VISIBLE, propose_stronger
-from vehgen.diagnose.detect.detection import believable, look_again, run_gaps
+from vehgen.diagnose.detect.detection import BELIEVED_SIGMAS, FREE_SIGMAS, look_again, run_gaps, supposing
 from vehgen.diagnose.detect.odd_run import OddChannel, OddRun, disagreement
 from vehgen.diagnose.ending import Ending
 from vehgen.diagnose.fits.model_fit import ModelFit
@@ -27,7 +27,7 @@ from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.diagnose.select.group_members import with_members
 from vehgen.diagnose.select.needless import without_needless
 from vehgen.diagnose.select.one_cause import BEFORE, one_cause
-from vehgen.diagnose.select.one_error import explains_easily, one_error, price_of_belief
+from vehgen.diagnose.select.one_error import believable_law, explains_easily, one_error, price_of_belief
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.ranking import SearchRound, numbers_at_ends, own_numbers
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
@@ -68,13 +68,18 @@ class Decision(Ending):
 
     def _strained(self, mistakes: tuple[MeasurementFault, ...]) -> Decided:
         """Return the verdict where the base explains the runs, but supposes more of them than can be believed: an effect or a mistake."""
-        believed = believable(self.detection)
+        believed, free = (supposing(self.detection, most) for most in (BELIEVED_SIGMAS, FREE_SIGMAS))
+        if free.is_quiet and (sized := supposed_mistakes(free)):  # held at a bound, one error makes others
+            self.detection, self.base, mistakes = free, free.base, sized
         other = Decision(believed, self.effects, self.everything, self.progress, self.runner)
         other.notes += self.notes
         if believed.is_quiet:
             if price_of_belief(self.base, believed.base) > BELIEF_TOO_DEAR:
-                return other._one_mistake() or other._faint() or self._mistaken(mistakes)
-            return self._mistaken(left) if (left := supposed_mistakes(believed)) else self._one_cause() or other._quiet()
+                return other._one_mistake() or other._instead(self.base) or self._mistaken(mistakes)
+            if left := supposed_mistakes(believed):
+                return self._mistaken(left)
+            other.notes.append(wording.supposed([item.message for item in mistakes]))
+            return self._one_cause() or other._quiet()
         if mistaken := other._one_mistake():
             return mistaken
         found = other._explain_gap()
@@ -85,6 +90,12 @@ class Decision(Ending):
             other.notes, other.rounds = list(self.notes), [single]
             return other._name([single.fits[0]])
         return found if explains_easily(found) else self._mistaken(mistakes)
+
+    def _instead(self, strained: ModelFit) -> Decided | None:
+        """Return the verdict where a law of the vehicle explains what a strained base has to suppose of the runs."""
+        found = faint_round(self.detection, self._candidates(self.base), self.runner)
+        law = believable_law(found.fits, strained)
+        return self._faint(found) or (None if law is None else self._propose(wording.not_seen_again(self._words(law.last)), law))
 
     def _quiet(self) -> Decided:
         """Return the verdict where chi shows no gap: one error of all runs, a faint effect, runs that disagree, or nothing."""

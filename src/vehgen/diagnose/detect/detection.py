@@ -34,8 +34,8 @@ SAME_SQUARES = 0.1
 """Noises by which the mean squares of what a fit leaves differ by less in their logarithms are the same."""
 DETECTION_ROUNDS = 3
 """So often at most are the roads' part of the noise and an unknown recorder found, each from the fit with those before."""
-BELIEVED_SIGMAS = 2.5
-"""Errors of so many standard deviations need no explanation."""
+BELIEVED_SIGMAS, FREE_SIGMAS = 2.5, 20.0
+"""Errors of so many standard deviations need no explanation, and are as large as they will."""
 BAND_EDGES_HZ = (0.0, 3.0, 8.0, 15.0, np.inf)
 """Bands of the table of gaps [Hz]: rigid-body motion, between, wheel hop, above."""
 
@@ -191,10 +191,10 @@ def look_again(detection: Detection, fit: ModelFit) -> Detection | None:
     return _with_telling_runs(_detection(problem, validation_runs, floor, base, recorder, detection.asked_band))
 
 
-def believable(detection: Detection) -> Detection:
-    """Return a detection whose base supposes errors of runs and sensors of BELIEVED_SIGMAS at most."""
+def supposing(detection: Detection, most_sigmas: float) -> Detection:
+    """Return a detection whose base supposes errors of runs and sensors of so many standard deviations at most."""
     base = fit_base(
-        detection.problem, detection.validation_runs, detection.floor.noises, detection.band, detection.base, most_sigmas=BELIEVED_SIGMAS
+        detection.problem, detection.validation_runs, detection.floor.noises, detection.band, detection.base, most_sigmas=most_sigmas
     )
     return _detection(detection.problem, detection.validation_runs, detection.floor, base, detection.recorder, detection.asked_band)
 
