@@ -55,6 +55,8 @@ def test_what_was_recorded_is_unknown_and_what_was_not_is_sampled(tmp_path):
         ("{filter: bessel, cut_off: 45 Hz, delay: @50 s}", "the delay of a recorder is at most 1 s"),
         ("@{filter: bessel}", "a bessel low-pass lacks the key cut_off"),
         ("@{filter: none, cut_off: 45 Hz}", "a filter that is none has no cut_off"),
+        ("@{filter: ideal, cut_off: 45 Hz, order: 4}", "an ideal low-pass has no order"),
+        ("{filter: bessel, @cutoff: 45 Hz}", "unknown key 'cutoff'; did you mean 'cut_off'?"),
     ],
 )
 def test_a_recorder_that_cannot_be_is_refused_at_its_place(tmp_path, entry, message):

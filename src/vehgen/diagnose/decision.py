@@ -39,8 +39,8 @@ LOOK_AGAIN_SHARE = 0.5
 """Where the best candidate leaves no more than this share of the excess, recorder and profiles are judged by it."""
 MUCH_QUIETER = 2.0
 """Where noise is found to be less by so much than what candidates were last weighed by, all of them are weighed anew."""
-BELIEF_TOO_DEAR = 100.0
-"""Errors beyond belief without which -2 ln L rises by more are told, though chi stays quiet: by healthy runs it rose by 30 at most."""
+BELIEF_TOO_DEAR = 60.0
+"""Errors beyond belief without which -2 ln L rises by more are told, though chi stays quiet: by healthy runs it rose by 37 at most."""
 
 
 class Decision(Ending):
@@ -69,7 +69,7 @@ class Decision(Ending):
     def _strained(self, mistakes: tuple[MeasurementFault, ...]) -> Decided:
         """Return the verdict where the base explains the runs, but supposes more of them than can be believed: an effect or a mistake."""
         believed, free = (supposing(self.detection, most) for most in (BELIEVED_SIGMAS, FREE_SIGMAS))
-        if free.is_quiet and (sized := supposed_mistakes(free)):  # held at a bound, one error makes others
+        if free.is_quiet and price_of_belief(free.base, self.base) > 0 and (sized := supposed_mistakes(free)):  # held ones make others
             self.detection, self.base, mistakes = free, free.base, sized
         other = Decision(believed, self.effects, self.everything, self.progress, self.runner)
         other.notes += self.notes

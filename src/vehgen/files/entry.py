@@ -147,8 +147,9 @@ def _fields_beside(model: type[FileModel], path: tuple[int | str, ...]) -> Itera
         if _is_model(current):
             current = next((field.annotation for name, field in current.model_fields.items() if part in (name, field.alias)), None)
         else:  # dict[str, X], list[X], or a union whose chosen member `part` names
-            current = get_args(current)[-1] if get_args(current) else None
-        if type(None) in get_args(current):
+            members = get_args(current) or (None,)
+            current = next((item for item in members if _is_model(item) and item.__name__ in str(part)), members[-1])
+        if len(get_args(current)) == 2 and type(None) in get_args(current):
             current = get_args(current)[0]
     if _is_model(current):
         yield from (field.alias or name for name, field in current.model_fields.items() if name not in current.gathered)

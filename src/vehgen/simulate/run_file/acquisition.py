@@ -42,6 +42,8 @@ class AcquisitionEntry(FileModel):
             raise PydanticCustomError("joint", "a {filter} low-pass lacks the key cut_off, e.g. 45 Hz", {"filter": self.filter})
         if self.cut_off is not None and self.filter in WITHOUT_CUT_OFF:
             raise PydanticCustomError("joint", "a filter that is {filter} has no cut_off", {"filter": self.filter})
+        if self.filter == "ideal" and "order" in self.model_fields_set:
+            raise PydanticCustomError("joint", "an ideal low-pass has no order")
         return self
 
 
