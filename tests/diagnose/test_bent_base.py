@@ -19,6 +19,7 @@ from vehgen.diagnose.inputs.judging import plain_mistakes, recorded_mistakes
 from vehgen.diagnose.inputs.labels import label_hypotheses
 from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.diagnose.inputs.vehicle import axle_hypotheses
+from vehgen.measure.acquisition import POINT_SAMPLES, AcquisitionChain
 
 BAND = (0.5, 25.0)
 R_AZ, R_Q = 2, 3
@@ -194,6 +195,18 @@ def test_a_slow_recorder_is_told_where_it_is_all_that_is_supposed_and_no_effect_
     decision = Decision(detection_of(CUBIC, runs=HUMPS), [], False, lambda *_: None)
     found = decision._unknown(SimpleNamespace(fits=(), passed=(), idle=()), reason).verdict
     assert (found.verdict, found.faults) == (("measurement_fault", faults) if told else ("not_in_library", ()))
+
+
+@pytest.mark.parametrize("chain", [POINT_SAMPLES, AcquisitionChain("bessel", 2, 15.0)], ids=["point samples", "a low-pass"])
+def test_a_declared_low_pass_is_doubted_where_nothing_explains_the_runs(detection_of, chain):
+    """Behind 15 Hz where the recorder had 45, a healthy sedan ended without a word of the recorder."""
+    detection = detection_of(CUBIC, runs=HUMPS)
+    trials = [
+        replace(item, scenario=replace(item.scenario, chains=dict.fromkeys(item.channels, chain))) for item in detection.problem.trials
+    ]
+    declared = replace(detection, problem=detection.problem.with_trials(trials), validation_runs=(), recorder=None)
+    found = Decision(declared, [], False, lambda *_: None)._unknown(SimpleNamespace(fits=(), passed=(), idle=())).verdict
+    assert any("`acquisition`" in note for note in found.notes) == (chain != POINT_SAMPLES)
 
 
 def test_another_hump_is_found_by_refits_where_correlations_may_not_tell(trials_of):

@@ -130,6 +130,9 @@ class Ending:
             return self._mistaken(supposed)
         best = (len(first.fits), self._words(first.fits[0].last), float(np.sqrt(first.fits[0].training))) if first.fits else None
         self.notes += self._edge()
+        chains = [trial.scenario.chain(name) for trial in self.detection.trials for name in trial.channels]
+        if self.detection.recorder is None and not all(chain.filtering().is_point_sample for chain in chains):
+            self.notes.append("recorders were taken for what `acquisition` says of them: where that is a guess, write `unknown` instead")
         if supposed:
             self.notes.append(wording.supposed([item.message for item in supposed]))
         if first.fits:
