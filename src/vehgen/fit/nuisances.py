@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from vehgen.files.quantities import Spread
 from vehgen.fit.trial import Trial
+from vehgen.road import MeasuredProfile
 from vehgen.simulate.initial_state import initial_values
 from vehgen.simulate.run_file.acquisition import channel_chains
 from vehgen.simulate.run_scenario import ground_links
@@ -67,6 +68,9 @@ class Nuisances:
         Relative, of a road's height, and of a hump's length and form (see :meth:`vehgen.road.Hump.deformed`).
     wear
         Root of the mean square by which the edges of a hump are rounded [m]: worn edges, and tyres that bridge them.
+    odometer
+        Relative, of how long the way over a run's measured profile is: a profiler's odometer counts a little too much or too little. The
+        speed makes up for that but for how late one axle follows the other.
     clock
         Of each sensor's clock against the first's, run by run [s].
     lag
@@ -97,6 +101,7 @@ class Nuisances:
     form: float = 0.05
     skew: float = 0.03
     wear: float = 0.008
+    odometer: float = 0.002
     clock: float = 0.01
     lag: float = 0.0015
     gain: float = 0.01
@@ -125,6 +130,8 @@ class Nuisances:
             names += [Nuisance("wear", "", (1e3 * spread["wear"]) ** 2)]
         if has_road:
             names += [Nuisance("wander", f"{knot:.3g} s", spread["wander"], knot) for knot in wander_knots(trial)]
+        if any(isinstance(part, MeasuredProfile) for part in trial.scenario.track.parts):
+            names.append(Nuisance("odometer", "", spread["odometer"]))
         sensors = list(dict.fromkeys(channel.sensor for channel in trial.recording.channels))
         late = sensors[1:] if driven else sensors  # a release starts no clock
         names += [Nuisance("clock", sensor, spread["clock"]) for sensor in late]

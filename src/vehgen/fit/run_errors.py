@@ -27,8 +27,8 @@ class RunErrors:
 
     Numbers of errors `shape (size,)` count in standard deviations, the common ones first. `channels` holds name, sensor and quantity of
     every channel; `known` common errors [units], by name and place, that stand; `rate` is the recording's [Hz]; `forces` names the forces
-    that act, `ground` the links whose ground ends move, and `axles` the axles, in the model's order; `begin` tells the place
-    of an initial displacement or velocity in the state, by its error's name and place.
+    that act, `ground` the links whose ground ends move, `axles` the axles, in the model's order, and `behind` how far each runs behind the
+    first to arrive [m]; `begin` tells the place of an initial displacement or velocity in the state, by its error's name and place.
     """
 
     common: tuple[Nuisance, ...]
@@ -39,6 +39,7 @@ class RunErrors:
     forces: tuple[str, ...] = ()
     ground: tuple[str, ...] = ()
     axles: tuple[str, ...] = ()
+    behind: tuple[float, ...] = ()
     begin: Mapping[tuple[str, str], int] = field(default_factory=dict)
 
     @classmethod
@@ -47,8 +48,8 @@ class RunErrors:
         channels = tuple((item.name, item.sensor, item.quantity) for item in trial.recording.channels)
         model = trial.simulator.model
         begin = {(f"initial_{item.key}", item.owner): item.place for item in initial_values(trial.run, model)}
-        axles = tuple(model.layout.axles)
-        return cls(common, own, channels, known, 1 / trial.recording.dt, model.forces, ground_links(model), axles, begin)
+        axles, behind = tuple(model.layout.axles), tuple(model.wheel_offsets(trial.values).tolist())
+        return cls(common, own, channels, known, 1 / trial.recording.dt, model.forces, ground_links(model), axles, behind, begin)
 
     @property
     def items(self) -> tuple[Nuisance, ...]:
@@ -81,9 +82,10 @@ class RunErrors:
         )
 
     def _farther(self, numbers: Array) -> tuple[float, ...]:
-        """Return how much farther behind the first each axle runs [m]; nothing where all run as the vehicle file says."""
+        """Return how much farther behind the first each axle runs, by the road's odometer [m]; nothing where all run as the file says."""
         values = self._values(numbers)
-        found = tuple(values.get(("axle_position", axle), 0.0) for axle in self.axles)
+        longer = values.get(("odometer", ""), 0.0)
+        found = tuple(values.get(("axle_position", axle), 0.0) + longer * way for axle, way in zip(self.axles, self.behind, strict=True))
         return found if any(found) else ()
 
     def _begun(self, scenario: Scenario, numbers: Array) -> Scenario:

@@ -47,7 +47,7 @@ ABSENT = 1e6
 
 OF_NEW_RUNS = Nuisances(
     delay=0.05, speed=0.005, height=0.02, wander=0, length=0, form=0, skew=0, wear=0, clock=0, lag=0, gain=0, tilt=0, position=0,
-    axle_position=0, roll_off=0, edge=0, dispersion=0, edge_dispersion=0,
+    axle_position=0, odometer=0, roll_off=0, edge=0, dispersion=0, edge_dispersion=0,
 )  # fmt: skip
 """What a new run, driven with care, does not know of itself."""
 PHONE = {"acceleration": 0.0125, "pitch_rate": 5e-4}

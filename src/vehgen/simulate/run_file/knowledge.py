@@ -28,8 +28,9 @@ class UncertaintyEntry(FileModel):
     """How well a run knows itself and its sensors: standard deviations, those of a fit's errors (docs/measurement.md).
 
     Of the recording's begin (`delay`), the speed and how it changes along the run, the height of the road, the form of the hump and
-    the wear of its edges, how far each axle runs behind the first, the sensors' clocks against the first one's, their gyroscopes' lags,
-    gains, tilts and places, gain and offset of measured forces, gain of measured displacements.
+    the wear of its edges, the way over a measured profile (`odometer`), how far each axle runs behind the first, the sensors' clocks
+    against the first one's, their gyroscopes' lags, gains, tilts and places, gain and offset of measured forces, gain of measured
+    displacements.
     """
 
     delay: TimeDeviation | None = None
@@ -40,6 +41,7 @@ class UncertaintyEntry(FileModel):
     form: ShareSpread | None = None
     skew: ShareSpread | None = None
     wear: LengthDeviation | None = None
+    odometer: ShareSpread | None = None
     clock: TimeDeviation | None = None
     lag: TimeDeviation | None = None
     gain: ShareSpread | None = None
