@@ -35,7 +35,7 @@ SAME_SQUARES = 0.1
 DETECTION_ROUNDS = 3
 """So often at most are the roads' part of the noise and an unknown recorder found, each from the fit with those before."""
 BELIEVED_SIGMAS, FREE_SIGMAS = 2.5, 20.0
-"""Errors of so many standard deviations need no explanation, and are as large as they will."""
+"""Errors of so many standard deviations need no explanation; up to so many they may be as large as they will."""
 BAND_EDGES_HZ = (0.0, 3.0, 8.0, 15.0, np.inf)
 """Bands of the table of gaps [Hz]: rigid-body motion, between, wheel hop, above."""
 
