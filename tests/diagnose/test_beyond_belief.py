@@ -71,6 +71,20 @@ def test_a_law_that_supposes_nothing_is_told_in_place_of_errors_beyond_belief():
         assert believable_law([other], strained) is None
 
 
+@pytest.mark.parametrize("suits", [True, False])
+def test_a_law_that_is_not_seen_again_is_too_weak_to_name_but_no_mistake(monkeypatch, detection_of, suits):
+    law = SimpleNamespace(last="the law")
+    monkeypatch.setattr(decision, "faint_round", lambda *_: SimpleNamespace(fits=(law,)))
+    monkeypatch.setattr(decision, "believable_law", lambda fits, strained: fits[0] if suits else None)
+    monkeypatch.setattr(Decision, "_faint", lambda self, found: None)
+    monkeypatch.setattr(Decision, "_words", lambda self, last: last)
+    monkeypatch.setattr(Decision, "_propose", lambda self, reason, best: (reason, best))
+    detection = detection_of(runs=HUMPS)
+    told = Decision(detection, [], False, lambda *known: None)._instead(detection.base)
+    assert (told is not None) == suits
+    assert told is None or ("the law suits the runs" in told[0] and told[1] is law)
+
+
 def test_what_believable_errors_leave_is_told(monkeypatch, detection_of):
     detection = detection_of(runs=HUMPS)
     found = verdict_of(monkeypatch, detection, supposing(detection, BELIEVED_SIGMAS), ["cubic_stiffness"], (FAULT,))

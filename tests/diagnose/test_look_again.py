@@ -1,6 +1,7 @@
 """A second look at what a recorder and a profile did, once a better model fits: what was taken too large is taken back."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -109,6 +110,17 @@ def test_noise_is_told_by_the_law_of_the_place_where_nothing_is_named_by_the_bas
     assert not second
     assert [(item.name, item.place) for item in found.effects] == [("dry_friction", "rear")]
     assert found.gap.after < 1.05
+
+
+def test_ctrl_c_in_the_second_search_is_told(monkeypatch, detection_of):
+    detection = detection_of(CUBIC, runs=HUMPS)
+    monkeypatch.setattr(decision, "noise_by_its_law", lambda detection, first: detection)
+    for stopped in (True, False):
+        ended = SimpleNamespace(stopped=stopped, verdict=SimpleNamespace(effects=()))
+        monkeypatch.setattr(Decision, "_explain_gap", lambda self, by_law, ended=ended: ended)
+        first = Decision(detection, [], False, lambda stage, done, total, best: None)
+        assert first._by_its_law(SimpleNamespace()) is None
+        assert first.interrupted == stopped
 
 
 def test_noise_is_not_told_by_a_law_that_does_not_stick_nor_by_one_elsewhere(detection_of):
