@@ -7,7 +7,8 @@ import pytest
 import scipy.signal
 
 from tests.fit.profile_world import FINE, RATE, SIGMA, fine_channels, low_passed, misfit_of, read_run, rough_road
-from vehgen.fit.chain_estimate import estimate_chain, fine_response, trusted_band
+from vehgen.fit.chain_estimate import estimate_chain
+from vehgen.fit.fine_response import fine_response, trusted_band
 from vehgen.fit.nuisances import Nuisances
 
 

@@ -1,4 +1,4 @@
-"""Which low-pass was a recording made through? Chains tried on one stored response of a fitted model, and the band to trust without one.
+"""Which low-pass was a recording made through? Chains tried on one stored response of a fitted model.
 
 Every chain filters the finely sampled response of the base fit; what the fit's parameters and nuisances, held by their priors, can do about
 the whitened residual is projected out, and the sums of squares that are left are compared. A chain's group delay at low frequency is taken
@@ -14,18 +14,14 @@ import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
 
-from vehgen.codegen.decimation import Phases, decimate
+from vehgen.fit.fine_response import FineResponse, fine_response
 from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit, flatten
-from vehgen.fit.noise import Noise
 from vehgen.fit.nuisances import LOW_PASS
 from vehgen.fit.parallel import one_blas_thread
-from vehgen.fit.road_answer import road_answer
 from vehgen.fit.trial import Trial
-from vehgen.fit.window import taper
 from vehgen.measure.acquisition import POINT_SAMPLES, UNKNOWN, AcquisitionChain, FilterKind
-from vehgen.simulate.acquired import extended, kept_stride
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -43,42 +39,6 @@ SAME_GAIN = 0.05
 """Chains whose gains differ by less throughout the band are the same."""
 UNSEEN = 1e-12
 """A direction of the unknowns whose scaled curvature is below this share of the largest is left alone."""
-LOOK_AHEAD_S = 0.6
-"""How far beyond the recording's end responses are computed, for chains that look ahead [s]."""
-MAX_FOLDED_SHARE = 0.1
-"""Folded energy beyond this share of the noise's power spoils a spectral line: chi grows by 5 %."""
-SMOOTHED_HZ = 1.0
-"""Width over which folded energy is averaged [Hz]."""
-
-
-@dataclass(frozen=True)
-class FineResponse:
-    """A response between the samples of a recording.
-
-    Attributes
-    ----------
-    values
-        `shape (n_fine, n_channels)`, `ratio` of them a sample, beyond the recording's end.
-    dt
-        Their spacing [s].
-    ratio
-        How many of them lie from one sample to the next.
-    count
-        Number of the recording's samples.
-    skipped
-        Number of samples before the recording's first.
-    """
-
-    values: Array
-    dt: float
-    ratio: int
-    count: int
-    skipped: int = 0
-
-    def acquired(self, chains: Sequence[AcquisitionChain]) -> Array:
-        """Return the samples that chains, one a channel, make of it, `shape (count, n_channels)`."""
-        phases = Phases.of([chain.taps(self.dt) for chain in chains], self.ratio)
-        return np.asarray(decimate(self.values[None], phases, self.skipped + self.count, threads=1)[0][self.skipped :])
 
 
 @dataclass(frozen=True)
@@ -109,18 +69,6 @@ class ChainEstimate:
     others: tuple[ChainFit, ...]
     scale: float
     is_clear: bool
-
-
-def fine_response(misfit: Misfit, x: Array, number: int) -> FineResponse:
-    """Return what the channels of trial `number` show at unknowns x before any recorder, its adjustments of sensors left out."""
-    trial = misfit.problem.trials[number]
-    unit, scenario = misfit.split(x)[0], misfit.scenario(x, number)
-    stride = kept_stride(scenario)
-    ratio = scenario.decimation // stride
-    longer = extended(scenario, int(np.ceil(LOOK_AHEAD_S / (scenario.dt * scenario.decimation))))
-    fine = replace(longer, decimation=stride, chains={}, skipped=0)
-    values = np.array(misfit.problem.respond(misfit.problem.space.values(unit)[None], trial, fine)[0][0])
-    return FineResponse(values, fine.dt * stride, ratio, len(trial.recording.time), scenario.skipped)
 
 
 def estimate_chain(
@@ -155,39 +103,6 @@ def estimate_chain(
 def slowest_rate(trials: Sequence[Trial]) -> float:
     """Return the lowest rate at which any of the recordings was sampled [Hz]."""
     return min(1 / trial.recording.dt for trial in trials)
-
-
-def trusted_band(trial: Trial, fine: FineResponse, noise: Noise) -> float:
-    """Return the frequency [Hz] up to which energy folded from above half the sampling rate stays under MAX_FOLDED_SHARE of the noise.
-
-    Parameters
-    ----------
-    trial
-        A trial, whose recorder may have let everything pass.
-    fine
-        Its response before any recorder, of :func:`fine_response`.
-    noise
-        Its noise.
-    """
-    dt, n = trial.recording.dt, fine.count
-    fine_n = n * fine.ratio
-    grid = np.arange(fine_n) / fine.ratio
-    window = np.interp(grid, np.arange(n), taper(n, dt, trial.fade_in))
-    values = np.zeros((fine_n, fine.values.shape[1]))
-    kept = fine.values[fine.skipped * fine.ratio :][:fine_n]
-    values[: len(kept)] = kept
-    tapered = values * window[:, None]
-    frequency = np.asarray(np.fft.rfftfreq(n, dt), dtype=np.float64)
-    inside = (frequency > 0) & (frequency < 0.5 / dt)
-    whole = np.fft.rfft(tapered, axis=0)[: len(frequency)] / fine.ratio
-    folded = (np.fft.rfft(tapered[:: fine.ratio], axis=0) - whole)[inside]
-    power = np.abs(folded) ** 2 * 2 * dt / float((window[:: fine.ratio] ** 2).sum())
-    answer = road_answer(trial, frequency[inside], trial.values)
-    density = np.diagonal(noise.density(answer), axis1=1, axis2=2).real
-    width = max(1, round(SMOOTHED_HZ / float(frequency[1])))
-    share = np.apply_along_axis(np.convolve, 0, power / density, np.ones(width) / width, "same").max(axis=1)
-    spoilt = np.flatnonzero(share > MAX_FOLDED_SHARE)
-    return float(frequency[inside][spoilt[0]]) if len(spoilt) else 0.5 / dt
 
 
 @dataclass(frozen=True)

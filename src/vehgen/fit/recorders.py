@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vehgen.fit.chain_estimate import ChainEstimate, estimate_chain, fine_response, group_delay, trusted_band
+from vehgen.fit.chain_estimate import ChainEstimate, estimate_chain, group_delay
+from vehgen.fit.fine_response import fine_response, trusted_band
 from vehgen.fit.misfit import Array, Misfit
 from vehgen.fit.trial import Trial
 from vehgen.measure.acquisition import UNKNOWN, AcquisitionChain
