@@ -1,12 +1,10 @@
 """Which forces are not linear? The library of force laws, kin in one file, and laws that a file writes itself."""
 
 from vehgen.mechanics.laws.asymmetric_damping import ASYMMETRIC_DAMPING
-from vehgen.mechanics.laws.asymmetric_friction import ASYMMETRIC_FRICTION
 from vehgen.mechanics.laws.base import Kind, Law, LawParameter, LawState, LawStep
 from vehgen.mechanics.laws.bump_stop import BUMP_STOP
 from vehgen.mechanics.laws.custom import custom_law
-from vehgen.mechanics.laws.dry_friction import DRY_FRICTION
-from vehgen.mechanics.laws.elasto_plastic import ELASTO_PLASTIC
+from vehgen.mechanics.laws.friction import ASYMMETRIC_FRICTION, DRY_FRICTION, ELASTO_PLASTIC
 from vehgen.mechanics.laws.hysteresis import HYSTERESIS
 from vehgen.mechanics.laws.powers import CUBIC_STIFFNESS, QUADRATIC_DAMPING, QUADRATIC_STIFFNESS
 from vehgen.mechanics.laws.progressive_stiffness import PROGRESSIVE_STIFFNESS

@@ -1,4 +1,4 @@
-"""A mass on a spring on a body: what cabs, modules and seats have in common."""
+"""A mass on its own springs on a body: a load that moves, a cab on its mounts."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from operator import attrgetter
 
 from vehgen.effects.base import Change, EffectParameter, Symbols
+from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.locator import EffectSite
+from vehgen.effects.places import front_body, loading_bodies
 from vehgen.files.names import joined_name
 
 
@@ -59,3 +61,33 @@ def mass_parameters(frequencies: tuple[float, ...], share: tuple[float, ...]) ->
             of="the distance of the body's outermost supports, at least 1 m",
         ),
     )
+
+
+CARGO_MODULE_EFFECT = VehicleEffect(
+    name="cargo_module",
+    title="Cargo module",
+    equation="m z'' = k*(z_body - z) + c*(z_body' - z')",
+    meaning="a load, an engine or a building module that vibrates vertically on the body; its mass is cut out of the body's",
+    signature="a resonance with its antiresonance on that body, the same at every amplitude",
+    source="Wu & Li 2023, Sect. 2.5, doi:10.3390/s23249691",
+    attaches="body",
+    places=loading_bodies,
+    parameters=mass_parameters((3.0, 6.0), (0.15,)),
+    is_global=True,
+    edit=MassEdit("module"),
+)
+
+
+SUSPENDED_CAB_EFFECT = VehicleEffect(
+    name="suspended_cab",
+    title="Suspended cab",
+    equation="m z'' = k*(z_body - z) + c*(z_body' - z')",
+    meaning="the cab rides on its own springs; its mass is cut out of the body's",
+    signature="a resonance with its antiresonance at 1.5 to 6 Hz, strongest near the front axle",
+    source="T. D. Gillespie, Heavy Truck Ride, SAE Technical Paper 850001, 1985, doi:10.4271/850001",
+    attaches="body",
+    places=front_body,
+    parameters=mass_parameters((2.5, 4.5), (0.1,)),
+    is_global=True,
+    edit=MassEdit("cab"),
+)
