@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scipy.signal
 
 from tests.fit.recordings import sedan_truth, write_run
 from vehgen.calibrate.calibration import Settings, calibrate_problem
@@ -84,6 +85,21 @@ def test_a_recorder_that_no_file_declares_is_found_and_told(tmp_path):
     assert told.compared_to <= found.band[1]
     assert CalibrationSummary.from_dict(found.to_dict()).recorder == found.recorder
     assert {(item.name, item.place) for item in found.conditions} >= {("roll_off", "F"), ("dispersion", "R")}
+
+
+def test_low_passes_of_sensors_are_told_one_by_one(tmp_path):
+    run = write_run(tmp_path, "run", sedan_truth(), TRUE_SPEED)
+    file = tmp_path / "run.csv"
+    values = np.loadtxt(file, delimiter=",", skiprows=1)
+    values[:, 3:] = scipy.signal.lfilter(*scipy.signal.butter(2, 12.0, fs=1 / (values[1, 0] - values[0, 0])), values[:, 3:], axis=0)
+    np.savetxt(file, values, delimiter=",", header="t,F_az,F_q,R_az,R_q", comments="")
+    found = summarise(calibrate_problem(make_problem(load_trials([run])), Settings(search=GeneticSearch(1, 10, 0), starts=1)))
+    front, rear = found.recorder
+    assert (front.channels, rear.channels) == (("F_az", "F_q"), ("R_az", "R_q"))
+    assert rear.cut_off == pytest.approx(12.0, rel=0.1)
+    assert front.cut_off is None or front.cut_off > 30.0
+    assert front.told == rear.told
+    assert "(R_az, R_q)" in rear.told
 
 
 def test_a_declared_recorder_is_taken_as_it_is(summary):

@@ -276,6 +276,9 @@ def test_a_recorder_that_hides_wheel_hop_is_told_where_it_is_clear():
 
     (fault,) = slow_recorder(found(15.0, True), ("low", "high"))
     assert (fault.kind, fault.runs, fault.channels, fault.value) == ("low_pass", ("low", "high"), ("F_az", "F_q"), 15.0)
+    sensors = replace(found(40.0, True), apart=((("F_az",), found(15.0, True).estimate), (("R_az",), found(40.0, True).estimate)))
+    (fault,) = slow_recorder(sensors, ("low", "high"))
+    assert (fault.channels, fault.value) == (("F_az",), 15.0)
     assert slow_recorder(found(15.0, False), ("low",)) == slow_recorder(found(40.0, True), ("low",)) == slow_recorder(None, ()) == ()
 
 

@@ -8,7 +8,7 @@ import pytest
 from tests.fit.profile_world import FINE, SIGMA, fine_channels, low_passed, misfit_of, read_run, rough_road
 from vehgen.fit.chain_estimate import ChainEstimate, ChainFit, estimate_chain, group_delay
 from vehgen.fit.nuisances import Nuisances
-from vehgen.fit.recorders import FoundRecorder, find_recorder, has_unknown
+from vehgen.fit.recorders import FoundRecorder, clearest, find_recorder, has_unknown
 from vehgen.measure.acquisition import POINT_SAMPLES, AcquisitionChain
 
 BESSEL = AcquisitionChain("bessel", 2, 30.0)
@@ -76,6 +76,47 @@ def test_the_low_pass_found_leaves_noise_where_the_assumed_one_does_not(tmp_path
     assert chi2(*late_fit(trial, late)) > 3
 
 
+def two_recorders(channels, front, rear):
+    """Return samples of the sensors F and R through Butterworth low-passes of such orders and cut-offs [Hz]."""
+    return np.column_stack([low_passed(channels[:, :2], *front), low_passed(channels[:, 2:], *rear)])
+
+
+def test_sensors_have_low_passes_of_their_own_where_one_for_all_explains_far_less(tmp_path, rough):
+    road, channels = rough
+    late = {8: 0.8158 / 35.0, 2: 0.2251 / 20.0}
+    trial = read_run(tmp_path, two_recorders(channels, (8, 35.0), (2, 20.0)), 12.0, road)
+    misfit, x = late_fit(trial, late[8])
+    rear_clock = [(item.name, item.place) for item in misfit.conditions(x)].index(("clock", "R"))
+    x[misfit.n_parameters + rear_clock] = (late[2] - late[8]) / misfit.nuisances.clock
+    recorder = find_recorder(misfit, x)
+    (front, steep), (rear, soft) = recorder.apart
+    assert (front, rear) == (("F_az", "F_q"), ("R_az", "R_q"))
+    assert (steep.best.chain.filter, soft.best.chain.filter, soft.best.chain.order) == ("butterworth", "butterworth", 2)
+    assert steep.best.chain.cut_off == pytest.approx(35.0, rel=0.05)
+    assert soft.best.chain.cut_off == pytest.approx(20.0, rel=0.05)
+    (applied,) = recorder.applied([trial])
+    assert applied.scenario.chain("F_q") == steep.best.chain
+    assert applied.scenario.chain("R_az") == soft.best.chain
+    assert "differ" in recorder.describe()
+    assert f"at {soft.best.chain.cut_off:.3g} Hz (R_az, R_q)" in recorder.describe()
+    assert not recorder.is_like(replace(recorder, apart=()))
+    for factor, alike in ((1.05, True), (1.2, False)):
+        moved = replace(soft, best=replace(soft.best, chain=replace(soft.best.chain, cut_off=factor * soft.best.chain.cut_off)))
+        assert recorder.is_like(replace(recorder, apart=((front, steep), (rear, moved)))) is alike
+    assert not recorder.is_usual(100.0)
+    assert [bool(item.apart) for item in recorder.with_usual(100.0)][:2] == [True, False]
+
+
+@pytest.mark.parametrize("fault", ["none", "gain"])
+def test_sensors_share_a_low_pass_where_their_own_would_explain_little_more(tmp_path, rough, fault):
+    """With a sensor's gain wrong by a fifth a low-pass of its own would explain some of what is left, but no half of it."""
+    road, channels = rough
+    late = 0.4159 / 30.0
+    sampled = low_passed(channels, 4, 30.0) * (1.0, 1.0, 1.0 if fault == "none" else 1.2, 1.0)
+    recorder = find_recorder(*late_fit(read_run(tmp_path, sampled, 12.0, road), late))
+    assert recorder.apart == ()
+
+
 def test_where_every_chain_does_and_nothing_folds_the_band_stays(tmp_path):
     road = smooth_swell()
     trial = read_run(tmp_path, fine_channels(road, 4.0)[::FINE], 4.0, road)
@@ -137,6 +178,17 @@ def test_an_unusually_low_cut_off_is_compared_with_a_usual_one(chain, cut_offs):
     usual = AcquisitionChain("bessel", 8, 43.0)
     if len(tried) == 3:
         assert abs(group_delay(usual) + tried[1].chain.delay) < 1e-9
+
+
+@pytest.mark.parametrize(("squares", "stands"), [((900.0, 931.0, 950.0), 0), ((900.0, 925.0, 960.0), 1), ((900.0, 925.0, 950.0), 2)])
+def test_low_passes_of_their_own_stand_where_refits_leave_far_less(squares, stands):
+    """Where they do not, one for all stands, and an ideal one in its place where that does as well."""
+    known = ChainEstimate(ChainFit(BESSEL, 1.0), (ChainFit(IDEAL, 2.0),), 1.0, True)
+    shared = FoundRecorder(known, (0.5, 40.0), False, ("F_az", "R_az"))
+    own = replace(shared, apart=((("F_az",), known), (("R_az",), replace(known, best=ChainFit(replace(BESSEL, cut_off=45.0), 1.0)))))
+    tried = own.with_usual(85.0)
+    assert [item.chain.filter for item in tried] == ["bessel", "bessel", "ideal"]
+    assert clearest(tried, squares) == stands
 
 
 def test_rivals_are_chains_that_do_nearly_as_well():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -37,7 +37,6 @@ from vehgen.calibrate.step_intervals import step_uncertainties
 from vehgen.files.provenance import file_hashes, versions
 from vehgen.fit.parallel import Runner
 from vehgen.fit.prior_data import PriorData
-from vehgen.fit.recorders import FoundRecorder
 from vehgen.simulate.run_file.files_read import files_read
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.writing import quantity
@@ -110,7 +109,7 @@ def summarise(
         run_chi2=run_chi2(last.fits[0]) if last.fits else {},
         interval_inflation=1.0 if uncertainty is None else uncertainty.inflation,
         prior_data_advice=() if uncertainty is None else advise_prior_data(uncertainty, prior_data),
-        recorder=tuple(_recorder(step.step.label, step.recorder) for step in calibration.steps if step.recorder is not None),
+        recorder=tuple(_recorders(calibration)),
     )
 
 
@@ -161,10 +160,13 @@ def _noise(result: StepResult) -> tuple[NoiseSummary, ...]:
     return tuple(NoiseSummary(name, noise.sigma, noise.levels) for name, noise in noises.items())
 
 
-def _recorder(step: str, found: FoundRecorder) -> RecorderSummary:
-    chain = found.chain
-    clear, top = found.estimate.is_clear, found.band[1]
-    return RecorderSummary(step, found.channels, chain.filter, chain.order, chain.cut_off, clear, top, found.describe())
+def _recorders(calibration: Calibration) -> Iterator[RecorderSummary]:
+    for step in calibration.steps:
+        if (found := step.recorder) is None:
+            continue
+        for channels, known in found.parts:
+            low_pass = known.best.chain.filter, known.best.chain.order, known.best.chain.cut_off
+            yield RecorderSummary(step.step.label, channels, *low_pass, known.is_clear, found.band[1], found.describe())
 
 
 def provenance(calibration: Calibration, prior_data: PriorData | None) -> dict[str, Any]:

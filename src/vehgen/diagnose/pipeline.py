@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from vehgen.diagnose.collecting import collect
 from vehgen.diagnose.decision import Decision
@@ -60,14 +61,17 @@ def diagnose_trials(
 
 
 def with_evidence(found: Decided, progress: DiagnosisProgress) -> Diagnosis:
-    """Return the diagnosis with its evidence; Ctrl-C leaves out what takes long."""
+    """Return the diagnosis with its evidence, and a note where sensors had recorders of their own; Ctrl-C leaves out what takes long."""
+    recorder, verdict = found.models.detection.recorder, found.verdict
+    if recorder is not None and recorder.apart:
+        verdict = replace(verdict, notes=(*verdict.notes, recorder.describe()))
     try:
         progress("evidence", 0, 1, "")
         evidence, stopped = collect(found.models), found.stopped
         progress("evidence", 1, 1, "")
     except KeyboardInterrupt:
         evidence, stopped = collect(found.models, quick=True), True
-    return Diagnosis(found.verdict, stopped, evidence, found.models)
+    return Diagnosis(verdict, stopped, evidence, found.models)
 
 
 __all__ = ["Detection", "Diagnosis", "detect", "diagnose_trials", "localise", "search_round", "shortlist", "split_runs"]

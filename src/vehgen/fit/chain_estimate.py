@@ -39,6 +39,13 @@ SAME_GAIN = 0.05
 """Chains whose gains differ by less throughout the band are the same."""
 UNSEEN = 1e-12
 """A direction of the unknowns whose scaled curvature is below this share of the largest is left alone."""
+APART_NOTICED, APART_FALL = 30.0, 100.0
+"""Sensors have low-passes of their own where one of them, roughly sought, lets the sum of squares fall by the first of these, and all of
+them together by the second. What takes less off is no effect either (an effect is told from a fall of 150)."""
+APART_LEFT = 0.5
+"""They leave at most this share of what the mean square is above that of noise: a missing effect, too, passes in part for a low-pass."""
+APART_SWEEPS = 2
+"""So often each of them is sought, the others being as found before."""
 
 
 @dataclass(frozen=True)
@@ -71,9 +78,7 @@ class ChainEstimate:
     is_clear: bool
 
 
-def estimate_chain(
-    misfit: Misfit, x: Array, *, channels: Sequence[str] | None = None, prior_sigma: float = WEAK_PRIOR_SIGMA
-) -> ChainEstimate:
+def estimate_chain(misfit: Misfit, x: Array, *, channels: Sequence[str] | None = None) -> ChainEstimate:
     """Return the chain that explains the recordings best.
 
     Parameters
@@ -82,22 +87,11 @@ def estimate_chain(
         The base fit, its recorders' unknown low-passes assumed ideal.
     channels
         Those that share the chain that is sought (default: those with an unknown one; where there is none, all).
-    prior_sigma
-        Standard deviation of the parameters' prior about x, in the unit cube.
     """
     trials = misfit.problem.trials
     every = dict.fromkeys(name for trial in trials for name in trial.channels)
     unknown = [name for name in every if any(name in trial.channels and not trial.scenario.chain(name).is_known for trial in trials)]
-    search = _Search.of(misfit, x, tuple(channels or unknown or every), prior_sigma)
-    rate = slowest_rate(trials)
-    with one_blas_thread():  # tall and thin matrices: more threads only wait for one another
-        families = [search.fit(POINT_SAMPLES), search.fit(UNKNOWN.assumed(rate))]
-        families += [_best_cut_off(search, kind, order, rate) for kind, order in LOW_PASSES]
-    best, *others = sorted(families, key=lambda item: item.loss)
-    scale = max(1.0, best.loss / search.size)
-    rivals = (item for item in others if item.loss - best.loss < CLEAR_LOSS * scale)
-    clear = all(_alike(item.chain, best.chain, misfit.band) for item in rivals)
-    return ChainEstimate(best, tuple(others), scale, clear)
+    return ChainSearch.of(misfit, x).estimate(tuple(channels or unknown or every))
 
 
 def slowest_rate(trials: Sequence[Trial]) -> float:
@@ -106,7 +100,7 @@ def slowest_rate(trials: Sequence[Trial]) -> float:
 
 
 @dataclass(frozen=True)
-class _Search:
+class ChainSearch:
     """What the trial of a chain needs: stored responses, derivatives by the `free` unknowns without whitening, and these unknowns' priors.
 
     What stands for an unknown low-pass is not free: another chain is tried in its place.
@@ -114,20 +108,19 @@ class _Search:
 
     misfit: Misfit
     x: Array
-    channels: tuple[str, ...]
     responses: tuple[FineResponse, ...]
     slopes: tuple[Complex, ...]
     free: NDArray[np.bool_]
     priors: Array
 
     @classmethod
-    def of(cls, misfit: Misfit, x: Array, channels: tuple[str, ...], prior_sigma: float) -> _Search:
-        """Return what the trials of chains share at the unknowns `x shape (n_unknowns,)`; `prior_sigma` is that of a parameter."""
+    def of(cls, misfit: Misfit, x: Array) -> ChainSearch:
+        """Return what the trials of chains share at the unknowns `x shape (n_unknowns,)`; parameters have weak priors about it."""
         n, shared = misfit.n_parameters, len(misfit.shared)
         of_errors = np.array([item.name not in LOW_PASS for item in misfit.conditions(x)], dtype=bool)
         free = np.concatenate([np.ones(n + shared, dtype=bool), of_errors])
         x = misfit.without(x, LOW_PASS)  # what stood for other chains than the one that the fit was made through
-        weights = np.concatenate([np.full(n, 1 / prior_sigma), np.zeros(shared), np.ones(misfit.n_unknowns - n - shared)])
+        weights = np.concatenate([np.full(n, 1 / WEAK_PRIOR_SIGMA), np.zeros(shared), np.ones(misfit.n_unknowns - n - shared)])
         spectra = linearise(misfit, x).spectra
         slopes = []
         for t, (trial, white) in enumerate(zip(misfit.problem.trials, spectra, strict=True)):
@@ -136,21 +129,60 @@ class _Search:
             gain = np.where(np.abs(assumed) > SAME_GAIN, assumed, 1.0)
             slopes.append(np.asarray((inverse @ white[free][..., None])[..., 0] / gain))
         responses = tuple(fine_response(misfit, x, t) for t in range(len(misfit.problem.trials)))
-        return cls(misfit, x, channels, responses, tuple(slopes), free, np.diag(weights[free]))
+        return cls(misfit, x, responses, tuple(slopes), free, np.diag(weights[free]))
 
     @property
     def size(self) -> int:
         """Number of whitened residuals."""
         return sum(2 * item.shape[1] * item.shape[2] for item in self.slopes)
 
-    def fit(self, chain: AcquisitionChain) -> ChainFit:
-        """Return the loss of a chain, its group delay taken off."""
+    @property
+    def rate(self) -> float:
+        """The lowest rate of the recordings [Hz]."""
+        return slowest_rate(self.misfit.problem.trials)
+
+    def estimate(self, channels: Sequence[str], beside: Mapping[str, AcquisitionChain] | None = None) -> ChainEstimate:
+        """Return the chain that channels share, those of other channels being as runs declare them, or by channel as in `beside`."""
+        beside = beside or {}
+        with one_blas_thread():  # tall and thin matrices: more threads only wait for one another
+            families = [self.fit(chain, channels, beside) for chain in (POINT_SAMPLES, UNKNOWN.assumed(self.rate))]
+            families += [self._best_cut_off(kind, order, channels, beside) for kind, order in LOW_PASSES]
+        best, *others = sorted(families, key=lambda item: item.loss)
+        scale = max(1.0, best.loss / self.size)
+        rivals = (item for item in others if item.loss - best.loss < CLEAR_LOSS * scale)
+        clear = all(_alike(item.chain, best.chain, self.misfit.band) for item in rivals)
+        return ChainEstimate(best, tuple(others), scale, clear)
+
+    def estimate_apart(self, parts: Sequence[tuple[str, ...]], shared: ChainFit) -> list[ChainEstimate]:
+        """Return a chain for each of several sets of channels where these do far better than the one `shared` by all; nothing else."""
+        known = {name: shared.chain for part in parts for name in part}
+        if len(parts) < 2 or not any(self._is_noticed(part, known, shared.loss) for part in parts):
+            return []
+        found: list[ChainEstimate] = []
+        for _ in range(APART_SWEEPS):
+            found.clear()
+            for part in parts:
+                found.append(self.estimate(part, known))
+                known |= dict.fromkeys(part, found[-1].best.chain)
+        before, left = (max(loss / self.size - 1, 0.0) for loss in (shared.loss, found[-1].best.loss))
+        enough = shared.loss - found[-1].best.loss >= APART_FALL * found[-1].scale
+        return found if enough and left <= APART_LEFT * before else []
+
+    def _is_noticed(self, part: tuple[str, ...], beside: Mapping[str, AcquisitionChain], loss: float) -> bool:
+        """Return whether a chain of their own, roughly sought, does better for some channels than a loss."""
+        limit = loss - APART_NOTICED * max(1.0, loss / self.size)
+        chains = [POINT_SAMPLES, *(AcquisitionChain("butterworth", 4, float(share) * self.rate) for share in CUT_OFF_SHARES)]
+        return any(self.fit(chain, part, beside).loss <= limit for chain in chains)
+
+    def fit(self, chain: AcquisitionChain, channels: Sequence[str], beside: Mapping[str, AcquisitionChain]) -> ChainFit:
+        """Return the loss of a chain of some channels, its group delay taken off."""
         chain = replace(chain, delay=chain.delay - group_delay(chain))
+        known = {**beside, **dict.fromkeys(channels, chain)}
         residuals, slopes = [], []
         for t, trial in enumerate(self.misfit.problem.trials):
             rate = 1 / trial.recording.dt
-            known: Mapping[str, AcquisitionChain] = trial.scenario.chains
-            chains = [chain if name in self.channels else known.get(name, POINT_SAMPLES).assumed(rate) for name in trial.channels]
+            declared: Mapping[str, AcquisitionChain] = trial.scenario.chains
+            chains = [known[name] if name in known else declared.get(name, POINT_SAMPLES).assumed(rate) for name in trial.channels]
             response = self.responses[t].acquired(chains)[None]
             for i, item in enumerate(self.misfit.shared):
                 response = item.response(trial, response, self.misfit.adjusted(self.x)[i:])
@@ -162,6 +194,25 @@ class _Search:
         errors = self.misfit.split(self.x)[1]
         supposed = np.concatenate([np.zeros(len(self.x) - len(errors)), errors])  # errors are held about none, not about the fit's
         return ChainFit(chain, _projected(np.concatenate([*residuals, supposed[self.free]]), np.vstack([*slopes, self.priors])))
+
+    def _best_cut_off(self, kind: FilterKind, order: int, channels: Sequence[str], beside: Mapping[str, AcquisitionChain]) -> ChainFit:
+        """Return the best cut-off of a kind of low-pass."""
+        tried: dict[float, ChainFit] = {}
+
+        def loss(log_share: float) -> float:
+            chain = AcquisitionChain(kind, order, float(np.exp(log_share)) * self.rate)
+            tried[log_share] = self.fit(chain, channels, beside)
+            return tried[log_share].loss
+
+        grid = np.log(CUT_OFF_SHARES).tolist()
+        losses = [loss(item) for item in grid]
+        while losses[0] == min(losses) and grid[0] > np.log(LOWEST_SHARE):
+            grid.insert(0, 2 * grid[0] - grid[1])
+            losses.insert(0, loss(grid[0]))
+        i = int(np.argmin(losses))
+        ends = grid[max(i - 1, 0)], grid[min(i + 1, len(grid) - 1)]
+        scipy.optimize.minimize_scalar(loss, bounds=ends, method="bounded", options={"xatol": REFINED_SHARE, "maxiter": 8})
+        return min(tried.values(), key=lambda item: item.loss)
 
 
 def _projected(residual: Array, slopes: Array) -> float:
@@ -186,25 +237,6 @@ def group_delay(chain: AcquisitionChain) -> float:
         return 0.0
     low = np.array([0.01 * chain.cut_off])
     return float(-np.angle(replace(chain, delay=0.0).response(low))[0] / (2 * np.pi * low[0]))
-
-
-def _best_cut_off(search: _Search, kind: FilterKind, order: int, rate: float) -> ChainFit:
-    """Return the best cut-off of a kind of low-pass."""
-    tried: dict[float, ChainFit] = {}
-
-    def loss(log_share: float) -> float:
-        tried[log_share] = search.fit(AcquisitionChain(kind, order, float(np.exp(log_share)) * rate))
-        return tried[log_share].loss
-
-    grid = np.log(CUT_OFF_SHARES).tolist()
-    losses = [loss(item) for item in grid]
-    while losses[0] == min(losses) and grid[0] > np.log(LOWEST_SHARE):
-        grid.insert(0, 2 * grid[0] - grid[1])
-        losses.insert(0, loss(grid[0]))
-    i = int(np.argmin(losses))
-    ends = grid[max(i - 1, 0)], grid[min(i + 1, len(grid) - 1)]
-    scipy.optimize.minimize_scalar(loss, bounds=ends, method="bounded", options={"xatol": REFINED_SHARE, "maxiter": 8})
-    return min(tried.values(), key=lambda item: item.loss)
 
 
 def _alike(one: AcquisitionChain, other: AcquisitionChain, band: tuple[float, float]) -> bool:

@@ -1,4 +1,7 @@
-"""Unknown recorders made known: the low-pass that suits a fit best stands in every run, or the band ends where folding would spoil it."""
+"""Unknown recorders made known: the low-pass that suits a fit best stands in every run, or the band ends where folding would spoil it.
+
+One stands for all sensors, or each has its own where that explains far more.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vehgen.fit.chain_estimate import ChainEstimate, estimate_chain, group_delay
+from vehgen.fit.chain_estimate import ChainEstimate, ChainSearch, group_delay
 from vehgen.fit.fine_response import fine_response, trusted_band
 from vehgen.fit.misfit import Array, Misfit
 from vehgen.fit.trial import Trial
@@ -28,29 +31,46 @@ CLEAR_RECORDER = 30.0
 class FoundRecorder:
     """What stands for the recorders of `channels`, which no run file declares: the best `estimate`.
 
-    The compared `band` [Hz] is `cut` where several chains would do and folding might matter.
+    The compared `band` [Hz] is `cut` where several chains would do and folding might matter. `apart` are sets of channels, each a sensor's,
+    with estimates of their own in place of the one for all.
     """
 
     estimate: ChainEstimate
     band: tuple[float, float]
     cut: bool
     channels: tuple[str, ...]
+    apart: tuple[tuple[tuple[str, ...], ChainEstimate], ...] = ()
 
     @property
     def chain(self) -> AcquisitionChain:
-        """The chain that stands for unknown ones."""
+        """The chain that stands for unknown ones, where one stands for all."""
         return self.estimate.best.chain
+
+    @property
+    def parts(self) -> tuple[tuple[tuple[str, ...], ChainEstimate], ...]:
+        """Channels that share a chain, with its estimate: all of them, or each sensor's."""
+        return self.apart or ((self.channels, self.estimate),)
+
+    @property
+    def chains(self) -> dict[str, AcquisitionChain]:
+        """The chains that stand for unknown ones, by channel."""
+        return {name: known.best.chain for part, known in self.parts for name in part}
 
     def is_usual(self, rate: float) -> bool:
         """Return whether it cuts off where recorders of a rate [Hz] do, or not at all."""
-        return self.chain.cut_off is None or self.chain.filter == "ideal" or self.chain.cut_off >= UNUSUAL_SHARE * rate
+        edges = [chain.cut_off for chain in self.chains.values() if chain.filter != "ideal"]
+        return all(edge is None or edge >= UNUSUAL_SHARE * rate for edge in edges)
 
     def with_usual(self, rate: float) -> list[FoundRecorder]:
         """Return it, a like one that cuts off where recorders of such a rate [Hz] usually do, and an ideal one: what refits compare.
 
+        Where sensors have their own, what stands in place of that: one for all, with such others.
+
         How a chain is found supposes that all else answers in proportion. Where it does not, a low-pass that is too low, with a hump of
         other form, or a profile of other height, stands where the recorder takes off nothing.
         """
+        if self.apart:
+            return [self, *replace(self, apart=()).with_usual(rate)]
         ideal = min(
             (item for item in (self.estimate.best, *self.estimate.others) if item.chain.filter == "ideal"), key=lambda item: item.loss
         )
@@ -65,19 +85,20 @@ class FoundRecorder:
         return [self, *(item for item in others if item.chain != self.chain)]
 
     def nearly_as_good(self) -> list[FoundRecorder]:
-        """Return the chains that do nearly as well, the best first."""
+        """Return the chains for all that do nearly as well as the best one, the best first."""
         known = self.estimate
         near = [item for item in known.others if item.loss - known.best.loss < CLEAR_RECORDER * known.scale]
-        return [replace(self, estimate=replace(known, best=item, is_clear=False)) for item in near]
+        return [replace(self, estimate=replace(known, best=item, is_clear=False), apart=()) for item in near]
 
     def describe(self) -> str:
         """Return it in words."""
-        chain = self.chain
-        kind = {"none": "no low-pass at all", "ideal": "an ideal low-pass"}.get(chain.filter)
-        if kind is None:
-            kind = f"a {chain.filter} low-pass of order {chain.order} at {chain.cut_off:.3g} Hz"
-        text = f"the recorder's low-pass is not stated; the recordings look as if made through {kind}"
-        if not self.estimate.is_clear:
+        kinds = [_low_pass_words(known.best.chain) for _, known in self.parts]
+        if self.apart:
+            each = " and ".join(f"{kind} ({', '.join(part)})" for (part, _), kind in zip(self.parts, kinds, strict=True))
+            text = f"the recorders' low-passes are not stated, and differ: the recordings look as if made through {each}"
+        else:
+            text = f"the recorder's low-pass is not stated; the recordings look as if made through {kinds[0]}"
+        if not all(known.is_clear for _, known in self.parts):
             text += ", but others would do as well"
         if self.cut:
             text += f"; above {self.band[1]:.3g} Hz nothing is compared, as it may have been folded there: state `acquisition`"
@@ -87,7 +108,7 @@ class FoundRecorder:
         """Return trials whose unknown recorders are this one."""
         found = []
         for trial in trials:
-            chains = {name: self.chain if name in self.channels else trial.scenario.chain(name) for name in trial.channels}
+            chains = {name: self.chains.get(name) or trial.scenario.chain(name) for name in trial.channels}
             found.append(replace(trial, scenario=replace(trial.scenario, chains=chains)))
         return found
 
@@ -101,15 +122,25 @@ class FoundRecorder:
 
     def is_like(self, other: FoundRecorder) -> bool:
         """Return whether another one is of the same kind and cuts off at the same frequency."""
-        one, two = self.chain, other.chain
-        same = (one.filter, one.order, self.cut) == (two.filter, two.order, other.cut)
-        return same and abs((one.cut_off or 0.0) - (two.cut_off or 0.0)) <= SAME_CUT_OFF * (two.cut_off or 1.0)
+        pairs = [(chain, other.chains.get(name)) for name, chain in self.chains.items()]
+        return self.cut == other.cut and all(two is not None and _are_like(one, two) for one, two in pairs)
+
+
+def _low_pass_words(chain: AcquisitionChain) -> str:
+    known = {"none": "no low-pass at all", "ideal": "an ideal low-pass"}.get(chain.filter)
+    return known or f"a {chain.filter} low-pass of order {chain.order} at {chain.cut_off:.3g} Hz"
+
+
+def _are_like(one: AcquisitionChain, two: AcquisitionChain) -> bool:
+    same = (one.filter, one.order) == (two.filter, two.order)
+    return same and abs((one.cut_off or 0.0) - (two.cut_off or 0.0)) <= SAME_CUT_OFF * (two.cut_off or 1.0)
 
 
 def clearest(recorders: Sequence[FoundRecorder], squares: Sequence[float]) -> int:
     """Return which of recorders from :meth:`FoundRecorder.with_usual` stands, by the sums of squares that refits through them leave."""
     less = [0.0, *[CLEAR_RECORDER] * (len(recorders) - 1)]
-    return int(np.argmin(np.subtract(squares, less)))
+    best = int(np.argmin(np.subtract(squares, less)))
+    return 1 + clearest(recorders[1:], squares[1:]) if best and recorders[0].apart else best
 
 
 def has_unknown(trials: Sequence[Trial]) -> bool:
@@ -122,7 +153,8 @@ def find_recorder(
 ) -> FoundRecorder:
     """Return what stands for the unknown recorders of a fit's runs.
 
-    Where several chains would do, the band ends at the frequency up to which folding matters in no run.
+    Where several chains would do, the band ends at the frequency up to which folding matters in no run. Sensors have chains of their own
+    where these do far better than one for all.
 
     Parameters
     ----------
@@ -136,13 +168,28 @@ def find_recorder(
     trials, asked = misfit.problem.trials, band or misfit.band
     unknown = [name for trial in trials for name in trial.channels if not trial.scenario.chain(name).is_known]
     channels = tuple(channels or dict.fromkeys(unknown))
-    estimate = estimate_chain(misfit, x, channels=channels)
-    if estimate.is_clear and estimate.scale <= MOST_LEFT:
-        return FoundRecorder(estimate, asked, False, channels)
-    if estimate.scale > MOST_LEFT:
-        ideal = next(item for item in (estimate.best, *estimate.others) if item.chain.filter == "ideal")
-        rest = tuple(item for item in (estimate.best, *estimate.others) if item is not ideal)
-        estimate = replace(estimate, best=ideal, others=rest, is_clear=False)
+    search = ChainSearch.of(misfit, x)
+    shared = search.estimate(channels)
+    parts = _by_sensor(trials, channels)
+    own = search.estimate_apart(parts, shared.best)
+    apart = tuple(zip(parts, own, strict=True)) if own and own[-1].scale <= MOST_LEFT else ()
+    clear = shared.is_clear and shared.scale <= MOST_LEFT and all(known.is_clear for _, known in apart)
+    if shared.scale > MOST_LEFT:
+        ideal = next(item for item in (shared.best, *shared.others) if item.chain.filter == "ideal")
+        rest = tuple(item for item in (shared.best, *shared.others) if item is not ideal)
+        shared = replace(shared, best=ideal, others=rest, is_clear=False)
+    if clear:
+        return FoundRecorder(shared, asked, False, channels, apart)
     tops = [trusted_band(trial, fine_response(misfit, x, t), misfit.noises[trial.name]) for t, trial in enumerate(trials)]
     top = max(min([*tops, asked[1]]), asked[1] / 2)
-    return FoundRecorder(estimate, (asked[0], top), top < asked[1], channels)
+    return FoundRecorder(shared, (asked[0], top), top < asked[1], channels, apart)
+
+
+def _by_sensor(trials: Sequence[Trial], channels: Sequence[str]) -> list[tuple[str, ...]]:
+    """Return channels sensor by sensor: one recorder takes all that a sensor feels."""
+    found: dict[str, dict[str, None]] = {}
+    for trial in trials:
+        for item in trial.recording.channels:
+            if item.name in channels:
+                found.setdefault(item.sensor, {})[item.name] = None
+    return [tuple(names) for names in found.values()]

@@ -72,13 +72,13 @@ def rate_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
 
 def slow_recorder(recorder: FoundRecorder | None, runs: tuple[str, ...]) -> tuple[MeasurementFault, ...]:
     """Return that a recorder which nobody stated cuts off what a vehicle does, where a fit that leaves nothing has found so clearly."""
-    if recorder is None or not recorder.estimate.is_clear or recorder.chain.cut_off is None or recorder.chain.cut_off >= SLOW_RECORDER_HZ:
-        return ()
-    cutoff = recorder.chain.cut_off
-    message = (
-        f"{', '.join(recorder.channels)} {'was' if len(recorder.channels) == 1 else 'were'} low-passed at about {cutoff:.2g} Hz in all runs"
-    )
-    return (MeasurementFault("low_pass", runs, recorder.channels, message, FILTER_CURE, cutoff, "Hz"),)
+    found = []
+    for channels, known in () if recorder is None else recorder.parts:
+        cutoff = known.best.chain.cut_off
+        if known.is_clear and cutoff is not None and cutoff < SLOW_RECORDER_HZ:
+            message = f"{', '.join(channels)} {'was' if len(channels) == 1 else 'were'} low-passed at about {cutoff:.2g} Hz in all runs"
+            found.append(MeasurementFault("low_pass", runs, channels, message, FILTER_CURE, cutoff, "Hz"))
+    return tuple(found)
 
 
 def filter_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
