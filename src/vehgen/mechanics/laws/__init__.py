@@ -2,13 +2,11 @@
 
 from vehgen.mechanics.laws.asymmetric_damping import ASYMMETRIC_DAMPING
 from vehgen.mechanics.laws.base import Kind, Law, LawParameter, LawState, LawStep
-from vehgen.mechanics.laws.bump_stop import BUMP_STOP
 from vehgen.mechanics.laws.custom import custom_law
 from vehgen.mechanics.laws.friction import ASYMMETRIC_FRICTION, DRY_FRICTION, ELASTO_PLASTIC
-from vehgen.mechanics.laws.hysteresis import HYSTERESIS
+from vehgen.mechanics.laws.memory import HYSTERESIS, RELAXATION
 from vehgen.mechanics.laws.powers import CUBIC_STIFFNESS, QUADRATIC_DAMPING, QUADRATIC_STIFFNESS
-from vehgen.mechanics.laws.progressive_stiffness import PROGRESSIVE_STIFFNESS
-from vehgen.mechanics.laws.relaxation import RELAXATION
+from vehgen.mechanics.laws.stops import BUMP_STOP, PROGRESSIVE_STIFFNESS
 from vehgen.mechanics.laws.tyre_liftoff import TYRE_LIFTOFF
 
 LAWS: dict[str, Law] = {

@@ -1,4 +1,4 @@
-"""Bouc-Wen hysteresis."""
+"""Laws that remember: hysteresis (Bouc-Wen) and relaxation (Maxwell branch)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import sympy as sp
 from vehgen.mechanics.laws.base import Law, LawParameter, LawState, LawStep
 
 
-def _write(motion: LawState, p: Mapping[str, sp.Expr]) -> LawStep:
+def _hysteresis(motion: LawState, p: Mapping[str, sp.Expr]) -> LawStep:
     """Step z implicitly with |z| of mid-step lagged once: second order, no iteration.
 
     dz/dt = (v - (beta*|v|*|z| + (1 - beta)*v*z)*z)/travel is linear in z once the bracket is known.
@@ -37,6 +37,29 @@ HYSTERESIS = Law(
         LawParameter("travel", (0, 1, 0), "travel over which the loop develops", 5.0e-4, 0.02),
         LawParameter("beta", (0, 0, 0), "share of the loss that follows |v| (0.5: straight unloading)", 0.3, 1.0, 0.5),
     ),
-    write=_write,
+    write=_hysteresis,
     states=("z",),
+)
+
+
+def _relaxation(motion: LawState, p: Mapping[str, sp.Expr]) -> LawStep:
+    start = motion.states["s"]
+    half = motion.h / (2 * p["time"])
+    end = (start * (1 - half) + p["k"] * motion.h * motion.v) / (1 + half)
+    return LawStep(force=(start + end) / 2, states={"s": end}, now=start, slope=p["k"] * motion.h / 2)
+
+
+RELAXATION = Law(
+    name="relaxation",
+    title="Relaxation (Maxwell branch)",
+    equation="df/dt = k*v - f/time",
+    meaning="rubber mounts and dampers with soft tops: stiff against fast motions, yielding to slow ones",
+    source="W. N. Findley, J. S. Lai, K. Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials, 1976",
+    strength="k",
+    parameters=(
+        LawParameter("k", (1, -1, 0), "stiffness of the series spring", 0.0, 5.0e6),
+        LawParameter("time", (0, 0, 1), "relaxation time, dashpot over spring", 1.0e-3, 2.0),
+    ),
+    write=_relaxation,
+    states=("s",),
 )

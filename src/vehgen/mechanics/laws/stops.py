@@ -1,4 +1,4 @@
-"""Bump and rebound stops with clearance."""
+"""Springs that join in beyond a travel: a second stage in bump, stops either way."""
 
 from __future__ import annotations
 
@@ -9,7 +9,27 @@ import sympy as sp
 from vehgen.mechanics.laws.base import Law, LawParameter, LawState, LawStep, positive
 
 
-def _write(motion: LawState, p: Mapping[str, sp.Expr]) -> LawStep:
+def _progressive_stiffness(motion: LawState, p: Mapping[str, sp.Expr]) -> LawStep:
+    force = p["k"] * positive(motion.d - p["start"])
+    return LawStep(force=force, now=force, slope=p["k"] * motion.h / 2)
+
+
+PROGRESSIVE_STIFFNESS = Law(
+    name="progressive_stiffness",
+    title="Progressive stiffness",
+    equation="f = k*max(d - start, 0)",
+    meaning="a helper leaf, a second spring stage or a stop that joins in beyond a travel in bump, and nothing in rebound",
+    source="T. D. Gillespie, Fundamentals of Vehicle Dynamics, SAE, 1992, doi:10.4271/R-114",
+    strength="k",
+    parameters=(
+        LawParameter("k", (1, -1, 0), "stiffness added beyond `start`", 0.0, 2.0e6),
+        LawParameter("start", (0, 1, 0), "travel in bump at which it joins in", 0.0, 0.05),
+    ),
+    write=_progressive_stiffness,
+)
+
+
+def _bump_stop(motion: LawState, p: Mapping[str, sp.Expr]) -> LawStep:
     force = p["k"] * (positive(motion.d - p["clearance"]) - positive(-motion.d - p["rebound"]))
     return LawStep(force=force, now=force, slope=p["k"] * motion.h / 2)
 
@@ -26,5 +46,5 @@ BUMP_STOP = Law(
         LawParameter("clearance", (0, 1, 0), "travel in bump before the stop is met", 0.005, 0.1),
         LawParameter("rebound", (0, 1, 0), "travel in rebound before the stop is met (default: far away)", 0.005, 0.2, 1.0e3),
     ),
-    write=_write,
+    write=_bump_stop,
 )

@@ -1,4 +1,4 @@
-"""A spring that hardens with its travel, and a helper spring that joins in beyond some travel."""
+"""Springs that stiffen with travel: by its cube, beyond a travel in bump, at stops either way."""
 
 from __future__ import annotations
 
@@ -7,6 +7,45 @@ from operator import attrgetter
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.library.law_effect import suspension_law
 from vehgen.effects.locator import EffectSite
+
+BUMP_STOP_EFFECT = suspension_law(
+    name="bump_stop",
+    law="bump_stop",
+    special_case="progressive_stiffness",  # where the stop in rebound is never met
+    signature="sharp peaks of acceleration when travel passes a threshold; nothing below it",
+    parameters=(
+        EffectParameter(
+            "k",
+            "N/m",
+            "stiffness of the stops",
+            low=0.5,
+            high=30.0,
+            starts=(6.0,),
+            scale=attrgetter("k"),
+            of="the stiffness there",
+        ),
+        EffectParameter(
+            "clearance",
+            "m",
+            "travel in bump before the stop is met",
+            low=0.05,
+            high=4.0,
+            starts=(0.5, 1.2, 2.0),
+            scale=attrgetter("travel"),
+            of="a typical travel",
+        ),
+        EffectParameter(
+            "rebound",
+            "m",
+            "travel in rebound before the stop is met",
+            low=0.05,
+            high=6.0,
+            starts=(1.5,),
+            scale=attrgetter("travel"),
+            of="a typical travel",
+        ),
+    ),
+)
 
 
 def _size(site: EffectSite) -> float:
