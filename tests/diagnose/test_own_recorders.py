@@ -1,4 +1,4 @@
-"""Sensors behind recorders of their own, which no file declares: neither a missing effect, nor taken for one."""
+"""Sensors behind recorders of their own, and behind others than run files say: neither is a missing effect, nor taken for one."""
 
 from dataclasses import replace
 
@@ -7,11 +7,17 @@ import pytest
 import scipy.signal
 
 from tests.diagnose.conftest import CUBIC, HUMPS, edited
+from vehgen.diagnose import decision
 from vehgen.diagnose.decision import Decision
 from vehgen.diagnose.detect.detection import detect
+from vehgen.diagnose.inputs.fault import MeasurementFault
+from vehgen.diagnose.inputs.recorders import wrongly_declared
 from vehgen.diagnose.pipeline import with_evidence
+from vehgen.diagnose.select.ranking import SearchRound
 from vehgen.fit import chain_estimate
-from vehgen.measure.acquisition import UNKNOWN
+from vehgen.fit.chain_estimate import ChainEstimate, ChainFit, ChainSearch
+from vehgen.fit.recorders import FoundRecorder
+from vehgen.measure.acquisition import POINT_SAMPLES, UNKNOWN, AcquisitionChain
 
 REAR_HZ = 20.0
 
@@ -38,7 +44,7 @@ def test_a_healthy_vehicle_behind_two_recorders_lacks_nothing(trials_of, monkeyp
     assert found.chi < 1.03
     (note,) = with_evidence(Decision(found, [], False, lambda *_: None)._nothing(), lambda *_: None).verdict.notes
     assert note.startswith("the recorders' low-passes are not stated, and differ")
-    monkeypatch.setattr(chain_estimate, "APART_FALL", np.inf)
+    monkeypatch.setattr(chain_estimate, "FAR_BETTER", np.inf)
     shared = detect(trials)
     assert shared.recorder is not None
     assert shared.recorder.apart == ()
@@ -50,3 +56,47 @@ def test_a_missing_effect_is_not_taken_for_low_passes_of_the_sensors(trials_of):
     assert found.recorder is not None
     assert found.recorder.apart == ()
     assert not found.is_quiet
+
+
+SLOW = AcquisitionChain("butterworth", 4, 12.0)
+
+
+def declared(trials, **chains):
+    """Return trials whose run files say of channels what `chains` has by sensor."""
+    found = []
+    for item in trials:
+        stated = {name: chains.get(name[0], POINT_SAMPLES) for name in item.channels}
+        found.append(replace(item, scenario=replace(item.scenario, chains=stated)))
+    return found
+
+
+def test_a_recorder_that_is_not_what_run_files_say_is_told(trials_of):
+    (fault,) = wrongly_declared(detect(declared(trials_of(runs=HUMPS), F=SLOW)))
+    assert (fault.kind, fault.channels) == ("recorder", ("F_az", "F_q"))
+    assert "`acquisition` says a butterworth low-pass of order 4 at 12 Hz, but the recordings look as if made through" in fault.message
+    assert fault.value is None or fault.value > 30.0
+
+
+def test_a_recorder_that_is_what_run_files_say_is_not_blamed_for_an_effect(detection_of):
+    assert wrongly_declared(detection_of(CUBIC, runs=HUMPS)) == ()
+
+
+def test_what_nobody_declares_cannot_be_declared_wrongly(detection_of, monkeypatch):
+    monkeypatch.setattr(ChainSearch, "of", None)  # a search would fail
+    detection = detection_of(CUBIC, runs=HUMPS)
+    sought = FoundRecorder(ChainEstimate(ChainFit(SLOW, 1.0), (), 1.0, True), (0.5, 40.0), False, ("F_az", "F_q", "R_az", "R_q"))
+    assert wrongly_declared(replace(detection, recorder=sought)) == ()
+
+
+@pytest.mark.parametrize("faint", [False, True])
+def test_a_wrong_declaration_is_told_before_any_effect(detection_of, monkeypatch, faint):
+    fault = MeasurementFault("recorder", (), ("F_az",), "F_az: `acquisition` says otherwise", "write unknown")
+    monkeypatch.setattr(decision, "wrongly_declared", lambda detection: (fault,))
+    monkeypatch.setattr(decision, "plain_mistakes", lambda detection: ())
+    monkeypatch.setattr(decision, "faint_look_again", lambda found, detection, runner: (found, detection))
+    monkeypatch.setattr(decision, "faintly_told", lambda found, detection: found.current)
+    detection = detection_of(CUBIC, runs=HUMPS)
+    made = Decision(detection, [], False, lambda *_: None)
+    told = made._faint(SearchRound(detection.base, (), (), ())) if faint else made.decide()
+    assert told is not None
+    assert (told.verdict.verdict, told.verdict.faults) == ("measurement_fault", (fault,))

@@ -13,10 +13,10 @@ from vehgen.diagnose.detect.odd_run import OddChannel, OddRun, disagreement
 from vehgen.diagnose.ending import Ending
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.checks import variety_notes
-from vehgen.diagnose.inputs.conditions import alike_in_all_runs
 from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.humps import exchanged_humps
 from vehgen.diagnose.inputs.judging import moved_axles, odd_mistake, plain_mistakes, recorded_mistakes, supposed_mistakes
+from vehgen.diagnose.inputs.recorders import wrongly_declared
 from vehgen.diagnose.localise.localisation import localise
 from vehgen.diagnose.result import Decided
 from vehgen.diagnose.select.criteria import fall, freed_instead, p_value_of, passes
@@ -63,7 +63,7 @@ class Decision(Ending):
             if mistakes := supposed_mistakes(detection):
                 return self._strained(mistakes)
             return self._quiet()
-        mistakes = plain_mistakes(detection)
+        mistakes = plain_mistakes(detection) or wrongly_declared(detection)
         return self._mistaken(mistakes) if mistakes else self._explain_gap()
 
     def _strained(self, mistakes: tuple[MeasurementFault, ...]) -> Decided:
@@ -130,6 +130,8 @@ class Decision(Ending):
             best = faintly_told(found, detection)
         if best is None:
             return None
+        if mistakes := wrongly_declared(self.detection):
+            return self._mistaken(mistakes)
         self.notes.append(wording.faint(self.detection.chi, fall(found, best), validation_fall(found.current, best)))
         self.detection, self.base = detection, detection.base
         self.rounds[:], self.chain = [found], [best]
@@ -240,11 +242,6 @@ class Decision(Ending):
         """Whether the library has been tried, now if not before, and nothing of it passes."""
         first = (self.rounds or [self._search_round(self.base)])[0]
         return not first.stopped and not any(passes(fit, self.base) for fit in first.fits[:1])
-
-    def _nothing(self) -> Decided:
-        conditions = [item for part in self.base.parts for item in part.conditions()]
-        self.notes += [*alike_in_all_runs(conditions, [trial.name for trial in self.detection.trials]), *self._edge()]
-        return self._end("no_missing_effect", wording.no_missing_effect(self.detection.chi))
 
     def _too_weak(self, first: SearchRound, best: ModelFit, good: bool) -> Decided | None:
         """Return the verdict where the best effect is not told from chance, from random laws, or by the validation runs."""

@@ -13,6 +13,7 @@ from vehgen.diagnose.collecting import run_chis
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.model_fit import ModelFit
+from vehgen.diagnose.inputs.conditions import alike_in_all_runs
 from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.judging import Undone, explain_gap, find_mistakes, supposed_mistakes
 from vehgen.diagnose.localise.free_form import FreeForm, fit_free_form, recover, strongest
@@ -120,6 +121,11 @@ class Ending:
         fits = self.rounds[0].fits if self.rounds else ()
         best = (self._words(fits[0].last), float(np.sqrt(fits[0].training))) if fits else None
         return self._end("insufficient_data", wording.stopped(len(fits), best), "let the diagnosis run to its end")
+
+    def _nothing(self) -> Decided:
+        conditions = [item for part in self.base.parts for item in part.conditions()]
+        self.notes += [*alike_in_all_runs(conditions, [trial.name for trial in self.detection.trials]), *self._edge()]
+        return self._end("no_missing_effect", wording.no_missing_effect(self.detection.chi))
 
     def _out_of_range(self, freed: ModelFit) -> Decided:
         return self._end("insufficient_data", wording.out_of_range(freed_ratios(freed)), "check the file, or calibrate first")

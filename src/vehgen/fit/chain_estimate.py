@@ -2,7 +2,8 @@
 
 Every chain filters the finely sampled response of the base fit; what the fit's parameters and nuisances, held by their priors, can do about
 the whitened residual is projected out, and the sums of squares that are left are compared. A chain's group delay at low frequency is taken
-off it: the base fit's clock has found it already, and a delay of a clock says nothing about a filter.
+off it: the base fit's clock has found it already, and a delay of a clock says nothing about a filter. What stands in a chain's place that a
+run file declares is late by its own, for which the clock has not to make up.
 """
 
 from __future__ import annotations
@@ -29,6 +30,8 @@ CLEAR_LOSS = 10.0
 """A chain is clear where nothing that differs from it comes within this of its sum of squares, chi2 = 1."""
 LOW_PASSES: tuple[tuple[FilterKind, int], ...] = tuple((kind, order) for kind in ("butterworth", "bessel") for order in (2, 4, 8))
 """Kinds and orders tried."""
+ROUGH_LOW_PASSES: tuple[tuple[FilterKind, int], ...] = (("bessel", 2), ("butterworth", 4))
+"""A soft and a steep one, where chains are roughly sought."""
 CUT_OFF_SHARES = np.geomspace(0.15, 0.5, 7)
 """Cut-offs first tried, over the recording's rate."""
 LOWEST_SHARE = 0.03
@@ -39,10 +42,10 @@ SAME_GAIN = 0.05
 """Chains whose gains differ by less throughout the band are the same."""
 UNSEEN = 1e-12
 """A direction of the unknowns whose scaled curvature is below this share of the largest is left alone."""
-APART_NOTICED, APART_FALL = 30.0, 100.0
+ROUGHLY_BETTER, FAR_BETTER = 30.0, 100.0
 """Sensors have low-passes of their own where one of them, roughly sought, lets the sum of squares fall by the first of these, and all of
 them together by the second. What takes less off is no effect either (an effect is told from a fall of 150)."""
-APART_LEFT = 0.5
+FAR_BETTER_LEFT = 0.5
 """They leave at most this share of what the mean square is above that of noise: a missing effect, too, passes in part for a low-pass."""
 APART_SWEEPS = 2
 """So often each of them is sought, the others being as found before."""
@@ -156,7 +159,8 @@ class ChainSearch:
     def estimate_apart(self, parts: Sequence[tuple[str, ...]], shared: ChainFit) -> list[ChainEstimate]:
         """Return a chain for each of several sets of channels where these do far better than the one `shared` by all; nothing else."""
         known = {name: shared.chain for part in parts for name in part}
-        if len(parts) < 2 or not any(self._is_noticed(part, known, shared.loss) for part in parts):
+        noticed = shared.loss - ROUGHLY_BETTER * max(1.0, shared.loss / self.size)
+        if len(parts) < 2 or not any(self.rough_loss(part, known) <= noticed for part in parts):
             return []
         found: list[ChainEstimate] = []
         for _ in range(APART_SWEEPS):
@@ -164,25 +168,30 @@ class ChainSearch:
             for part in parts:
                 found.append(self.estimate(part, known))
                 known |= dict.fromkeys(part, found[-1].best.chain)
-        before, left = (max(loss / self.size - 1, 0.0) for loss in (shared.loss, found[-1].best.loss))
-        enough = shared.loss - found[-1].best.loss >= APART_FALL * found[-1].scale
-        return found if enough and left <= APART_LEFT * before else []
+        return found if self.is_far_better(found[-1].best.loss, shared.loss) else []
 
-    def _is_noticed(self, part: tuple[str, ...], beside: Mapping[str, AcquisitionChain], loss: float) -> bool:
-        """Return whether a chain of their own, roughly sought, does better for some channels than a loss."""
-        limit = loss - APART_NOTICED * max(1.0, loss / self.size)
-        chains = [POINT_SAMPLES, *(AcquisitionChain("butterworth", 4, float(share) * self.rate) for share in CUT_OFF_SHARES)]
-        return any(self.fit(chain, part, beside).loss <= limit for chain in chains)
+    def is_far_better(self, loss: float, than: float) -> bool:
+        """Return whether chains that leave a loss explain so much more than others that these cannot be the right ones."""
+        left, before = (max(item / self.size - 1, 0.0) for item in (loss, than))
+        return than - loss >= FAR_BETTER * max(1.0, loss / self.size) and left <= FAR_BETTER_LEFT * before
+
+    def rough_loss(self, channels: Sequence[str], beside: Mapping[str, AcquisitionChain]) -> float:
+        """Return what a chain of some channels leaves, roughly sought, the others as in :meth:`estimate`."""
+        edges = [float(share) * self.rate for share in CUT_OFF_SHARES[::2]]
+        chains = [POINT_SAMPLES, *(AcquisitionChain(kind, order, edge) for kind, order in ROUGH_LOW_PASSES for edge in edges)]
+        return min(self.fit(chain, channels, beside).loss for chain in chains)
 
     def fit(self, chain: AcquisitionChain, channels: Sequence[str], beside: Mapping[str, AcquisitionChain]) -> ChainFit:
         """Return the loss of a chain of some channels, its group delay taken off."""
         chain = replace(chain, delay=chain.delay - group_delay(chain))
-        known = {**beside, **dict.fromkeys(channels, chain)}
+        return ChainFit(chain, self.loss({**beside, **dict.fromkeys(channels, chain)}))
+
+    def loss(self, known: Mapping[str, AcquisitionChain]) -> float:
+        """Return the sum of squares that chains leave, by channel; those of other channels are as runs declare them."""
         residuals, slopes = [], []
         for t, trial in enumerate(self.misfit.problem.trials):
-            rate = 1 / trial.recording.dt
-            declared: Mapping[str, AcquisitionChain] = trial.scenario.chains
-            chains = [known[name] if name in known else declared.get(name, POINT_SAMPLES).assumed(rate) for name in trial.channels]
+            stated = [trial.scenario.chain(name).assumed(1 / trial.recording.dt) for name in trial.channels]
+            chains = [_as_late(known[name], own) if name in known else own for name, own in zip(trial.channels, stated, strict=True)]
             response = self.responses[t].acquired(chains)[None]
             for i, item in enumerate(self.misfit.shared):
                 response = item.response(trial, response, self.misfit.adjusted(self.x)[i:])
@@ -193,7 +202,7 @@ class ChainSearch:
             slopes.append(flatten(self.misfit.whiten(t, self.slopes[t] * factors), first=1).T)
         errors = self.misfit.split(self.x)[1]
         supposed = np.concatenate([np.zeros(len(self.x) - len(errors)), errors])  # errors are held about none, not about the fit's
-        return ChainFit(chain, _projected(np.concatenate([*residuals, supposed[self.free]]), np.vstack([*slopes, self.priors])))
+        return _projected(np.concatenate([*residuals, supposed[self.free]]), np.vstack([*slopes, self.priors]))
 
     def _best_cut_off(self, kind: FilterKind, order: int, channels: Sequence[str], beside: Mapping[str, AcquisitionChain]) -> ChainFit:
         """Return the best cut-off of a kind of low-pass."""
@@ -237,6 +246,11 @@ def group_delay(chain: AcquisitionChain) -> float:
         return 0.0
     low = np.array([0.01 * chain.cut_off])
     return float(-np.angle(replace(chain, delay=0.0).response(low))[0] / (2 * np.pi * low[0]))
+
+
+def _as_late(chain: AcquisitionChain, other: AcquisitionChain) -> AcquisitionChain:
+    """Return a chain that is late by nothing at low frequency, made as late there as another one."""
+    return replace(chain, delay=chain.delay + other.delay + group_delay(other))
 
 
 def _alike(one: AcquisitionChain, other: AcquisitionChain, band: tuple[float, float]) -> bool:

@@ -92,7 +92,7 @@ class FoundRecorder:
 
     def describe(self) -> str:
         """Return it in words."""
-        kinds = [_low_pass_words(known.best.chain) for _, known in self.parts]
+        kinds = [low_pass_words(known.best.chain) for _, known in self.parts]
         if self.apart:
             each = " and ".join(f"{kind} ({', '.join(part)})" for (part, _), kind in zip(self.parts, kinds, strict=True))
             text = f"the recorders' low-passes are not stated, and differ: the recordings look as if made through {each}"
@@ -114,11 +114,7 @@ class FoundRecorder:
 
     def forgotten(self, trials: Sequence[Trial]) -> list[Trial]:
         """Return trials on which this one stands with recorders that are unknown again."""
-        found = []
-        for trial in trials:
-            chains = {name: UNKNOWN if name in self.channels else trial.scenario.chain(name) for name in trial.channels}
-            found.append(replace(trial, scenario=replace(trial.scenario, chains=chains)))
-        return found
+        return with_unknown(trials, self.channels)
 
     def is_like(self, other: FoundRecorder) -> bool:
         """Return whether another one is of the same kind and cuts off at the same frequency."""
@@ -126,7 +122,8 @@ class FoundRecorder:
         return self.cut == other.cut and all(two is not None and _are_like(one, two) for one, two in pairs)
 
 
-def _low_pass_words(chain: AcquisitionChain) -> str:
+def low_pass_words(chain: AcquisitionChain) -> str:
+    """Return a chain's low-pass in words."""
     known = {"none": "no low-pass at all", "ideal": "an ideal low-pass"}.get(chain.filter)
     return known or f"a {chain.filter} low-pass of order {chain.order} at {chain.cut_off:.3g} Hz"
 
@@ -141,6 +138,15 @@ def clearest(recorders: Sequence[FoundRecorder], squares: Sequence[float]) -> in
     less = [0.0, *[CLEAR_RECORDER] * (len(recorders) - 1)]
     best = int(np.argmin(np.subtract(squares, less)))
     return 1 + clearest(recorders[1:], squares[1:]) if best and recorders[0].apart else best
+
+
+def with_unknown(trials: Sequence[Trial], channels: Sequence[str]) -> list[Trial]:
+    """Return trials with the recorders of channels unknown."""
+    found = []
+    for trial in trials:
+        chains = {name: UNKNOWN if name in channels else trial.scenario.chain(name) for name in trial.channels}
+        found.append(replace(trial, scenario=replace(trial.scenario, chains=chains)))
+    return found
 
 
 def has_unknown(trials: Sequence[Trial]) -> bool:
@@ -170,7 +176,7 @@ def find_recorder(
     channels = tuple(channels or dict.fromkeys(unknown))
     search = ChainSearch.of(misfit, x)
     shared = search.estimate(channels)
-    parts = _by_sensor(trials, channels)
+    parts = by_sensor(trials, channels)
     own = search.estimate_apart(parts, shared.best)
     apart = tuple(zip(parts, own, strict=True)) if own and own[-1].scale <= MOST_LEFT else ()
     clear = shared.is_clear and shared.scale <= MOST_LEFT and all(known.is_clear for _, known in apart)
@@ -185,7 +191,7 @@ def find_recorder(
     return FoundRecorder(shared, (asked[0], top), top < asked[1], channels, apart)
 
 
-def _by_sensor(trials: Sequence[Trial], channels: Sequence[str]) -> list[tuple[str, ...]]:
+def by_sensor(trials: Sequence[Trial], channels: Sequence[str]) -> list[tuple[str, ...]]:
     """Return channels sensor by sensor: one recorder takes all that a sensor feels."""
     found: dict[str, dict[str, None]] = {}
     for trial in trials:

@@ -11,7 +11,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
-from vehgen.mechanics.laws.relaxation import RELAXATION
+from vehgen.mechanics.laws.memory import RELAXATION
 from vehgen.mechanics.numeric_model import NumericModel
 from vehgen.mechanics.rows import Row
 from vehgen.simulate.harmonic_laws import LawResponse

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.diagnose.detect.detection import Detection, detect
+from vehgen.diagnose.fits.errors_anew import is_strained
 from vehgen.diagnose.inputs.adjustments import ClockRate, RecorderFilter
 from vehgen.diagnose.inputs.comparison import compare
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, place_words
 from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.fit.adjustments import SpeedScale
-from vehgen.fit.recorders import FoundRecorder
+from vehgen.fit.chain_estimate import FAR_BETTER, ChainSearch
+from vehgen.fit.recorders import FoundRecorder, by_sensor, low_pass_words, with_unknown
 from vehgen.fit.trial import Trial
 from vehgen.fit.window import transform
+from vehgen.measure.acquisition import AcquisitionChain
 
 Array = NDArray[np.float64]
 RATE_LEFT = 0.25
@@ -34,6 +38,7 @@ FILTERED_SHARE = 0.35
 FIRST_CUTOFF_HZ = 10.0
 SLOW_RECORDER_HZ = 20.0
 """A recorder that cuts off below this hides wheel hop."""
+DECLARATION_CURE = "write `acquisition: unknown`, or what the recorder's data sheet says"
 FILTER_CURE = "switch the recorder's filter off, or record faster than it filters; else compare below the cut-off with `band`"
 
 
@@ -79,6 +84,44 @@ def slow_recorder(recorder: FoundRecorder | None, runs: tuple[str, ...]) -> tupl
             message = f"{', '.join(channels)} {'was' if len(channels) == 1 else 'were'} low-passed at about {cutoff:.2g} Hz in all runs"
             found.append(MeasurementFault("low_pass", runs, channels, message, FILTER_CURE, cutoff, "Hz"))
     return tuple(found)
+
+
+def wrongly_declared(detection: Detection) -> tuple[MeasurementFault, ...]:
+    """Return that recorders are not what run files say of them, where the base leaves noise behind what the recordings show."""
+    every = tuple(dict.fromkeys(name for trial in detection.trials for name in trial.channels))
+    sought = () if detection.recorder is None else detection.recorder.channels
+    declared = tuple(name for name in every if name not in sought)
+    if not declared:
+        return ()
+    search = ChainSearch.of(detection.base.least_squares.misfit, detection.base.least_squares.x)
+    stated = search.loss({})
+    sets = dict.fromkeys((declared, *by_sensor(detection.trials, declared)))
+    if not any(search.is_far_better(search.rough_loss(channels, {}), stated) for channels in sets):
+        return ()
+    anew = detect(with_unknown(detection.trials, every), detection.asked_band)
+    if anew.recorder is None or not anew.is_quiet or is_strained(anew.base.least_squares):
+        return ()
+    search = ChainSearch.of(anew.base.least_squares.misfit, anew.base.least_squares.x)
+    least, found = search.loss({}), []
+    for part, known in anew.recorder.parts:
+        for chain, names in _declared_chains(detection, [name for name in part if name in declared]).items():
+            if search.fit(chain, names, {}).loss < least + FAR_BETTER:
+                continue
+            message = (
+                f"{', '.join(names)}: `acquisition` says {low_pass_words(chain)}, but the recordings look as if made through "
+                f"{low_pass_words(known.best.chain)}{'' if known.is_clear else ', though others would do as well'}"
+            )
+            found.append(MeasurementFault("recorder", (), names, message, DECLARATION_CURE, known.best.chain.cut_off, "Hz"))
+    return tuple(found)
+
+
+def _declared_chains(detection: Detection, channels: Sequence[str]) -> dict[AcquisitionChain, tuple[str, ...]]:
+    """Return channels by the low-pass that run files declare of them, the first run's that has them."""
+    found: dict[AcquisitionChain, tuple[str, ...]] = {}
+    for name in channels:
+        chain = next(trial.scenario.chain(name) for trial in detection.trials if name in trial.channels).filtering()
+        found[chain] = (*found.get(chain, ()), name)
+    return found
 
 
 def filter_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
