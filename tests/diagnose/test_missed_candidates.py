@@ -2,16 +2,20 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from vehgen.diagnose.select.search import _missed_special_cases, _stuck
 
 
-def fit(name, training, place="front", on_bound=(), slow=True):
+def fit(name, training, place="front", on_bound=(), slow=True, freed=(), refined=True):
     effect = SimpleNamespace(shows_in_slow_motions=slow, n_numbers=lambda runs: 1)
-    last = SimpleNamespace(place=place, effect=effect, name=name)
+    last = SimpleNamespace(place=place, effect=effect, name=name, freed=freed)
     inner = SimpleNamespace(on_bound=on_bound, misfit=SimpleNamespace(problem=SimpleNamespace(trials=(1, 2))))
-    return SimpleNamespace(last=last, training=training, squares=1e3 * training, n_residuals=1000, least_squares=inner)
+    validation = training if refined else np.nan
+    return SimpleNamespace(
+        last=last, training=training, validation=validation, squares=1e3 * training, n_residuals=1000, least_squares=inner
+    )
 
 
 @pytest.mark.parametrize(("on_bound", "expected"), [(("c",), ["mount"]), ((), [])])
@@ -22,6 +26,19 @@ def test_what_left_more_than_the_base_is_fitted_again_beside_a_best_fit_at_a_bou
         fit("elsewhere", 300.0, place="rear"),
         fit("refuted", 20.0),
         fit("sensor", 300.0, slow=False),
+    ]
+    assert [item.name for item in _stuck(fits, SimpleNamespace(training=25.0))] == expected
+
+
+@pytest.mark.parametrize(("bound", "expected"), [("c", ["mount"]), ("k", ["helper"])])
+def test_what_sets_free_the_parameter_at_its_bound_is_fitted_to_its_end(bound, expected):
+    """A damper's mount, left at a quarter of the gap, was named a relaxation beside which the damper went to nothing."""
+    fits = [
+        fit("relaxation", 1.0, on_bound=(bound,)),
+        fit("mount", 7.5, freed=("c",), refined=False),
+        fit("helper", 11.0, freed=("k",), refined=False),
+        fit("friction", 12.0, freed=("c", "k")),
+        fit("elsewhere", 7.5, place="rear", freed=("c", "k"), refined=False),
     ]
     assert [item.name for item in _stuck(fits, SimpleNamespace(training=25.0))] == expected
 

@@ -146,15 +146,19 @@ def _may_still_win(fit: ModelFit, best: ModelFit) -> bool:
 
 
 def _stuck(fits: Sequence[ModelFit], base: ModelFit) -> list[Candidate]:
-    """Return candidates that were missed, not refuted: they left more than the model without them, at the place of a best fit at a bound.
+    """Return candidates that were missed, not refuted, at the place of a best fit that takes base parameters to their bounds.
 
-    A best fit that ends at a bound of the base parameters may stand in for another law there, as relaxation does for a damper's mount.
+    Such a fit may stand in for another law there, as relaxation does for a damper's mount. Missed are those that left more than the model
+    without them, and those that set free what is at its bound and were left after rough fits.
     """
     best = min(fits, key=merit)
-    if not best.least_squares.on_bound:
-        return []
-    missed = [fit.last for fit in fits if fit.training > base.training and fit.last.place == best.last.place]
-    return [item for item in missed if item.effect.shows_in_slow_motions]
+    bounds = set(best.least_squares.on_bound)
+    beside = [fit for fit in fits if bounds and fit.last.place == best.last.place and fit.last.effect.shows_in_slow_motions]
+    return [
+        fit.last
+        for fit in beside
+        if fit.training > base.training or (not np.isfinite(fit.validation) and not bounds.isdisjoint(fit.last.freed))
+    ]
 
 
 def _missed_special_cases(fits: Sequence[ModelFit], base: ModelFit) -> list[Candidate]:
