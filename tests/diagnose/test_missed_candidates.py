@@ -5,7 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vehgen.diagnose.select.search import _missed_special_cases, _stuck
+from vehgen.diagnose.select.search import _missed_special_cases, _screened_out, _stuck
+
+CHOSEN = ("friction", "relaxation", "cubic")
 
 
 def fit(name, training, place="front", on_bound=(), slow=True, freed=(), refined=True):
@@ -50,3 +52,21 @@ def test_a_special_case_that_does_worse_than_what_holds_it_is_fitted_again(train
         item.last.holds = lambda other, own=item.last.name: (own, other.name) == ("asymmetric", "dry")
     assert [item.name for item in _missed_special_cases(fits, SimpleNamespace(training=11.5))] == expected
     assert _missed_special_cases([], SimpleNamespace(training=11.5)) == []
+
+
+@pytest.mark.parametrize(
+    ("left", "bounds", "effects", "expected"),
+    [
+        (5.6, ("k",), (), ["cubic"]),
+        (3.9, ("k",), (), []),
+        (5.6, (), (), []),
+        (5.6, ("k",), ("friction",), []),
+    ],
+    ids=["nothing could be named", "something could", "a base within its bounds", "beside an effect"],
+)
+def test_what_was_screened_out_is_fitted_where_a_base_at_its_bounds_misled(left, bounds, effects, expected):
+    """The first orders about such a base left out the spring that hardens, and parameters at a fifth of the file's stood in for it."""
+    found = fit("friction", left)
+    chosen = [SimpleNamespace(name=name, is_among=lambda others, own=name: own in [item.name for item in others]) for name in CHOSEN]
+    current = SimpleNamespace(effects=effects, least_squares=SimpleNamespace(on_bound=bounds))
+    assert [item.name for item in _screened_out(chosen, [found, fit("relaxation", 50.0)], current)] == expected

@@ -64,10 +64,23 @@ def search_round(
     if rest and not stopped and none_explains(passed) and _leave_most(found, current):
         wider, stopped = fit_candidates(detection, current, passed, rest, say, everything, runner)
         found = simplest_first(sorted([*found, *wider], key=merit), current)
+    if not stopped and (missed := _screened_out(chosen, found, current)):
+        more, stopped = fit_candidates(detection, current, passed, missed, say, True, runner)
+        found = simplest_first(sorted([*found, *more], key=merit), current)
     edge = () if current.effects else current.least_squares.on_bound
     fitter = Fitter(detection, current, passed)
     fits, idle = (found, []) if stopped else split_idle(found, fitter.fit_roughly, LEADING, edge, fitter.fit_without)
     return SearchRound(current, tuple(places), tuple(passed), tuple(fits), tuple(idle), stopped)
+
+
+def _screened_out(chosen: Sequence[Candidate], fits: Sequence[ModelFit], current: ModelFit) -> list[Candidate]:
+    """Return candidates that were not fitted, where no fit leaves what could be named beside a base that ends at its bounds.
+
+    First orders about such a base mislead: a spring that hardens, which leaves noise where the base has chi 7, was not among the first 14.
+    """
+    if current.effects or not current.least_squares.on_bound or min((fit.training for fit in fits), default=np.inf) <= limit.NAMED_LEFT**2:
+        return []
+    return [item for item in chosen if not item.is_among([fit.last for fit in fits])]
 
 
 def _strained_place(current: ModelFit, places: Sequence[PlaceResult]) -> str:
