@@ -19,7 +19,7 @@ from vehgen.diagnose.inputs.judging import moved_axles, odd_mistake, plain_mista
 from vehgen.diagnose.inputs.recorders import wrongly_declared
 from vehgen.diagnose.localise.localisation import localise
 from vehgen.diagnose.result import Decided
-from vehgen.diagnose.select.criteria import fall, freed_instead, p_value_of, passes
+from vehgen.diagnose.select.criteria import fall, freed_instead, p_value_of, passes, unfinished
 from vehgen.diagnose.select.estimates import estimate, excluded
 from vehgen.diagnose.select.faint import faint_exchange, faint_look_again, faint_round, faintly_told
 from vehgen.diagnose.select.fitter import Fitter
@@ -219,8 +219,9 @@ class Decision(Ending):
         if apart := excluded(best):
             return wording.imitates(self._words(best.last), apart)
         ends, gain = numbers_at_ends(best), gain_interval(self.base, best, self.validation_runs)
-        unsure = bool(ends) and (gain is None or gain[0] < limit.AT_LEAST)
-        return wording.imitates(self._words(best.last, estimate(best)), (), ends) if unsure else ""
+        left = best.chi if unfinished(best, self.base) else None
+        unsure = bool(ends) and (gain is None or gain[0] < limit.AT_LEAST or left is not None)
+        return wording.imitates(self._words(best.last, estimate(best)), (), ends, left) if unsure else ""
 
     def _all_idle(self) -> Decided | None:
         """Return the verdict where a gap is small, and no effect does more for it than base parameters do."""

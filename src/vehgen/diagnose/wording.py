@@ -174,10 +174,11 @@ def not_in_library(best: tuple[int, str, float] | None, causes: Sequence[str], f
     return f"No effect of the library explains what the model misses ({tried}); {where}"
 
 
-def imitates(label: str, apart: Sequence[str], ends: Sequence[str] = ()) -> str:
-    """Return the verdict that an effect closes the gap, but with numbers that lie `apart` from run to run or at the `ends` of ranges."""
+def imitates(label: str, apart: Sequence[str], ends: Sequence[str] = (), left: float | None = None) -> str:
+    """Return the verdict that an effect closes the gap, but with numbers `apart` from run to run, or at `ends` of ranges with chi left."""
+    doubt = "other runs do not surely show half of it" if left is None else f"chi {left:.2f} is left, where 1 is noise alone"
     why = f"runs ask for numbers of it that exclude one another ({join_names(apart)})"
-    why = why if apart else f"only with {join_names(ends, 'and')} at the end of its range, and other runs do not surely show half of it"
+    why = why if apart else f"only with {join_names(ends, 'and')} at the end of its range, and {doubt}"
     return f"{label} imitates what the model misses, but {why}: what acts there is not in the library"
 
 
