@@ -308,6 +308,17 @@ def test_a_road_elsewhere_is_told_beside_starts_that_speeds_explain():
     assert moved_roads(moved, {"road": 10.0}, arrivals) == (), "their starts scatter, if speeds say nothing of them"
 
 
+def test_a_road_elsewhere_is_told_beside_starts_that_a_clock_told():
+    """Of a sedan: by the clock the others agree within 0.3 ms, by the way they are as far apart as their drivers' speeds were off."""
+    delays = {"road": 0.0607, "low_fast": 0.01174, "high_slow": 0.01195, "low_slow": 0.01135}
+    faster = {"road": -0.0044, "low_fast": -0.0135, "high_slow": 0.003, "low_slow": -0.014}
+    arrivals = {"road": 2.6, "low_fast": 2.1, "high_slow": 2.4, "low_slow": 2.4}
+    conditions = [Condition(run, "delay", "", value, "s", 0.2) for run, value in delays.items()]
+    conditions += [Condition(run, "speed", "", value, "", 0.01) for run, value in faster.items()]
+    (fault,) = moved_roads(conditions, {"road": 18.0}, arrivals)
+    assert fault.value == pytest.approx(0.88, abs=0.01)
+
+
 def test_a_start_that_speeds_alone_put_elsewhere_is_no_finding():
     """Of a healthy truck: by the clock its road's start lies among the others, which by the way happen to agree."""
     delays = {"road": -0.0116, "low_fast": 0.05, "high_fast": -0.0151, "low_slow": 0.0222}

@@ -25,6 +25,8 @@ OF_ALL_RUNS, LEAST_ALIKE, ALIKE_SIGMAS, ALIKE_SPREAD = ("clock", "speed", "heigh
 within so many from the least to the largest."""
 EITHER_WAY = 2.0
 """Whether a clock tells the starts or the way does, a start that is a finding is off by so many times the others' spread."""
+FAR_APART, TIMED_SPREAD_S = 5.0, 0.005
+"""Unless by the way the others are spread so many times as far as by the clock: then a clock has told them, and they stray by less [s]."""
 _FAULT_OF = {
     "delay": ("clock", "the recording {where} starts {amount} {early} than the file says, or the road lies elsewhere along the way"),
     "speed": ("speed", "the speed {where} was {amount} {more} than stated"),
@@ -159,9 +161,12 @@ def moved_roads(
     for run in (name for name in speeds if name in delays):
         if len(delays) <= LEAST_OTHERS:
             continue
-        (late, spread), other = sorted((_stands_out(run, starts) for starts in (delays, after_the_way)), key=lambda item: item[1])
+        by_clock, by_way = (_stands_out(run, starts) for starts in (delays, after_the_way))
+        (late, spread), other = sorted((by_clock, by_way), key=lambda item: item[1])
+        timed = by_way[1] >= FAR_APART * by_clock[1]
         shift = late * speeds[run]
-        clear = abs(late) >= STANDS_OUT * spread and abs(other[0]) >= EITHER_WAY * other[1]
+        spread = max(spread, TIMED_SPREAD_S if timed else CLOCKS_SPREAD_S)
+        clear = abs(late) >= STANDS_OUT * spread and (timed or abs(other[0]) >= EITHER_WAY * max(other[1], CLOCKS_SPREAD_S))
         if not clear or abs(shift) < LEAST_SHIFT_M:
             continue
         message = (
@@ -177,7 +182,7 @@ def _stands_out(run: str, starts: Mapping[str, float]) -> tuple[float, float]:
     """Return how much later [s] a run starts than the others usually do, and how far these are spread [s]."""
     others = np.array([value for name, value in starts.items() if name != run])
     usual = float(np.median(others))
-    return starts[run] - usual, max(float(np.sqrt(np.mean((others - usual) ** 2))), CLOCKS_SPREAD_S)
+    return starts[run] - usual, float(np.sqrt(np.mean((others - usual) ** 2)))
 
 
 def _fault(alike: Sequence[Condition], runs: tuple[str, ...]) -> MeasurementFault:
