@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from tests.diagnose.conftest import CUBIC, HUMPS
-from vehgen.diagnose import decision
+from vehgen.diagnose import ending
 from vehgen.diagnose.decision import Decision
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.pipeline import diagnose_trials
@@ -31,7 +31,7 @@ def test_a_law_at_the_end_of_its_range_is_named_where_other_runs_surely_show_it(
     named = diagnose_trials(trials_of(CUBIC, runs=HUMPS), [near])
     assert named.verdict.verdict == "named"
     assert any("on the bound of its range: cubic_stiffness_rear_k3" in note for note in named.verdict.notes)
-    monkeypatch.setattr(decision, "gain_interval", lambda *_: (0.4, 1.0))
+    monkeypatch.setattr(ending, "gain_interval", lambda *_: (0.4, 1.0))
     unsure = diagnose_trials(trials_of(CUBIC, runs=HUMPS), [near])
     assert unsure.verdict.verdict == "not_in_library"
     assert "only with k3 at the end of its range, and other runs do not surely show half of it" in unsure.verdict.reason
@@ -40,11 +40,11 @@ def test_a_law_at_the_end_of_its_range_is_named_where_other_runs_surely_show_it(
 @pytest.mark.parametrize("unfinished", [False, True])
 def test_a_law_at_the_end_of_its_range_is_not_named_where_it_leaves_more_than_noise(monkeypatch, unfinished):
     """A mount with fluid was named a relaxation of the largest stiffness, with chi 1.11 left."""
-    monkeypatch.setattr(decision, "excluded", lambda fit: ())
-    monkeypatch.setattr(decision, "estimate", lambda fit: {})
-    monkeypatch.setattr(decision, "numbers_at_ends", lambda fit: ["k"])
-    monkeypatch.setattr(decision, "gain_interval", lambda *_: (0.9, 1.0))
-    monkeypatch.setattr(decision, "unfinished", lambda fit, base: unfinished)
+    monkeypatch.setattr(ending, "excluded", lambda fit: ())
+    monkeypatch.setattr(ending, "estimate", lambda fit: {})
+    monkeypatch.setattr(ending, "numbers_at_ends", lambda fit: ["k"])
+    monkeypatch.setattr(ending, "gain_interval", lambda *_: (0.9, 1.0))
+    monkeypatch.setattr(ending, "unfinished", lambda fit, base: unfinished)
     made = SimpleNamespace(base=None, validation_runs=(), _words=lambda *_: "a stop")
     told = Decision._imitation(made, SimpleNamespace(last=None, chi=1.11))
     assert ("chi 1.11 is left" in told) is unfinished

@@ -7,10 +7,11 @@ from dataclasses import replace
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose import wording
 from vehgen.diagnose.combining import Combiner
-from vehgen.diagnose.design.experiment import VISIBLE, propose_stronger
+from vehgen.diagnose.design.experiment import VISIBLE
 from vehgen.diagnose.detect.detection import BELIEVED_SIGMAS, FREE_SIGMAS, look_again, run_gaps, supposing
 from vehgen.diagnose.detect.odd_run import OddChannel, OddRun, disagreement
 from vehgen.diagnose.ending import Ending
+from vehgen.diagnose.fits.errors_anew import is_strained
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.checks import variety_notes
 from vehgen.diagnose.inputs.fault import MeasurementFault
@@ -19,8 +20,7 @@ from vehgen.diagnose.inputs.judging import moved_axles, odd_mistake, plain_mista
 from vehgen.diagnose.inputs.recorders import wrongly_declared
 from vehgen.diagnose.localise.localisation import localise
 from vehgen.diagnose.result import Decided
-from vehgen.diagnose.select.criteria import fall, freed_instead, p_value_of, passes, unfinished
-from vehgen.diagnose.select.estimates import estimate, excluded
+from vehgen.diagnose.select.criteria import fall, freed_instead, p_value_of, passes
 from vehgen.diagnose.select.faint import faint_exchange, faint_look_again, faint_round, faintly_told
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
@@ -29,10 +29,10 @@ from vehgen.diagnose.select.needless import without_needless
 from vehgen.diagnose.select.one_cause import BEFORE, one_cause
 from vehgen.diagnose.select.one_error import believable_law, explains_easily, one_error, price_of_belief
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
-from vehgen.diagnose.select.ranking import SearchRound, numbers_at_ends, own_numbers
+from vehgen.diagnose.select.ranking import SearchRound, own_numbers
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
 from vehgen.diagnose.select.search import LEADING, LOOKS_AGAIN, fit_leading_again, noise_by_its_law, search_round
-from vehgen.diagnose.select.validation import gain_interval, seen_again, validation_fall
+from vehgen.diagnose.select.validation import seen_again, validation_fall
 from vehgen.errors import InputError
 
 LOOK_AGAIN_SHARE = 0.5
@@ -63,8 +63,18 @@ class Decision(Ending):
             if mistakes := supposed_mistakes(detection):
                 return self._strained(mistakes)
             return self._quiet()
+        if detection.chi <= limit.WEAK and is_strained(self.base.least_squares) and (strained := self._freed()):
+            return strained
         mistakes = plain_mistakes(detection) or wrongly_declared(detection)
         return self._mistaken(mistakes) if mistakes else self._explain_gap()
+
+    def _freed(self) -> Decided | None:
+        """Return the verdict where a small gap closes once errors that the base has at their bounds may be as large as they will."""
+        free = supposing(self.detection, FREE_SIGMAS)
+        if not free.is_quiet or not (mistakes := supposed_mistakes(free)):
+            return None
+        self.detection, self.base = free, free.base
+        return self._strained(mistakes)
 
     def _strained(self, mistakes: tuple[MeasurementFault, ...]) -> Decided:
         """Return the verdict where the base explains the runs, but supposes more of them than can be believed: an effect or a mistake."""
@@ -89,7 +99,8 @@ class Decision(Ending):
             other = Decision(believed, self.effects, self.everything, self.progress, self.runner)
             other.notes, other.rounds = list(self.notes), [single]
             return other._name([single.fits[0]])
-        return found if explains_easily(found) else self._mistaken(mistakes)
+        simpler = 0 < len(found.verdict.faults) < len(mistakes) and other.undone is not None and other.undone[1].at_once
+        return found if simpler or explains_easily(found) else self._mistaken(mistakes)
 
     def _instead(self, strained: ModelFit) -> Decided | None:
         """Return the verdict where a law of the vehicle explains what a strained base has to suppose of the runs."""
@@ -214,15 +225,6 @@ class Decision(Ending):
             self._combine(first)
         return weak
 
-    def _imitation(self, best: ModelFit) -> str:
-        """Return why the best effect may only stand in for another one, though it closes the gap; nothing where nothing says so."""
-        if apart := excluded(best):
-            return wording.imitates(self._words(best.last), apart)
-        ends, gain = numbers_at_ends(best), gain_interval(self.base, best, self.validation_runs)
-        left = best.chi if unfinished(best, self.base) else None
-        unsure = bool(ends) and (gain is None or gain[0] < limit.AT_LEAST or left is not None)
-        return wording.imitates(self._words(best.last, estimate(best)), (), ends, left) if unsure else ""
-
     def _all_idle(self) -> Decided | None:
         """Return the verdict where a gap is small, and no effect does more for it than base parameters do."""
         chi = self.detection.chi
@@ -264,11 +266,6 @@ class Decision(Ending):
         if rivals is not None:
             self.notes.append(wording.best_random_law(COUNT, rivals[1]))
         return None
-
-    def _propose(self, reason: str, best: ModelFit) -> Decided:
-        self.progress("propose", 0, 1, "")
-        louder = propose_stronger(self.detection, best)
-        return self._end("too_weak", reason, louder.text if louder and louder.separates else "no run within reach would show it clearly")
 
     def _search_round(self, current: ModelFit) -> SearchRound:
         found = search_round(self.detection, current, self._candidates(current), self.everything, self.progress, self.runner)

@@ -10,6 +10,7 @@ import numpy as np
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose import wording
 from vehgen.diagnose.collecting import run_chis
+from vehgen.diagnose.design.experiment import propose_stronger
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.model_fit import ModelFit
@@ -20,9 +21,11 @@ from vehgen.diagnose.localise.free_form import FreeForm, fit_free_form, recover,
 from vehgen.diagnose.naming import Naming
 from vehgen.diagnose.result import Decided, DiagnosisModels
 from vehgen.diagnose.select.criteria import explained_shares, passes, unfinished
+from vehgen.diagnose.select.estimates import estimate, excluded
 from vehgen.diagnose.select.freed_base import freed_ratios
-from vehgen.diagnose.select.ranking import SearchRound
+from vehgen.diagnose.select.ranking import SearchRound, numbers_at_ends
 from vehgen.diagnose.select.search import DiagnosisProgress
+from vehgen.diagnose.select.validation import gain_interval
 from vehgen.diagnose.verdict import Gap, NamedParameter, PlaceChi, Verdict, VerdictName
 from vehgen.effects import Effect
 from vehgen.fit.parallel import HERE, Runner
@@ -127,6 +130,11 @@ class Ending:
         self.notes += [*alike_in_all_runs(conditions, [trial.name for trial in self.detection.trials]), *self._edge()]
         return self._end("no_missing_effect", wording.no_missing_effect(self.detection.chi))
 
+    def _propose(self, reason: str, best: ModelFit) -> Decided:
+        self.progress("propose", 0, 1, "")
+        louder = propose_stronger(self.detection, best)
+        return self._end("too_weak", reason, louder.text if louder and louder.separates else "no run within reach would show it clearly")
+
     def _out_of_range(self, freed: ModelFit) -> Decided:
         return self._end("insufficient_data", wording.out_of_range(freed_ratios(freed)), "check the file, or calibrate first")
 
@@ -151,6 +159,15 @@ class Ending:
             return ended
         verdict = replace(ended.verdict, free_form=law.to_dict(), notes=(*ended.verdict.notes, law.describe()))
         return self._decided(verdict, (), law)
+
+    def _imitation(self, best: ModelFit) -> str:
+        """Return why the best effect may only stand in for another one, though it closes the gap; nothing where nothing says so."""
+        if apart := excluded(best):
+            return wording.imitates(self._words(best.last), apart)
+        ends, gain = numbers_at_ends(best), gain_interval(self.base, best, self.validation_runs)
+        left = best.chi if unfinished(best, self.base) else None
+        unsure = bool(ends) and (gain is None or gain[0] < limit.AT_LEAST or left is not None)
+        return wording.imitates(self._words(best.last, estimate(best)), (), ends, left) if unsure else ""
 
     def _name(self, chain: list[ModelFit]) -> Decided:
         naming = Naming(self.detection, self.rounds, self.tried, self.progress, self.interrupted)

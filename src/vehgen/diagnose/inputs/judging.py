@@ -219,9 +219,9 @@ def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
 
 
 def moved_axles(detection: Detection) -> tuple[MeasurementFault, ...]:
-    """Return that axles are elsewhere than the vehicle file says, where that alone leaves noise."""
+    """Return that axles are elsewhere than the vehicle file says, or a clock runs fast or slow, where that alone leaves noise."""
     case = base_refits(detection)
-    best = _least(_judge(case, (axle_hypotheses,)), case.excess)
+    best = _least([*_judge(case, (axle_hypotheses,)), *_judge(case, (rate_hypotheses,))], case.excess)
     return best.faults if best is not None and best.explains(case.excess) else ()
 
 
