@@ -71,3 +71,32 @@ def test_axles_elsewhere_are_held_against_a_clock_that_runs_fast(monkeypatch, by
     monkeypatch.setattr(judging, "base_refits", lambda detection: SimpleNamespace(excess=1.0))
     monkeypatch.setattr(judging, "_judge", judged)
     assert [item.kind for item in judging.moved_axles(None)] == [told]
+
+
+@pytest.mark.parametrize("verdict", ["too_weak", "named"])
+@pytest.mark.parametrize("quiet", [True, False])
+@pytest.mark.parametrize("strained", [True, False])
+def test_a_gap_that_closes_on_a_second_look_is_none(monkeypatch, detection_of, verdict, quiet, strained):
+    """Another hump in one run left chi 3.6, and 1.01 by the noise found with the best effect: that ended as too weak."""
+    first = detection_of(runs=HUMPS)
+    second = replace(first)
+
+    def explain(self):
+        self.detection = second
+        self.rounds.append("of the first look")
+        return SimpleNamespace(verdict=SimpleNamespace(verdict=verdict))
+
+    monkeypatch.setattr(Detection, "is_quiet", property(lambda self: quiet and self is second))
+    monkeypatch.setattr(decision, "plain_mistakes", lambda item: ())
+    monkeypatch.setattr(decision, "wrongly_declared", lambda item: ())
+    monkeypatch.setattr(decision, "supposed_mistakes", lambda item: (SPEED,) if strained else ())
+    monkeypatch.setattr(Decision, "_explain_gap", explain)
+    monkeypatch.setattr(Decision, "_strained", lambda self, mistakes: mistakes)
+    monkeypatch.setattr(Decision, "_quiet", lambda self: "quiet")
+    made = Decision(first, [], False, silent)
+    told = made.decide()
+    if verdict == "named" or not quiet:
+        assert told.verdict.verdict == verdict
+    else:
+        assert told == ((SPEED,) if strained else "quiet")
+    assert bool(made.rounds) == (verdict == "named" or not quiet)

@@ -60,13 +60,19 @@ class Decision(Ending):
         if mistakes := recorded_mistakes(detection) or exchanged_humps(detection):
             return self._mistaken(mistakes)
         if detection.is_quiet:
-            if mistakes := supposed_mistakes(detection):
-                return self._strained(mistakes)
-            return self._quiet()
+            return self._without_gap()
         if detection.chi <= limit.WEAK and is_strained(self.base.least_squares) and (strained := self._freed()):
             return strained
         mistakes = plain_mistakes(detection) or wrongly_declared(detection)
-        return self._mistaken(mistakes) if mistakes else self._explain_gap()
+        found = self._mistaken(mistakes) if mistakes else self._explain_gap()
+        if found.verdict.verdict != "too_weak" or not self.detection.is_quiet:
+            return found
+        self.rounds.clear()  # of a gap that noise and recorders have closed, found by the best effect
+        return self._without_gap()
+
+    def _without_gap(self) -> Decided:
+        """Return the verdict where the base explains the runs."""
+        return self._strained(mistakes) if (mistakes := supposed_mistakes(self.detection)) else self._quiet()
 
     def _freed(self) -> Decided | None:
         """Return the verdict where a small gap closes once errors that the base has at their bounds may be as large as they will."""
@@ -227,14 +233,12 @@ class Decision(Ending):
 
     def _all_idle(self) -> Decided | None:
         """Return the verdict where a gap is small, and no effect does more for it than base parameters do."""
-        chi = self.detection.chi
-        return self._disagreement() or self._end("too_weak", wording.small_gap(chi)) if chi <= limit.WEAK else None
-
-    def _disagreement(self) -> Decided | None:
-        """Return the verdict where little seems to be missing, but a run or one of its channels does not agree with the others."""
-        return self._disagreeing(disagreement(self.detection))
+        if (chi := self.detection.chi) > limit.WEAK:
+            return None
+        return self._disagreeing(disagreement(self.detection)) or self._end("too_weak", wording.small_gap(chi))
 
     def _disagreeing(self, odd: OddRun | OddChannel | None) -> Decided | None:
+        """Return the verdict where little seems to be missing, but a run or one of its channels does not agree with the others."""
         if odd is None:
             return None
         if isinstance(odd, OddChannel) or (odd.others_agree and self._no_effect_passes()):
@@ -252,7 +256,7 @@ class Decision(Ending):
         if p > limit.SIGNIFICANT and (good or chi <= VISIBLE):
             return self._propose(wording.not_told_from_chance(chi, p), best)
         if chi <= limit.WEAK and not good:
-            return self._disagreement() or self._propose(wording.small_gap(chi), best)
+            return self._disagreeing(disagreement(self.detection)) or self._propose(wording.small_gap(chi), best)
         if not good:
             return None
         if own_numbers(best) and not seen_again(self.base, best, self.validation_runs):  # what has no number was not fitted
