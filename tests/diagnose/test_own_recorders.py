@@ -71,7 +71,8 @@ def declared(trials, **chains):
 
 
 def test_a_recorder_that_is_not_what_run_files_say_is_told(trials_of):
-    (fault,) = wrongly_declared(detect(declared(trials_of(runs=HUMPS), F=SLOW)))
+    late = AcquisitionChain("none", delay=0.03)  # of R, which a clock tells
+    (fault,) = wrongly_declared(detect(declared(trials_of(runs=HUMPS), F=SLOW, R=late)))
     assert (fault.kind, fault.channels) == ("recorder", ("F_az", "F_q"))
     assert "`acquisition` says a butterworth low-pass of order 4 at 12 Hz, but the recordings look as if made through" in fault.message
     assert fault.value is None or fault.value > 30.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,10 +117,11 @@ def wrongly_declared(detection: Detection) -> tuple[MeasurementFault, ...]:
 
 
 def _declared_chains(detection: Detection, channels: Sequence[str]) -> dict[AcquisitionChain, tuple[str, ...]]:
-    """Return channels by the low-pass that run files declare of them, the first run's that has them."""
+    """Return channels by the low-pass that run files declare of them, the first run's that has them; clocks tell how late it is."""
     found: dict[AcquisitionChain, tuple[str, ...]] = {}
     for name in channels:
-        chain = next(trial.scenario.chain(name) for trial in detection.trials if name in trial.channels).filtering()
+        stated = next(trial.scenario.chain(name) for trial in detection.trials if name in trial.channels)
+        chain = replace(stated.filtering(), delay=0.0)
         found[chain] = (*found.get(chain, ()), name)
     return found
 
