@@ -70,7 +70,7 @@ def test_axles_elsewhere_are_held_against_a_clock_that_runs_fast(monkeypatch, by
 
     monkeypatch.setattr(judging, "base_refits", lambda detection: SimpleNamespace(excess=1.0))
     monkeypatch.setattr(judging, "_judge", judged)
-    assert [item.kind for item in judging.moved_axles(None)] == [told]
+    assert [item.kind for item in judging.timing_mistakes(None)] == [told]
 
 
 @pytest.mark.parametrize("verdict", ["too_weak", "named"])

@@ -16,7 +16,7 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.checks import variety_notes
 from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.humps import exchanged_humps
-from vehgen.diagnose.inputs.judging import moved_axles, odd_mistake, plain_mistakes, recorded_mistakes, supposed_mistakes
+from vehgen.diagnose.inputs.judging import odd_mistake, plain_mistakes, recorded_mistakes, supposed_mistakes, timing_mistakes
 from vehgen.diagnose.inputs.recorders import wrongly_declared
 from vehgen.diagnose.localise.localisation import localise
 from vehgen.diagnose.result import Decided
@@ -159,7 +159,7 @@ class Decision(Ending):
         if not detection.validation_runs:
             more = f"record at least three runs{', with two hump heights or speeds' if detection.trials[0].run.vehicle.axles else ''}"
             return self._end("insufficient_data", wording.too_few_runs(detection.chi, len(detection.trials)), more)
-        if self.base.least_squares.on_bound and (mistakes := moved_axles(detection)):
+        if self.base.least_squares.on_bound and (mistakes := timing_mistakes(detection)):
             return self._mistaken(mistakes)
         if not self._candidates(self.base):
             raise InputError("no effect of the library can live on this vehicle")

@@ -5,7 +5,7 @@ One stands for all sensors, or each has its own where that explains far more.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -62,9 +62,7 @@ class FoundRecorder:
         return all(edge is None or edge >= UNUSUAL_SHARE * rate for edge in edges)
 
     def with_usual(self, rate: float) -> list[FoundRecorder]:
-        """Return it, a like one that cuts off where recorders of such a rate [Hz] usually do, and an ideal one: what refits compare.
-
-        Where sensors have their own, what stands in place of that: one for all, with such others.
+        """Return it, one for all, a like one that cuts off where recorders of such a rate [Hz] usually do, and an ideal one, to compare.
 
         How a chain is found supposes that all else answers in proportion. Where it does not, a low-pass that is too low, with a hump of
         other form, or a profile of other height, stands where the recorder takes off nothing.
@@ -106,11 +104,7 @@ class FoundRecorder:
 
     def applied(self, trials: Sequence[Trial]) -> list[Trial]:
         """Return trials whose unknown recorders are this one."""
-        found = []
-        for trial in trials:
-            chains = {name: self.chains.get(name) or trial.scenario.chain(name) for name in trial.channels}
-            found.append(replace(trial, scenario=replace(trial.scenario, chains=chains)))
-        return found
+        return _through(trials, self.chains)
 
     def forgotten(self, trials: Sequence[Trial]) -> list[Trial]:
         """Return trials on which this one stands with recorders that are unknown again."""
@@ -142,10 +136,15 @@ def clearest(recorders: Sequence[FoundRecorder], squares: Sequence[float]) -> in
 
 def with_unknown(trials: Sequence[Trial], channels: Sequence[str]) -> list[Trial]:
     """Return trials with the recorders of channels unknown."""
+    return _through(trials, dict.fromkeys(channels, UNKNOWN))
+
+
+def _through(trials: Sequence[Trial], chains: Mapping[str, AcquisitionChain]) -> list[Trial]:
+    """Return trials with other recorders of some channels."""
     found = []
     for trial in trials:
-        chains = {name: UNKNOWN if name in channels else trial.scenario.chain(name) for name in trial.channels}
-        found.append(replace(trial, scenario=replace(trial.scenario, chains=chains)))
+        own = {name: chains.get(name) or trial.scenario.chain(name) for name in trial.channels}
+        found.append(replace(trial, scenario=replace(trial.scenario, chains=own)))
     return found
 
 

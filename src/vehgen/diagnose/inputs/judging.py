@@ -218,7 +218,7 @@ def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
     return slow or find_mistakes(detection, plain_only=True).faults or hidden_mistakes(detection.trials, detection.band)
 
 
-def moved_axles(detection: Detection) -> tuple[MeasurementFault, ...]:
+def timing_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
     """Return that axles are elsewhere than the vehicle file says, or a clock runs fast or slow, where that alone leaves noise."""
     case = base_refits(detection)
     best = _least([*_judge(case, (axle_hypotheses,)), *_judge(case, (rate_hypotheses,))], case.excess)
