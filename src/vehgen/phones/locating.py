@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError
-from vehgen.phones.clocks import COARSE_SCALES, Match, match, predictor
+from vehgen.phones.clocks import COARSE_SCALES, Match, Range, match, predictor
 from vehgen.phones.gps import CrossingSpeed, crossing_speed
 from vehgen.phones.hump_event import HumpEvent, expected_onset, find_hump
 from vehgen.phones.phone import Phone, speed_stream
@@ -107,7 +107,8 @@ def locate(
             f"the pass would take {length:.4g} s at {speed:.3g} m/s over {distance:.4g} m; at most {LONGEST_PASS:g} s were expected"
         )
     answer = predictor(simulator, parameters, Scenario(track, ConstantSpeed(speed), length, 1e-3, round(1000 * step)))
-    recordings, near, columns, first = [], [], [], 0
+    recordings, columns, first = [], [], 0
+    near: list[Range | None] = []
     for phone, event in zip(phones, events, strict=True):
         upward, pitch, _ = phone.turned(phone.begin, phone.end)
         grid = np.arange(phone.begin, phone.end, step)
@@ -117,12 +118,10 @@ def locate(
         recordings.append((grid, np.column_stack(recorded)))
         columns.append(slice(first, first + len(recorded)))
         first += len(recorded)
-        lead_time = lead / speed
-        near.append(
-            (event.onset - distance / speed - lead_time - 1.0, event.onset - lead_time + 0.4)
-            if isinstance(event, HumpEvent)
-            else (phone.begin, phone.end)
-        )
+        if isinstance(event, HumpEvent):
+            near.append((event.onset - (distance + lead) / speed - 1.0, event.onset - lead / speed + 0.4))
+        else:
+            near.append(None if event is None else (phone.begin, phone.end))
     found = match(recordings, answer, columns, step, near)
     arrivals: list[tuple[float, str]] = []
     for i, (item, event) in enumerate(zip(found, events, strict=True)):
@@ -139,12 +138,16 @@ def locate(
             )
         else:
             set_in = event.onset - expected_onset(answer(1.0)[:, columns[i].start], step, event.contrast) + lead / speed
-            arrivals.append(_doubtful(set_in, item.shift + lead / (speed * item.scale), item.correlation))
+            arrivals.append(_doubtful((set_in, event.onset), item.shift + lead / (speed * item.scale), item.correlation))
     return found, arrivals
 
 
-def _doubtful(set_in: float, laid: float, correlation: float) -> tuple[float, str]:
-    """Return the arrival of a phone that the simulated response matches badly: as it is laid over, if its energy set in about then."""
-    if correlation >= ROUGH_CORRELATION and abs(laid - set_in) <= ONSET_TOLERANCE_S:
+def _doubtful(set_in: tuple[float, float], laid: float, correlation: float) -> tuple[float, str]:
+    """Return the arrival of a phone that the simulated response matches badly: as it is laid over, if its energy set in about then.
+
+    `set_in` is when the front wheel arrived if energy set in as in the response (of a phone at the rear, with the rear wheel's arrival),
+    and if it set in at once.
+    """
+    if correlation >= ROUGH_CORRELATION and min(abs(laid - moment) for moment in set_in) <= ONSET_TOLERANCE_S:
         return laid, f"the vehicle's answer laid roughly over it (correlation {correlation:.2f})"
-    return set_in, "when its energy set in, less the time that the vehicle's answer takes to reach it"
+    return set_in[0], "when its energy set in, less the time that the vehicle's answer takes to reach it"

@@ -1,4 +1,4 @@
-"""A smooth hysteresis loop (Bouc-Wen)."""
+"""Laws that remember: a smooth hysteresis loop (Bouc-Wen), a spring in series with a dashpot (Maxwell branch)."""
 
 from __future__ import annotations
 
@@ -34,5 +34,24 @@ HYSTERESIS_EFFECT = suspension_law(
             of="a typical travel",
         ),
         EffectParameter("beta", "", "share of the loss that follows |v|", low=0.3, high=1.0, starts=(0.55,)),
+    ),
+)
+RELAXATION_EFFECT = suspension_law(
+    name="relaxation",
+    law="relaxation",
+    frees=("k", "c"),
+    signature="stiffness and damping change with frequency, not with amplitude: low and high frequencies want different k and c",
+    parameters=(
+        EffectParameter(
+            "k",
+            "N/m",
+            "stiffness of the series spring",
+            low=0.05,
+            high=10.0,
+            starts=(0.5, 2.0),
+            scale=attrgetter("k"),
+            of="the stiffness there",
+        ),
+        EffectParameter("time", "s", "relaxation time, dashpot over spring", low=0.002, high=1.0, starts=(0.02, 0.1)),
     ),
 )
