@@ -122,12 +122,37 @@ def test_a_run_states_how_well_a_gps_knows_its_speed(tmp_path, capsys, name, opt
         assert stated is None or stated.speed is None
 
 
+@pytest.mark.parametrize(
+    ("name", "road", "low", "high"),
+    [("hump_2ms", HUMP, 0.025, 0.04), ("hump_3ms", HUMP, 0.017, 0.027), ("road_3ms", ("--profile", str(FOLDER / "road.csv")), None, None)],
+)
+def test_clocks_of_phones_that_feel_the_hump_seconds_apart_are_known_less_well(tmp_path, capsys, name, road, low, high):
+    """They are laid over an answer at one speed, and a driver's wanders: by 1 %, 9 m of way between them err by 30 ms at 2 m/s."""
+    facts(capsys, tmp_path / "run.yaml", both(name), road=road)
+    stated = load_run(tmp_path / "run.yaml").file.uncertainty
+    clock = None if stated is None else stated.clock
+    assert (clock is None) if low is None else (low < clock < high)
+
+
 def test_where_the_vehicle_fits_too_badly_for_its_axles_to_tell_the_speed_the_gps_does(tmp_path, capsys, monkeypatch):
     by_gps = facts(capsys, tmp_path / "gps.yaml", both("hump_2ms"))
     monkeypatch.setattr("vehgen.phones.clocks.TRUSTED", 0.9999)
     found = facts(capsys, tmp_path / "run.yaml", both("hump_2ms"), "--speed", "axles")
     assert (found["speed"], found["speed_deviation"]) == (by_gps["speed"], by_gps["speed_deviation"])
     assert any("so the GPS's stands" in warning for warning in found["warnings"])
+
+
+@pytest.mark.parametrize(("gps", "given"), [(True, "axles"), (False, "2.00")])
+def test_a_wrong_speed_is_told_with_what_to_give_instead(tmp_path, capsys, gps, given):
+    """Without a GPS's speed, near which the marks would tell it, the speed by the axles is refused."""
+    exports = [
+        changed(tmp_path / path.name, path, lambda name, text: text if gps or "Location" not in name else None) for path in both("hump_2ms")
+    ]
+    found = facts(capsys, tmp_path / "run.yaml", exports, "--speed", "2.08")
+    [warning] = [text for text in found["warnings"] if "the axles' marks fit" in text]
+    assert f"give `{given}" in warning
+    again = warning.split("`")[1]
+    assert facts(capsys, tmp_path / "again.yaml", exports, "--speed", again)["speed"] == pytest.approx(2.0, rel=0.005)
 
 
 def test_the_recording_is_the_true_vehicles_answer(tmp_path, capsys):
@@ -315,11 +340,10 @@ def test_the_run_file_says_through_which_low_pass_the_phone_was_put_on_the_grid(
 def test_a_phone_that_the_vehicle_matches_badly_is_laid_roughly_or_set_by_its_energy(tmp_path, capsys, monkeypatch):
     """As where a law is missing that the file lacks: the match still tells the time, but its clock less well."""
     good = facts(capsys, tmp_path / "good.yaml", both("hump_2ms"))
-    assert load_run(tmp_path / "good.yaml").file.uncertainty.clock is None
     monkeypatch.setattr("vehgen.phones.clocks.TRUSTED", 0.9999)
     rough = facts(capsys, tmp_path / "rough.yaml", both("hump_2ms"))
     assert [phone["zero"] for phone in rough["phones"]] == pytest.approx([phone["zero"] for phone in good["phones"]], abs=1e-6)
-    assert load_run(tmp_path / "rough.yaml").file.uncertainty.clock == pytest.approx(0.03)
+    assert load_run(tmp_path / "rough.yaml").file.uncertainty.clock >= 0.03
     with monkeypatch.context() as later:  # energy set in at once, where the response lets a phone at the rear wait for its own wheel
         later.setattr("vehgen.phones.locating.expected_onset", lambda *known: 2.5)
         waited = facts(capsys, tmp_path / "waited.yaml", both("hump_2ms"))

@@ -21,7 +21,7 @@ from vehgen.phones.export import Stream
 from vehgen.phones.hump_event import HumpEvent
 from vehgen.phones.locating import CLOCK_DOUBT, FoundSpeed, find_speed, locate
 from vehgen.phones.orientation import Orientation
-from vehgen.phones.phone import MARGIN, QUIET, Phone, make_phone
+from vehgen.phones.phone import MARGIN, QUIET, Phone, make_phone, speed_stream
 from vehgen.phones.plan import PhoneSensor, Plan
 from vehgen.simulate import Simulator
 
@@ -174,7 +174,9 @@ def _assemble(
         done.append(ImportedPhone(phone, zero, arrival, found_by, quiet, upward, pitch, orientation, event, item, noise, tuple(notes)))
     fitted = speed * matches[0].scale if all(item.is_trusted for item in matches) else None
     if fitted is not None and abs(fitted / speed - 1) > SPEED_DOUBT:
-        warnings.append(f"the axles' marks fit {fitted:.3f} m/s better than {speed:.3f} m/s ({source}); the speed by the axles takes that")
+        given = f"{fitted:.3f}" if all(speed_stream(phone.export) is None for phone in phones) else "axles"
+        found = f"the axles' marks fit {fitted:.3f} m/s better than {speed:.3f} m/s ({source})"
+        warnings.append(f"{found}; give `{given}` as the speed to take that")
     if plan.by_axles and found_speed.deviation is not None:
         warnings.append(
             "the vehicle's answer fits too badly to find the speed from its axles, so the GPS's stands, give or take "

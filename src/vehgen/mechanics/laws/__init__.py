@@ -6,8 +6,7 @@ from vehgen.mechanics.laws.custom import custom_law
 from vehgen.mechanics.laws.friction import ASYMMETRIC_FRICTION, DRY_FRICTION, ELASTO_PLASTIC
 from vehgen.mechanics.laws.memory import HYSTERESIS, RELAXATION
 from vehgen.mechanics.laws.powers import CUBIC_STIFFNESS, QUADRATIC_DAMPING, QUADRATIC_STIFFNESS
-from vehgen.mechanics.laws.stops import BUMP_STOP, PROGRESSIVE_STIFFNESS
-from vehgen.mechanics.laws.tyre_liftoff import TYRE_LIFTOFF
+from vehgen.mechanics.laws.stops import BUMP_STOP, PROGRESSIVE_STIFFNESS, TYRE_LIFTOFF
 
 LAWS: dict[str, Law] = {
     law.name: law
