@@ -9,6 +9,12 @@ from tests.vehicle.rig import GOOD, Fault, check_refused, name_of
 FAULTS: list[Fault] = [
     # unknown keys, with the nearest valid one
     ("body key", "{mass: mB,", "{@masss: mB,", "unknown key 'masss'; did you mean 'mass'?"),
+    (
+        "comma in a text",
+        "meaning: body mass}",
+        "meaning: body mass, @weighed}",
+        "unknown key 'weighed'; known: equals, meaning, range, value; quote a text that has a comma within { }",
+    ),
     ("axle key", "x: b1, mass", "@y: b1, mass", "unknown key 'y'; known: body, mass, suspension, title, tyre, x"),
     ("spring key", "{k: kF, c", "{@stiffness: kF, c", "unknown key 'stiffness'; known: c, k"),
     ("point key", "frame: {x: -2 m, z: 0}", "frame: {x: -2 m, @y: 0}", "unknown key 'y'; known: x, z"),

@@ -102,7 +102,8 @@ def _first_fault(error: ValidationError, model: type[FileModel], document: Locat
     if first["type"] == "extra_forbidden":
         key = str(path[-1])
         known = sorted({*_fields_beside(model, first["loc"]), *(model.other_keys if len(path) == 1 else ())})
-        return InputError(f"unknown key {shown(key)}; {did_you_mean(key, known)}", document.find(path, key=True))
+        hint = "; quote a text that has a comma within { }" if first["input"] is None else ""
+        return InputError(f"unknown key {shown(key)}; {did_you_mean(key, known)}{hint}", document.find(path, key=True))
     if first["type"] in ("missing", "too_long", "tuple_type") and "range" in path[-2:]:
         return InputError("a range has two ends: [low, high]", document.find(path))
     if first["type"] == "missing":
