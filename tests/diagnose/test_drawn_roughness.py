@@ -7,9 +7,10 @@ import pytest
 from benchmarks.hidden_effects.generator import Effect, Hump, RandomRoad, RunSpec
 
 from vehgen.diagnose.detect.drawn_roughness import DrawnRun, _asked, find_levels, noises_of_laws
-from vehgen.diagnose.detect.noise_floor import find_noise_floor, lead_in, lead_in_lines
+from vehgen.diagnose.detect.noise_floor import find_noise_floor, lead_in_lines
 from vehgen.diagnose.fits.candidate import build_problem, list_candidates
 from vehgen.effects import EFFECTS, EffectLocator
+from vehgen.fit.lead_in import lead_in
 from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import SMALLEST_LEVEL, DrawnDensity, Noise

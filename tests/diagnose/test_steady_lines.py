@@ -7,8 +7,9 @@ import pytest
 
 from tests.diagnose.conftest import HUMPS
 from vehgen.diagnose.detect.detection import detect
-from vehgen.diagnose.detect.noise_floor import lead_in, lead_in_lines
+from vehgen.diagnose.detect.noise_floor import lead_in_lines
 from vehgen.diagnose.detect.steady_lines import steady_lines
+from vehgen.fit.lead_in import lead_in
 
 ENGINE_HZ, TURNS_PER_M = 17.0, 2.5
 LOUD = 8.0

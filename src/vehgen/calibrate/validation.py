@@ -14,6 +14,7 @@ from pydantic import Field
 from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
 from vehgen.files.result_fields import Array1D, Flags
 from vehgen.files.results import Result, Table
+from vehgen.fit.lead_in import lead_in
 from vehgen.fit.trial import Trial, TrialLike, load_trials
 from vehgen.measure import ARTICULATED_BANDS, SPECTRA, TWO_AXLE_BANDS, band_rms, record_psd, relative_errors, welch_psd
 from vehgen.measure.astm import NOTE
@@ -41,7 +42,8 @@ class ChannelComparison:
 
     `frequency shape (n,)` [Hz], `measured_psd` and `simulated_psd shape (n,)` [unit^2/Hz]; `measured_rms`, `simulated_rms`, `errors` `shape
     (n_bands,)`, errors as Eq. 32 of Wu & Li 2023; `audible` says in which bands the measured RMS stands LOUD times above the noise that the
-    top of the band shows: errors elsewhere compare with noise. `time`, `measured`, `simulated` are the histories.
+    top of the band shows, and above what shook the vehicle before a hump: errors elsewhere compare with those. `time`, `measured`,
+    `simulated` are the histories.
     """
 
     run: str
@@ -168,7 +170,7 @@ def compare_trial(trial: Trial, bands: Bands) -> list[ChannelComparison]:
     if result.failures:
         raise InputError(f"{trial.name}: {result.failures[0]}")
     rough = not any(entry.hump is not None for entry in trial.run.file.road)
-    dt = trial.recording.dt
+    dt, before = trial.recording.dt, lead_in(trial)
     for i, channel in enumerate(trial.recording.channels):
         measured, simulated = trial.recording.values[:, i], result.responses[0, :, i]
         densities = []
@@ -177,6 +179,9 @@ def compare_trial(trial: Trial, bands: Bands) -> list[ChannelComparison]:
             frequency, density = welch_psd(values, dt, SEGMENT) if averaged else record_psd(values, dt)
             densities.append(density)
         rms = [band_rms(frequency, density, bands) for density in densities]
+        noise = _noise_rms(frequency, densities[0], bands, len(measured) * dt / SEGMENT if averaged else 0.5)
+        if before is not None:
+            noise = np.maximum(noise, band_rms(*record_psd(before.recording.values[:, i], dt), bands))
         found.append(
             ChannelComparison(
                 run=trial.name,
@@ -185,7 +190,7 @@ def compare_trial(trial: Trial, bands: Bands) -> list[ChannelComparison]:
                 measured_rms=rms[0],
                 simulated_rms=rms[1],
                 errors=relative_errors(rms[1], rms[0]),
-                audible=rms[0] > LOUD * _noise_rms(frequency, densities[0], bands, len(measured) * dt / SEGMENT if averaged else 0.5),
+                audible=rms[0] > LOUD * noise,
                 frequency=frequency,
                 measured_psd=densities[0],
                 simulated_psd=densities[1],

@@ -15,9 +15,10 @@ import numpy as np
 import scipy.ndimage
 from numpy.typing import NDArray
 
-from vehgen.diagnose.detect.noise_floor import SITES_DIFFER, lead_in, lead_in_lines
+from vehgen.diagnose.detect.noise_floor import SITES_DIFFER, lead_in_lines
 from vehgen.diagnose.detect.road_error import under_hump
 from vehgen.diagnose.fits.model_fit import ModelFit
+from vehgen.fit.lead_in import lead_in
 from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.misfit import Misfit, Noises
 from vehgen.fit.noise import EVEN, LARGEST_LEVEL, SMALLEST_LEVEL, DrawnDensity, Noise

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from vehgen.diagnose.fits.model_fit import NUISANCES
 from vehgen.fit.band import CALIBRATION_BAND_HZ
+from vehgen.fit.lead_in import lead_in
 from vehgen.fit.misfit import Noises
 from vehgen.fit.noise import COLOUR_AT, EVEN, LOUDER_HZ, SMALLEST_LEVEL, Noise, estimate_noise
 from vehgen.fit.road_answer import RoadAnswer, road_answer
@@ -28,10 +29,6 @@ from vehgen.measure import record_psd
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-SHORTEST_QUIET_S = 0.8
-"""A lead-in shorter than this [s] tells nothing."""
-LEAD_IN_MARGIN_S = 0.1
-"""How long before the hump the lead-in ends [s]."""
 TOP_BAND_RATIO = (1.025, 1.175)
 """The top of the band lies just above what is compared: so many times its highest frequency (41 to 47 Hz above 40 Hz)."""
 END_OF_BAND = 0.75
@@ -53,8 +50,6 @@ LINE_STANDS_OUT = 20.0
 """A spectral line of more than so many times the median power of its band is none of them."""
 LINE_WIDTH, LINE_LEAKS = 0.03, 2.5
 """A line that is no noise reaches this share of its frequency to both sides, or else so many lines."""
-STEADY = 3.0
-"""The loudest quarter of a quiet lead-in is less than this many times as loud as the middling one."""
 LARGEST_RATIO = 4.0
 """The top of the band of a loud run may hold its motion too: it counts at most this much more than the lead-in's variance."""
 
@@ -232,28 +227,6 @@ def _from_lead_in(
     start = Noise(np.full(len(EVEN), 100 * SMALLEST_LEVEL) if levels is None else levels, sigma, slope)
     noise = estimate_noise(residuals, start, same_road=True)[0]
     return noise, sum(noise.loss(lines, answer) for lines, answer in residuals)
-
-
-def lead_in(trial: Trial) -> Trial | None:
-    """Return what a run recorded before its first wheel met the first hump, or None where that is too short or unknown."""
-    if not trial.scenario.over_humps_alone:
-        return None
-    first = min(hump.at for hump in trial.scenario.humps) - trial.scenario.track.footprint
-    time = trial.recording.time
-    quiet = trial.scenario.speed.distance(time + LEAD_IN_MARGIN_S) < first
-    count = int(quiet.sum())
-    if count * trial.recording.dt < SHORTEST_QUIET_S or np.any(np.ptp(trial.recording.values[:count], axis=0) == 0.0):
-        return None
-    if not _steady(trial.recording.values[:count]):
-        return None
-    measurement = replace(trial.recording, time=time[:count], values=trial.recording.values[:count])
-    return replace(trial, recording=measurement)
-
-
-def _steady(values: Array) -> bool:
-    """Return whether quarters of a stretch are about equally loud: one that holds the hump, of a run stated wrong, is not quiet."""
-    quarters = np.array([np.std(part, axis=0) for part in np.array_split(values, 4)])
-    return bool(np.all(quarters.max(axis=0) < STEADY * np.median(quarters, axis=0)))
 
 
 def top_of_band(trial: Trial, band: tuple[float, float] = CALIBRATION_BAND_HZ) -> Array:
