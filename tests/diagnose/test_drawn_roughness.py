@@ -13,7 +13,7 @@ from vehgen.effects import EFFECTS, EffectLocator
 from vehgen.fit.lead_in import lead_in
 from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.misfit import Misfit
-from vehgen.fit.noise import SMALLEST_LEVEL, DrawnDensity, Noise
+from vehgen.fit.noise import SMALLEST_LEVEL, DrawnRoughness, Noise
 from vehgen.fit.problem import make_problem
 from vehgen.fit.road_answer import KNOT_WAVENUMBERS, road_answer
 from vehgen.fit.trial import load_trials
@@ -93,7 +93,7 @@ def test_a_vehicle_that_passes_nothing_on_asks_for_no_roughness(stuck, stuck_fit
 
     def nothing(self, levels, count, *, hump=True):
         frequency = self.fit.misfit.frequency(self.number)
-        return DrawnDensity(frequency, np.zeros((len(frequency), n, n), dtype=np.complex128))
+        return DrawnRoughness(frequency, np.zeros((len(frequency), n, n), dtype=np.complex128))
 
     monkeypatch.setattr(DrawnRun, "density", nothing)
     even = np.full(len(KNOT_WAVENUMBERS), 1.5 * SMALLEST_LEVEL)

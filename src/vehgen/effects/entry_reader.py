@@ -12,8 +12,13 @@ from vehgen.effects.entry_model import SIZES, EffectEntry, LawPlace, LineEntry, 
 from vehgen.effects.kinds import LineEffect, RunEffect, VehicleEffect
 from vehgen.effects.library.engine_harmonic import ENGINE_HARMONIC_EFFECT
 from vehgen.effects.library.law_effect import LawEdit
-from vehgen.effects.library.sensors import SENSOR_DELAY_EFFECT, SENSOR_GAIN_EFFECT, SENSOR_POSITION_EFFECT, SENSOR_TILT_EFFECT
-from vehgen.effects.library.speed_error import SPEED_ERROR_EFFECT
+from vehgen.effects.library.measuring import (
+    SENSOR_DELAY_EFFECT,
+    SENSOR_GAIN_EFFECT,
+    SENSOR_POSITION_EFFECT,
+    SENSOR_TILT_EFFECT,
+    SPEED_ERROR_EFFECT,
+)
 from vehgen.effects.library.tyres import TYRE_FOOTPRINT_EFFECT
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import Places, axles, hinges, suspensions, tyres

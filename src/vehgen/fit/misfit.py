@@ -100,9 +100,9 @@ class Misfit:
         trial, dt = self.problem.trials[number], self.problem.trials[number].recording.dt
         frequency = np.asarray(np.fft.rfftfreq(len(trial.recording.time), dt), dtype=np.float64)
         inside = (frequency >= self.band[0]) & (frequency <= self.band[1])
-        answer = self.answer(number, frequency[inside], reference, x)
-        measured = transform(trial.recording.values, dt, inside, seen=trial.window)
-        return _Weight(inside, measured, answer, self.noises[trial.name].whitener(answer))
+        answer, noise = self.answer(number, frequency[inside], reference, x), self.noises[trial.name]
+        measured = transform(trial.recording.values - noise.shift, dt, inside, seen=trial.window)
+        return _Weight(inside, measured, answer, noise.whitener(answer))
 
     def answer(self, number: int, frequency: Array, reference: Mapping[str, float], x: Array, *, windowed: bool = True) -> RoadAnswer:
         """Return how roughness comes into trial `number`'s channels, at reference values [SI] and errors of x; not `windowed`: as it is."""
@@ -274,7 +274,7 @@ class Misfit:
         return self.whiten(number, transform(signal, trial.recording.dt, self._weights[number].inside, seen=trial.window))
 
     def measured(self, number: int) -> Complex:
-        """Return the spectral lines that trial `number` recorded, `shape (n_lines, n_channels)`."""
+        """Return the spectral lines that trial `number` recorded, less what roughness shifts, `shape (n_lines, n_channels)`."""
         return self._weights[number].measured
 
     def frequency(self, number: int) -> Array:

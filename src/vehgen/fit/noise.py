@@ -42,11 +42,16 @@ COLOUR_AT = 44.0
 
 
 @dataclass(frozen=True)
-class DrawnDensity:
-    """What roughness makes of the channels, from drawn roads: a density `shape (n, n_channels, n_channels)` at frequencies `(n,)` [Hz]."""
+class DrawnRoughness:
+    """What roughness makes of the channels, from drawn roads: a density `shape (n, n_channels, n_channels)` at frequencies `(n,)` [Hz].
+
+    `shift shape (n_samples, n_channels)` is by how much the mean of what sensors read differs from what they read where only humps are:
+    friction that roughness shakes loose holds a hump's motion less. None where it was not asked for.
+    """
 
     frequency: Array
     density: Complex
+    shift: Array | None = None
 
     def at(self, frequency: Array) -> Complex:
         """Return the density at other frequencies [Hz], that of the nearest one it knows."""
@@ -68,8 +73,14 @@ class Noise:
     sigma: Array
     slope: float = 0.0
     louder: Array | None = None
-    drawn: DrawnDensity | None = None
+    drawn: DrawnRoughness | None = None
     acting: Array | None = None
+
+    @property
+    def shift(self) -> Array:
+        """By how much roughness shifts what sensors read of a hump, `shape (n_samples, n_channels)`; (1, n_channels) where it does not."""
+        shift = None if self.drawn is None else self.drawn.shift
+        return np.zeros((1, len(self.sigma))) if shift is None else shift
 
     def level(self, wavenumber: Array) -> Array:
         """Return L at wavenumbers [cycles/m]."""
@@ -78,7 +89,7 @@ class Noise:
     def rougher(self, factor: float) -> Noise:
         """Return the noise of a road so many times as rough (as a level)."""
         levels = np.clip(self.levels * factor, SMALLEST_LEVEL, LARGEST_LEVEL)
-        drawn = None if self.drawn is None else DrawnDensity(self.drawn.frequency, factor * self.drawn.density)
+        drawn = None if self.drawn is None else replace(self.drawn, density=factor * self.drawn.density)
         return replace(self, levels=levels, drawn=drawn)
 
     def density(self, answer: RoadAnswer) -> Complex:

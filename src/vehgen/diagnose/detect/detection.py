@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.detect.drawn_roughness import noises_of_laws
-from vehgen.diagnose.detect.noise_floor import NoiseFloor, find_noise_floor
+from vehgen.diagnose.detect.noise_floor import NoiseFloor, are_same, find_noise_floor
 from vehgen.diagnose.detect.numerical_floor import numerical_floor
 from vehgen.diagnose.detect.rig_noise import rig_noises
 from vehgen.diagnose.detect.road_error import measured_profiles, road_noises
@@ -30,8 +30,6 @@ from vehgen.fit.recorders import CLEAR_RECORDER, MOST_LEFT, FoundRecorder, clear
 from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
-SAME_SQUARES = 0.1
-"""Noises by which the mean squares of what a fit leaves differ by less in their logarithms are the same."""
 DETECTION_ROUNDS = 3
 """So often at most are the roads' part of the noise and an unknown recorder found, each from the fit with those before."""
 BELIEVED_SIGMAS, FREE_SIGMAS = 2.5, 20.0
@@ -183,7 +181,7 @@ def look_again(detection: Detection, fit: ModelFit) -> Detection | None:
             problem = problem.with_trials(found.applied(problem.trials))
             validation_runs = found.applied(validation_runs)
     noises = _noises(fit, floor)
-    if recorder is detection.recorder and _are_same(noises, floor.noises, fit):
+    if recorder is detection.recorder and are_same(noises, floor.noises, fit):
         return None
     band = detection.asked_band if recorder is None else recorder.band
     floor = replace(floor, noises=noises)
@@ -215,16 +213,6 @@ def with_runs(detection: Detection, training: Sequence[Trial], validation_runs: 
 def _noises(fit: ModelFit, floor: NoiseFloor) -> Noises:
     """Return the noise of all runs with what a model's fit says of their roads, and of what roads make of its laws."""
     return rig_noises(fit, noises_of_laws(fit, road_noises(fit, floor.noises, floor.quiet)), floor.quiet)
-
-
-def _are_same(noises: Noises, others: Noises, fit: ModelFit) -> bool:
-    """Return whether what a fit leaves of every run is as large by one noise as by another."""
-    for part in fit.parts:
-        for trial, (lines, answer) in zip(part.misfit.problem.trials, part.misfit.residual_spectrum(part.x), strict=True):
-            squares = [np.mean(np.abs(item[trial.name].whitener(answer) @ lines[:, :, None]) ** 2) for item in (noises, others)]
-            if abs(np.log(squares[0] / squares[1])) > SAME_SQUARES:
-                return False
-    return True
 
 
 def _detection(

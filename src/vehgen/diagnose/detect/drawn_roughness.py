@@ -1,8 +1,9 @@
 """What does a rough road make of a vehicle with force laws? Drawn roads tell.
 
 A linear vehicle answers roughness in the same way wherever it drives, all channels in step. One with laws does not: friction that sticks
-before the hump slides on it, a damper that is softer in one direction turns slow motion into faster one. So roads are drawn, and the
-fitted vehicle driven over them with the hump and without it. How rough they are follows from the lead-ins, by the vehicle with its laws: a
+before the hump slides on it, a damper that is softer in one direction turns slow motion into faster one. Nor does it answer the hump in the
+same way: of friction that roughness shakes loose a third is left. So roads are drawn, and the fitted vehicle driven over them with the hump
+and without it. How rough they are follows from the lead-ins, by the vehicle with its laws: a
 suspension that sticks passes a smooth road on as a linear one would a rough road.
 """
 
@@ -21,7 +22,7 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.fit.lead_in import lead_in
 from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.misfit import Misfit, Noises
-from vehgen.fit.noise import EVEN, LARGEST_LEVEL, SMALLEST_LEVEL, DrawnDensity, Noise
+from vehgen.fit.noise import EVEN, LARGEST_LEVEL, SMALLEST_LEVEL, DrawnRoughness, Noise
 from vehgen.fit.road_answer import KNOT_WAVENUMBERS, RoadAnswer
 from vehgen.fit.trial import Trial
 from vehgen.road import MeasuredProfile
@@ -30,8 +31,8 @@ from vehgen.simulate import Scenario
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-ROADS_DRAWN, ROADS_TRIED = 40, 6
-"""Roads drawn for every run, and while their roughness is sought."""
+ROADS_DRAWN, ROADS_TRIED, ROADS_MIRRORED = 40, 6, 16
+"""Roads drawn for every run, while their roughness is sought, and driven over upside down, too, for what does not cancel then."""
 ROAD_SEED = 20
 SPACING_M = 0.02
 """Spacing of a drawn road's points [m]."""
@@ -104,20 +105,32 @@ class DrawnRun:
         """The run itself."""
         return self.fit.misfit.problem.trials[self.number]
 
-    def density(self, levels: Array, count: int, *, hump: bool = True) -> DrawnDensity:
+    def density(self, levels: Array, count: int, *, hump: bool = True) -> DrawnRoughness:
         """Return what `count` roads of such levels `shape (len(KNOTS),)` [m^3] add to the channels, on the run's humps or without them."""
         misfit: Misfit = self.fit.misfit
         scenario = misfit.scenario(self.fit.x, self.number)
-        if not hump:
-            scenario = replace(scenario, track=replace(scenario.track, parts=()))
-        plain = self._lines(scenario)
-        total = np.zeros((*plain.shape, plain.shape[1]), dtype=np.complex128)
-        for road in self._roads(scenario, levels, count):
-            track = replace(scenario.track, parts=(*scenario.track.parts, road))
-            added = self._lines(replace(scenario, track=track)) - plain
-            total += added[:, :, None] * added[:, None, :].conj()
-        smooth = scipy.ndimage.uniform_filter1d(total / count, SMOOTHED, axis=0)
-        return DrawnDensity(misfit.frequency(self.number), np.asarray(smooth, dtype=np.complex128))
+        flat = replace(scenario, track=replace(scenario.track, parts=()))
+        humps = scenario if hump else flat
+        roads = self._roads(scenario, levels, count)
+        shift = self._shift(humps, flat, roads[:ROADS_MIRRORED]) if hump else None
+        plain = self._motion(humps) + (0.0 if shift is None else shift)
+        added = np.array([self._lines(self._motion(_over(humps, road)) - plain) for road in roads])
+        mean = np.einsum("rni,rnj->nij", added, added.conj()) / count
+        smooth = scipy.ndimage.uniform_filter1d(mean, SMOOTHED, axis=0)
+        error = misfit.errors_of(self.fit.x, self.number)
+        read = None if shift is None else misfit.errors[self.number].read(shift, self.trial.recording.dt, error)
+        return DrawnRoughness(misfit.frequency(self.number), np.asarray(smooth, dtype=np.complex128), read)
+
+    def _shift(self, humps: Scenario, flat: Scenario, roads: Sequence[MeasuredProfile]) -> Array:
+        """Return by how much roughness changes the mean of what the sensors' places do on humps, `shape (n_samples, n_channels)`.
+
+        What roads do without humps is taken off, as is what a linear vehicle would do: the same upside down.
+        """
+        shift = -self._motion(humps)
+        for road in roads:
+            for way in (road, replace(road, heights=-road.heights)):
+                shift = shift + (self._motion(_over(humps, way)) - self._motion(_over(flat, way))) / (2 * len(roads))
+        return shift
 
     def _roads(self, scenario: Scenario, levels: Array, count: int) -> list[MeasuredProfile]:
         """Return roads under all that the run drives over; those of other levels are the same, louder or quieter."""
@@ -136,11 +149,19 @@ class DrawnRun:
             found.append(MeasuredProfile(start + SPACING_M * np.arange(points), heights))
         return found
 
-    def _lines(self, scenario: Scenario) -> Complex:
-        misfit, x = self.fit.misfit, self.fit.x
-        values = misfit.problem.space.values(misfit.split(x)[0])[None]
-        response = misfit.problem.respond(values, self.trial, scenario)[0][0]
-        return misfit.channel_lines(self.number, response, misfit.errors_of(x, self.number))
+    def _motion(self, scenario: Scenario) -> Array:
+        misfit = self.fit.misfit
+        values = misfit.problem.space.values(misfit.split(self.fit.x)[0])[None]
+        return np.asarray(misfit.problem.respond(values, self.trial, scenario)[0][0])
+
+    def _lines(self, motion: Array) -> Complex:
+        misfit = self.fit.misfit
+        return misfit.channel_lines(self.number, motion, misfit.errors_of(self.fit.x, self.number))
+
+
+def _over(scenario: Scenario, road: MeasuredProfile) -> Scenario:
+    """Return a scenario with a road beneath what it drives over."""
+    return replace(scenario, track=replace(scenario.track, parts=(*scenario.track.parts, road)))
 
 
 def _own_densities(noise: Noise, answer: RoadAnswer) -> Array:

@@ -17,7 +17,7 @@ import scipy.optimize
 import scipy.signal
 from numpy.typing import NDArray
 
-from vehgen.diagnose.fits.model_fit import NUISANCES
+from vehgen.diagnose.fits.model_fit import NUISANCES, ModelFit
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.lead_in import lead_in
 from vehgen.fit.misfit import Noises
@@ -50,6 +50,10 @@ LINE_STANDS_OUT = 20.0
 """A spectral line of more than so many times the median power of its band is none of them."""
 LINE_WIDTH, LINE_LEAKS = 0.03, 2.5
 """A line that is no noise reaches this share of its frequency to both sides, or else so many lines."""
+SAME_SQUARES, SAME_SHIFT = 0.1, 10.0
+"""Noises are the same by which what a fit leaves of a run has mean squares whose logarithms differ by less, and whose shifts differ by a
+smaller sum of squares, in units of the noise.
+"""
 LARGEST_RATIO = 4.0
 """The top of the band of a loud run may hold its motion too: it counts at most this much more than the lead-in's variance."""
 
@@ -237,3 +241,16 @@ def top_of_band(trial: Trial, band: tuple[float, float] = CALIBRATION_BAND_HZ) -
     inside = (frequency >= top * TOP_BAND_RATIO[0] / TOP_BAND_RATIO[1]) & (frequency <= top)
     # the median of an exponential variable is ln 2 of its mean; it forgives a line within the band
     return np.asarray(np.sqrt(np.median(density[inside], axis=0) / np.log(2) / (2 * trial.recording.dt)))
+
+
+def are_same(noises: Noises, others: Noises, fit: ModelFit) -> bool:
+    """Return whether what a fit leaves of every run is as large by one noise as by another."""
+    for part in fit.parts:
+        for i, (lines, answer) in enumerate(part.misfit.residual_spectrum(part.x)):
+            trial = part.misfit.problem.trials[i]
+            squares = [np.mean(np.abs(item[trial.name].whitener(answer) @ lines[:, :, None]) ** 2) for item in (noises, others)]
+            change = np.broadcast_to(noises[trial.name].shift - others[trial.name].shift, trial.recording.values.shape)
+            moved = 2 * np.sum(np.abs(part.misfit.whitened_signal(i, change)) ** 2)
+            if abs(np.log(squares[0] / squares[1])) > SAME_SQUARES or moved > SAME_SHIFT:
+                return False
+    return True

@@ -1,8 +1,7 @@
 """Which forces are not linear? The library of force laws, kin in one file, and laws that a file writes itself."""
 
 from vehgen.mechanics.laws.asymmetric_damping import ASYMMETRIC_DAMPING
-from vehgen.mechanics.laws.base import Kind, Law, LawParameter, LawState, LawStep
-from vehgen.mechanics.laws.custom import custom_law
+from vehgen.mechanics.laws.base import Kind, Law, LawParameter, LawState, LawStep, custom_law
 from vehgen.mechanics.laws.friction import ASYMMETRIC_FRICTION, DRY_FRICTION, ELASTO_PLASTIC
 from vehgen.mechanics.laws.memory import HYSTERESIS, RELAXATION
 from vehgen.mechanics.laws.powers import CUBIC_STIFFNESS, QUADRATIC_DAMPING, QUADRATIC_STIFFNESS

@@ -1,11 +1,11 @@
-"""What may be wrong with a sensor: its gain, its position, its tilt, its clock."""
+"""What may be wrong with the measuring: a sensor's gain, position, tilt or clock, the speed of all runs."""
 
 from __future__ import annotations
 
 from vehgen.effects.base import EffectParameter
 from vehgen.effects.kinds import RunEffect
-from vehgen.effects.places import channels, sensors, sensors_on_bodies
-from vehgen.fit.adjustments import Gain, SensorDelay, Tilt
+from vehgen.effects.places import channels, runs, sensors, sensors_on_bodies
+from vehgen.fit.adjustments import Gain, SensorDelay, SpeedScale, Tilt
 
 SENSOR_GAIN_EFFECT = RunEffect(
     name="sensor_gain",
@@ -72,4 +72,30 @@ SENSOR_DELAY_EFFECT = RunEffect(
         "no run tells which of the sensors is late and which early: only the difference of their clocks shows; record both by one clock, "
         "or let both feel a knock at a known time"
     ),
+)
+
+
+SPEED_ERROR_EFFECT = RunEffect(
+    name="speed_error",
+    title="Speed error",
+    equation="v = scale*v_nominal",
+    meaning="a speed that was not what the run file says, by the same share in all runs",
+    signature="axles arrive too early or late one after the other; the delay grows with the axle distance",
+    source="Wu & Li 2023, Sect. 3, doi:10.3390/s23249691",
+    attaches="run",
+    places=runs,
+    parameters=(
+        EffectParameter(
+            "scale",
+            "",
+            "true speed over that of the run file",
+            low=0.85,
+            high=1.15,
+            starts=tuple(round(0.9 + 0.01 * i, 2) for i in range(21) if i != 10),
+        ),
+    ),
+    is_global=True,
+    adjustment=SpeedScale,
+    scale=0.01,
+    neutral=1.0,
 )

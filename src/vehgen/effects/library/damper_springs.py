@@ -1,14 +1,15 @@
-"""A damper on a soft mount."""
+"""Springs at dampers: a mount in series with one, a spring beside one where the file has none."""
 
 from __future__ import annotations
 
 import math
+from operator import attrgetter
 
 from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.library.law_effect import on_spring
 from vehgen.effects.locator import EffectSite
-from vehgen.effects.places import dampers
+from vehgen.effects.places import dampers, springless
 from vehgen.files.expressions import Expression
 
 
@@ -16,7 +17,7 @@ def _size(site: EffectSite) -> float:
     return 2 * math.pi * site.c
 
 
-def _edit(site: EffectSite, symbols: Symbols) -> Change:
+def _mount(site: EffectSite, symbols: Symbols) -> Change:
     """Return the dashpot moved into a Maxwell branch of the same c: nothing stands beside it."""
     k, c = symbols["k"], site.spring.c
     law = {"relaxation": {"k": k, "time": c / k}}
@@ -48,6 +49,36 @@ DAMPER_MOUNT_EFFECT = VehicleEffect(
         ),
     ),
     frees=("c",),
-    edit=_edit,
+    edit=_mount,
 )
 """Of a dashpot c the mount's stiffness is searched as 2 pi c f, f the frequency [Hz] above which the mount gives more than the dashpot."""
+
+
+def _add(site: EffectSite, symbols: Symbols) -> Change:
+    return on_spring(site, {"k": symbols["k"]})
+
+
+ADDED_STIFFNESS_EFFECT = VehicleEffect(
+    name="added_stiffness",
+    title="A spring that the file does not have",
+    equation="f = k*d",
+    meaning="gas under pressure in a damper, a bushing, a hose or a cable that pulls back, where the file declares no stiffness",
+    signature="slow motions meet a force that follows the travel; what the file lets drift comes back, or rings",
+    source="J. C. Dixon, The Shock Absorber Handbook, 2nd ed., Wiley 2007 (gas-pressurised dampers), doi:10.1002/9780470516430",
+    attaches="suspension",
+    places=springless,
+    parameters=(
+        EffectParameter(
+            "k",
+            "N/m",
+            "stiffness beside what is there",
+            low=0.003,
+            high=10.0,
+            starts=(0.03, 0.3),
+            scale=attrgetter("k"),
+            of="the largest force that occurs over the largest travel",
+        ),
+    ),
+    frees=("c",),
+    edit=_add,
+)
