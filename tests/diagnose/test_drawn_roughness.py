@@ -50,21 +50,16 @@ def test_the_noise_of_a_linear_vehicle_stays_as_it_is(detection_of):
     assert noises_of_laws(detection.base, detection.floor.noises) is detection.floor.noises
 
 
-@pytest.fixture(scope="module")
-def stuck(record, tmp_path_factory):
-    """Runs with friction over humps on a road that the run files do not tell of, and the noise of a linear vehicle."""
-    folder = tmp_path_factory.mktemp("stuck")
-    shutil.copytree(record(FRICTION, runs=STUCK)[0].parent, folder, dirs_exist_ok=True)
+def unmeasured(record, folder, runs):
+    """Trials of a vehicle with friction, on roads that the run files do not tell of."""
+    shutil.copytree(record(FRICTION, runs=runs)[0].parent, folder, dirs_exist_ok=True)
     for path in folder.glob("run*.yaml"):
         path.write_text("".join(line for line in path.read_text().splitlines(keepends=True) if "profile:" not in line))
-    trials = load_trials(sorted(folder.glob("run*.yaml")))
-    return trials, find_noise_floor(trials, BAND_HZ).noises
+    return load_trials(sorted(folder.glob("run*.yaml")))
 
 
-@pytest.fixture(scope="module")
-def stuck_fit(stuck):
-    """The vehicle with its friction, as it is."""
-    trials, noises = stuck
+def as_it_is(trials, noises):
+    """The vehicle with its friction, fitted to nothing."""
     vehicle = trials[0].run.vehicle
     locator, base = EffectLocator(vehicle, trials[0].values), make_problem(trials)
     (candidate,) = [item for item in list_candidates(vehicle, trials, [EFFECTS["dry_friction"]], noises) if item.place == "front"]
@@ -74,6 +69,18 @@ def stuck_fit(stuck):
     misfit = Misfit(problem, noises, point, None, BAND_HZ)
     x = np.concatenate([problem.space.unit(point), np.zeros(misfit.n_unknowns - problem.space.size)])
     return LeastSquaresFit(misfit, x, 1.0, 0.0)
+
+
+@pytest.fixture(scope="module")
+def stuck(record, tmp_path_factory):
+    """Runs with friction over humps, and the noise of a linear vehicle."""
+    trials = unmeasured(record, tmp_path_factory.mktemp("stuck"), STUCK)
+    return trials, find_noise_floor(trials, BAND_HZ).noises
+
+
+@pytest.fixture(scope="module")
+def stuck_fit(stuck):
+    return as_it_is(*stuck)
 
 
 def test_a_smooth_road_under_stuck_friction_is_not_taken_for_a_rough_one(stuck, stuck_fit):
@@ -102,3 +109,27 @@ def test_a_vehicle_that_passes_nothing_on_asks_for_no_roughness(stuck, stuck_fit
         lead = lead_in_lines(lead_in(run.trial), BAND_HZ)
         assert np.all(_asked(run, even, lead) >= 0)
         assert np.all(levels >= SMALLEST_LEVEL)
+
+
+def test_roughness_shifts_nothing_of_what_a_linear_vehicle_does(detection_of):
+    fit = detection_of().base.least_squares
+    number = next(i for i, trial in enumerate(fit.misfit.problem.trials) if trial.scenario.humps)
+    levels = np.full(len(KNOT_WAVENUMBERS), CLASS_A)
+    drawn = DrawnRun(fit, number, Noise(levels, np.full(len(fit.misfit.problem.trials[number].channels), 1e-9))).density(levels, 4)
+    assert np.abs(drawn.shift).max() < 1e-9 * np.abs(fit.misfit.simulate(fit.x)[number]).max()
+
+
+def test_what_roughness_shakes_loose_of_friction_is_what_recordings_lack_on_average(record, tmp_path_factory):
+    """Eight passes over one hump, each on another road that no run file tells of: the true vehicle leaves the shift, and what differs."""
+    runs = tuple(RunSpec((Hump(0.5, 0.04, 16.0), RandomRoad("A", seed)), 4.0, 8.0, f"run{seed}") for seed in range(11, 19))
+    trials = unmeasured(record, tmp_path_factory.mktemp("shaken"), runs)
+    noises = find_noise_floor(trials, BAND_HZ).noises
+    fit = as_it_is(trials, noises)
+    levels = np.full(len(KNOT_WAVENUMBERS), CLASS_A)
+    shift = DrawnRun(fit, 0, noises[trials[0].name]).density(levels, 16).shift
+    left = np.mean([trial.recording.values - motion for trial, motion in zip(trials, fit.misfit.simulate(fit.x), strict=True)], axis=0)
+    over = slice(round(3.9 / trials[0].recording.dt), round(6.0 / trials[0].recording.dt))
+    share = np.sum(left[over] * shift[over], axis=0) / np.sum(shift[over] ** 2, axis=0)
+    assert share[0] == pytest.approx(1.0, abs=0.25)  # the acceleration above the friction, then pitch rates
+    assert share[[1, 3]] == pytest.approx(1.0, abs=0.4)
+    assert np.corrcoef(left[over, 0], shift[over, 0])[0, 1] > 0.6
