@@ -133,3 +133,14 @@ def test_what_roughness_shakes_loose_of_friction_is_what_recordings_lack_on_aver
     assert share[0] == pytest.approx(1.0, abs=0.25)  # the acceleration above the friction, then pitch rates
     assert share[[1, 3]] == pytest.approx(1.0, abs=0.4)
     assert np.corrcoef(left[over, 0], shift[over, 0])[0, 1] > 0.6
+
+
+def test_a_shift_is_taken_off_its_own_recording_alone():
+    """A hypothesis of exchanged recordings compares one of another length by this run's noise."""
+    shift = np.full((20, 2), 0.3)
+    density = np.zeros((3, 2, 2), dtype=np.complex128)
+    noise = Noise(np.ones(len(KNOT_WAVENUMBERS)), np.ones(2), drawn=DrawnRoughness(np.arange(3.0), density, shift))
+    assert noise.unshifted(np.ones((20, 2))) == pytest.approx(0.7)
+    assert noise.rougher(2.0).unshifted(np.ones((20, 2))) == pytest.approx(0.7)
+    assert noise.unshifted(np.ones((21, 2))) == pytest.approx(1.0)
+    assert Noise(noise.levels, noise.sigma).unshifted(np.ones((20, 2))) == pytest.approx(1.0)

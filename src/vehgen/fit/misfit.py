@@ -101,7 +101,7 @@ class Misfit:
         frequency = np.asarray(np.fft.rfftfreq(len(trial.recording.time), dt), dtype=np.float64)
         inside = (frequency >= self.band[0]) & (frequency <= self.band[1])
         answer, noise = self.answer(number, frequency[inside], reference, x), self.noises[trial.name]
-        measured = transform(trial.recording.values - noise.shift, dt, inside, seen=trial.window)
+        measured = transform(noise.unshifted(trial.recording.values), dt, inside, seen=trial.window)
         return _Weight(inside, measured, answer, noise.whitener(answer))
 
     def answer(self, number: int, frequency: Array, reference: Mapping[str, float], x: Array, *, windowed: bool = True) -> RoadAnswer:
@@ -165,8 +165,7 @@ class Misfit:
 
     def common_errors(self, x: Array) -> dict[tuple[str, str], float]:
         """Return the errors that hold in all runs, by name and place, those that stand included."""
-        found = {(item.name, item.place): item.value for item in self.conditions(x) if not item.run}
-        return {**self.known, **found}
+        return {**self.known, **{(item.name, item.place): item.value for item in self.conditions(x) if not item.run}}
 
     def errors_like(self, other: Misfit, x: Array) -> Array:
         """Return errors `shape (n_errors,)` as another misfit's unknowns x have them; those that it leaves out are 0."""
@@ -176,8 +175,7 @@ class Misfit:
     def without(self, x: Array, names: Sequence[str]) -> Array:
         """Return the unknowns x with all errors of some names at 0."""
         start = self.n_parameters + len(self.shared)
-        kept = [item.name not in names for item in self.conditions(x)]
-        return np.concatenate([x[:start], x[start:] * kept])
+        return np.concatenate([x[:start], x[start:] * [item.name not in names for item in self.conditions(x)]])
 
     def adjusted(self, x: Array) -> Array:
         """Return the numbers of the shared adjustments, `shape (len(shared),)`."""
@@ -268,10 +266,14 @@ class Misfit:
         """Return lines `shape (..., n_lines, n_channels)` of trial `number` whitened."""
         return _apply(self._weights[number].whitener, lines)
 
-    def whitened_signal(self, number: int, signal: Array) -> Complex:
-        """Return the whitened lines of a signal `shape (n_samples, n_channels)` in trial `number`."""
+    def signal_lines(self, number: int, signal: Array) -> Complex:
+        """Return the spectral lines of a signal `shape (n_samples, n_channels)` in trial `number`."""
         trial = self.problem.trials[number]
-        return self.whiten(number, transform(signal, trial.recording.dt, self._weights[number].inside, seen=trial.window))
+        return transform(signal, trial.recording.dt, self._weights[number].inside, seen=trial.window)
+
+    def whitened_signal(self, number: int, signal: Array) -> Complex:
+        """Return :meth:`signal_lines` whitened."""
+        return self.whiten(number, self.signal_lines(number, signal))
 
     def measured(self, number: int) -> Complex:
         """Return the spectral lines that trial `number` recorded, less what roughness shifts, `shape (n_lines, n_channels)`."""

@@ -76,11 +76,10 @@ class Noise:
     drawn: DrawnRoughness | None = None
     acting: Array | None = None
 
-    @property
-    def shift(self) -> Array:
-        """By how much roughness shifts what sensors read of a hump, `shape (n_samples, n_channels)`; (1, n_channels) where it does not."""
+    def unshifted(self, values: Array) -> Array:
+        """Return a recording less what roughness shifts of it, `shape (n_samples, n_channels)`; one of another length as it is."""
         shift = None if self.drawn is None else self.drawn.shift
-        return np.zeros((1, len(self.sigma))) if shift is None else shift
+        return values if shift is None or shift.shape != values.shape else np.asarray(values - shift)
 
     def level(self, wavenumber: Array) -> Array:
         """Return L at wavenumbers [cycles/m]."""

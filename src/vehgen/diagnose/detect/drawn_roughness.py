@@ -2,9 +2,9 @@
 
 A linear vehicle answers roughness in the same way wherever it drives, all channels in step. One with laws does not: friction that sticks
 before the hump slides on it, a damper that is softer in one direction turns slow motion into faster one. Nor does it answer the hump in the
-same way: of friction that roughness shakes loose a third is left. So roads are drawn, and the fitted vehicle driven over them with the hump
-and without it. How rough they are follows from the lead-ins, by the vehicle with its laws: a
-suspension that sticks passes a smooth road on as a linear one would a rough road.
+same way: friction that roughness shakes loose holds it less. So roads are drawn, and the fitted vehicle driven over them with the hump and
+without it. How rough they are follows from the lead-ins, by the vehicle with its laws: a suspension that sticks passes a smooth road on as
+a linear one would a rough road.
 """
 
 from __future__ import annotations
@@ -57,7 +57,9 @@ def noises_of_laws(fit: ModelFit, noises: Noises) -> Noises:
     found = {}
     for run, levels in zip(rough, find_levels(rough), strict=True):
         drawn = replace(run.lead, levels=levels, louder=None, drawn=run.density(levels, ROADS_DRAWN))
-        found[run.trial.name] = under_hump(*run.fit.misfit.residual_spectrum(run.fit.x)[run.number], drawn)
+        lines, answer = run.fit.misfit.residual_spectrum(run.fit.x)[run.number]
+        before, now = (item.unshifted(run.trial.recording.values) for item in (run.fit.misfit.noises[run.trial.name], drawn))
+        found[run.trial.name] = under_hump(lines + run.fit.misfit.signal_lines(run.number, now - before), answer, drawn)
     return noises | found
 
 

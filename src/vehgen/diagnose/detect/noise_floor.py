@@ -244,13 +244,13 @@ def top_of_band(trial: Trial, band: tuple[float, float] = CALIBRATION_BAND_HZ) -
 
 
 def are_same(noises: Noises, others: Noises, fit: ModelFit) -> bool:
-    """Return whether what a fit leaves of every run is as large by one noise as by another."""
+    """Return whether what a fit leaves of every run is as large by one noise as by another, and as little of it shifted."""
     for part in fit.parts:
         for i, (lines, answer) in enumerate(part.misfit.residual_spectrum(part.x)):
             trial = part.misfit.problem.trials[i]
             squares = [np.mean(np.abs(item[trial.name].whitener(answer) @ lines[:, :, None]) ** 2) for item in (noises, others)]
-            change = np.broadcast_to(noises[trial.name].shift - others[trial.name].shift, trial.recording.values.shape)
-            moved = 2 * np.sum(np.abs(part.misfit.whitened_signal(i, change)) ** 2)
+            ours, theirs = (item[trial.name].unshifted(trial.recording.values) for item in (noises, others))
+            moved = 2 * np.sum(np.abs(part.misfit.whitened_signal(i, ours - theirs)) ** 2)
             if abs(np.log(squares[0] / squares[1])) > SAME_SQUARES or moved > SAME_SHIFT:
                 return False
     return True
