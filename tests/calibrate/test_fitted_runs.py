@@ -93,7 +93,7 @@ def test_low_passes_of_sensors_are_told_one_by_one(tmp_path):
     values = np.loadtxt(file, delimiter=",", skiprows=1)
     values[:, 3:] = scipy.signal.lfilter(*scipy.signal.butter(2, 12.0, fs=1 / (values[1, 0] - values[0, 0])), values[:, 3:], axis=0)
     np.savetxt(file, values, delimiter=",", header="t,F_az,F_q,R_az,R_q", comments="")
-    found = summarise(calibrate_problem(make_problem(load_trials([run])), Settings(search=GeneticSearch(1, 10, 0), starts=1)))
+    found = summarise(calibrate_problem(make_problem(load_trials([run])), Settings(search=GeneticSearch(1, 10, 0), starts=3)))
     front, rear = found.recorder
     assert (front.channels, rear.channels) == (("F_az", "F_q"), ("R_az", "R_q"))
     assert rear.cut_off == pytest.approx(12.0, rel=0.1)

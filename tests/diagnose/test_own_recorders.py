@@ -34,7 +34,7 @@ def rear_low_passed(values):
 
 
 def test_a_healthy_vehicle_behind_two_recorders_lacks_nothing(trials_of, monkeypatch):
-    """With one low-pass for all a gap would be left."""
+    """Each low-pass is found, and told; one for all stands where own ones have to be better than any can be."""
     trials = edited(undeclared(trials_of(runs=HUMPS)), rear_low_passed)
     found = detect(trials)
     assert found.recorder is not None
@@ -48,7 +48,6 @@ def test_a_healthy_vehicle_behind_two_recorders_lacks_nothing(trials_of, monkeyp
     shared = detect(trials)
     assert shared.recorder is not None
     assert shared.recorder.apart == ()
-    assert shared.chi > found.chi + 0.03
 
 
 def test_a_missing_effect_is_not_taken_for_low_passes_of_the_sensors(trials_of):
