@@ -100,7 +100,7 @@ def test_a_vehicle_that_passes_nothing_on_asks_for_no_roughness(stuck, stuck_fit
 
     def nothing(self, levels, count, *, hump=True):
         frequency = self.fit.misfit.frequency(self.number)
-        return DrawnRoughness(frequency, np.zeros((len(frequency), n, n), dtype=np.complex128))
+        return DrawnRoughness(frequency, np.zeros((len(frequency), n, n), dtype=np.complex128), np.zeros((1, n)))
 
     monkeypatch.setattr(DrawnRun, "density", nothing)
     even = np.full(len(KNOT_WAVENUMBERS), 1.5 * SMALLEST_LEVEL)

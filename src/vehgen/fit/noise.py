@@ -46,12 +46,12 @@ class DrawnRoughness:
     """What roughness makes of the channels, from drawn roads: a density `shape (n, n_channels, n_channels)` at frequencies `(n,)` [Hz].
 
     `shift shape (n_samples, n_channels)` is by how much the mean of what sensors read differs from what they read where only humps are:
-    friction that roughness shakes loose holds a hump's motion less. None where it was not asked for.
+    friction that roughness shakes loose holds a hump's motion less.
     """
 
     frequency: Array
     density: Complex
-    shift: Array | None = None
+    shift: Array
 
     def at(self, frequency: Array) -> Complex:
         """Return the density at other frequencies [Hz], that of the nearest one it knows."""
@@ -78,8 +78,9 @@ class Noise:
 
     def unshifted(self, values: Array) -> Array:
         """Return a recording less what roughness shifts of it, `shape (n_samples, n_channels)`; one of another length as it is."""
-        shift = None if self.drawn is None else self.drawn.shift
-        return values if shift is None or shift.shape != values.shape else np.asarray(values - shift)
+        if self.drawn is None or self.drawn.shift.shape != values.shape:
+            return values
+        return np.asarray(values - self.drawn.shift)
 
     def level(self, wavenumber: Array) -> Array:
         """Return L at wavenumbers [cycles/m]."""

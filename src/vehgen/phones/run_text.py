@@ -24,6 +24,8 @@ from vehgen.vehicle.writing import base_reference
 
 USUAL_CLOCK_S, DOUBTFUL_CLOCK_S = 0.01, 0.03
 """How well phones' clocks are known against one another [s], and where one of them is matched badly."""
+WORTH_STATING = 1.5
+"""So many times less well than usual clocks have to be known for a run file to say so."""
 WANDER_SHARE = 0.007
 """How far from its mean the speed between two phones' loudest moments may be, relative: they are laid over an answer at one speed. Four
 clocks of a trailer 15 m behind were late by 0.2 to 1.2 % of that time, at a speed that wandered by 1 %.
@@ -108,7 +110,7 @@ def _uncertainty(imported: Imported) -> OneLine | None:
     deviation, stated = imported.speed.deviation, {}
     if deviation is not None and deviation > USUAL_SPEED_SHARE * imported.speed.value:
         stated["speed"] = f"{deviation:.2g} m/s"
-    if (clock := _clock_deviation(imported)) > 1.5 * USUAL_CLOCK_S:
+    if (clock := _clock_deviation(imported)) > WORTH_STATING * USUAL_CLOCK_S:
         stated["clock"] = f"{1000 * clock:.0f} ms"
     return OneLine(**stated) if stated else None
 

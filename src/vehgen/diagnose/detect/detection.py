@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.detect.drawn_roughness import noises_of_laws
-from vehgen.diagnose.detect.noise_floor import NoiseFloor, are_same, find_noise_floor
+from vehgen.diagnose.detect.noise_floor import NoiseFloor, are_same_noises, find_noise_floor
 from vehgen.diagnose.detect.numerical_floor import numerical_floor
 from vehgen.diagnose.detect.rig_noise import rig_noises
 from vehgen.diagnose.detect.road_error import measured_profiles, road_noises
@@ -181,7 +181,7 @@ def look_again(detection: Detection, fit: ModelFit) -> Detection | None:
             problem = problem.with_trials(found.applied(problem.trials))
             validation_runs = found.applied(validation_runs)
     noises = _noises(fit, floor)
-    if recorder is detection.recorder and are_same(noises, floor.noises, fit):
+    if recorder is detection.recorder and are_same_noises(noises, floor.noises, fit):
         return None
     band = detection.asked_band if recorder is None else recorder.band
     floor = replace(floor, noises=noises)

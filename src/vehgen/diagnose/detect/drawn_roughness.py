@@ -112,27 +112,23 @@ class DrawnRun:
         misfit: Misfit = self.fit.misfit
         scenario = misfit.scenario(self.fit.x, self.number)
         flat = replace(scenario, track=replace(scenario.track, parts=()))
-        humps = scenario if hump else flat
         roads = self._roads(scenario, levels, count)
-        shift = self._shift(humps, flat, roads[:ROADS_MIRRORED]) if hump else None
-        plain = self._motion(humps) + (0.0 if shift is None else shift)
-        added = np.array([self._lines(self._motion(_over(humps, road)) - plain) for road in roads])
-        mean = np.einsum("rni,rnj->nij", added, added.conj()) / count
-        smooth = scipy.ndimage.uniform_filter1d(mean, SMOOTHED, axis=0)
-        error = misfit.errors_of(self.fit.x, self.number)
-        read = None if shift is None else misfit.errors[self.number].read(shift, self.trial.recording.dt, error)
-        return DrawnRoughness(misfit.frequency(self.number), np.asarray(smooth, dtype=np.complex128), read)
+        driven = scenario if hump else flat
+        plain = self._motion(driven)
+        mean = self._mean(driven, flat, roads[:ROADS_MIRRORED]) if hump else plain
+        added = np.array([self._lines(self._motion(_over(driven, road)) - mean) for road in roads])
+        power = np.einsum("rni,rnj->nij", added, added.conj()) / count
+        smooth = scipy.ndimage.uniform_filter1d(power, SMOOTHED, axis=0)
+        shift = misfit.errors[self.number].read(mean - plain, self.trial.recording.dt, misfit.errors_of(self.fit.x, self.number))
+        return DrawnRoughness(misfit.frequency(self.number), np.asarray(smooth, dtype=np.complex128), shift)
 
-    def _shift(self, humps: Scenario, flat: Scenario, roads: Sequence[MeasuredProfile]) -> Array:
-        """Return by how much roughness changes the mean of what the sensors' places do on humps, `shape (n_samples, n_channels)`.
+    def _mean(self, humps: Scenario, flat: Scenario, roads: Sequence[MeasuredProfile]) -> Array:
+        """Return the mean of what the sensors' places do on humps over roads, less what the roads do without humps.
 
-        What roads do without humps is taken off, as is what a linear vehicle would do: the same upside down.
+        `shape (n_samples, n_channels)`. Each road is driven over upside down, too: what a linear vehicle does on it cancels.
         """
-        shift = -self._motion(humps)
-        for road in roads:
-            for way in (road, replace(road, heights=-road.heights)):
-                shift = shift + (self._motion(_over(humps, way)) - self._motion(_over(flat, way))) / (2 * len(roads))
-        return shift
+        ways = [way for road in roads for way in (road, replace(road, heights=-road.heights))]
+        return np.asarray(np.mean([self._motion(_over(humps, way)) - self._motion(_over(flat, way)) for way in ways], axis=0))
 
     def _roads(self, scenario: Scenario, levels: Array, count: int) -> list[MeasuredProfile]:
         """Return roads under all that the run drives over; those of other levels are the same, louder or quieter."""

@@ -243,7 +243,7 @@ def top_of_band(trial: Trial, band: tuple[float, float] = CALIBRATION_BAND_HZ) -
     return np.asarray(np.sqrt(np.median(density[inside], axis=0) / np.log(2) / (2 * trial.recording.dt)))
 
 
-def are_same(noises: Noises, others: Noises, fit: ModelFit) -> bool:
+def are_same_noises(noises: Noises, others: Noises, fit: ModelFit) -> bool:
     """Return whether what a fit leaves of every run is as large by one noise as by another, and as little of it shifted."""
     for part in fit.parts:
         for i, (lines, answer) in enumerate(part.misfit.residual_spectrum(part.x)):
