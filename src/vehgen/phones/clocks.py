@@ -26,9 +26,9 @@ FINE_SCALE_STEPS = np.arange(-0.01, 0.01001, 0.001)
 TRUSTED = 0.6
 """Least correlation of a match that tells clock and speed ..."""
 STANDING_OUT, LEAST_TRUSTED, APART_S = 2.5, 0.3, 5.0
-"""... but of a measured road, how many times the best at shifts this far from it [s], and the least then: a speed that wanders by 1 %
-leaves 0.6 of the true vehicle's own answer in 20 s. Of 24 drives over rough roads (0.38 to 0.65) the best was 2.7 times as good at least,
-and the clocks of ten, which were known, were told to 32 ms.
+"""... but of a measured road, how many times the best at shifts this far from it [s], and the least then: a speed that wandered by
+1.2 % left 0.6 of the true vehicle's own answer. Of 23 drives over rough roads (0.38 to 0.65) the best was 2.7 times as good at least, and
+the clocks of nine, which were known, were told to 32 ms.
 """
 HIGHEST_FREQUENCY_HZ = 20.0
 """Above this frequency [Hz] the vehicle's answer is not compared."""
