@@ -134,7 +134,7 @@ def _assemble(
     wheels: dict[str, float],
 ) -> Imported:
     """Choose t = 0, sample every channel, and warn of what is doubtful."""
-    speed, source = found_speed.value, found_speed.source
+    speed = found_speed.value
     is_hump = plan.road.hump is not None
     lead = _lead(phones, plan, speed, [moment for moment, _ in arrivals]) if is_hump else 0.0
     zeros = [moment - lead / speed for moment, _ in arrivals]
@@ -173,16 +173,7 @@ def _assemble(
                 )
         done.append(ImportedPhone(phone, zero, arrival, found_by, quiet, upward, pitch, orientation, event, item, noise, tuple(notes)))
     fitted = speed * matches[0].scale if all(item.is_trusted for item in matches) else None
-    if fitted is not None and abs(fitted / speed - 1) > SPEED_DOUBT:
-        given = f"{fitted:.3f}" if all(speed_stream(phone.export) is None for phone in phones) else "axles"
-        found = f"the axles' marks fit {fitted:.3f} m/s better than {speed:.3f} m/s ({source})"
-        warnings.append(f"{found}; give `{given}` as the speed to take that")
-    if plan.by_axles and found_speed.deviation is not None:
-        warnings.append(
-            "the vehicle's answer fits too badly to find the speed from its axles, so the GPS's stands, give or take "
-            f"{found_speed.deviation:.2g} m/s: check vehicle, place and forward axis, or `diagnose` what the vehicle lacks"
-        )
-    warnings += _clock_warnings(done)
+    warnings += [*_speed_warnings(phones, plan, found_speed, fitted), *_clock_warnings(done)]
     at = lead if is_hump else None
     values = np.column_stack(columns)
     return Imported(plan, tuple(done), time, values, tuple(channels), found_speed, fitted, at, wheels, tuple(warnings))
@@ -223,6 +214,21 @@ def _noise(
         (name, noise_floor(values[:, i], 1 / rate, sampling))
         for i, (name, sampling) in enumerate(zip(names, phone.rates[: len(present)], strict=True))
     )
+
+
+def _speed_warnings(phones: list[Phone], plan: Plan, found: FoundSpeed, fitted: float | None) -> list[str]:
+    """Say where the axles' marks contradict the speed, and where the speed was to be found from them and is not."""
+    warnings = []
+    if fitted is not None and abs(fitted / found.value - 1) > SPEED_DOUBT:
+        given = f"{fitted:.3f}" if all(speed_stream(phone.export) is None for phone in phones) else "axles"
+        better = f"the axles' marks fit {fitted:.3f} m/s better than {found.value:.3f} m/s ({found.source})"
+        warnings.append(f"{better}; give `{given}` as the speed to take that")
+    if plan.by_axles and found.deviation is not None:
+        warnings.append(
+            "the vehicle's answer fits too badly to find the speed from its axles, so the GPS's stands, give or take "
+            f"{found.deviation:.2g} m/s: check vehicle, place and forward axis, or `diagnose` what the vehicle lacks"
+        )
+    return warnings
 
 
 def _clock_warnings(done: list[ImportedPhone]) -> list[str]:
