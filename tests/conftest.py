@@ -10,6 +10,9 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+# one thread a worker, before numpy is imported: threads of several workers wait for one another, and matrices here are small
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 UNTRACED = (
     "codegen/test_laws.py",
     "commands/test_ends.py",

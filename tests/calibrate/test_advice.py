@@ -129,6 +129,7 @@ def test_a_bootstrap_is_the_same_in_other_processes(calibration, here):
         check_same(calibration, here, Runner(pool))
 
 
+@pytest.mark.slow
 def test_a_bootstrap_is_the_same_in_processes_that_last(calibration, here, monkeypatch):
     monkeypatch.setattr(processes, "WORTH_PROCESSES_S", 0.0)
     with runner_at(None, 2) as runner:
@@ -136,6 +137,7 @@ def test_a_bootstrap_is_the_same_in_processes_that_last(calibration, here, monke
         check_same(calibration, here, runner)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")
 def test_a_bootstrap_is_the_same_on_a_dask_cluster_that_loses_a_worker(calibration, here):
     distributed = pytest.importorskip("distributed")

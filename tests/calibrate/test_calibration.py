@@ -61,6 +61,7 @@ def test_a_search_ranks_by_equation_5_in_single_precision(problem, band):
     assert scipy.stats.spearmanr(exact[best], quick[best]).statistic > 0.9999
 
 
+@pytest.mark.slow
 def test_what_a_calibration_tells_is_of_double_precision(problem):
     found = calibrate_problem(problem, small())
     again = calibrate_problem(problem, small())
@@ -162,6 +163,7 @@ def test_a_polish_takes_over_from_a_search_that_has_settled_and_finds_the_same(p
     assert early.array == pytest.approx(calibrate_problem(problem, small()).array, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_fisher_intervals_agree_with_a_bootstrap(problem):
     found = calibrate_problem(problem, Settings(search=GeneticSearch(1, 10, 0), starts=2))
     outcome = summarise(found, replicates=60)
@@ -169,6 +171,7 @@ def test_fisher_intervals_agree_with_a_bootstrap(problem):
     assert 0.75 < np.median(widths) < 1.3
 
 
+@pytest.mark.slow
 def test_intervals_cover_the_truth_over_a_rough_road(tmp_path):
     covered = []
     for seed in range(6):

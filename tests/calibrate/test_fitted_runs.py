@@ -76,6 +76,7 @@ def test_each_step_of_dhcm_is_simulated_at_its_own_clock(tmp_path):
         assert (np.std(trial.recording.values - response, axis=0) < 0.05 * np.std(trial.recording.values, axis=0)).all()
 
 
+@pytest.mark.slow
 def test_a_recorder_that_no_file_declares_is_found_and_told(tmp_path):
     trials = load_trials([write_run(tmp_path, "run", sedan_truth(), TRUE_SPEED)])
     found = summarise(calibrate_problem(make_problem(trials), Settings(search=GeneticSearch(1, 10, 0), starts=1)))
@@ -87,6 +88,7 @@ def test_a_recorder_that_no_file_declares_is_found_and_told(tmp_path):
     assert {(item.name, item.place) for item in found.conditions} >= {("roll_off", "F"), ("dispersion", "R")}
 
 
+@pytest.mark.slow
 def test_low_passes_of_sensors_are_told_one_by_one(tmp_path):
     run = write_run(tmp_path, "run", sedan_truth(), TRUE_SPEED)
     file = tmp_path / "run.csv"

@@ -35,6 +35,7 @@ def test_a_mass_that_is_released_is_told_in_proportion_only(tmp_path):
     assert find_structure(again, again.space.start).rank == 2
 
 
+@pytest.mark.slow
 def test_a_bootstrap_redraws_what_is_believed_of_sensors(tmp_path):
     problem, sigma = shaken_mass(tmp_path, "uncertainty: {gain: 0.03, force_gain: 0.03}\n")
     fit = fit_least_squares(problem, problem.space.unit(problem.space.start), FitOptions(), noises={"run": Noise(EVEN, np.array([sigma]))})

@@ -85,6 +85,7 @@ def five(tmp_path_factory):
     return found
 
 
+@pytest.mark.slow
 def test_intervals_of_two_steps_cover_the_truth(five):
     covered, as_if_known = [], []
     for found in five:
@@ -98,6 +99,7 @@ def test_intervals_of_two_steps_cover_the_truth(five):
     assert np.mean(as_if_known) < np.mean(covered) - 0.05
 
 
+@pytest.mark.slow
 def test_a_bootstrap_of_two_steps_strays_as_far_as_their_intervals_say(five):
     outcome = summarise(five[0], combinations=["kf/mH"], replicates=8)
     widths = [np.ptp(outcome.bootstrap[f"{mode.name} [Hz]"].interval) / np.ptp(mode.interval) for mode in outcome.modes]

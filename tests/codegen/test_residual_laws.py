@@ -51,6 +51,7 @@ def test_every_law_on_all_suspensions_of_a_truck(name):
     assert_both_forms_agree(parse_vehicle(written({"extends": "tractor5", "axles": laws})), np.random.default_rng(5))
 
 
+@pytest.mark.slow
 @settings(max_examples=12, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 @given(st.integers(0, 10**9))
 def test_laws_anywhere_in_any_layout(seed):

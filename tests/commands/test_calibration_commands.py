@@ -110,6 +110,7 @@ def test_a_search_stopped_by_hand_leaves_its_best_and_goes_on(run, tmp_path, cap
     assert resumed["history"] == whole["history"]
 
 
+@pytest.mark.slow
 def test_sensitivity_and_sensors(run, tmp_path, capsys):
     assert main(["sensitivity", "sedan2.yaml", run, "--out", str(tmp_path / "s"), "--json", "--parameters", "kf,mr"]) == 0
     data = json.loads(capsys.readouterr().out)

@@ -183,6 +183,7 @@ def test_termination_removes_temporary_files(work: Path):
     assert list(work.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_commands_work_without_docstrings_and_assertions(work: Path):
     (work / "run.yaml").write_text(RUN)
     for arguments in (["modes", "quarter_car"], ["--help"], ["simulate", "run.yaml"], ["build", "quarter_car", "--no-plots"]):

@@ -42,7 +42,9 @@ def test_a_fleet_becomes_a_table_and_a_page(fleet, capsys):
     ("arguments", "said"),
     [
         (("--fleet", "fleet", "sedan2.yaml", "fleet/good/hump.yaml"), "--fleet takes the vehicles and runs of a folder"),
-        (("sedan2.yaml", "fleet/good/hump.yaml", "--scheduler", "tcp://127.0.0.1:1"), "no Dask scheduler answers"),
+        pytest.param(
+            ("sedan2.yaml", "fleet/good/hump.yaml", "--scheduler", "tcp://127.0.0.1:1"), "no Dask scheduler answers", marks=pytest.mark.slow
+        ),
         (("--fleet", "fleet", "--out", "fleet/out"), "--out: a folder outside of fleet was expected"),
         (("--fleet", "fleet", "--effects", "dry_frictio"), "did you mean 'dry_friction'"),
         (("--fleet", "fleet", "--library", "none.yaml"), "no file none.yaml"),

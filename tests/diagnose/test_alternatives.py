@@ -16,6 +16,7 @@ def found(trials_of):
     return diagnose_trials(trials_of(CUBIC, LATE, runs=HUMPS), TRIED)
 
 
+@pytest.mark.slow
 def test_a_late_phone_beside_another_effect_is_tied_with_the_other_phone_being_early(found):
     """In the round of the first effect the two differ, as the other effect is still missing."""
     effects = {item.name: item for item in found.verdict.effects}

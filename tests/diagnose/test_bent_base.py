@@ -57,6 +57,7 @@ def test_a_dead_channel_is_told_where_the_base_hardly_moves_there(trials_of, det
         assert recorded_mistakes(quiet) == ()
 
 
+@pytest.mark.slow
 def test_a_channel_of_which_the_others_foretell_nothing_is_silent(trials_of, detection_of):
     """Whatever the vehicle file foretells: a truck's had been too far off, and a sensor's tilt imitated its dead accelerometer."""
     case = BaseRefits(detect(edited(trials_of(runs=HUMPS), dead)))
@@ -92,7 +93,7 @@ def test_a_recording_that_is_put_right_keeps_the_noise_of_the_base(detection_of)
         np.testing.assert_array_equal(noises[trial.name].levels, known.levels)
 
 
-@pytest.mark.parametrize(("clock", "blamed"), [(None, True), ((1.1, 0.2), True), ((1.1, 0.0), False)])
+@pytest.mark.parametrize(("clock", "blamed"), [pytest.param(None, True, marks=pytest.mark.slow), ((1.1, 0.2), True), ((1.1, 0.0), False)])
 def test_axles_are_not_blamed_where_a_clock_leaves_noise(detection_of, monkeypatch, clock, blamed):
     parameters = perturbed("sedan2", 3)
     parameters["wheelbase"] *= 1.15
@@ -209,6 +210,7 @@ def test_a_declared_low_pass_is_doubted_where_nothing_explains_the_runs(detectio
     assert any("`acquisition`" in note for note in found.notes) == (chain != POINT_SAMPLES)
 
 
+@pytest.mark.slow
 def test_another_hump_is_found_by_refits_where_correlations_may_not_tell(trials_of):
     """Over the true hump, a trapezoid of 0.6 times the length, a truck's run was foretold with 0.62, over the file's with 0.66."""
     trials = [humps._over(trial, "trapezoid", 1.6) if trial.name == "high" else trial for trial in trials_of(runs=HUMPS)]

@@ -48,6 +48,7 @@ def test_one_error_has_its_size_where_it_may_be_as_large_as_it_will(trials_of, c
     assert 1 + told.value == pytest.approx(1 / factor, abs=0.01)
 
 
+@pytest.mark.slow
 def test_one_error_makes_no_others(trials_of):
     """Held at four standard deviations, a height 18 % off was told as 12 %, beside four gains of 4 %."""
     detection = restated(trials_of(runs=HUMPS), height=0.85)
@@ -105,6 +106,7 @@ def test_what_runs_insist_on_is_told_though_believable_errors_leave_noise(monkey
     assert found.faults == ((FAULT,) if verdict == "measurement_fault" else ())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("effect", "name", "verdict"),
     [

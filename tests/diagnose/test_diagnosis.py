@@ -26,6 +26,7 @@ def cubic(record):
     return record(CUBIC)
 
 
+@pytest.mark.slow
 def test_the_noise_floor_is_that_of_the_phones(detection_of):
     """On a measured road it is found beside the profile's error, less sharply."""
     truth = {item.run.name: list(item.sigma.values()) for item in simulate_case(Case("sedan2", runs=RUNS, seed=3))}
@@ -66,6 +67,7 @@ def test_the_command_leaves_report_and_vehicle(told):
     assert "suspension rear" in page
 
 
+@pytest.mark.slow
 def test_a_sensor_that_reads_too_much_is_told_from_a_force(record):
     paths = record(Effect("sensor_gain", "F_az", {"error": 0.15}), runs=HUMPS)
     names = ("cubic_stiffness", "sensor_gain", "sensor_position")

@@ -28,6 +28,7 @@ CLASS_A = 16e-6
 BAND_HZ = 0.5, 40.0
 
 
+@pytest.mark.slow
 def test_roads_drawn_under_a_linear_vehicle_answer_as_its_frequency_response_does(detection_of):
     fit = detection_of().base.least_squares
     number = next(i for i, trial in enumerate(fit.misfit.problem.trials) if trial.scenario.humps)
@@ -119,6 +120,7 @@ def test_roughness_shifts_nothing_of_what_a_linear_vehicle_does(detection_of):
     assert np.abs(drawn.shift).max() < 1e-9 * np.abs(fit.misfit.simulate(fit.x)[number]).max()
 
 
+@pytest.mark.slow
 def test_what_roughness_shakes_loose_of_friction_is_what_recordings_lack_on_average(record, tmp_path_factory):
     """Eight passes over one hump, each on another road that no run file tells of: the true vehicle leaves the shift, and what differs."""
     runs = tuple(RunSpec((Hump(0.5, 0.04, 16.0), RandomRoad("A", seed)), 4.0, 8.0, f"run{seed}") for seed in range(11, 19))

@@ -125,6 +125,7 @@ def test_an_error_of_a_sensor_at_an_end_of_its_range_settles_nothing(detection_o
     assert numbers_at_ends(replace(fit, least_squares=replace(old, misfit=held))) == [item.name for item in fit.last.effect.parameters]
 
 
+@pytest.mark.slow
 def test_beside_a_base_at_its_bounds_none_settles_that_does_no_more_than_what_it_set_free(detection_of, monkeypatch):
     detection = detection_of(CUBIC, runs=HUMPS)
     assert detection.base.least_squares.on_bound

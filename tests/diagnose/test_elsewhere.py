@@ -54,6 +54,7 @@ def test_friction_restarted_elsewhere_is_the_same(trials_of):
     assert own == sent
 
 
+@pytest.mark.slow
 def test_processes_find_the_same(record, here, monkeypatch):
     monkeypatch.setattr(processes, "WORTH_PROCESSES_S", 0.0)
     found = diagnose("sedan2", record(CUBIC, runs=HUMPS), effects=TRIED, workers=2)

@@ -27,6 +27,7 @@ def emps():
             importlib.sys.modules.pop(name, None)
 
 
+@pytest.mark.slow
 def test_friction_of_a_real_carriage_is_named_from_its_raw_file(emps, tmp_path):
     prepare, force_error, path = emps
     runs = prepare.write_runs(path, tmp_path / "runs")
@@ -48,6 +49,7 @@ def halved(path):
     path.write_text("\n".join([header, *rows[: (len(rows) + 1) // 2]]) + "\n", encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_half_periods_cannot_tell_friction_from_a_constant_force(emps, tmp_path):
     runs = emps[0].write_runs(emps[2], tmp_path)
     for run in runs:

@@ -66,6 +66,7 @@ def test_laws_that_low_humps_cannot_tell_apart_want_a_higher_one(tied, proposal)
     assert proposal.to_dict()["models"] == ["cubic_stiffness at rear", "bump_stop at rear"]
 
 
+@pytest.mark.slow
 def test_the_proposed_run_keeps_what_was_promised(tied, proposal, tmp_path_factory):
     _, fits = fit(record(tmp_path_factory.mktemp("more"), tmp_path_factory, (*LOW, (proposal.height, proposal.speed))))
     assert "run3" in fits[0].mean_squares
@@ -148,6 +149,7 @@ def test_added_channels_are_simulated_beside_the_old_ones(tied):
     assert travel == pytest.approx(alone, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_sensor_is_added_where_those_there_do_not_suffice(tied, monkeypatch):
     quarter = PointOutput("quarter", Place("quarter", "body", behind="front", distance=0.7), "acceleration")
     monkeypatch.setattr(experiment, "free_places", lambda trial: [quarter])

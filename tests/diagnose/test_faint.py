@@ -32,6 +32,7 @@ def candidates_of(detection):
     return list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS[name] for name in NAMES], detection.floor.noises)
 
 
+@pytest.mark.slow
 def test_an_effect_that_chi_does_not_show_is_named(trials_of, detection_of):
     detection = detection_of(UNLIKE, runs=HUMPS)
     assert detection.is_quiet
@@ -150,6 +151,7 @@ def test_a_tie_falls_nearly_as_far_on_both_kinds_of_runs(found_of, monkeypatch):
         assert tied(both, best) == []
 
 
+@pytest.mark.slow
 def test_what_its_validation_run_does_not_show_is_checked_on_the_run_that_shows_it_most(trials_of, detection_of, found_of, monkeypatch):
     detection, best = detection_of(UNLIKE, runs=HUMPS), found_of.fits[0]
     shares = {trial.name: (detection.base.mean_squares[trial.name] - best.mean_squares[trial.name]) for trial in detection.trials}

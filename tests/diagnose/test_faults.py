@@ -117,9 +117,10 @@ PLAIN_CASES = {
         None,
     ),
 }
+LONG = {"clocks 1.5 s apart", "km/h as m/s", "acceleration and rate exchanged"}
 
 
-@pytest.mark.parametrize("case", PLAIN_CASES)
+@pytest.mark.parametrize("case", [pytest.param(case, marks=pytest.mark.slow) if case in LONG else case for case in PLAIN_CASES])
 def test_a_plain_mistake_is_named_before_any_effect_is_looked_for(plain, case):
     make, expected, value = PLAIN_CASES[case]
     (fault,) = plain_mistakes(detect(make(plain)))
@@ -175,6 +176,7 @@ def test_a_channel_is_dead_only_if_it_is_as_loud_all_the_time(plain, loud):
     assert [hypothesis.blind for hypothesis in found] == ([frozenset({("high", "R_az")})] if loud == 1.0 else [])
 
 
+@pytest.mark.slow
 def test_two_mistakes_are_both_named(plain):
     runs = edited(edited(plain, lambda values: values[:, [2, 3, 0, 1]], "low"), times(57.3, R_Q))
     assert {item.kind for item in plain_mistakes(detect(runs))} == {"exchanged", "unit"}
@@ -191,6 +193,7 @@ SUBTLE_CASES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", SUBTLE_CASES)
 def test_a_mistake_that_looks_like_an_effect_explains_the_gap_with_its_number(plain, case):
     make, kind, value = SUBTLE_CASES[case]
@@ -201,6 +204,7 @@ def test_a_mistake_that_looks_like_an_effect_explains_the_gap_with_its_number(pl
     assert faults[0].value == pytest.approx(value, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_filter_of_all_channels_is_told_though_one_of_them_is_mostly_noise(plain):
     def change(values):
         values = low_passed(8)(values)
@@ -212,6 +216,7 @@ def test_a_filter_of_all_channels_is_told_though_one_of_them_is_mostly_noise(pla
     assert fault.value == pytest.approx(8, rel=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("make", "kind", "runs", "value"),
     [
@@ -238,6 +243,7 @@ def mixed(trials_of, plain):
     return detect([strange if trial.name == "high" else trial for trial in plain])
 
 
+@pytest.mark.slow
 def test_a_run_of_another_vehicle_is_told_from_the_others(mixed):
     (fault,) = explain_gap(mixed)
     assert (fault.kind, fault.runs) == ("other_vehicle", ("high",))
@@ -259,6 +265,7 @@ def test_a_run_of_another_vehicle_is_fitted_from_several_starts(mixed, monkeypat
     assert len(own) > lost
 
 
+@pytest.mark.slow
 def test_a_clock_that_runs_fast_is_told_or_tied_with_the_speed(plain):
     def by_a_fast_clock(values):
         numbers = np.arange(len(values))
@@ -362,12 +369,12 @@ def test_healthy_runs_have_no_fault(plain):
 
 HONEST = (
     pytest.param(Effect("tyre_footprint", "all", {"length": 0.23}), id="tyre_footprint", marks=pytest.mark.slow),
-    Effect("sensor_gain", "F_az", {"error": 0.15}),
-    Effect("speed_error", "all", {"error": 0.05}),
+    pytest.param(Effect("sensor_gain", "F_az", {"error": 0.15}), id="sensor_gain", marks=pytest.mark.slow),
+    pytest.param(Effect("speed_error", "all", {"error": 0.05}), id="speed_error"),
 )
 
 
-@pytest.mark.parametrize("effect", HONEST, ids=lambda effect: effect.name)
+@pytest.mark.parametrize("effect", HONEST)
 def test_an_effect_is_no_fault(detection_of, effect):
     detection = detection_of(effect, runs=RUNS)
     assert recorded_mistakes(detection) == plain_mistakes(detection) == ()

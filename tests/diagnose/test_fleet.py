@@ -95,6 +95,7 @@ def apart(made):
     return diagnose_fleet(made, made.parent / "out", files_of=only_result, effects=["dry_friction"], processes=2)
 
 
+@pytest.mark.slow
 def test_every_vehicle_has_a_row_and_a_broken_one_stops_no_other(made, apart):
     found = rows(apart)
     assert list(found) == sorted(["first", "second", *BROKEN])
@@ -119,6 +120,7 @@ def test_every_vehicle_has_a_row_and_a_broken_one_stops_no_other(made, apart):
     assert {len(row) for row in cells} == {len(columns)}
 
 
+@pytest.mark.slow
 def test_what_is_finished_is_kept_while_its_inputs_stay_the_same(fleet, here):
     first = diagnosed(fleet)
     assert here == ["first", "second"]
@@ -213,6 +215,7 @@ def test_names_that_a_spreadsheet_would_run_are_text(fleet, here):
     assert "=1+1" in rows(found)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")
 def test_a_cluster_that_loses_a_worker_finds_the_same(fleet, apart):
     distributed = pytest.importorskip("distributed")
@@ -233,6 +236,7 @@ def test_a_cluster_that_loses_a_worker_finds_the_same(fleet, apart):
     ]
 
 
+@pytest.mark.slow
 def test_own_effects_travel_as_text(fleet, here):
     own = fleet.parent / "own.yaml"
     parameter = "{k3: {unit: N/m^3, low: 1e4, high: 1e9, starts: [1e7], meaning: cubic stiffness}}"

@@ -56,6 +56,7 @@ def spring(cubic):
     return fit_free_form(recover(detection, pick(results, "suspension rear")))
 
 
+@pytest.mark.slow
 def test_the_true_spring_lies_within_the_interval_of_the_curve(spring):
     truth = true_parameters(CASE)
     d, v = spring.travel.x, spring.rate.x

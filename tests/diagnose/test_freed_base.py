@@ -39,6 +39,7 @@ def test_a_damper_of_twice_the_files_value_is_no_missing_effect(trials_of):
     assert not found.verdict.effects
 
 
+@pytest.mark.slow
 def test_a_damper_on_a_soft_mount_is_named_with_its_stiffness(trials_of):
     """Its spring stands in series; a branch beside the dashpot leaves more, however far the dashpot may fall."""
     hidden = Effect("damper_mount", "front", {"time": 0.012})

@@ -18,6 +18,7 @@ FEW = [EFFECTS[name] for name in ("cubic_stiffness", "quadratic_damping", "senso
 BOTH = (Effect("cubic_stiffness", "front", {"k3": 1.5e8}), Effect("cubic_stiffness", "rear", {"k3": 1.5e8}))
 
 
+@pytest.mark.slow
 def test_a_law_that_all_suspensions_have_alike_is_named_once(trials_of):
     verdict = diagnose_trials(trials_of(*BOTH, runs=HUMPS), FEW).verdict
     assert (verdict.verdict, [(item.name, item.place) for item in verdict.effects]) == ("named", [("cubic_stiffness", "all suspensions")])
@@ -25,6 +26,7 @@ def test_a_law_that_all_suspensions_have_alike_is_named_once(trials_of):
     assert verdict.gap.after < 1.1
 
 
+@pytest.mark.slow
 def test_a_stiffness_that_the_file_has_far_too_small_is_no_effect(trials_of):
     vehicle = load_vehicle("sedan2")
     true = vehicle.all_values(vehicle.values())

@@ -104,6 +104,7 @@ def test_recordings_change_places_with_the_samples_that_are_not_kept(plain):
     assert again.scenario.track is one.scenario.track
 
 
+@pytest.mark.slow
 def test_exchanged_phones_are_named(plain):
     (finding,) = explain_gap(detect(edited(plain, exchange)))
     assert (finding.kind, set(finding.runs), finding.channels) == ("exchanged", {"low", "high", "fast"}, ("F", "R"))
@@ -123,6 +124,7 @@ def test_a_turned_axis_is_named_though_friction_hides_too(trials_of):
     assert "sign: -1" in finding.cure
 
 
+@pytest.mark.slow
 def test_a_wrong_wheelbase_is_measured_by_the_arrival_of_the_rear_axle(detection_of):
     parameters = perturbed("sedan2", 3)
     parameters["wheelbase"] *= 1.15
@@ -132,6 +134,7 @@ def test_a_wrong_wheelbase_is_measured_by_the_arrival_of_the_rear_axle(detection
     assert finding.value == pytest.approx(0.15 * nominal("sedan2")["wheelbase"], abs=0.02)
 
 
+@pytest.mark.slow
 def test_another_vehicle_is_told_by_its_parameters(detection_of):
     parameters = perturbed("sedan2", 3)
     for name in ("kf", "kr"):
@@ -151,7 +154,13 @@ def test_recordings_that_have_nothing_to_do_with_the_vehicle_are_refused(plain):
     assert finding.kind == "stranger"
 
 
-@pytest.mark.parametrize("effect", [FRICTION, Effect("sensor_delay", "R", {"time": 0.03})], ids=lambda effect: effect.name)
+@pytest.mark.parametrize(
+    "effect",
+    [
+        pytest.param(FRICTION, id="dry_friction", marks=pytest.mark.slow),
+        pytest.param(Effect("sensor_delay", "R", {"time": 0.03}), id="sensor_delay"),
+    ],
+)
 def test_an_effect_is_no_mistake(detection_of, effect):
     detection = detection_of(effect, runs=RUNS)
     assert check_inputs(detection.trials) == ()

@@ -148,6 +148,7 @@ def test_a_gap_of_validation_runs_alone_is_first_held_against_mistakes(monkeypat
     assert decision_of._explain_gap() == told
 
 
+@pytest.mark.slow
 def test_exchanged_channels_of_a_stranger_are_told(monkeypatch, trials_of):
     """Noise is told so large there that the base explains the runs, of whose energy it leaves four fifths."""
     swapped = []

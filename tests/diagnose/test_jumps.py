@@ -20,6 +20,7 @@ def found(trials_of):
     return diagnose_trials(trials_of(FRICTION), [EFFECTS["dry_friction"]])
 
 
+@pytest.mark.slow
 def test_friction_is_marked_as_jumping_and_its_steps_are_halved_once_at_most(found):
     base, friction = found.detection.base, found.chosen[-1]
     assert not any(trial.jumps for trial in base.least_squares.misfit.problem.trials)

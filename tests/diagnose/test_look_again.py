@@ -70,6 +70,7 @@ def test_a_recorder_is_judged_by_the_better_model_however_clear_it_was(detection
     assert found.chi == pytest.approx(detection.chi, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_second_look_may_check_the_effect_by_another_run(monkeypatch, detection_of):
     """What places leave is told of the runs that are fitted: with the old runs' errors it could not be used any more."""
     first = detection_of(CUBIC, runs=HUMPS)
@@ -87,6 +88,7 @@ def test_a_second_look_may_check_the_effect_by_another_run(monkeypatch, detectio
     assert {run.run for run in found.verdict.gap.runs if run.validation} == {"low"}
 
 
+@pytest.mark.slow
 def test_what_one_look_leaves_as_it_was_is_not_looked_at_again(monkeypatch, detection_of):
     looks = []
     monkeypatch.setattr(decision, "look_again", lambda detection, fit: looks.append(fit.label))
@@ -95,6 +97,7 @@ def test_what_one_look_leaves_as_it_was_is_not_looked_at_again(monkeypatch, dete
     assert looks == ["cubic_stiffness at rear"]
 
 
+@pytest.mark.slow
 def test_noise_is_told_by_the_law_of_the_place_where_nothing_is_named_by_the_base(monkeypatch, detection_of):
     """A truck whose fifth wheel stuck was shaken by the road as its linear model would not be: the right law left chi 1.6."""
     friction = Effect("dry_friction", "rear", {"force": 800.0})
@@ -123,6 +126,7 @@ def test_ctrl_c_in_the_second_search_is_told(monkeypatch, detection_of):
         assert first.interrupted == stopped
 
 
+@pytest.mark.slow
 def test_noise_is_not_told_by_a_law_that_does_not_stick_nor_by_one_elsewhere(detection_of):
     detection = detection_of(CUBIC, runs=HUMPS)
     decided = Decision(detection, [EFFECTS["cubic_stiffness"]], False, lambda stage, done, total, best: None).decide()

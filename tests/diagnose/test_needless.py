@@ -31,6 +31,7 @@ def chain_of(detection_of):
     return fit
 
 
+@pytest.mark.slow
 def test_a_damper_that_stood_in_for_a_spring_is_left_out(chain_of):
     detection, chain = chain_of(CUBIC)
     rounds = [SearchRound(detection.base, (), (), (chain[0],)), SearchRound(chain[0], (), (), (chain[1],))]
@@ -40,6 +41,7 @@ def test_a_damper_that_stood_in_for_a_spring_is_left_out(chain_of):
     assert rounds[0].fits == (left, chain[0])
 
 
+@pytest.mark.slow
 def test_both_stay_where_both_are_hidden(chain_of):
     detection, chain = chain_of(CUBIC, DAMPER)
     rounds = [SearchRound(detection.base, (), (), (chain[0],)), SearchRound(chain[0], (), (), (chain[1],))]

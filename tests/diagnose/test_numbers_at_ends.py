@@ -25,6 +25,7 @@ def cubic_up_to(k3, detection):
     return replace(effect, parameters=(replace(parameter, starts=(0.1,), high=parameter.high * k3 / reach),))
 
 
+@pytest.mark.slow
 def test_a_law_at_the_end_of_its_range_is_named_where_other_runs_surely_show_it(trials_of, detection_of, monkeypatch):
     """As a stop in rebound that no run meets; not where the other runs leave open whether it closes half of the gap."""
     near = cubic_up_to(0.97 * TRUE_K3, detection_of(CUBIC, runs=HUMPS))

@@ -51,6 +51,7 @@ def spring():
     return [library()["cubic_stiffness"]]
 
 
+@pytest.mark.slow
 def test_a_run_by_another_vehicle_is_told_where_no_effect_explains_it(mixed, spring):
     found = diagnose_trials(mixed, spring)
     assert found.verdict.verdict == "measurement_fault"
@@ -58,6 +59,7 @@ def test_a_run_by_another_vehicle_is_told_where_no_effect_explains_it(mixed, spr
     assert "loaded as in the other runs" in found.verdict.faults[0].cure
 
 
+@pytest.mark.slow
 def test_a_run_that_disagrees_is_told_without_a_cause_where_the_others_do_not_agree_either(mixed, spring, monkeypatch):
     odd = disagreement(detect(mixed))
     monkeypatch.setattr(decision, "disagreement", lambda detection: replace(odd, others_agree=False))
@@ -90,6 +92,7 @@ def test_a_sensor_that_reads_more_in_one_run_is_told_with_its_factor(louder):
     assert found.sigma < 0.01
 
 
+@pytest.mark.slow
 def test_so_is_one_over_a_measured_road(trials_of):
     found = []
     for trial in trials_of():

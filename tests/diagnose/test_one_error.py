@@ -31,6 +31,7 @@ def tried(detection, strained=None, found=NOTHING, names=NAMES):
     return one_error(strained or detection, believed, found, candidates_of(detection, names))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("effect", "label", "value"),
     [(GAIN, "sensor_gain at F_az", 1.15), (FAST, "speed_error at all runs", 1.05)],
@@ -61,6 +62,7 @@ def test_an_error_takes_over_what_the_base_supposes_of_each_run(detection_of):
     assert found["cubic_stiffness at rear"] is None
 
 
+@pytest.mark.slow
 def test_where_the_believable_base_has_lost_the_phase_a_fit_begins_at_the_strained_one(detection_of, monkeypatch):
     for name in ("fit_all_begun", "fit_all"):
         monkeypatch.setattr(Fitter, name, lambda *_: iter(()))
@@ -70,6 +72,7 @@ def test_where_the_believable_base_has_lost_the_phase_a_fit_begins_at_the_strain
     assert value.interval[0] < 1.05 < value.interval[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "effects", [pytest.param((GAIN, LATE), marks=pytest.mark.slow), (CUBIC,)], ids=["two errors", "an effect of the vehicle"]
 )
@@ -77,6 +80,7 @@ def test_none_is_told_where_one_alone_does_not_explain_the_runs(detection_of, ef
     assert tried(detection_of(*effects, runs=HUMPS)).fits == ()
 
 
+@pytest.mark.slow
 def test_none_is_told_where_many_small_errors_are_likelier(detection_of):
     detection = detection_of(GAIN, runs=HUMPS)
     assert tried(detection, replace(detection, base=replace(detection.base, training=0.5)), names=("sensor_gain",)).fits == ()

@@ -34,6 +34,7 @@ def rear_low_passed(values):
     return np.column_stack([values[:, :2], scipy.signal.lfilter(*low_pass, values[:, 2:], axis=0)])
 
 
+@pytest.mark.slow
 def test_a_healthy_vehicle_behind_two_recorders_lacks_nothing(trials_of, monkeypatch):
     """With one low-pass for all a gap would be left; up to 20 Hz, as chi of different bands cannot be compared."""
     trials = edited(undeclared(trials_of(runs=HUMPS)), rear_low_passed)
@@ -52,6 +53,7 @@ def test_a_healthy_vehicle_behind_two_recorders_lacks_nothing(trials_of, monkeyp
     assert shared.chi > found.chi + 0.03
 
 
+@pytest.mark.slow
 def test_a_missing_effect_is_not_taken_for_low_passes_of_the_sensors(trials_of):
     found = detect(undeclared(trials_of(CUBIC, runs=HUMPS)))
     assert found.recorder is not None
@@ -71,6 +73,7 @@ def declared(trials, **chains):
     return found
 
 
+@pytest.mark.slow
 def test_a_recorder_that_is_not_what_run_files_say_is_told(trials_of):
     late = AcquisitionChain("none", delay=0.03)  # of R, which a clock tells
     (fault,) = wrongly_declared(detect(declared(trials_of(runs=HUMPS), F=SLOW, R=late)))

@@ -75,6 +75,7 @@ def test_a_block_that_friction_holds_off_its_rest_is_no_drift(runs):
     assert all(left > limit for left, limit in lefts)
 
 
+@pytest.mark.slow
 def test_friction_is_named_and_the_heights_are_found(runs):
     found = diagnose(runs[0].with_name("rig.yaml"), runs)
     assert (found.verdict.verdict, [item.name for item in found.verdict.effects]) == ("named", ["dry_friction"])

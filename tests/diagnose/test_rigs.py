@@ -69,6 +69,7 @@ def write(folder, friction, amplitudes=(0.15, 0.25, 0.2), cell=0.0, spring=0.0, 
     return runs
 
 
+@pytest.mark.slow
 def test_friction_of_a_driven_carriage_is_named_with_the_force_beside_the_recorded_one(tmp_path):
     runs = write(tmp_path, 20.0)
     found = diagnose(tmp_path / "carriage.yaml", runs)
@@ -92,6 +93,7 @@ def test_a_load_cells_noise_is_as_loud_in_gentle_runs(tmp_path):
     assert max(item.after for item in found.verdict.gap.runs) < 1.15
 
 
+@pytest.mark.slow
 def test_a_spring_where_the_file_has_none_is_named(tmp_path):
     verdict = diagnose(tmp_path / "carriage.yaml", write(tmp_path, 0.0, spring=100.0, zero=1.5)).verdict
     assert (verdict.verdict, [item.name for item in verdict.effects]) == ("named", ["added_stiffness"])
@@ -152,6 +154,7 @@ def test_a_false_zero_of_the_load_cell_says_nothing_of_the_damper(tmp_path, fric
     assert verdict.gap.after < 1.3
 
 
+@pytest.mark.slow
 def test_friction_that_is_stronger_one_way_is_named_where_the_damper_begins_at_rest(tmp_path):
     verdict = diagnose(tmp_path / "dyno.yaml", stroke(tmp_path, 80.0, 50.0, 1.5)).verdict
     assert (verdict.verdict, [item.name for item in verdict.effects]) == ("named", ["asymmetric_friction"])

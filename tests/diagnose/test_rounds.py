@@ -26,6 +26,7 @@ def two(trials_of):
     return diagnose_trials(trials_of(*PAIR, runs=HUMPS), FEW)
 
 
+@pytest.mark.slow
 def test_two_effects_are_found_one_after_the_other(two):
     assert two.verdict.verdict == "named"
     assert {(item.name, item.place) for item in two.verdict.effects} == {("cubic_stiffness", "rear"), ("sensor_gain", "F_az")}
@@ -68,6 +69,7 @@ def test_the_gap_is_told_beside_height_and_speed(two):
     assert all(0 < item.share < 1 < item.chi for item in gaps.values())
 
 
+@pytest.mark.slow
 def test_an_engine_is_found_by_its_line(trials_of):
     engine = Effect("engine_harmonic", "body", {"amplitude": 450.0, "frequency": 24.0, "drift": 0.01, "x": 0.4})
     found = diagnose_trials(trials_of(engine, runs=HUMPS), [EFFECTS[name] for name in ("engine_harmonic", "tyre_damping", "cargo_module")])
@@ -79,6 +81,7 @@ def test_an_engine_is_found_by_its_line(trials_of):
     assert effect.parameters["amplitude"].value == pytest.approx(450.0, rel=0.1)
 
 
+@pytest.mark.slow
 def test_ctrl_c_leaves_what_was_found(trials_of, monkeypatch):
     monkeypatch.setattr(early_end, "MOST_AT_ONCE", 0)
 

@@ -31,6 +31,7 @@ def test_a_channel_whose_absence_leaves_more_than_noise_excludes_nothing(detecti
     assert "dry_friction at rear" not in found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("hidden", "tries_all"), [(CUBIC, True), (Effect("sensor_gain", "F_az", {"error": 0.2}), False)], ids=["a spring", "a gain"]
 )

@@ -115,6 +115,7 @@ def runs(silverbox, tmp_path_factory):
     return prepare.write_runs(path, tmp_path_factory.mktemp("silverbox"), short | prepare.QUIET_RUNS)
 
 
+@pytest.mark.slow
 def test_the_silverbox_lacks_a_cubic_spring(runs):
     tried = [EFFECTS[name] for name in ("cubic_stiffness", "progressive_stiffness", "quadratic_damping")]
     found = diagnose_trials(load_trials(runs[:3]), tried).verdict

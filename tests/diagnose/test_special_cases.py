@@ -90,6 +90,7 @@ def lopsided(monkeypatch):
     return lambda ratio: Effect("lopsided", "rear", {"force": 450.0, "ratio": ratio})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("ratio", "name"), [pytest.param(2.0, "asymmetric_friction", marks=pytest.mark.slow), (1.0, "dry_friction")])
 def test_in_a_car_that_begins_at_rest_friction_is_named_as_it_is(trials_of, lopsided, ratio, name):
     """That friction is named where it is stronger one way, test_rigs.py asks of a rig, too, and in a tenth of the time."""
@@ -101,6 +102,7 @@ def test_in_a_car_that_begins_at_rest_friction_is_named_as_it_is(trials_of, lops
     assert "ratio" not in found or found["ratio"].value == pytest.approx(ratio, rel=0.1)
 
 
+@pytest.mark.slow
 def test_a_special_case_is_found_from_where_the_law_that_holds_it_ended(detection_of, lopsided):
     detection = detection_of(lopsided(1.0), runs=HUMPS)
     fitter = Fitter(detection, detection.base, [])

@@ -44,6 +44,7 @@ def test_the_line_of_an_engine_is_found_and_takes_no_part_in_the_noise(shaken, d
         assert ratio == pytest.approx(np.ones(len(ratio)), rel=0.2)
 
 
+@pytest.mark.slow
 def test_the_line_of_a_wheel_follows_the_speed(shaken):
     found = detect(shaken(lambda speed: TURNS_PER_M * speed))
     assert not found.is_quiet

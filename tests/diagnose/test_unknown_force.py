@@ -28,6 +28,7 @@ def test_errors_stay_within_their_bounds_at_every_place(base):
         assert unit.max() <= 1.0
 
 
+@pytest.mark.slow
 def test_friction_is_placed_where_it_is(base):
     _, passed = localise(base)
     assert passed[0].place.label in ("suspension rear", "tyre rear")

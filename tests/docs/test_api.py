@@ -43,6 +43,7 @@ def test_the_page_has_every_public_name_once_and_in_a_snippet(generator):
             assert generator.meaning(name), name
 
 
+@pytest.mark.slow
 def test_the_pages_snippets_run(examples, capsys):
     space = {}
     for snippet in re.findall(r"```python\n(.*?)```", (DOCS / "api.md").read_text(encoding="utf-8"), re.DOTALL):

@@ -39,6 +39,7 @@ def whitened_powers(driven):
     return np.array([(np.abs(white[:, (frequency >= low) & (frequency < high)]) ** 2).mean(axis=(0, 1)) for low, high in bands])
 
 
+@pytest.mark.slow
 def test_records_of_a_rough_road_hold_what_the_window_shows_of_it(driven):
     np.testing.assert_allclose(whitened_powers(driven), 1.0, atol=0.25)
 

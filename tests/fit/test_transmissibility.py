@@ -87,6 +87,7 @@ def test_the_right_model_lies_within(right):
         assert band.lower < band.ratio < band.upper
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_nor_is_it_apart_with_pitch_rates_at_a_changing_speed_wrongly_told_and_with_a_phone_that_rattles(tmp_path, seed):
     """One drive shows it; the second is another road."""
@@ -98,6 +99,7 @@ def test_nor_is_it_apart_with_pitch_rates_at_a_changing_speed_wrongly_told_and_w
     assert min(band.coherence for band in found.ratios[0].bands) < 0.97
 
 
+@pytest.mark.slow
 def test_clocks_that_the_road_shifted_are_shifted_back(tmp_path):
     found = vehgen.transmissibility(slow(tmp_path), vehicle="sedan2", sensors=SENSORS)
     assert found.apart == ()
@@ -140,6 +142,7 @@ def test_without_a_vehicle_the_measured_alone(exports, right):
     assert not any("model" in text for text in found.tells)
 
 
+@pytest.mark.slow
 def test_a_hole_costs_its_segments(tmp_path, right):
     found = vehgen.transmissibility(write_exports(tmp_path, 1, hole=(80.0, 81.0)), vehicle="sedan2", sensors=SENSORS)
     assert any(text.startswith("2 of 58 segments are left out: a phone did not record") for text in found.notes)

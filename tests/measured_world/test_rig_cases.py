@@ -44,6 +44,7 @@ def test_a_case_depends_on_set_seed_and_number_alone(monkeypatch):
         assert len(set(drawn)) == 3
 
 
+@pytest.mark.slow
 def test_a_set_made_twice_is_the_same_to_the_byte_and_keeps_its_truth_apart(tmp_path):
     for name in ("one", "two"):
         make_set("trial", 2, "rigs", 1, tmp_path / name)

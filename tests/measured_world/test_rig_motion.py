@@ -104,6 +104,7 @@ def test_bouc_wen_begins_as_a_hyperbolic_tangent():
     assert motion.force[0, rising] == pytest.approx(50.0 * np.tanh(base.value(motion.t[rising]) / 0.002), abs=0.02)
 
 
+@pytest.mark.slow
 def test_a_damper_on_a_soft_mount_answers_as_a_maxwell_element():
     k, c, frequency = 6e4, 2000.0, 3.0
     base = signals.sampled(signals.sinusoid(3.0, 0.01, frequency))
@@ -116,6 +117,7 @@ def test_a_damper_on_a_soft_mount_answers_as_a_maxwell_element():
     assert motion.force[0, late] == pytest.approx(expected, abs=2e-3 * abs(stiffness) * 0.01)
 
 
+@pytest.mark.slow
 def test_free_play_passes_no_force_until_it_is_used_up():
     base, motion = loop("free_play", {"gap": 0.002}, c=1500.0)
     i = int(np.argmax(base.value(motion.t) > 0.0019))
