@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.diagnose.conftest import RUNS
-from vehgen.diagnose.fits.errors_anew import without_strain
+from vehgen.diagnose.fits.begun_again import without_strain
 from vehgen.diagnose.fits.model_fit import OPTIONS
 from vehgen.fit.least_squares import LeastSquaresFit, fit_least_squares
 

@@ -11,7 +11,7 @@ from vehgen.diagnose.design.experiment import VISIBLE
 from vehgen.diagnose.detect.detection import BELIEVED_SIGMAS, FREE_SIGMAS, look_again, run_gaps, supposing
 from vehgen.diagnose.detect.odd_run import OddChannel, OddRun, disagreement
 from vehgen.diagnose.ending import Ending
-from vehgen.diagnose.fits.errors_anew import is_strained
+from vehgen.diagnose.fits.begun_again import is_strained
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.checks import variety_notes
 from vehgen.diagnose.inputs.fault import MeasurementFault

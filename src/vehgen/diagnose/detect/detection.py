@@ -18,7 +18,7 @@ from vehgen.diagnose.detect.road_error import measured_profiles, road_noises
 from vehgen.diagnose.detect.splitting import hump_height, split_by_gap, split_runs
 from vehgen.diagnose.detect.steady_lines import steady_lines, without_lines
 from vehgen.diagnose.fits.base_anew import base_anew
-from vehgen.diagnose.fits.errors_anew import is_strained
+from vehgen.diagnose.fits.begun_again import is_strained
 from vehgen.diagnose.fits.model_fit import ModelFit, fit_base, mean_square_as_filed, narrow
 from vehgen.diagnose.thresholds import NOISE_FLOOR
 from vehgen.errors import InputError

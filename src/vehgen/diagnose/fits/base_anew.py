@@ -13,8 +13,8 @@ from dataclasses import replace
 import numpy as np
 
 from vehgen.diagnose import thresholds as limit
+from vehgen.diagnose.fits.begun_again import is_strained
 from vehgen.diagnose.fits.candidate import FREED_BASE, Candidate
-from vehgen.diagnose.fits.errors_anew import is_strained
 from vehgen.diagnose.fits.model_fit import CurrentModel, ModelFit
 from vehgen.diagnose.fits.multi_start import fit_candidate
 from vehgen.effects import EffectLocator

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.diagnose.fits.begun_again import release, without_strain
 from vehgen.diagnose.fits.candidate import Candidate, build_problem, carried
-from vehgen.diagnose.fits.errors_anew import without_strain
 from vehgen.diagnose.fits.model_fit import (
     JACOBIAN_REFRESH,
     NUISANCES,
@@ -19,7 +19,6 @@ from vehgen.diagnose.fits.model_fit import (
     evaluate_fit,
     refine,
 )
-from vehgen.diagnose.fits.released import release
 from vehgen.effects import EffectLocator
 from vehgen.effects.evidence import StartingPoint
 from vehgen.fit.alignment import WIDER

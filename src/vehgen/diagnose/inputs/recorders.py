@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.detect.detection import Detection, detect
-from vehgen.diagnose.fits.errors_anew import is_strained
+from vehgen.diagnose.fits.begun_again import is_strained
 from vehgen.diagnose.inputs.adjustments import ClockRate, RecorderFilter
 from vehgen.diagnose.inputs.comparison import compare
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, place_words

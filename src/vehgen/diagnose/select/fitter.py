@@ -10,12 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.diagnose.detect.detection import Detection
+from vehgen.diagnose.fits.begun_again import release, restart
 from vehgen.diagnose.fits.candidate import Candidate, build_problem, freed_alone
 from vehgen.diagnose.fits.model_fit import CurrentModel, ModelFit, evaluate_fit, refine
 from vehgen.diagnose.fits.multi_start import HOPELESS, fit_candidate
 from vehgen.diagnose.fits.occurring import occurring
-from vehgen.diagnose.fits.released import release
-from vehgen.diagnose.fits.restarts import restart
 from vehgen.diagnose.fits.screening import FirstOrderGains
 from vehgen.diagnose.localise.localisation import none_explains, one_force
 from vehgen.diagnose.localise.unknown_force import PlaceResult
