@@ -5,6 +5,7 @@ import importlib.util
 import json
 import zipfile
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from vehgen.commands import main
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.recording import read_recording
 from vehgen.phones.gps import USUAL_SPEED_SHARE
-from vehgen.phones.run_text import USUAL_CLOCK_S
+from vehgen.phones.run_text import USUAL_CLOCK_S, _clock_deviation
 from vehgen.simulate import Simulator, load_run, make_scenario
 from vehgen.simulate.run_file.acquisition import channel_chains
 
@@ -136,6 +137,19 @@ def test_clocks_of_phones_that_feel_the_hump_seconds_apart_are_known_less_well(t
     assert (clock is None) if low is None else (low < clock < high)
 
 
+@pytest.mark.parametrize("loudness", [0.0, 0.2, 0.35])
+def test_a_rough_road_does_not_bring_loud_moments_closer(loudness):
+    """Two phones feel a hump 6 s apart; the road shakes both all the way."""
+    time = np.arange(0.0, 12.5, 0.01)
+    hump = np.column_stack([np.where(np.abs(time - at) < 0.5, np.sin(40 * time), 0.0) for at in (3.0, 9.0)])
+    values = hump + loudness * np.sin(np.outer(time, [31.0, 37.0]))
+    trusted = SimpleNamespace(is_trusted=True)
+    outputs = [SimpleNamespace(outputs=lambda pitched, name=name: [SimpleNamespace(name=name)]) for name in ("L1_az", "L2_az")]
+    phones = [SimpleNamespace(phone=SimpleNamespace(sensor=sensor), match=trusted) for sensor in outputs]
+    imported = SimpleNamespace(at=0.0, phones=phones, channels=["L1_az", "L2_az"], values=values, time=time)
+    assert _clock_deviation(imported) == pytest.approx(np.hypot(0.01, 0.007 * 6.0), rel=0.05)
+
+
 def test_where_the_vehicle_fits_too_badly_for_its_axles_to_tell_the_speed_the_gps_does(tmp_path, capsys, monkeypatch):
     by_gps = facts(capsys, tmp_path / "gps.yaml", both("hump_2ms"))
     monkeypatch.setattr("vehgen.phones.clocks.TRUSTED", 0.9999)
@@ -144,11 +158,19 @@ def test_where_the_vehicle_fits_too_badly_for_its_axles_to_tell_the_speed_the_gp
     assert any("so the GPS's stands" in warning for warning in found["warnings"])
 
 
-@pytest.mark.parametrize(("gps", "given"), [(True, "axles"), (False, "2.00")])
+def without_speeds(text):
+    """Return a file of a GPS that told none: the apps write -1."""
+    head, *lines = [line.split(",") for line in text.splitlines()]
+    column = next(i for i, name in enumerate(head) if name == "speed" or "Velocity" in name)
+    told = [[*line[:column], "-1.0", *line[column + 1 :]] for line in lines]
+    return "".join(",".join(line) + "\n" for line in (head, *told))
+
+
+@pytest.mark.parametrize(("gps", "given"), [(lambda text: text, "axles"), (lambda text: None, "2.00"), (without_speeds, "2.00")])
 def test_a_wrong_speed_is_told_with_what_to_give_instead(tmp_path, capsys, gps, given):
     """Without a GPS's speed, near which the marks would tell it, the speed by the axles is refused."""
     exports = [
-        changed(tmp_path / path.name, path, lambda name, text: text if gps or "Location" not in name else None) for path in both("hump_2ms")
+        changed(tmp_path / path.name, path, lambda name, text: gps(text) if "Location" in name else text) for path in both("hump_2ms")
     ]
     found = facts(capsys, tmp_path / "run.yaml", exports, "--speed", "2.08")
     [warning] = [text for text in found["warnings"] if "the axles' marks fit" in text]

@@ -19,9 +19,9 @@ from vehgen.phones.clocks import Match
 from vehgen.phones.detect import read_export
 from vehgen.phones.export import Stream
 from vehgen.phones.hump_event import HumpEvent
-from vehgen.phones.locating import CLOCK_DOUBT, FoundSpeed, find_speed, locate
+from vehgen.phones.locating import CLOCK_DOUBT, GIVEN, FoundSpeed, find_speed, locate
 from vehgen.phones.orientation import Orientation
-from vehgen.phones.phone import MARGIN, QUIET, Phone, make_phone, speed_stream
+from vehgen.phones.phone import MARGIN, QUIET, Phone, make_phone
 from vehgen.phones.plan import PhoneSensor, Plan
 from vehgen.simulate import Simulator
 
@@ -173,7 +173,7 @@ def _assemble(
                 )
         done.append(ImportedPhone(phone, zero, arrival, found_by, quiet, upward, pitch, orientation, event, item, noise, tuple(notes)))
     fitted = speed * matches[0].scale if all(item.is_trusted for item in matches) else None
-    warnings += [*_speed_warnings(phones, plan, found_speed, fitted), *_clock_warnings(done)]
+    warnings += [*_speed_warnings(plan, found_speed, fitted), *_clock_warnings(done)]
     at = lead if is_hump else None
     values = np.column_stack(columns)
     return Imported(plan, tuple(done), time, values, tuple(channels), found_speed, fitted, at, wheels, tuple(warnings))
@@ -216,11 +216,11 @@ def _noise(
     )
 
 
-def _speed_warnings(phones: list[Phone], plan: Plan, found: FoundSpeed, fitted: float | None) -> list[str]:
+def _speed_warnings(plan: Plan, found: FoundSpeed, fitted: float | None) -> list[str]:
     """Say where the axles' marks contradict the speed, and where the speed was to be found from them and is not."""
     warnings = []
     if fitted is not None and abs(fitted / found.value - 1) > SPEED_DOUBT:
-        given = f"{fitted:.3f}" if all(speed_stream(phone.export) is None for phone in phones) else "axles"
+        given = f"{fitted:.3f}" if found.source == GIVEN else "axles"
         better = f"the axles' marks fit {fitted:.3f} m/s better than {found.value:.3f} m/s ({found.source})"
         warnings.append(f"{better}; give `{given}` as the speed to take that")
     if plan.by_axles and found.deviation is not None:

@@ -31,6 +31,10 @@ FoundHump = HumpEvent | InputError | None
 """When a phone's energy set in, or why that tells nothing; None of a measured profile, which has no one moment."""
 
 
+GIVEN = "given"
+"""Whence a speed is that was given, where no GPS tells one beside it."""
+
+
 @dataclass(frozen=True)
 class FoundSpeed:
     """The speed of a pass [m/s], where it is from, and its standard deviation [m/s] where a GPS tells it, else None."""
@@ -57,7 +61,7 @@ def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundS
         speed = crossing_speed(speed_stream(teller.export), teller.begin, teller.end, teller.name).median
     if plan.road.hump is None:
         if plan.speed is not None:
-            return FoundSpeed(plan.speed, "given"), [None] * len(phones)
+            return FoundSpeed(plan.speed, GIVEN), [None] * len(phones)
         told = crossing_speed(speed_stream(teller.export), teller.begin, teller.end, teller.name)
         return FoundSpeed.by_gps(told, teller.name), [None] * len(phones)
     events = [_event(phone, distance / speed) for phone in phones]
@@ -72,7 +76,7 @@ def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundS
             if plan.speed is None:
                 raise
     if plan.speed is not None:
-        return FoundSpeed(plan.speed, "given" + (f"; {teller.name}: {told}" if told else "")), events
+        return FoundSpeed(plan.speed, f"{GIVEN}; {teller.name}: {told}" if told else GIVEN), events
     assert told is not None
     return FoundSpeed.by_gps(told, teller.name), events
 

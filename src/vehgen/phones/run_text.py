@@ -26,6 +26,8 @@ USUAL_CLOCK_S, DOUBTFUL_CLOCK_S = 0.01, 0.03
 """How well phones' clocks are known against one another [s], and where one of them is matched badly."""
 WORTH_STATING = 1.5
 """So many times less well than usual clocks have to be known for a run file to say so."""
+LOUD_SHARE = 0.25
+"""A moment is loud with this share of the largest power: what a rough road shakes all the way tells nothing of the hump."""
 WANDER_SHARE = 0.007
 """How far from its mean the speed between two phones' loudest moments may be, relative: they are laid over an answer at one speed. Four
 clocks of a trailer 15 m behind were late by 0.2 to 1.2 % of that time, at a speed that wandered by 1 %.
@@ -121,6 +123,7 @@ def _clock_deviation(imported: Imported) -> float:
         return USUAL_CLOCK_S
     upward = [imported.channels.index(item.phone.sensor.outputs(False)[0].name) for item in imported.phones]
     energy = imported.values[:, upward] ** 2
+    energy[energy < LOUD_SHARE * energy.max(axis=0)] = 0.0
     felt = imported.time @ energy / energy.sum(axis=0)
     by_speed = math.hypot(USUAL_CLOCK_S, WANDER_SHARE * float(np.ptp(felt)))
     return by_speed if all(item.match.is_trusted for item in imported.phones) else max(by_speed, DOUBTFUL_CLOCK_S)
