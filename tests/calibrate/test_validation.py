@@ -6,6 +6,8 @@ import scipy.signal
 
 from tests.fit.recordings import sedan_truth, write_run
 from vehgen.calibrate.validation import validate
+from vehgen.fit.lead_in import lead_in
+from vehgen.fit.trial import load_trials
 
 BANDS = [(2.0, 5.0), (8.0, 12.0)]
 
@@ -29,3 +31,22 @@ def test_a_road_that_shook_the_vehicle_before_the_hump_is_no_error_of_the_model(
     rough = {item.channel: item for item in validate("sedan2", path, bands=BANDS).channels}
     assert rough["F_az"].errors[1] < quiet["F_az"].errors[1] - 0.2
     assert rough["F_az"].audible.tolist() == [True, told]
+
+
+def test_a_gyroscope_that_reads_a_little_at_rest_is_no_road(tmp_path):
+    path = write_run(tmp_path, "offset", sedan_truth(), 2.5)
+    table = path.with_suffix(".csv")
+    rows = np.loadtxt(table, delimiter=",", skiprows=1)
+    rows[:, 2] += 0.02
+    np.savetxt(table, rows, delimiter=",", header="t,F_az,F_q,R_az,R_q", comments="")
+    found = {item.channel: item for item in validate("sedan2", path, bands=[(0.1, 2.0)]).channels}
+    assert found["F_q"].audible.all()
+
+
+@pytest.mark.parametrize("at", ["4 m", "4.02 m"])
+def test_a_band_may_reach_the_highest_frequency_whatever_comes_before_the_hump(tmp_path, at):
+    path = write_run(tmp_path, "run", sedan_truth(), 2.5)
+    path.write_text(path.read_text().replace("at: 4 m", f"at: {at}"))
+    (trial,) = load_trials([path])
+    assert len(lead_in(trial).recording.time) % 2 == (at != "4 m")
+    assert len(validate("sedan2", path, bands=[(20.0, 50.0)]).channels) == 4

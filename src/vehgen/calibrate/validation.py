@@ -181,7 +181,8 @@ def compare_trial(trial: Trial, bands: Bands) -> list[ChannelComparison]:
         rms = [band_rms(frequency, density, bands) for density in densities]
         noise = _noise_rms(frequency, densities[0], bands, len(measured) * dt / SEGMENT if averaged else 0.5)
         if before is not None:
-            noise = np.maximum(noise, band_rms(*record_psd(before.recording.values[:, i], dt), bands))
+            still = before.recording.values[len(before.recording.time) % 2 :, i]  # an even count reaches the highest frequency
+            noise = np.maximum(noise, band_rms(*record_psd(still - still.mean(), dt), bands))
         found.append(
             ChannelComparison(
                 run=trial.name,
