@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tests.vehicle.rig import GOOD, Fault, check_refused, name_of
+from vehgen.errors import InputError
+from vehgen.vehicle import parse_vehicle
 
 FAULTS: list[Fault] = [
     # unknown keys, with the nearest valid one
@@ -73,3 +75,17 @@ FAULTS: list[Fault] = [
 @pytest.mark.parametrize("fault", FAULTS, ids=name_of)
 def test_a_fault_of_keys_or_names(fault: Fault):
     check_refused(*fault[1:])
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("{mass: 5 t,", "{weighed: null, mass: 5 t,"),
+        ("links:", "weighed:\nlinks:"),
+        ("frame: {mass: mB, pitch_inertia: 9000 kg m^2}", "frame:\n    mass: mB\n    weighed:\n    pitch_inertia: 9000 kg m^2"),
+    ],
+)
+def test_a_key_without_a_value_is_no_text_with_a_comma(old, new):
+    with pytest.raises(InputError, match="unknown key 'weighed'") as caught:
+        parse_vehicle(GOOD.replace(old, new), "bad.yaml")
+    assert "comma" not in str(caught.value)

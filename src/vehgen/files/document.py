@@ -57,14 +57,21 @@ class Located:
             return child
         return None
 
-    def find(self, path: tuple[str | int, ...], *, key: bool = False, offset: int | None = None) -> Position:
-        """Return the place of the value (or key, or character `offset` of a text) at `path`.
+    @property
+    def is_bare(self) -> bool:
+        """Whether it is the nothing behind a key."""
+        return self.value is None and self.position == self.key_position and not self.position.is_argument
 
-        Parts of the path that the file lacks are passed over.
-        """
+    def at(self, path: tuple[str | int, ...]) -> Located:
+        """Return the value at `path`; parts of the path that the file lacks are passed over."""
         node = self
         for part in path:
             node = node.child(part) or node
+        return node
+
+    def find(self, path: tuple[str | int, ...], *, key: bool = False, offset: int | None = None) -> Position:
+        """Return the place of the value (or key, or character `offset` of a text) at `path`, as far as the file has it."""
+        node = self.at(path)
         if key and node.key_position:
             return node.key_position
         if offset is None or node.indent is None:
