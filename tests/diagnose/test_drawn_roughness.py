@@ -1,15 +1,20 @@
 """Drawn roads: for a linear vehicle they say what its frequency response says; for one with friction they find the road that was there."""
 
 import shutil
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from benchmarks.hidden_effects.generator import Effect, Hump, RandomRoad, RunSpec
 
+from vehgen.diagnose.curves import residual_curves, response_curves
+from vehgen.diagnose.detect import drawn_roughness
 from vehgen.diagnose.detect.drawn_roughness import DrawnRun, _asked, find_levels, noises_of_laws
-from vehgen.diagnose.detect.noise_floor import find_noise_floor, lead_in_lines
+from vehgen.diagnose.detect.noise_floor import are_same_noises, find_noise_floor, lead_in_lines
 from vehgen.diagnose.fits.candidate import build_problem, list_candidates
 from vehgen.effects import EFFECTS, EffectLocator
+from vehgen.fit.adjustments import Gain
 from vehgen.fit.lead_in import lead_in
 from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.misfit import Misfit
@@ -59,16 +64,16 @@ def unmeasured(record, folder, runs):
     return load_trials(sorted(folder.glob("run*.yaml")))
 
 
-def as_it_is(trials, noises):
+def as_it_is(trials, noises, shared=(), numbers=(), force=FORCE):
     """The vehicle with its friction, fitted to nothing."""
     vehicle = trials[0].run.vehicle
     locator, base = EffectLocator(vehicle, trials[0].values), make_problem(trials)
     (candidate,) = [item for item in list_candidates(vehicle, trials, [EFFECTS["dry_friction"]], noises) if item.place == "front"]
     problem = build_problem(candidate, base, locator, SimulatorPool())
     point = problem.space.start.copy()
-    point[-1] = FORCE
-    misfit = Misfit(problem, noises, point, None, BAND_HZ)
-    x = np.concatenate([problem.space.unit(point), np.zeros(misfit.n_unknowns - problem.space.size)])
+    point[-1] = force
+    misfit = Misfit(problem, noises, point, None, BAND_HZ, shared)
+    x = np.concatenate([problem.space.unit(point), numbers, np.zeros(misfit.n_errors)])
     return LeastSquaresFit(misfit, x, 1.0, 0.0)
 
 
@@ -135,6 +140,67 @@ def test_what_roughness_shakes_loose_of_friction_is_what_recordings_lack_on_aver
     assert share[0] == pytest.approx(1.0, abs=0.25)  # the acceleration above the friction, then pitch rates
     assert share[[1, 3]] == pytest.approx(1.0, abs=0.4)
     assert np.corrcoef(left[over, 0], shift[over, 0])[0, 1] > 0.6
+
+
+@pytest.fixture(scope="module")
+def shaken(stuck, stuck_fit):
+    """What four roads make of the first run."""
+    trials, noises = stuck
+    return DrawnRun(stuck_fit, 0, noises[trials[0].name]).density(np.full(len(KNOT_WAVENUMBERS), CLASS_A), 4)
+
+
+def test_roughness_moves_a_vehicle_towards_what_it_does_without_friction(stuck, stuck_fit, shaken):
+    loose = as_it_is(*stuck, force=1.0)
+    moved = loose.misfit.simulate(loose.x)[0] - stuck_fit.misfit.simulate(stuck_fit.x)[0]
+    for i in range(4):
+        assert np.corrcoef(shaken.shift[:, i], moved[:, i])[0, 1] > 0.3
+    assert 0.05 < np.linalg.norm(shaken.shift) / np.linalg.norm(moved) < 1.0
+
+
+def test_what_roughness_adds_is_read_as_the_sensors_read(stuck, shaken):
+    """A channel that reads twice too much reads twice the shift, four times the density."""
+    trials, noises = stuck
+    channel = trials[0].channels[0]
+    fit = as_it_is(trials, noises, (Gain(channel, 0.1, 1.0, 0.1, 3.0),), (10.0,))
+    found = DrawnRun(fit, 0, noises[trials[0].name]).density(np.full(len(KNOT_WAVENUMBERS), CLASS_A), 4)
+    times = np.array([2.0, 1.0, 1.0, 1.0])
+    np.testing.assert_allclose(found.shift, shaken.shift * times, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(found.density, shaken.density * np.outer(times, times), rtol=1e-9, atol=1e-15)
+
+
+def test_a_shift_that_was_taken_off_before_is_not_taken_off_again(stuck, stuck_fit, monkeypatch):
+    trials, noises = stuck
+    left = []
+    monkeypatch.setattr(drawn_roughness, "ROADS_DRAWN", 4)
+    monkeypatch.setattr(drawn_roughness, "find_levels", lambda runs: [np.full(len(KNOT_WAVENUMBERS), CLASS_A) for _ in runs])
+    monkeypatch.setattr(drawn_roughness, "under_hump", lambda lines, answer, drawn: left.append(lines) or drawn)
+    first = noises_of_laws(SimpleNamespace(least_squares=stuck_fit, parts=(stuck_fit,)), noises)
+    again = as_it_is(trials, first)
+    noises_of_laws(SimpleNamespace(least_squares=again, parts=(again,)), noises)
+    plain = trials[0].recording.values - stuck_fit.misfit.simulate(stuck_fit.x)[0]
+    expected = stuck_fit.misfit.signal_lines(0, plain - first[trials[0].name].drawn.shift)
+    np.testing.assert_allclose(left[0], expected, rtol=0, atol=1e-9 * np.abs(expected).max())
+    np.testing.assert_allclose(left[2], expected, rtol=0, atol=1e-9 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize(("share", "same"), [(0.0, True), (1e-6, True), (1.0, False)])
+def test_noises_that_shift_recordings_otherwise_are_others(stuck, stuck_fit, shaken, share, same):
+    trials, noises = stuck
+    name = trials[0].name
+    ours, theirs = (noises | {name: replace(noises[name], drawn=replace(shaken, shift=size * shaken.shift))} for size in (0.0, share))
+    assert are_same_noises(ours, theirs, SimpleNamespace(parts=(stuck_fit,))) is same
+
+
+def test_curves_show_what_was_compared(stuck, shaken):
+    """What roughness shifts is no residual: the simulated curve holds it, the measured one stays as it was recorded."""
+    trials, noises = stuck
+    fit = as_it_is(trials[:1], {trials[0].name: replace(noises[trials[0].name], drawn=shaken)})
+    part = SimpleNamespace(validation_fit=fit, least_squares=fit)
+    first = response_curves(SimpleNamespace(last=part))[0]
+    np.testing.assert_allclose(first.measured, trials[0].recording.values[:, 0], rtol=1e-4)
+    np.testing.assert_allclose(first.simulated, fit.misfit.simulate(fit.x)[0][:, 0] + shaken.shift[:, 0], rtol=1e-4, atol=1e-6)
+    _, histories = residual_curves(SimpleNamespace(detection=SimpleNamespace(base=part), chosen=[part]))
+    np.testing.assert_allclose(histories[0].simulated, np.array(first.measured) - np.array(first.simulated), rtol=1e-3, atol=1e-4)
 
 
 def test_a_shift_is_taken_off_its_own_recording_alone():

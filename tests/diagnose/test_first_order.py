@@ -7,7 +7,8 @@ from vehgen.diagnose.fits.candidate import build_problem, list_candidates
 from vehgen.diagnose.fits.first_order import ProbeMotion
 from vehgen.diagnose.fits.model_fit import NUISANCES, CurrentModel
 from vehgen.effects import EffectLocator, library
-from vehgen.fit.misfit import Misfit, flatten
+from vehgen.fit.misfit import Misfit
+from vehgen.fit.window import flatten
 from vehgen.simulate import SimulatorPool
 
 

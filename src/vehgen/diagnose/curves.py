@@ -19,7 +19,7 @@ def residual_curves(models: DiagnosisModels) -> tuple[tuple[ChannelCurves, ...],
     trials = old.misfit.problem.trials
     loudest = _loudest(trials)
     trial = trials[loudest]
-    before, after = (trial.recording.values - fit.misfit.simulate(fit.x)[loudest] for fit in (old, new))
+    before, after = (fit.misfit.recorded(loudest) - fit.misfit.simulate(fit.x)[loudest] for fit in (old, new))
     psds, histories = [], []
     for i, channel in enumerate(trial.recording.channels):
         frequency, earlier = record_psd(before[:, i], trial.recording.dt)
@@ -37,13 +37,13 @@ def _loudest(trials: tuple[Trial, ...]) -> int:
 
 
 def response_curves(models: DiagnosisModels) -> tuple[ChannelCurves, ...]:
-    """Return histories of the loudest run, as measured and as the last model simulates it: a validation run where there is one."""
+    """Return histories of the loudest run (of those for validation), as measured, and as the last model has it, shifted by roughness."""
     last = models.last
     fit = last.validation_fit or last.least_squares
     trials = fit.misfit.problem.trials
     loudest = _loudest(trials)
     trial = trials[loudest]
-    simulated = fit.misfit.simulate(fit.x)[loudest]
+    simulated = fit.misfit.simulate(fit.x)[loudest] + trial.recording.values - fit.misfit.recorded(loudest)
     time = rounded(trial.recording.time, 7)
     return tuple(
         ChannelCurves(trial.name, channel.name, channel.quantity, time, rounded(trial.recording.values[:, i]), rounded(simulated[:, i]))

@@ -18,10 +18,11 @@ from numpy.typing import NDArray
 from vehgen.fit.fine_response import FineResponse, fine_response
 from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
 from vehgen.fit.linearisation import linearise
-from vehgen.fit.misfit import Misfit, flatten
+from vehgen.fit.misfit import Misfit
 from vehgen.fit.nuisances import LOW_PASS
 from vehgen.fit.parallel import one_blas_thread
 from vehgen.fit.trial import Trial
+from vehgen.fit.window import flatten
 from vehgen.measure.acquisition import POINT_SAMPLES, UNKNOWN, AcquisitionChain, FilterKind
 
 Array = NDArray[np.float64]

@@ -118,9 +118,9 @@ def find_line(
 def _refine(misfit: Misfit, x: Array, about: float) -> tuple[float, float]:
     frequencies = np.arange(about - 1.2, about + 1.2, 0.02)
     energy = np.zeros((len(DRIFTS), len(frequencies)))
-    for trial, simulated in zip(misfit.problem.trials, misfit.simulate(x), strict=True):
+    for i, (trial, simulated) in enumerate(zip(misfit.problem.trials, misfit.simulate(x), strict=True)):
         time = trial.recording.time - trial.recording.time[0]
-        left = (trial.recording.values - simulated) / misfit.noises[trial.name].sigma
+        left = (misfit.recorded(i) - simulated) / misfit.noises[trial.name].sigma
         duration = max(float(time[-1]), 1e-9)
         turning = np.exp(-2j * np.pi * np.outer(frequencies, time))
         for i, rate in enumerate(DRIFTS):

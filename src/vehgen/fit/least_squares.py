@@ -13,12 +13,13 @@ from vehgen.fit.alignment import MOST_SIGMAS, align, error_bounds
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.descent import descend
 from vehgen.fit.linearisation import Linearisation, Lineariser
-from vehgen.fit.misfit import Misfit, Noises, flatten
+from vehgen.fit.misfit import Misfit, Noises
 from vehgen.fit.noise import EVEN, Noise, estimate_noise
 from vehgen.fit.nuisances import Condition, Nuisances
 from vehgen.fit.prior_data import PriorData
 from vehgen.fit.problem import Problem
 from vehgen.fit.rig_noise import RunResidual, likeliest_noises, unstated_sizes
+from vehgen.fit.window import flatten
 
 Array = NDArray[np.float64]
 AT_BOUND = 1e-3

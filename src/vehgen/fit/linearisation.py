@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.fit.misfit import Array, Complex, Misfit, flatten
+from vehgen.fit.misfit import Array, Complex, Misfit
+from vehgen.fit.window import flatten
 
 UNIT_DIFFERENCE = 1e-6
 """Step of the differences to each side, in the unit cube and in units of an error's uncertainty: so short that jumps of a response

@@ -22,7 +22,7 @@ from vehgen.fit.problem import Problem
 from vehgen.fit.road_answer import RoadAnswer, as_read, road_answer
 from vehgen.fit.run_errors import RunErrors
 from vehgen.fit.trial import Trial
-from vehgen.fit.window import transform
+from vehgen.fit.window import flatten, transform
 from vehgen.simulate import Scenario
 
 Array = NDArray[np.float64]
@@ -101,7 +101,7 @@ class Misfit:
         frequency = np.asarray(np.fft.rfftfreq(len(trial.recording.time), dt), dtype=np.float64)
         inside = (frequency >= self.band[0]) & (frequency <= self.band[1])
         answer, noise = self.answer(number, frequency[inside], reference, x), self.noises[trial.name]
-        measured = transform(noise.unshifted(trial.recording.values), dt, inside, seen=trial.window)
+        measured = transform(self.recorded(number), dt, inside, seen=trial.window)
         return _Weight(inside, measured, answer, noise.whitener(answer))
 
     def answer(self, number: int, frequency: Array, reference: Mapping[str, float], x: Array, *, windowed: bool = True) -> RoadAnswer:
@@ -182,14 +182,16 @@ class Misfit:
         own = x[self.n_parameters : self.n_parameters + len(self.shared)]
         return np.array([item.neutral + item.scale * value for item, value in zip(self.shared, own, strict=True)])
 
-    def respond(self, number: int, values: Array, numbers: Array, error: Array, trial: Trial | None = None) -> Array:
+    def respond(
+        self, number: int, values: Array, numbers: Array, error: Array, trial: Trial | None = None, scenario: Scenario | None = None
+    ) -> Array:
         """Return how the places of trial `number`'s sensors move, `shape (n, n_samples, n_channels)`.
 
         At searched values `shape (n, n_parameters)` [SI], adjustments and the trial's errors; what the sensors' own errors make of it is
-        left to :meth:`channel_lines`. `trial` stands in for the trial itself, with another step.
+        left to :meth:`channel_lines`. `trial` stands in for the trial itself, with another step, `scenario` for what it drives through.
         """
         trial = trial or self.problem.trials[number]
-        response = self.problem.respond(values, trial, self._driven(number, trial, numbers, error))[0]
+        response = self.problem.respond(values, trial, scenario or self._driven(number, trial, numbers, error))[0]
         return self._adjust(number, trial, response, numbers, error)
 
     def respond_nearby(self, number: int, values: Array, numbers: Array, errors: Array) -> Array:
@@ -275,8 +277,12 @@ class Misfit:
         """Return :meth:`signal_lines` whitened."""
         return self.whiten(number, self.signal_lines(number, signal))
 
+    def recorded(self, number: int) -> Array:
+        """Return what trial `number` recorded, less what roughness shifts, `shape (n_samples, n_channels)`."""
+        return self.noises[self.problem.trials[number].name].unshifted(self.problem.trials[number].recording.values)
+
     def measured(self, number: int) -> Complex:
-        """Return the spectral lines that trial `number` recorded, less what roughness shifts, `shape (n_lines, n_channels)`."""
+        """Return the spectral lines of :meth:`recorded`, `shape (n_lines, n_channels)`."""
         return self._weights[number].measured
 
     def frequency(self, number: int) -> Array:
@@ -292,9 +298,3 @@ def _apply(whitener: Complex, lines: Complex) -> Complex:
     """Return whitened lines: one product of matrices a line for all spectra, as many small products would be slow."""
     rows = lines.reshape(math.prod(lines.shape[:-2]), *lines.shape[-2:]).swapaxes(0, 1)
     return np.asarray((rows @ whitener.swapaxes(-1, -2)).swapaxes(0, 1).reshape(lines.shape))
-
-
-def flatten(white: Complex, first: int = 0) -> Array:
-    """Return real and imaginary parts as residuals of unit variance; the axes before `first` are kept."""
-    flat = white.reshape(*white.shape[:first], math.prod(white.shape[first:])) * np.sqrt(2)
-    return np.concatenate([flat.real, flat.imag], axis=-1)

@@ -96,3 +96,9 @@ def _moved(window: Array, samples: float) -> Array:
     around, first = np.concatenate([nothing, window, nothing]), len(nothing) + whole
     here, after = (around[start : start + len(window)] for start in (first, first + 1))
     return np.asarray(here + (samples - math.floor(samples)) * (after - here))
+
+
+def flatten(white: Complex, first: int = 0) -> Array:
+    """Return real and imaginary parts as residuals of unit variance; the axes before `first` are kept."""
+    flat = white.reshape(*white.shape[:first], math.prod(white.shape[first:])) * np.sqrt(2)
+    return np.concatenate([flat.real, flat.imag], axis=-1)

@@ -22,13 +22,13 @@ from vehgen.diagnose.design.candidate_runs import CandidateRun
 from vehgen.diagnose.fits.model_fit import ModelFit, base_priors
 from vehgen.fit.alignment import MOST_SIGMAS, best_delay
 from vehgen.fit.linearisation import linearise
-from vehgen.fit.misfit import Misfit, flatten
+from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import Noise
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.problem import Problem
 from vehgen.fit.recording import RecordedChannel
 from vehgen.fit.trial import Trial
-from vehgen.fit.window import transform
+from vehgen.fit.window import flatten, transform
 from vehgen.measure.acquisition import POINT_SAMPLES
 from vehgen.mechanics import Output
 from vehgen.mechanics.outputs import ElementOutput, PointOutput

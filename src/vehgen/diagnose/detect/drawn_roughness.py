@@ -148,9 +148,9 @@ class DrawnRun:
         return found
 
     def _motion(self, scenario: Scenario) -> Array:
-        misfit = self.fit.misfit
-        values = misfit.problem.space.values(misfit.split(self.fit.x)[0])[None]
-        return np.asarray(misfit.problem.respond(values, self.trial, scenario)[0][0])
+        misfit, x = self.fit.misfit, self.fit.x
+        values = misfit.problem.space.values(misfit.split(x)[0])[None]
+        return np.asarray(misfit.respond(self.number, values, misfit.adjusted(x), misfit.errors_of(x, self.number), scenario=scenario)[0])
 
     def _lines(self, motion: Array) -> Complex:
         misfit = self.fit.misfit

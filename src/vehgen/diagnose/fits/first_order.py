@@ -14,9 +14,9 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from vehgen.codegen import Kernel
-from vehgen.fit.misfit import Misfit, flatten
+from vehgen.fit.misfit import Misfit
 from vehgen.fit.problem import Problem
-from vehgen.fit.window import transform
+from vehgen.fit.window import flatten, transform
 from vehgen.mechanics import EquationsOfMotion, static_loads
 from vehgen.mechanics.energies import Element
 from vehgen.mechanics.equations_of_motion import Channel

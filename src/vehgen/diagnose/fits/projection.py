@@ -12,7 +12,8 @@ from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import base_priors
 from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
 from vehgen.fit.linearisation import linearise
-from vehgen.fit.misfit import Misfit, flatten
+from vehgen.fit.misfit import Misfit
+from vehgen.fit.window import flatten
 
 Array = NDArray[np.float64]
 

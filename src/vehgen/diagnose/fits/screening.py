@@ -21,8 +21,9 @@ from vehgen.diagnose.fits.projection import Projection
 from vehgen.effects import EffectLocator, RunEffect
 from vehgen.effects.evidence import Residual
 from vehgen.effects.locator import base_parameters
-from vehgen.fit.misfit import Misfit, flatten
+from vehgen.fit.misfit import Misfit
 from vehgen.fit.problem import Problem
+from vehgen.fit.window import flatten
 from vehgen.simulate import SimulatorPool
 from vehgen.vehicle import Vehicle
 

@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 
 from vehgen.fit.least_squares import unknown_bounds
 from vehgen.fit.linearisation import Lineariser, linearise
-from vehgen.fit.misfit import Misfit, flatten
+from vehgen.fit.misfit import Misfit
 from vehgen.fit.parallel import HERE, Runner
+from vehgen.fit.window import flatten
 from vehgen.mechanics.rows import Row
 from vehgen.simulate.frequency import force_response
 

@@ -15,8 +15,8 @@ from vehgen.diagnose.verdict import NamedParameter
 from vehgen.effects import EffectParameter
 from vehgen.fit.adjustments import Adjustment
 from vehgen.fit.linearisation import linearise
-from vehgen.fit.misfit import Misfit, flatten
-from vehgen.fit.window import seen_share
+from vehgen.fit.misfit import Misfit
+from vehgen.fit.window import flatten, seen_share
 from vehgen.simulate.last_used import LastUsed
 
 Array = NDArray[np.float64]

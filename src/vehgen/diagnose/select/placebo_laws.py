@@ -18,8 +18,7 @@ from vehgen.diagnose.fits.projection import Projection
 from vehgen.diagnose.localise.recovered_force import motions
 from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.diagnose.select.ranking import SearchRound
-from vehgen.fit.misfit import flatten
-from vehgen.fit.window import transform
+from vehgen.fit.window import flatten, transform
 from vehgen.simulate.frequency import force_response
 
 Array = NDArray[np.float64]
