@@ -28,6 +28,7 @@ def test_a_late_phone_beside_another_effect_is_tied_with_the_other_phone_being_e
     assert abs(delay.parameters["delay"].value) == pytest.approx(0.06, abs=0.01)  # any clock may be 10 ms off
 
 
+@pytest.mark.slow
 def test_the_spring_beside_it_has_no_rival(found):
     (spring,) = [item for item in found.verdict.effects if item.name == "cubic_stiffness"]
     assert (spring.place, spring.alternatives) == ("rear", ())

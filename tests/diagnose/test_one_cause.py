@@ -24,7 +24,6 @@ def at_other_speeds(trials, *errors):
     return [replace(trial, scenario=trial.scenario.adjusted(speed=1 / (1 + error))) for trial, error in pairs]
 
 
-@pytest.mark.slow
 def test_a_clock_that_is_as_late_in_all_runs_is_named_or_the_other_as_early(detection_of):
     detection = detection_of(LATE, runs=HUMPS)
     assert detection.is_quiet, "each run may have a clock of its own"
@@ -39,7 +38,6 @@ def test_a_clock_that_is_as_late_in_all_runs_is_named_or_the_other_as_early(dete
     assert found.gap.after < 1.06
 
 
-@pytest.mark.slow
 def test_speeds_that_are_all_off_the_same_way_are_one_error_beside_small_ones(trials_of):
     detection = detect(at_other_speeds(trials_of(runs=HUMPS), 0.03, 0.043, 0.035))
     assert detection.is_quiet

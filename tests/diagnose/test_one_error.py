@@ -31,10 +31,9 @@ def tried(detection, strained=None, found=NOTHING, names=NAMES):
     return one_error(strained or detection, believed, found, candidates_of(detection, names))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("effect", "label", "value"),
-    [(GAIN, "sensor_gain at F_az", 1.15), (FAST, "speed_error at all runs", 1.05)],
+    [pytest.param(GAIN, "sensor_gain at F_az", 1.15, marks=pytest.mark.slow), (FAST, "speed_error at all runs", 1.05)],
     ids=["gain", "speed"],
 )
 def test_the_one_error_that_explains_the_runs_is_found(detection_of, effect, label, value):
@@ -73,9 +72,7 @@ def test_where_the_believable_base_has_lost_the_phase_a_fit_begins_at_the_strain
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "effects", [pytest.param((GAIN, LATE), marks=pytest.mark.slow), (CUBIC,)], ids=["two errors", "an effect of the vehicle"]
-)
+@pytest.mark.parametrize("effects", [(GAIN, LATE), (CUBIC,)], ids=["two errors", "an effect of the vehicle"])
 def test_none_is_told_where_one_alone_does_not_explain_the_runs(detection_of, effects):
     assert tried(detection_of(*effects, runs=HUMPS)).fits == ()
 

@@ -111,7 +111,7 @@ def read_or_refuse(text: str) -> bool:
     return refusal is None
 
 
-@settings(max_examples=200, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 @given(st.sampled_from(sorted(MODELS)), edits)
 def test_mutilated_text(name: str, changes: list[tuple[str, float, int, str]]):
     read_or_refuse(mutate(MODELS[name], changes))
@@ -180,7 +180,7 @@ def edit(data: dict[str, Any], changes: list[tuple[str, list[float], str, Any]])
     return data
 
 
-@settings(max_examples=150, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=80, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 @given(st.sampled_from(sorted(set(DATA) - {"road_train"})), operations)
 def test_mutilated_data(name: str, changes: list[tuple[str, list[float], str, Any]]):
     """YAML holds JSON, so that well-formed files with wrong contents reach the deeper checks."""
