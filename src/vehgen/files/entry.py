@@ -103,8 +103,8 @@ def _first_fault(error: ValidationError, model: type[FileModel], document: Locat
         key = str(path[-1])
         known = sorted({*_fields_beside(model, first["loc"]), *(model.other_keys if len(path) == 1 else ())})
         around = document.at(path[:-1])
-        in_braces = all(item.key_position != around.position for item in around.value.values())  # lines begin with their first key
-        hint = "; quote a text that has a comma within { }" if in_braces and document.at(path).is_bare else ""
+        is_bare = document.at(path).is_bare and all(item.key_position != around.position for item in around.value.values())
+        hint = "; quote a text that has a comma within { }" if is_bare else ""  # a mapping in lines begins with its first key
         return InputError(f"unknown key {shown(key)}; {did_you_mean(key, known)}{hint}", document.find(path, key=True))
     if first["type"] in ("missing", "too_long", "tuple_type") and "range" in path[-2:]:
         return InputError("a range has two ends: [low, high]", document.find(path))
