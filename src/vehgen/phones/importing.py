@@ -19,7 +19,7 @@ from vehgen.phones.clocks import Match
 from vehgen.phones.detect import read_export
 from vehgen.phones.export import Stream
 from vehgen.phones.hump_event import HumpEvent
-from vehgen.phones.locating import CLOCK_DOUBT, GIVEN, FoundSpeed, find_speed, locate
+from vehgen.phones.locating import CLOCK_DOUBT, FoundSpeed, find_speed, locate
 from vehgen.phones.orientation import Orientation
 from vehgen.phones.phone import MARGIN, QUIET, Phone, make_phone
 from vehgen.phones.plan import PhoneSensor, Plan
@@ -115,7 +115,7 @@ def read_pass(exports: Sequence[str | os.PathLike[str]], plan: Plan) -> Imported
     speed, events = find_speed(phones, plan, distance)
     matches, arrivals = locate(phones, plan, simulator, simulator.parameters(values)[0], speed.value, distance, events)
     if plan.by_axles and all(item.is_trusted for item in matches):
-        speed = FoundSpeed(speed.value * matches[0].scale, f"by the axles' marks; {speed.source}")
+        speed = replace(speed, value=speed.value * matches[0].scale, source=f"by the axles' marks; {speed.source}", deviation=None)
         matches = [replace(item, scale=1.0) for item in matches]
     elif plan.by_axles and speed.deviation is None:
         raise ArgumentError("the simulated response fits the recordings too badly to find the speed from its axles; give `speed`", "speed")
@@ -220,7 +220,7 @@ def _speed_warnings(plan: Plan, found: FoundSpeed, fitted: float | None) -> list
     """Say where the axles' marks contradict the speed, and where the speed was to be found from them and is not."""
     warnings = []
     if fitted is not None and abs(fitted / found.value - 1) > SPEED_DOUBT:
-        given = f"{fitted:.3f}" if found.source == GIVEN else "axles"
+        given = "axles" if found.gps_tells else f"{fitted:.3f}"
         better = f"the axles' marks fit {fitted:.3f} m/s better than {found.value:.3f} m/s ({found.source})"
         warnings.append(f"{better}; give `{given}` as the speed to take that")
     if plan.by_axles and found.deviation is not None:

@@ -31,22 +31,19 @@ FoundHump = HumpEvent | InputError | None
 """When a phone's energy set in, or why that tells nothing; None of a measured profile, which has no one moment."""
 
 
-GIVEN = "given"
-"""Whence a speed is that was given, where no GPS tells one beside it."""
-
-
 @dataclass(frozen=True)
 class FoundSpeed:
-    """The speed of a pass [m/s], where it is from, and its standard deviation [m/s] where a GPS tells it, else None."""
+    """The speed of a pass [m/s], where it is from, its standard deviation [m/s] if that is a GPS, and whether a GPS tells one at all."""
 
     value: float
     source: str
     deviation: float | None = None
+    gps_tells: bool = False
 
     @classmethod
     def by_gps(cls, told: CrossingSpeed, name: str) -> FoundSpeed:
         """Return the speed that the GPS of the phone of a name tells."""
-        return cls(told.median, f"{name}: {told}", told.deviation)
+        return cls(told.median, f"{name}: {told}", told.deviation, gps_tells=True)
 
 
 def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundSpeed, list[FoundHump]]:
@@ -61,7 +58,7 @@ def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundS
         speed = crossing_speed(speed_stream(teller.export), teller.begin, teller.end, teller.name).median
     if plan.road.hump is None:
         if plan.speed is not None:
-            return FoundSpeed(plan.speed, GIVEN), [None] * len(phones)
+            return FoundSpeed(plan.speed, "given"), [None] * len(phones)
         told = crossing_speed(speed_stream(teller.export), teller.begin, teller.end, teller.name)
         return FoundSpeed.by_gps(told, teller.name), [None] * len(phones)
     events = [_event(phone, distance / speed) for phone in phones]
@@ -76,7 +73,7 @@ def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundS
             if plan.speed is None:
                 raise
     if plan.speed is not None:
-        return FoundSpeed(plan.speed, f"{GIVEN}; {teller.name}: {told}" if told else GIVEN), events
+        return FoundSpeed(plan.speed, "given" + (f"; {teller.name}: {told}" if told else ""), gps_tells=told is not None), events
     assert told is not None
     return FoundSpeed.by_gps(told, teller.name), events
 
