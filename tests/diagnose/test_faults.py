@@ -117,10 +117,10 @@ PLAIN_CASES = {
         None,
     ),
 }
-LONG = {"clocks 1.5 s apart", "km/h as m/s", "acceleration and rate exchanged"}
+SLOW_CASES = {"clocks 1.5 s apart", "km/h as m/s", "acceleration and rate exchanged"}
 
 
-@pytest.mark.parametrize("case", [pytest.param(case, marks=pytest.mark.slow) if case in LONG else case for case in PLAIN_CASES])
+@pytest.mark.parametrize("case", [pytest.param(case, marks=pytest.mark.slow) if case in SLOW_CASES else case for case in PLAIN_CASES])
 def test_a_plain_mistake_is_named_before_any_effect_is_looked_for(plain, case):
     make, expected, value = PLAIN_CASES[case]
     (fault,) = plain_mistakes(detect(make(plain)))
