@@ -24,10 +24,7 @@ FORMATS = ("png", "svg", "pdf")
 
 def figure_svg(figure: Figure) -> str:
     """Return a figure as SVG text without date and random names, so that equal figures are equal files."""
-    stream = io.StringIO()
-    with _reproducible():
-        figure.savefig(stream, format="svg", metadata={"Date": None})
-    return stream.getvalue()
+    return _drawn(figure, "svg").decode()
 
 
 def save_figure(figure: Figure, path: Path) -> None:
@@ -38,11 +35,7 @@ def save_figure(figure: Figure, path: Path) -> None:
     InputError
         For a suffix other than those of FORMATS, or a file that cannot be written.
     """
-    kind = figure_format(path)
-    stream = io.BytesIO()
-    with _reproducible():
-        figure.savefig(stream, format=kind, dpi=150, metadata={"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(kind))
-    write_bytes(path, stream.getvalue())
+    write_bytes(path, _drawn(figure, figure_format(path)))
 
 
 def figure_format(path: Path) -> str:
@@ -85,6 +78,22 @@ def with_titles(svg: str, titles: Mapping[str, str]) -> str:
         opening = f'<g id="{name}">'
         svg = svg.replace(opening, f"{opening}<title>{escape(text)}</title>", 1)
     return svg
+
+
+def _drawn(figure: Figure, kind: str) -> bytes:
+    """Return a figure's file of one of FORMATS; its own `savefig` would draw it once more, in vain, to lay it out."""
+    from matplotlib.backend_bases import get_registered_canvas_class
+
+    stream, canvas, dpi = io.BytesIO(), figure.canvas, figure.dpi
+    with _reproducible():
+        try:
+            printing = getattr(get_registered_canvas_class(kind)(figure), f"print_{kind}")
+            figure.dpi = 150
+            printing(stream, metadata={"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(kind))
+        finally:
+            figure.set_canvas(canvas)
+            figure.dpi = dpi
+    return stream.getvalue()
 
 
 @contextmanager

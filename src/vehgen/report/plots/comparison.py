@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator
+from matplotlib.ticker import NullLocator
 
 from vehgen.measure.curves import ChannelCurves
 from vehgen.mechanics.quantities import QUANTITIES
@@ -55,7 +55,7 @@ def plot_psds(
             top = max(top, float(np.nanmax(reference[1].measured)))
             axes.semilogy(reference[1].x, reference[1].measured, color=REFERENCE_COLOUR, lw=1.1, ls=(0, (4, 2)), label=reference[0])
         axes.set_ylim(top * 10.0**-PSD_DECADES, 3 * top)
-        axes.yaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))  # each tick costs time
+        axes.yaxis.set_minor_locator(NullLocator())  # each tick costs time
         axes.set_xlim(*band)
         unit = QUANTITY_UNITS.get(curve.quantity, "")
         axes.set_ylabel(f"PSD [({unit})²/Hz]", color=INK)
