@@ -86,6 +86,7 @@ def test_an_individual_that_cannot_be_simulated_has_an_infinite_objective(proble
     assert np.flatnonzero(np.isinf(PsdObjective(problem).quick(points))).tolist() == [7]
 
 
+@pytest.mark.slow
 def test_a_joint_fit_finds_the_truth_within_its_intervals(problem):
     found = calibrate_problem(problem, small())
     outcome = summarise(found, combinations=("kf/mf",))

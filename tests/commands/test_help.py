@@ -29,6 +29,7 @@ def test_every_command_has_help_with_an_example_that_can_be_typed(name: str, cap
     assert make_parser().parse_args(words).command == name
 
 
+@pytest.mark.slow
 def test_examples_on_bundled_models_work(capsys: pytest.CaptureFixture[str]):
     for command in COMMANDS:
         words = shlex.split(command.EXAMPLE.partition(">")[0])[1:]

@@ -93,6 +93,7 @@ def test_a_recording_that_is_put_right_keeps_the_noise_of_the_base(detection_of)
         np.testing.assert_array_equal(noises[trial.name].levels, known.levels)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("clock", "blamed"), [pytest.param(None, True, marks=pytest.mark.slow), ((1.1, 0.2), True), ((1.1, 0.0), False)])
 def test_axles_are_not_blamed_where_a_clock_leaves_noise(detection_of, monkeypatch, clock, blamed):
     parameters = perturbed("sedan2", 3)
@@ -101,6 +102,7 @@ def test_axles_are_not_blamed_where_a_clock_leaves_noise(detection_of, monkeypat
     assert bool(list(axle_hypotheses(BaseRefits(detection_of(parameters=parameters, runs=HUMPS))))) is blamed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("dearer", "blamed"), [(30.0, False), (40.0, True)])
 def test_axles_are_blamed_where_a_speed_leaves_noise_with_many_other_errors(detection_of, monkeypatch, dearer, blamed):
     """A sedan's wheelbase 0.3 m off was taken for speeds 8 % off, with gains, heights and humps four standard deviations off."""
@@ -119,6 +121,7 @@ def test_axles_are_blamed_where_a_speed_leaves_noise_with_many_other_errors(dete
     assert bool(list(axle_hypotheses(case))) is blamed
 
 
+@pytest.mark.slow
 def test_another_hump_is_tried_in_every_shape(trials_of):
     """Which one is right a refit tells: where speeds are a little off, a wrong one may correlate better."""
     longer = tuple(RunSpec((Hump(0.9, item.road[0].height, item.road[0].at),), item.speed, item.duration, item.name) for item in HUMPS)
@@ -158,6 +161,7 @@ def with_exchanged_humps(trials):
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("low", "high", "quiet"), [(0.030, 0.034, True), (0.026, 0.035, False)])
 def test_exchanged_humps_are_told_whether_or_not_the_base_bends_far_enough(trials_of, low, high, quiet):
     """Heights 12 % off, the most that a run may err by, had explained a sedan's: nothing was said to be missing."""
@@ -184,6 +188,7 @@ def test_humps_as_stated_are_not_exchanged(detection_of):
     assert exchanged_humps(detection_of(runs=over(0.030, 0.034))) == ()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kinds", "reason", "told"), [(("low_pass",), "", True), (("low_pass", "hump_form"), "", False), (("low_pass",), "imitates", False)]
 )

@@ -51,6 +51,7 @@ def test_roads_drawn_under_a_linear_vehicle_answer_as_its_frequency_response_doe
         assert np.abs((ours - theirs) / size[:, None] / size[None, :]).max() < 0.15
 
 
+@pytest.mark.slow
 def test_the_noise_of_a_linear_vehicle_stays_as_it_is(detection_of):
     detection = detection_of()
     assert noises_of_laws(detection.base, detection.floor.noises) is detection.floor.noises

@@ -26,6 +26,7 @@ def written(told):
     return told[1]
 
 
+@pytest.mark.slow
 def test_report_draws_the_same_page_from_the_file(written, tmp_path, capsys):
     assert main(["report", str(written / "diagnosis.json"), "--out", str(tmp_path), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["files"] == [str(tmp_path / "report.html")]
@@ -120,6 +121,7 @@ def rate(record, tmp_path_factory):
     return detect(load_trials(record(), load_vehicle(path)))
 
 
+@pytest.mark.slow
 def test_units_are_shown_whole(rate, tmp_path):
     models = DiagnosisModels(rate, (), ())
     evidence = collect(models, quick=True)

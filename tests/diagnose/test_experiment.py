@@ -56,6 +56,7 @@ def lead(fits):
     return total["bump_stop"] - total["cubic_stiffness"]
 
 
+@pytest.mark.slow
 def test_laws_that_low_humps_cannot_tell_apart_want_a_higher_one(tied, proposal):
     assert abs(lead(tied[1])) < 9
     assert proposal.separates

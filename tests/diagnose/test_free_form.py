@@ -68,6 +68,7 @@ def test_the_true_spring_lies_within_the_interval_of_the_curve(spring):
     assert d[0] < -0.015 < 0.015 < d[-1]
 
 
+@pytest.mark.slow
 def test_a_cubic_spring_is_explained_on_untouched_runs_without_memory(spring):
     assert [run.validation for run in spring.runs] == [False, False, True]
     assert spring.explained > 0.35
@@ -91,6 +92,7 @@ def test_places_without_a_travel_have_no_law(cubic):
     assert fit_free_form(()) is None
 
 
+@pytest.mark.slow
 def test_a_place_tested_before_another_recorder_was_found_is_tested_anew(cubic):
     """A second look may change the recorder, and with it how many unknowns a fit has: the diagnosis ended in a traceback."""
     detection, results = cubic

@@ -79,6 +79,7 @@ def check(fits, known, names):
     assert fits[0].training < 0.1 * fits[1].training
 
 
+@pytest.mark.slow
 def test_a_file_may_add_effects_of_every_kind(detection, known, tmp_path):
     (tmp_path / "own.yaml").write_text(FILE, encoding="utf-8")
     effects = load_effects(tmp_path / "own.yaml")

@@ -19,6 +19,7 @@ from vehgen.simulate import SimulatorPool
 LAWS = [EFFECTS[name] for name in ("dry_friction", "hysteresis", "bump_stop", "quadratic_damping", "cubic_stiffness", "asymmetric_damping")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("force", [15.0, 150.0])
 def test_friction_far_below_where_its_search_begins_is_worth_a_fit(detection_of, monkeypatch, force):
     """Friction that holds what truly slips is of no use to first order; where it is small, so is its first order."""

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.bundled import few
 from vehgen.effects import EFFECTS, Effect, EffectLocator
 from vehgen.effects.base import one
 from vehgen.files.yaml_writer import yaml_document
@@ -36,12 +37,9 @@ def test_every_effect_says_what_it_is_and_begins_within_its_range(effect):
         assert parameter.meaning
 
 
-@pytest.mark.parametrize(
-    "name", ["sedan2.yaml", "tractor5.yaml", pytest.param("road_train.yaml", marks=pytest.mark.slow), "truck_dolly_trailer.yaml"]
-)
+@pytest.mark.parametrize("name", few(("sedan2", "tractor5", "road_train", "truck_dolly_trailer")))
 def test_every_edit_gives_a_vehicle_that_vehgen_accepts(name):
-    """A road train has more of what a truck with a dolly and a trailer has, and takes as long as the three others together."""
-    vehicle = load_vehicle(name)
+    vehicle = load_vehicle(f"{name}.yaml")
     locator = EffectLocator(vehicle, vehicle.values())
     for effect in EFFECTS.values():
         for place in effect.places(vehicle, ())[:2] if effect.changes_vehicle else ():

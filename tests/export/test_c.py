@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import vehgen
+from tests.bundled import few
 from tests.commands.calls import python
 from tests.export.c_code import COMPILERS, Library, assert_alike, compile_c, hump, kernel_run, needs_compiler
 from tests.export.vehicles import LAWS, TEXT, hostile, sedan_with, truck
@@ -34,7 +35,7 @@ def exported(model, folder, *options, **settings):
     return Library(header, None, *options)
 
 
-@pytest.mark.parametrize("name", bundled_models())
+@pytest.mark.parametrize("name", few(bundled_models()))
 def test_every_bundled_vehicle_gives_the_kernels_numbers(name, tmp_path):
     model = model_with_channels(name)
     drive = hump(model, duration=1.0 + (model.wheel_offsets().max(initial=0.0) + 0.6) / 3.0)  # until the last axle is over it

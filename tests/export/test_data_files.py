@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 
+from tests.bundled import few
 from tests.export.vehicles import TEXT, hostile, sedan_with, truck
 from vehgen.errors import ArgumentError, InputError
 from vehgen.export import EXPORT_FORMATS, export, matrix_schema
@@ -20,7 +21,7 @@ def read_json(path):
     return json.loads(path.read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize("name", bundled_models())
+@pytest.mark.parametrize("name", few(bundled_models()))
 def test_every_bundled_vehicle_keeps_its_frequencies_and_loads(name, tmp_path):
     (path,) = export(name, "json", tmp_path / "a.json")
     found = read_json(path)

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.bundled import few
 from tests.export.c_code import STRICT, assert_alike, compile_c, hump, kernel_run, needs_compiler
 from tests.export.fmi import SIZE, VOID, Unit
 from tests.export.vehicles import TEXT, hostile, sedan_with, truck
@@ -64,7 +65,7 @@ def parse_laws(laws):
     return {"axles": YAML(typ="safe").load(f"{{{text}}}")}
 
 
-@pytest.mark.parametrize("vehicle", [name for name in bundled_models() if load_vehicle(name).axles])
+@pytest.mark.parametrize("vehicle", few(name for name in bundled_models() if load_vehicle(name).axles))
 def test_every_bundled_vehicle(name, vehicle, tmp_path):
     model = model_with_channels(vehicle)
     drive = with_slopes(hump(model, duration=1.0))

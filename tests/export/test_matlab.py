@@ -10,6 +10,7 @@ import pytest
 import scipy.io
 import scipy.linalg
 
+from tests.bundled import few
 from tests.export.vehicles import TEXT, hostile, sedan_with, truck
 from vehgen.errors import InputError
 from vehgen.export import export
@@ -46,7 +47,7 @@ def frequencies(K, M):
     return np.sqrt(scipy.linalg.eigh(K, M, eigvals_only=True)) / (2 * np.pi)
 
 
-@pytest.mark.parametrize("name", bundled_models())
+@pytest.mark.parametrize("name", few(bundled_models()))
 def test_every_bundled_vehicle_keeps_its_frequencies(name, tmp_path):
     expected = [mode.undamped_hz for mode in natural_modes(name)]
     (path,) = export(name, "mat", tmp_path / "a.mat", linear=True)

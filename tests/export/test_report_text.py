@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 
+from tests.bundled import few
 from tests.export.vehicles import hostile, sedan_with, truck
 from vehgen.export import export
 from vehgen.mechanics import derive
@@ -19,7 +20,7 @@ def tables(text):
     return found
 
 
-@pytest.mark.parametrize("name", bundled_models())
+@pytest.mark.parametrize("name", few(bundled_models()))
 def test_every_bundled_vehicle(name, tmp_path):
     (path,) = export(name, "markdown", tmp_path / "a.md")
     found, numeric = tables(path.read_text(encoding="utf-8")), derive(name).numeric()

@@ -5,6 +5,7 @@ import pytest
 import scipy.io
 import scipy.signal
 
+from tests.bundled import few
 from tests.export.vehicles import sedan_with, truck
 from vehgen.codegen import Excitation
 from vehgen.errors import InputError
@@ -74,7 +75,7 @@ def test_pyyetis_solver_has_the_same_response():
         to_pyyeti(sedan_with("dry_friction"), DT)
 
 
-@pytest.mark.parametrize("name", [name for name in bundled_models() if name != "drop_test"])
+@pytest.mark.parametrize("name", few(name for name in bundled_models() if name != "drop_test"))
 def test_every_bundled_vehicle_has_its_states_named(name, tmp_path):
     (path,) = export(name, "state-space", tmp_path / "a.mat")
     found, system = scipy.io.loadmat(path), state_space(name)

@@ -5,6 +5,7 @@ import pytest
 import scipy.io
 import scipy.linalg
 
+from tests.bundled import few
 from tests.export.vehicles import sedan_with, truck
 from vehgen.errors import InputError
 from vehgen.export import export
@@ -67,7 +68,7 @@ def test_wheels_names_and_static_loads(struct):
     assert struct["Prop"]["ax_dist"] == pytest.approx([0.0, 3.0, 10.6, 11.7, 12.8])
 
 
-@pytest.mark.parametrize("name", [name for name in bundled_models() if load_vehicle(name).axles and name != "drop_test"])
+@pytest.mark.parametrize("name", few(name for name in bundled_models() if load_vehicle(name).axles and name != "drop_test"))
 def test_every_bundled_vehicle_stands_and_swings_as_it_does_here(name, tmp_path):
     (path,) = export(name, "vbi2d", tmp_path / "a.mat")
     found = scipy.io.loadmat(path, simplify_cells=True)["Veh"]

@@ -76,6 +76,7 @@ def apart(found):
     return {band.low for _, band in found.apart}
 
 
+@pytest.mark.slow
 def test_the_right_model_lies_within(right):
     assert right.channels == ("F_az", "R_az")
     assert right.averages == pytest.approx(52, abs=4)
@@ -216,6 +217,7 @@ def test_a_result_survives_json_and_shows_itself(right):
     assert {len(row) for row in rows} == {len(columns)}
 
 
+@pytest.mark.slow
 def test_the_command_writes_its_result_and_draws_it_again(exports, tmp_path, capsys):
     words = [word for sensor in ("F:body=body,x=1.1", "R:body=body,x=-1.5") for word in ("--sensor", sensor)]
     out = tmp_path / "out"

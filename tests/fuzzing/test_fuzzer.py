@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.fuzzing.cases import FORMATS
 from tests.fuzzing.faults import Faults
 from tests.fuzzing.fuzzer import make_case
@@ -12,6 +14,7 @@ from tests.fuzzing.judge import ACCEPTED
 FILES = 108
 
 
+@pytest.mark.slow
 def test_mutilated_files_are_read_or_clearly_refused(worker: Worker):
     faults = Faults()
     for number in range(FILES):

@@ -8,6 +8,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.patches import Circle
 
+from tests.bundled import few
 from tests.report.vehicles import EVERY, HOSTILE, model, random_model
 from vehgen.mechanics import derive
 from vehgen.report import draw_modes, draw_vehicle, figure_svg
@@ -38,7 +39,7 @@ def positions(m, owner):
     return dict(zip(places, m.evaluate_list(places.values(), values), strict=True))
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", few(EVERY))
 def test_everything_is_drawn_at_its_place(name):
     m = model(name)
     found = artists(drawn(name))
@@ -56,7 +57,7 @@ def test_everything_is_drawn_at_its_place(name):
     assert {f"hinge-{hinge}" for hinge in m.vehicle.hinges} <= set(found)
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", few(EVERY))
 def test_a_metre_is_as_long_in_every_direction(name):
     axes = drawn(name).axes[0]
     width, height = axes.figure.get_size_inches()
@@ -71,7 +72,7 @@ def test_the_dimensions_of_the_five_axle_truck():
         assert length in shown
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", few(EVERY))
 def test_dimensions_are_the_distances_between_axles(name):
     m = model(name)
     shown = texts(drawn(name))
@@ -81,7 +82,7 @@ def test_dimensions_are_the_distances_between_axles(name):
         assert shown.count(length) >= wanted.count(length)
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", few(EVERY))
 def test_heights_of_pins_over_cogs_are_true(name):
     m = model(name)
     found = artists(drawn(name))
@@ -94,7 +95,7 @@ def test_heights_of_pins_over_cogs_are_true(name):
             assert pin[1] - cog[1] == pytest.approx(point.z.evaluate(everything))
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", few(EVERY))
 def test_no_body_lies_in_the_wheels_and_all_is_above_the_road(name):
     sketch = make_sketch(model(name), model(name).values())
     for body, box in sketch.boxes.items():
@@ -105,7 +106,7 @@ def test_no_body_lies_in_the_wheels_and_all_is_above_the_road(name):
         assert strut.top - strut.bottom > 0.1
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", few(EVERY))
 def test_names_are_all_there_and_do_not_hide_each_other(name):
     m = model(name)
     figure = drawn(name)
@@ -158,7 +159,7 @@ def test_lengths_have_two_or_three_decimals(value, text):
     assert length_text(value) == text
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", few(EVERY))
 def test_every_mode_has_its_panel_with_its_numbers(name):
     m = model(name)
     modes = natural_modes(m)
@@ -173,7 +174,7 @@ def test_every_mode_has_its_panel_with_its_numbers(name):
     assert figure.get_size_inches()[0] < 12.0
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", few(EVERY))
 def test_bodies_stay_together_at_their_pins_and_keep_their_momentum(name):
     m = model(name)
     values = m.values()
@@ -209,7 +210,7 @@ def test_the_largest_motion_is_alike_in_all_modes():
     assert all(np.isfinite(shape.get_xy()).all() for shape in shapes.values())
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", [0, 1, 2, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(3, 12))])
 def test_any_vehicle_can_be_drawn(seed):
     m = random_model(seed)
     figure = draw_vehicle(m)

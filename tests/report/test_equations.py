@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from tests.bundled import few
 from tests.report.vehicles import EVERY, HOSTILE, model, random_model
 from vehgen.files.expressions import parse
 from vehgen.mechanics import GRAVITY, derive
@@ -31,7 +32,7 @@ from vehgen.vehicle import parse_vehicle
 ENTRY = re.compile(r"^  ([MCKPQFW])\[(\d+)(?:,(\d+))?\] = (.*)$", re.MULTILINE)
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", few(EVERY))
 def test_the_text_read_back_gives_the_matrices(name):
     m = model(name)
     check_text(m, m.values(overrides={"push.shift": 0.3}))
@@ -62,7 +63,7 @@ def check_text(m, values):
     np.testing.assert_allclose(found["W"], numeric.weight, rtol=1e-9, atol=1e-6)
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", few(EVERY))
 def test_the_text_defines_every_symbol_that_it_uses(name):
     m = model(name)
     text = equations_text(m)
@@ -117,7 +118,7 @@ def test_force_laws_are_written_with_their_travel_and_values():
     assert [where for where, _, _ in law_rows(model("with_laws"))] == ["suspension of axle2", "link seat", "hinge fifth_wheel"]
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", few(EVERY))
 def test_latex_is_balanced_and_plain(name):
     m = model(name)
     document = equations_latex(m)
@@ -143,7 +144,7 @@ def test_latex_compiles(name, tmp_path):
     assert max(wide, default=0.0) < 30.0
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", few(EVERY))
 def test_mathml_is_well_formed_and_complete(name):
     m = model(name)
     sections = equations_mathml(m)

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from tests.bundled import few
 from tests.report.vehicles import EVERY, HOSTILE, build, model
 from vehgen.assess import assess
 from vehgen.codegen import write_kernel
@@ -96,7 +97,7 @@ def test_a_folder_that_cannot_be_written_is_an_input_error(tmp_path):
         build(tmp_path / "file" / "folder", "quarter_car", plots=False)
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", few(EVERY))
 def test_the_page_names_everything(name, pages):
     m = model(name)
     text = Page(pages(name)).text
@@ -136,7 +137,7 @@ def check_that_nothing_is_fetched(source, links=()):
     assert template_text("page.css") in source
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", few(EVERY))
 def test_the_page_fetches_nothing_and_runs_one_script_of_its_own(name, pages):
     check_that_nothing_is_fetched(pages(name))
 
@@ -163,7 +164,7 @@ def test_every_template_has_the_policy_the_style_and_the_script_of_all_pages(pat
     assert "color-scheme" not in text
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", few(EVERY))
 def test_ids_are_unique_and_links_lead_somewhere(name, pages):
     page = Page(pages(name))
     assert len(page.ids) == len(set(page.ids))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import scipy.signal
 
+from tests.bundled import few
 from tests.report.vehicles import EVERY, build, model
 from vehgen.export import export
 from vehgen.simulate.road_amplitudes import road_amplitudes
@@ -61,7 +62,7 @@ def highest(frequency, amplitude):
     return frequency[top], amplitude[top]
 
 
-@pytest.mark.parametrize("name", DRIVEN)
+@pytest.mark.parametrize("name", few(DRIVEN))
 def test_peaks_and_curves_are_those_of_the_exported_matrices(name, pages, tmp_path):
     known = Exported(name, tmp_path)
     frequency = np.geomspace(0.2, 30.0, 6000)
@@ -81,7 +82,7 @@ def test_peaks_and_curves_are_those_of_the_exported_matrices(name, pages, tmp_pa
             assert curve["y"] == pytest.approx(expected, rel=2e-3, abs=2e-3 * max(expected))
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", few(EVERY))
 def test_every_page_has_the_section_or_says_why_not(name, pages):
     source, m = pages(name), model(name)
     section = source.split('<h2 id="road">')[1].split("<h2")[0]
