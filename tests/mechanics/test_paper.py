@@ -119,15 +119,24 @@ def test_damped_frequencies_and_ratios():
         (16.63513589, 0.07119782946),
         (19.17847799, 0.4759854518),
     ]
-    found = sorted((mode.damped_hz, mode.damping_ratio) for mode in modes)
+    found = sorted((mode.pole_hz, mode.damping_ratio) for mode in modes)
     np.testing.assert_allclose(found, expected, rtol=1e-8)
 
 
 def test_damped_poles_of_the_quarter_car():
     slow, fast = natural_modes(derive(load_vehicle("quarter_car")))
     for mode, pole in ((slow, complex(-0.24375390137480146, 6.97791976956781)), (fast, complex(-10.25624609862521, 44.11415459565645))):
-        assert mode.damped_hz == pytest.approx(abs(pole) / (2 * np.pi), rel=1e-10)
+        assert mode.pole_hz == pytest.approx(abs(pole) / (2 * np.pi), rel=1e-10)
+        assert mode.damped_hz == pytest.approx(pole.imag / (2 * np.pi), rel=1e-10)
         assert mode.damping_ratio == pytest.approx(-pole.real / abs(pole), rel=1e-10)
+
+
+def test_a_motion_that_creeps_back_has_no_damped_frequency():
+    """m s^2 + c s + k with m = 100 kg, k = 10 kN/m and c = 5 kN s/m has the poles -2.0871 and -47.9129 1/s."""
+    text = "name: one\nbodies: {b: {mass: 100 kg, motions: [heave]}}\nlinks: {l: {ground: {}, b: {}, k: 10 kN/m, c: 5 kN s/m}}\n"
+    (mode,) = natural_modes(derive(parse_vehicle(text)))
+    assert (mode.pole_hz, mode.damping_ratio) == pytest.approx((10 / (2 * np.pi), 2.5))
+    assert mode.damped_hz == 0.0
 
 
 def test_static_loads_of_vbi2d_and_of_the_paper():

@@ -112,7 +112,7 @@ def test_relaxation_counts_in_a_response(law, spring):
 def test_poles_are_the_modes(truck):
     poles = state_space(truck).poles
     radii = np.sort(np.abs(poles[poles.imag > 0])) / (2 * np.pi)
-    assert radii == pytest.approx(sorted(mode.damped_hz for mode in natural_modes(truck)), rel=1e-9)
+    assert radii == pytest.approx(sorted(mode.pole_hz for mode in natural_modes(truck)), rel=1e-9)
 
 
 def test_parameters_by_name_and_by_set():

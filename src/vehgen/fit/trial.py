@@ -217,7 +217,7 @@ def _from_known_road(trial: Trial) -> Trial:
     offsets = trial.simulator.model.wheel_offsets(trial.values)
     known = float(scenario.speed.distance(np.array([scenario.first_arrival]))[0]) + float(offsets.max(initial=0.0))
     arrived = float(np.interp(known, scenario.speed.distance(scenario.time), scenario.time))
-    rates = [2 * np.pi * mode.damped_hz * mode.damping_ratio for mode in natural_modes(trial.simulator.model, trial.values)]
+    rates = [2 * np.pi * mode.pole_hz * mode.damping_ratio for mode in natural_modes(trial.simulator.model, trial.values)]
     settled = arrived - float(recording.time[0]) + FORGOTTEN * max((1 / rate for rate in rates if rate > 0), default=0.0)
     skipped = min(round(settled / recording.dt), round(MOST_SKIPPED * len(recording.time)))
     skipped = len(recording.time) - _quick_count(len(recording.time) - skipped)

@@ -93,5 +93,5 @@ def _parts(name: str) -> tuple[str, str]:
 
 
 def _alike(one: Mode, other: Mode) -> bool:
-    pairs = ((one.undamped_hz, other.undamped_hz), (one.damped_hz, other.damped_hz), (one.damping_ratio, other.damping_ratio))
+    pairs = ((one.undamped_hz, other.undamped_hz), (one.pole_hz, other.pole_hz), (one.damping_ratio, other.damping_ratio))
     return all(abs(a - b) <= SAME_MOTION * max(abs(a), abs(b)) for a, b in pairs)

@@ -31,17 +31,22 @@ _SHARED = 0.6
 class Mode:
     """A natural mode.
 
-    `undamped_hz` solves det(K - (2 pi f)^2 M) = 0; `damped_hz` = |eigenvalue|/2 pi and `damping_ratio` = -Re/|eigenvalue| belong to the
-    damped eigenvalue whose shape is nearest; `shape shape (n_dof,)` has unit largest entry; `energy` is each coordinate's share of the
+    `undamped_hz` solves det(K - (2 pi f)^2 M) = 0; `pole_hz` = |pole|/2 pi and `damping_ratio` = -Re/|pole| belong to the damped
+    vehicle's pole whose shape is nearest; `shape shape (n_dof,)` has unit largest entry; `energy` is each coordinate's share of the
     kinetic energy.
     """
 
     name: str
     undamped_hz: float
-    damped_hz: float
+    pole_hz: float
     damping_ratio: float
     shape: Array1D
     energy: Array1D
+
+    @property
+    def damped_hz(self) -> float:
+        """The frequency at which the motion oscillates as it decays, |Im pole|/2 pi [Hz]; 0 where it does not oscillate."""
+        return self.pole_hz * float(np.sqrt(max(1 - self.damping_ratio**2, 0.0)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +81,7 @@ class Modes(Result, Sequence[Mode]):
 def natural_modes(model: ModelLike, values: Mapping[str, float] | None = None, *, parameter_set: str | None = None) -> Modes:
     """Return all modes, by ascending undamped frequency; force laws are not in them.
 
-    An overdamped pair of real eigenvalues -a, -b has the frequency sqrt(a b)/2 pi and the damping ratio (a + b)/(2 sqrt(a b)) > 1.
+    An overdamped pair of real poles -a, -b has `pole_hz` sqrt(a b)/2 pi and the damping ratio (a + b)/(2 sqrt(a b)) > 1.
 
     Parameters
     ----------
