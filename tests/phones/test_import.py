@@ -3,6 +3,7 @@
 import importlib
 import importlib.util
 import json
+import re
 import zipfile
 from pathlib import Path
 from types import SimpleNamespace
@@ -395,3 +396,37 @@ def test_a_hump_that_does_not_stand_out_is_found_where_the_vehicles_answer_is_li
     assert told == [True, False]
     monkeypatch.setattr("vehgen.phones.clocks.TRUSTED", 0.9999)
     assert "shows no hump" in refusal(capsys, tmp_path / "none.yaml", both("hump_2ms"))
+
+
+def divided(factor, unit):
+    """Return a change of a sensor's file into another unit: `unit` in its headings, or as it was where that is None."""
+
+    def apply(text):
+        head, *lines = text.splitlines()
+        scaled = [
+            ",".join([cells[0], *(f"{float(cell) / factor:.9g}" for cell in cells[1:])]) for cells in (line.split(",") for line in lines)
+        ]
+        return "\n".join([re.sub(r"\((?!s\))[^()]*\)", f"({unit})", head) if unit else head, *scaled]) + "\n"
+
+    return apply
+
+
+def test_other_units_of_phyphox_are_read_as_headings_say_and_seen_where_they_do_not(tmp_path, capsys):
+    source = FOLDER / "hump_2ms_phone1.zip"
+    in_g, in_degrees = divided(9.80665, "g"), divided(np.pi / 180, "°/s")
+    stated = changed(tmp_path / "stated.zip", source, lambda name, text: {"A": in_g, "G": in_degrees}.get(name[0], str)(text))
+    own, same = (facts(capsys, tmp_path / f"{path.stem}.yaml", [path], "--speed", "2", sensors=(L1,)) for path in (source, stated))
+    assert same["warnings"] == own["warnings"] == []
+    assert same["phones"][0]["zero"] == pytest.approx(own["phones"][0]["zero"], abs=1e-4)
+    silent = changed(tmp_path / "silent.zip", source, lambda name, text: divided(np.pi / 180, None)(text) if name[0] == "G" else text)
+    (warning,) = facts(capsys, tmp_path / "silent.yaml", [silent], "--speed", "2", sensors=(L1,))["warnings"]
+    assert "L1_q" in warning
+    assert "as if in deg/s" in warning
+
+
+def test_a_profile_in_another_unit_is_seen(tmp_path, capsys):
+    road = tmp_path / "road.csv"
+    head, *lines = (FOLDER / "road.csv").read_text(encoding="utf-8").splitlines()
+    road.write_text("\n".join([head, *(f"{a},{1000 * float(b):.9g}" for a, b in (line.split(",") for line in lines))]), encoding="utf-8")
+    found = facts(capsys, tmp_path / "run.yaml", both("road_3ms"), "--speed", "3", road=("--profile", str(road)))
+    assert sum("check the units of the recording and of the road" in text for text in found["warnings"]) == 4

@@ -98,6 +98,9 @@ def test_doubts_are_voiced(tmp_path):
     assert any("would leave the road" in text for text in warnings)
     assert any("null at 12.50 Hz" in text and "axle4 hop" in text for text in warnings)
     assert not any("too coarse" in text for text in warnings)
+    other = hump.replace("]", ", {hump: {shape: versine, length: 0.6 m, height: 4 cm, at: 9 m}}]")
+    both = simulate(run_of(tmp_path, "vehicle: tractor5\nspeed: 2 m/s\n" + other)).warnings
+    assert not any("null at" in text for text in both)  # one hump excites what the other leaves out
     coarse = simulate(run_of(tmp_path, "vehicle: tractor5\nspeed: 2 m/s\nstep: 10 ms\nsample: 10 ms\n" + hump)).warnings
     assert any("too coarse" in text for text in coarse)
     gentle = (

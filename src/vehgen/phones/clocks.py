@@ -39,13 +39,14 @@ class Match:
     """Where the answer's t = 0 lies on a recording's clock (`shift` [s]), their `correlation`, and the best `scale` of the speed.
 
     `backwards` is the best correlation of the answer run backwards in time, which no road gives: what chance does; 1 where not all shifts
-    were tried.
+    were tried. `loudness` says how many times as loud as the answer each channel was.
     """
 
     shift: float
     correlation: float
     scale: float
     backwards: float
+    loudness: tuple[float, ...]
 
     @property
     def is_trusted(self) -> bool:
@@ -97,7 +98,12 @@ def match(
     table = scan(scales)
     together = table[:, :, 1].mean(axis=1)
     best = int(np.argmax(together))
-    return [Match(shift, correlation, float(scales[best]), backwards) for shift, correlation, backwards in table[best].tolist()]
+    expected = scipy.signal.sosfiltfilt(low_pass, answer(float(scales[best])), axis=0)
+    found = []
+    for (time, _), values, own, (shift, correlation, backwards) in zip(recordings, smooth, columns, table[best].tolist(), strict=True):
+        loudness = _loudness(values, expected[:, own], round((shift - float(time[0])) / step))
+        found.append(Match(shift, correlation, float(scales[best]), backwards, loudness))
+    return found
 
 
 def _lay(values: Array, template: Array, time: Array, step: float, near: Range | None) -> tuple[float, float, float]:
@@ -126,6 +132,13 @@ def _correlations(values: Array, template: Array) -> Array:
         local = energy[n:] - energy[:-n]
         total += dot / np.sqrt(np.maximum(local, 1e-3 * local.max() + 1e-30) * max(float((expected**2).sum()), 1e-30))
     return np.asarray(total / values.shape[1])
+
+
+def _loudness(values: Array, template: Array, first: int) -> tuple[float, ...]:
+    """Return the root mean square of each channel over that of its prediction, which begins at the channel's sample `first`."""
+    laid = values[max(first, 0) : max(first + len(template), 0)]
+    sizes = [np.sqrt(np.mean(item**2, axis=0)) for item in (laid, template[max(-first, 0) :][: len(laid)]) if len(laid)]
+    return tuple((sizes[0] / np.maximum(sizes[1], 1e-30)).tolist()) if sizes else ()
 
 
 def _vertex(three: Array) -> float:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError
+from vehgen.files.units import STANDARD_GRAVITY
 from vehgen.measure.quality import NoiseFloor, find_clipping, noise_floor
 from vehgen.phones.clocks import Match
 from vehgen.phones.detect import read_export
@@ -34,6 +35,10 @@ CLIPPED_IN_A_ROW = 3
 """Equal raw samples in a row at an axis's extreme that count as clipping: at a phone's rate an honest peak holds for one or two ..."""
 CLIPPED_DEVIATION = 4.0
 """... where the extreme is so many standard deviations from the median, so that a coarse axis at rest is not taken for a clipped one."""
+OTHER_UNIT = 4.0
+"""A channel so many times louder or quieter than the vehicle's answer is not in the unit that it is read in ..."""
+UNITS_TAKEN_AS_SI = (("g", 1 / STANDARD_GRAVITY), ("deg/s", 180 / np.pi))
+"""... but in one of these, an acceleration and a pitch rate, where its loudness is about as many times that of the answer."""
 SPEED_DOUBT = 0.01
 """Relative difference of speeds that deserves a warning."""
 
@@ -142,7 +147,8 @@ def _assemble(
     crossing = (lead + distance) / speed
     if is_hump and available < crossing + 0.5:
         raise InputError(
-            f"the recording ends {available:.1f} s after t = 0, before the last wheel has crossed ({crossing:.1f} s); record longer"
+            f"the recording ends {available:.1f} s after t = 0; the last wheel crosses at {crossing:.1f} s, and half a second more is "
+            "needed: record longer"
         )
     wanted = crossing + plan.after if is_hump else min(crossing, plan.road.length / speed)
     count = int(min(wanted, available - 0.05) * plan.rate)
@@ -161,6 +167,7 @@ def _assemble(
         used = phone.acceleration.between(zero, zero + float(time[-1]))
         warnings += clipping_warnings(phone.name, used)
         warnings += [f"{phone.name}: {text}" for text in (orientation.warnings if orientation else ())]
+        warnings += _loudness_warnings(names, item) if item.is_trusted else []
         if is_hump and not item.is_trusted:
             warnings.append(
                 f"{phone.name}: the vehicle's answer fits badly (correlation {item.correlation:.2f}), so its clock is set by {found_by}: "
@@ -187,6 +194,17 @@ def clipping_warnings(name: str, acceleration: Stream) -> list[str]:
         for axis, values in zip(acceleration.columns, acceleration.values.T, strict=True)
         for item in find_clipping(values, CLIPPED_IN_A_ROW, min_deviation=CLIPPED_DEVIATION, rest=None)
     ]
+
+
+def _loudness_warnings(channels: list[str], found: Match) -> list[str]:
+    """Say which channels are so much louder or quieter than the vehicle's answer as only another unit makes them."""
+    warnings = []
+    for (unit, worth), channel, ratio in zip(UNITS_TAKEN_AS_SI, channels, found.loudness, strict=False):
+        if max(ratio, 1 / max(ratio, 1e-30)) > OTHER_UNIT:
+            is_that = 1 / OTHER_UNIT < ratio / worth < OTHER_UNIT
+            cause = f"as if in {unit}" if is_that else "check the units of the recording and of the road"
+            warnings.append(f"{channel}: {ratio:.2g} times as loud as the vehicle's answer, {cause}")
+    return warnings
 
 
 def _lead(phones: list[Phone], plan: Plan, speed: float, arrivals: list[float]) -> float:

@@ -11,6 +11,7 @@ import re
 import numpy as np
 
 from vehgen.errors import InputError
+from vehgen.files.units import STANDARD_GRAVITY
 from vehgen.phones.csv_table import Table
 from vehgen.phones.export import (
     ACCELERATION_STREAM,
@@ -25,7 +26,17 @@ from vehgen.phones.export import (
 
 _COLUMN_HEAD = re.compile(r"(?P<words>.*?)\s*\((?P<unit>[^()]*)\)\s*\Z")
 _AXIS = re.compile(r"(?:.*\s)?([xyz])\Z", re.IGNORECASE)
-_PHYPHOX_UNITS = {"m/s^2": "m/s^2", "m/s²": "m/s^2", "rad/s": "rad/s", "m/s": "m/s", "s": "s", "°": "deg"}
+_PHYPHOX_UNITS = {
+    "m/s^2": ("m/s^2", 1.0),
+    "m/s²": ("m/s^2", 1.0),
+    "g": ("m/s^2", STANDARD_GRAVITY),
+    "rad/s": ("rad/s", 1.0),
+    "°/s": ("rad/s", np.pi / 180),
+    "deg/s": ("rad/s", np.pi / 180),
+    "m/s": ("m/s", 1.0),
+    "°": ("deg", 1.0),
+}
+"""What columns are read in, and by which factor; experiments of users' own write more units than the app's."""
 _DEVICE, _ACCELEROMETER = ("property", "value"), "accelerometer name"
 _EVENTS = ("event", "experiment time", "system time")
 
@@ -92,7 +103,7 @@ def _read_clock(table: Table, notes: list[str]) -> EpochMap | None:
 
 def _read_sensors(table: Table) -> list[tuple[str, Stream]]:
     heads = [_COLUMN_HEAD.match(item) for item in table.header]
-    units = [_PHYPHOX_UNITS.get(head["unit"], "") if head else "" for head in heads]
+    units, factors = zip(*(_PHYPHOX_UNITS.get(head["unit"] if head else "", ("", 1.0)) for head in heads), strict=True)
     found = []
     for unit in ("m/s^2", "rad/s"):
         axes: dict[str, int] = {}
@@ -102,7 +113,7 @@ def _read_sensors(table: Table) -> list[tuple[str, Stream]]:
                 axes.setdefault(axis[1].lower(), i)
         if len(axes) == 3:
             numbers = table.columns(0, *(axes[axis] for axis in "xyz"))
-            values = numbers[:, 1:]
+            values = numbers[:, 1:] * [factors[axes[axis]] for axis in "xyz"]
             try:
                 name = acceleration_kind(values) if unit == "m/s^2" else ROTATION_STREAM
             except InputError as error:

@@ -75,11 +75,12 @@ class Scenario:
 
     @cached_property
     def nulls(self) -> tuple[float, ...]:
-        """The frequencies [Hz], rounded to mHz, up to NULLS_TO at which a hump of the track excites nothing; found when first asked for."""
+        """The frequencies [Hz], rounded to mHz, up to NULLS_TO that no hump of the track excites; found when first asked for."""
         top = float(np.max(np.diff(self.speed.distance(np.linspace(0.0, self.duration, 200)))) / (self.duration / 199))
         share = LOBES_SOUGHT / max(len(self.humps), 1)
         found = (hump.spectral_nulls(top, min(NULLS_TO, share * top / hump.length)) for hump in self.humps)
-        return tuple(sorted({round(float(null), 3) for nulls in found for null in nulls}))
+        nulls = [{round(float(null), 3) for null in own} for own in found]
+        return tuple(sorted(set.intersection(*nulls))) if nulls else ()
 
     @property
     def top_speed(self) -> float:
