@@ -1,5 +1,7 @@
 """State space for other libraries: their step responses are those of the matrix exponential, damped tyres included."""
 
+import json
+
 import numpy as np
 import pytest
 import scipy.io
@@ -13,7 +15,7 @@ from vehgen.export import export
 from vehgen.export.adapters import to_control, to_pyyeti, to_scipy
 from vehgen.mechanics import ElementOutput, Place, PointOutput, derive
 from vehgen.simulate import exact_response, state_space
-from vehgen.vehicle import bundled_models
+from vehgen.vehicle import bundled_models, parse_vehicle
 
 DRIVER = Place("driver", "body", behind="front", distance=0.5)
 MOTION = (PointOutput("v", DRIVER, "velocity"), PointOutput("z", DRIVER, "displacement"))
@@ -97,6 +99,19 @@ def test_rates_stand_among_the_inputs_with_their_units(tmp_path):
     }  # fmt: skip
     assert found["D"].tolist() == [[1.6e6, 0.0, 0.0, 3000.0, 0.0]]
     assert [cell[0] for cell in found["state_units"][:, 0]] == ["m", "rad", "m", "m", "m/s", "rad/s", "m/s", "m/s"]
+
+
+def test_the_static_part_of_a_tyres_load_is_told_beside_every_matrix(tmp_path):
+    """By statics alone: the two axles of a beam share its weight as the levers tell, each with its own unsprung mass on top."""
+    text = "name: two\nbodies: {b: {mass: 1 t, pitch_inertia: 2 t m^2}}\naxles:\n"
+    text += "  one: {body: b, x: 1 m, mass: 100 kg, suspension: {k: 50 kN/m}, tyre: {k: 200 kN/m}}\n"
+    text += "  two: {body: b, x: -3 m, mass: 100 kg, suspension: {k: 50 kN/m}, tyre: {k: 200 kN/m}}\n"
+    model = derive(parse_vehicle(text), (ElementOutput("force", "two", "tyre_force"), ElementOutput("load", "two", "tyre_load")))
+    expected = [0.0, pytest.approx((250.0 + 100.0) * 9.81)]
+    (path,) = export(model, "state-space", tmp_path / "a.mat")
+    assert scipy.io.loadmat(path)["static_outputs"][:, 0].tolist() == expected
+    (path,) = export(model, "json", tmp_path / "a.json")
+    assert json.loads(path.read_text(encoding="utf-8"))["static"]["outputs"] == expected
 
 
 def test_force_laws_and_unknown_inputs_are_refused(tmp_path):

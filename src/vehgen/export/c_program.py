@@ -86,7 +86,7 @@ def c_program(source: ExportSource) -> CProgram:
         n_constants=len(constants),
         n_states=len(states),
         static_travels=_static_travels(source, written),
-        offsets=[source.loads.within(item.quantity, item.owner) for item in model.channels],
+        offsets=source.static_outputs.tolist(),
         residual=len(states) - 1 if nonlinear else None,
         residual_limit=UNCONVERGED * GRAVITY * model.total_mass(source.values),
     )

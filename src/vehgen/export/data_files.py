@@ -48,6 +48,7 @@ def flat_arrays(data: MatrixData) -> Arrays:
     found["hinge_names"] = texts(data.static.hinges)
     found["static_hinge_forces"] = np.array(list(data.static.hinges.values()), dtype=np.float64)
     found["static_displacement"] = data.static.displacement
+    found["static_outputs"] = data.static.outputs
     found["vehicle"] = np.array(data.vehicle.name)
     found["equation"] = np.array(data.equation)
     found["output_equation"] = np.array(data.output_equation)

@@ -54,12 +54,16 @@ class OutputMatrices:
 
 @dataclass(frozen=True)
 class StaticData:
-    """Static equilibrium under gravity: load of every axle and vertical force in every hinge [N], and the coordinates [m, rad]."""
+    """Static equilibrium under gravity: load of every axle and vertical force in every hinge [N], and the coordinates [m, rad].
+
+    `outputs` is what a `tyre_load` or `hinge_load` has of it beside y [N], 0 for other outputs.
+    """
 
     gravity: float
     axles: dict[str, float]
     hinges: dict[str, float]
     displacement: Array1D
+    outputs: Array1D
 
 
 @dataclass(frozen=True)
@@ -144,7 +148,7 @@ def matrix_data(source: ExportSource) -> MatrixData:
         weight=numeric.weight,
         output_matrices=OutputMatrices(**numeric.outputs),
         parameters=_parameters(source),
-        static=StaticData(GRAVITY if vehicle.gravity else 0.0, loads.axles, loads.hinges, loads.displacement),
+        static=StaticData(GRAVITY if vehicle.gravity else 0.0, loads.axles, loads.hinges, loads.displacement, source.static_outputs),
         axle_offsets=dict(zip(vehicle.axles, model.wheel_offsets(source.values).tolist(), strict=True)),
         force_laws=() if source.linear else _force_laws(source),
         versions=versions(),

@@ -6,6 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+from numpy.typing import NDArray
+
 from vehgen.errors import ArgumentError
 from vehgen.mechanics import EquationsOfMotion, NumericModel, StaticLoads, static_loads
 
@@ -41,6 +44,11 @@ class ExportSource:
     def loads(self) -> StaticLoads:
         """The static loads."""
         return static_loads(self.model, self.values)
+
+    @property
+    def static_outputs(self) -> NDArray[np.float64]:
+        """What each output has of the static loads, `shape (n_outputs,)` [N]: the whole load of a tyre or hinge, else nothing."""
+        return np.array([self.loads.within(item.quantity, item.owner) for item in self.model.channels], dtype=np.float64)
 
     @cached_property
     def all_values(self) -> dict[str, float]:

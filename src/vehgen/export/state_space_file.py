@@ -25,7 +25,7 @@ def write_state_space(source: ExportSource) -> dict[str, bytes]:
         "input": (system.inputs, system.input_units),
         "output": (system.outputs, system.units),
     }
-    variables = {"A": system.A, "B": system.B, "C": system.C, "D": system.D}
+    variables = {"A": system.A, "B": system.B, "C": system.C, "D": system.D, "static_outputs": source.static_outputs}
     for kind, (named, units) in names.items():
         variables |= {f"{kind}_names": texts(named), f"{kind}_units": texts(units)}
     variables["vehicle"] = np.array(source.model.vehicle.name)

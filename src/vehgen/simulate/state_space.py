@@ -99,7 +99,8 @@ def state_space(
     Returns
     -------
     The matrices with their names. States are the coordinates, then their rates; inputs the displacements under the axles and at ground
-    links [m], their rates [m/s], the forces [N]. Force laws are not in it: a ModelWarning says so.
+    links [m], their rates [m/s], the forces [N]; outputs lack the static part of a tyre's or hinge's load. Force laws are not in it: a
+    ModelWarning says so.
 
     Raises
     ------
