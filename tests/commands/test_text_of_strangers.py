@@ -15,7 +15,7 @@ from vehgen.commands.diagnose import _show
 from vehgen.commands.progress import Bars
 from vehgen.commands.terminal import print_table, warn
 from vehgen.effects import registry
-from vehgen.effects.library.friction import DRY_FRICTION_EFFECT
+from vehgen.effects.library.memory import DRY_FRICTION_EFFECT
 from vehgen.errors import InputError
 
 CODE = r"""vehicle: quarter_car

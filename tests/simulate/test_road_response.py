@@ -148,7 +148,7 @@ def test_what_cannot_be_is_refused(arguments, said):
 
 def test_the_command_writes_and_tells(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    found = run_json(capsys, "response", "sedan2", "--speed", "15", "--road", "C", "--at", "seat:body=body,x=0.4", "--out", "out")
+    found = run_json(capsys, "response", "sedan2", "--speed", "54 km/h", "--road", "C", "--at", "seat:body=body,x=0.4", "--out", "out")
     assert [path.rpartition("/")[2] for path in found["files"]] == ["response.json", "response.csv", "response.png"]
     assert "seat" in [item["name"] for item in found["outputs"]]
     header, *rows = (tmp_path / "out" / "response.csv").read_text().splitlines()

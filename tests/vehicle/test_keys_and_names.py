@@ -17,6 +17,20 @@ FAULTS: list[Fault] = [
         "meaning: body mass, @weighed}",
         "unknown key 'weighed'; known: equals, meaning, range, value; quote a text that has a comma within { }",
     ),
+    (
+        "decimal comma",
+        "8000 kg, meaning",
+        "8,@5 t, meaning",
+        "unknown key '5 t'; known: equals, meaning, range, value; decimals take a point",
+    ),
+    (
+        "a run",
+        "links:",
+        "@vehicle: other.yaml\nlinks:",
+        "unknown key 'vehicle'; known: axles, bodies, description, extends, gravity, hinges, links, name, parameters, sets, "
+        "silence, source, title; this looks like a run file",
+    ),
+    ("tab", "  mount: {", "@\t  mount: {", "not valid YAML: found character '\\t' that cannot start any token; indent by spaces"),
     ("axle key", "x: b1, mass", "@y: b1, mass", "unknown key 'y'; known: body, mass, suspension, title, tyre, x"),
     ("spring key", "{k: kF, c", "{@stiffness: kF, c", "unknown key 'stiffness'; known: c, k"),
     ("point key", "frame: {x: -2 m, z: 0}", "frame: {x: -2 m, @y: 0}", "unknown key 'y'; known: x, z"),

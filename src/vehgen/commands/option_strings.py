@@ -35,6 +35,14 @@ def split_pairs(text: str, option: str, known: tuple[str, ...]) -> dict[str, str
     return found
 
 
+def read_speed(text: str) -> float:
+    """Return a speed [m/s] from a number or a quantity such as `36 km/h`; raises InputError for what is neither."""
+    from vehgen.files.units import SPEED
+    from vehgen.phones.plan import number_of
+
+    return number_of(text, SPEED, "--speed", "speed")
+
+
 def read_sensor(text: str, *, needs_body: bool = True, option: str = "--sensor", keys: tuple[str, ...] = _SENSOR_KEYS) -> PhoneSensor:
     """Read `NAME:body=...,behind=...,distance=...[,forward=y][,up=z][,acceleration_sign=-1][,from=SECONDS][,to=SECONDS]`.
 

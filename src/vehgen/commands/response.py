@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from vehgen.commands.option_strings import PLACE_KEYS, read_sensor
+from vehgen.commands.option_strings import PLACE_KEYS, read_sensor, read_speed
 from vehgen.commands.results import add_out, folder_named, tell_written
 from vehgen.commands.terminal import add_vehicle, print_json, print_table
 from vehgen.files import check_results, write_text
@@ -18,7 +18,7 @@ ROAD_CURVES = ("frequency", "amplitude", "phase", "psd", "road_psd")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     add_vehicle(parser)
-    parser.add_argument("--speed", type=float, default=20.0, metavar="M/S", help="speed of the vehicle (default 20)")
+    parser.add_argument("--speed", type=read_speed, default=20.0, metavar="M/S", help="speed of the vehicle (default 20)")
     parser.add_argument("--road", default="B", metavar="CLASS", help="class of the road by ISO 8608, A to H (default B)")
     parser.add_argument(
         "--at", action="append", metavar="NAME:body=B,behind=P,distance=D", help="a further place whose vertical acceleration is told"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from vehgen.commands.option_strings import read_bands, read_column_map, read_sensor
+from vehgen.commands.option_strings import read_bands, read_column_map, read_sensor, read_speed
 from vehgen.commands.results import add_out, folder_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table, say, warn
 from vehgen.files import check_results, note_read, write_text
@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="where a phone lay, one for each export in order; without --vehicle only forward=, up=, acceleration_sign=, from=, to=",
     )
     parser.add_argument("--reference", metavar="NAME", help="the channel or sensor that all others are divided by (default: the first)")
-    parser.add_argument("--speed", type=float, metavar="M/S", help="speed of the drive (default: the GPS, or the run's)")
+    parser.add_argument("--speed", type=read_speed, metavar="M/S", help="speed of the drive (default: the GPS, or the run's)")
     parser.add_argument("--forward", metavar="AXIS", help="the phones' axis that pointed forward, x, y (top edge), ...: adds pitch rates")
     parser.add_argument("--bands", metavar="A,B,C", help="edges of the bands [Hz] (default: 0.5,2,5,8,12,15,20)")
     parser.add_argument("--segment", type=float, default=8.0, metavar="S", help="length of the averaged segments (default 8)")

@@ -10,7 +10,7 @@ from typing import Any
 from vehgen.effects.base import Change, Effect, EffectParameter, Symbols
 from vehgen.effects.entry_model import SIZES, EffectEntry, LawPlace, LineEntry, ParameterEntry, RunQuantity
 from vehgen.effects.kinds import LineEffect, RunEffect, VehicleEffect
-from vehgen.effects.library.engine_harmonic import ENGINE_HARMONIC_EFFECT
+from vehgen.effects.library.bodies import ENGINE_HARMONIC_EFFECT
 from vehgen.effects.library.law_effect import LawEdit
 from vehgen.effects.library.measuring import (
     SENSOR_DELAY_EFFECT,

@@ -5,10 +5,8 @@ from __future__ import annotations
 from importlib.metadata import entry_points
 
 from vehgen.effects.base import Effect
+from vehgen.effects.library.bodies import ENGINE_HARMONIC_EFFECT, FRAME_BENDING_EFFECT
 from vehgen.effects.library.damper_springs import ADDED_STIFFNESS_EFFECT, DAMPER_MOUNT_EFFECT
-from vehgen.effects.library.engine_harmonic import ENGINE_HARMONIC_EFFECT
-from vehgen.effects.library.frame_bending import FRAME_BENDING_EFFECT
-from vehgen.effects.library.friction import ASYMMETRIC_FRICTION_EFFECT, DRY_FRICTION_EFFECT
 from vehgen.effects.library.hinges import HINGE_FRICTION_EFFECT, HINGE_STIFFNESS_EFFECT
 from vehgen.effects.library.measuring import (
     SENSOR_DELAY_EFFECT,
@@ -17,7 +15,7 @@ from vehgen.effects.library.measuring import (
     SENSOR_TILT_EFFECT,
     SPEED_ERROR_EFFECT,
 )
-from vehgen.effects.library.memory import HYSTERESIS_EFFECT, RELAXATION_EFFECT
+from vehgen.effects.library.memory import ASYMMETRIC_FRICTION_EFFECT, DRY_FRICTION_EFFECT, HYSTERESIS_EFFECT, RELAXATION_EFFECT
 from vehgen.effects.library.mounted_masses import CARGO_MODULE_EFFECT, SUSPENDED_CAB_EFFECT
 from vehgen.effects.library.nonlinear_dampers import ASYMMETRIC_DAMPING_EFFECT, QUADRATIC_DAMPING_EFFECT
 from vehgen.effects.library.stiffening_springs import BUMP_STOP_EFFECT, CUBIC_STIFFNESS_EFFECT, PROGRESSIVE_STIFFNESS_EFFECT

@@ -9,10 +9,9 @@ from vehgen.export.c_files import write_c
 from vehgen.export.data_files import write_json, write_npz
 from vehgen.export.fmu import write_fmu2, write_fmu3
 from vehgen.export.identifiers import identifier
-from vehgen.export.matlab import write_m, write_mat
+from vehgen.export.matlab import write_m, write_mat, write_state_space
 from vehgen.export.report_text import write_latex, write_markdown
 from vehgen.export.source import ExportSource
-from vehgen.export.state_space_file import write_state_space
 from vehgen.export.vbi2d import write_vbi2d
 from vehgen.files.names import as_name
 

@@ -1,19 +1,21 @@
-"""Matrices and names for MATLAB and GNU Octave: a MAT-file, and a function file that people can read."""
+"""Matrices and names for MATLAB and GNU Octave: MAT-files, one of them of the state space, and a function file that people can read."""
 
 from __future__ import annotations
 
 import io
+import warnings
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.errors import ArgumentError, escaped, shown
-from vehgen.export.data_files import Arrays, flat_arrays
+from vehgen.errors import ArgumentError, ModelWarning, escaped, shown
+from vehgen.export.data_files import Arrays, flat_arrays, texts
 from vehgen.export.identifiers import identifier, is_matlab_identifier, matlab_text
 from vehgen.export.matrix_data import MatrixData, matrix_data
 from vehgen.export.source import ExportSource
 from vehgen.files.provenance import versions
+from vehgen.simulate.state_space import state_space
 
 MAT_TITLE_BYTES = 116
 """Length of the text at the head of a MAT-file."""
@@ -23,6 +25,25 @@ def write_mat(source: ExportSource) -> dict[str, bytes]:
     """Return the MAT-file (level 5)."""
     source.refuse_laws("mat")
     return {f"{source.stem}.mat": mat_bytes(flat_arrays(matrix_data(source)))}
+
+
+def write_state_space(source: ExportSource) -> dict[str, bytes]:
+    """Return state space as a MAT-file, in which C is the output matrix; rates of inputs are inputs of their own."""
+    source.refuse_laws("state-space")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)  # that laws are left out was asked for
+        system = state_space(source.model, values=source.values)
+    names = {
+        "state": (system.states, system.state_units),
+        "input": (system.inputs, system.input_units),
+        "output": (system.outputs, system.units),
+    }
+    variables = {"A": system.A, "B": system.B, "C": system.C, "D": system.D, "static_outputs": source.static_outputs}
+    for kind, (named, units) in names.items():
+        variables |= {f"{kind}_names": texts(named), f"{kind}_units": texts(units)}
+    variables["vehicle"] = np.array(source.model.vehicle.name)
+    variables["versions"] = texts(f"{name} {number}" for name, number in versions().items())
+    return {f"{source.stem}.mat": mat_bytes(variables)}
 
 
 def mat_bytes(variables: dict[str, Any]) -> bytes:

@@ -150,7 +150,9 @@ def read_text(text: str, path: Path | str) -> Located:
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         place = _within(lines, path, mark.line, mark.column) if mark else Position(path, 1, 1)
-        raise InputError(f"not valid YAML: {shortened(str(error.problem or error.context), MAX_PROBLEM)}", place) from error
+        problem = shortened(str(error.problem or error.context), MAX_PROBLEM)
+        hint = "; indent by spaces" if "'\\t'" in problem else ""
+        raise InputError(f"not valid YAML: {problem}{hint}", place) from error
     except ReaderError as error:
         before = text[: error.position]
         place = _within(lines, path, before.count("\n"), len(before) - before.rfind("\n") - 1)

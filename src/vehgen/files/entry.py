@@ -88,6 +88,10 @@ def validate(model: type[Model], data: Any, document: Located) -> Model:
         raise _first_fault(error, model, document) from error
 
 
+_TOLD_BY = {"bodies": "vehicle", "vehicle": "run"}
+"""Keys that tell files of a kind, and the kind."""
+
+
 def _first_fault(error: ValidationError, model: type[FileModel], document: Located) -> InputError:
     """Return the first error of a validation, unknown keys and faulty names before all others, at its place."""
     errors = error.errors()
@@ -105,6 +109,11 @@ def _first_fault(error: ValidationError, model: type[FileModel], document: Locat
         around = document.at(path[:-1])
         is_bare = document.at(path).is_bare and all(item.key_position != around.position for item in around.value.values())
         hint = "; quote a text that has a comma within { }" if is_bare else ""  # a mapping in lines begins with its first key
+        if is_bare and key[:1].isdigit():
+            hint = "; decimals take a point"
+        for own, kind in _TOLD_BY.items() if len(path) == 1 else ():
+            if own in document.value and own not in known:
+                hint = f"; this looks like a {kind} file"
         return InputError(f"unknown key {shown(key)}; {did_you_mean(key, known)}{hint}", document.find(path, key=True))
     if first["type"] in ("missing", "too_long", "tuple_type") and "range" in path[-2:]:
         return InputError("a range has two ends: [low, high]", document.find(path))

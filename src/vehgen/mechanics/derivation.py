@@ -21,6 +21,7 @@ from vehgen.mechanics.outputs import Output, Place, PointOutput, element_channel
 from vehgen.mechanics.rows import Row, SparseMatrix, add_outer, combine
 from vehgen.mechanics.symbols import number, parameter, to_sympy
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
+from vehgen.vehicle.model import finite
 
 
 def derive(vehicle: VehicleLike, outputs: Iterable[Output] = (), forces: Iterable[Place] = ()) -> EquationsOfMotion:
@@ -144,8 +145,8 @@ def all_values(
     Raises
     ------
     InputError
-        For a parameter or a set that the vehicle does not have.
+        For a parameter or a set that the vehicle does not have, and a value that is no finite number.
     """
     if values is not None and parameter_set is None and all(name in values for name in model.parameters):
-        return values
-    return model.values(parameter_set, values)
+        return finite(values)
+    return finite(model.values(parameter_set, values))

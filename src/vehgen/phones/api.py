@@ -75,6 +75,8 @@ def import_phones(
         For arguments and exports that cannot be used; it says what would help.
     """
     own = as_vehicle(vehicle)
+    if isinstance(speed, str) and speed.isalpha() and speed != BY_AXLES:
+        raise ArgumentError(f"`speed`: expected a number in m/s or {BY_AXLES!r}, found {shown(speed)}", "speed")
     number = None if speed is None or speed == BY_AXLES else number_of(speed, SPEED, "`speed`", "speed")
     for name, value, limit in (("speed", number, SPEED_LIMIT), ("lead", lead, ROAD_POSITION), ("footprint", footprint, FOOTPRINT)):
         if value is not None and not (value > 0 or (value == 0 and name == "footprint")):

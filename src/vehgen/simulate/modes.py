@@ -19,6 +19,7 @@ from vehgen.simulate.assignment import assign
 from vehgen.simulate.mode_groups import scaled_to_peak, settled_shapes
 from vehgen.simulate.remembered_equations import equations_as_data
 from vehgen.vehicle import Vehicle, as_vehicle
+from vehgen.vehicle.model import finite
 
 if TYPE_CHECKING:
     from vehgen.mechanics import ModelLike
@@ -122,7 +123,7 @@ def _evaluated(
         plain = equations_as_data(model)
         if plain is not None:
             given = values is not None and parameter_set is None and all(name in values for name in plain.parameters)
-            return plain.coordinates, plain.numeric(values if given and values is not None else model.values(parameter_set, values))
+            return plain.coordinates, plain.numeric(finite(values if given and values is not None else model.values(parameter_set, values)))
     from vehgen.mechanics import all_values, as_model
 
     equations = as_model(model)

@@ -11,6 +11,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files import write_text
 from vehgen.files.result_fields import Array1D, Array3D
 from vehgen.files.results import Cell, Result, Table
@@ -47,8 +48,11 @@ class Response(Result):
             raise ValueError("a value for every sample and channel was expected")
 
     def channel(self, name: str) -> Array:
-        """Return one channel, `shape (n_individuals, n_samples)`."""
-        return np.asarray(self.values[:, :, [item.name for item in self.channels].index(name)])
+        """Return one channel, `shape (n_individuals, n_samples)`; raises InputError for a name that is none."""
+        names = [item.name for item in self.channels]
+        if name not in names:
+            raise InputError(f"no channel {shown(name)}; {did_you_mean(name, names)}")
+        return np.asarray(self.values[:, :, names.index(name)])
 
     def table(self) -> Table:
         """Return the first individual's response, a row a sample."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from math import isfinite
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
@@ -155,7 +156,10 @@ class Vehicle(FileModel):
         for name, value in (overrides or {}).items():
             if name not in values:
                 raise InputError(f"{self.name} has no parameter {shown(name)} with a value; {did_you_mean(name, values)}")
-            values[name] = float(value)
+            try:
+                values[name] = float(value)
+            except (TypeError, ValueError) as error:
+                raise InputError(f"{self.name}: {name} takes a number in SI units here, found {value!r}") from error
         return values
 
     def all_values(self, free: Mapping[str, float]) -> dict[str, float]:
@@ -226,3 +230,11 @@ class Vehicle(FileModel):
                 if spring is not None:
                     yield (*path, part, "k"), spring.k, STIFFNESS
                     yield (*path, part, "c"), spring.c, DAMPING
+
+
+def finite(values: Mapping[str, float]) -> Mapping[str, float]:
+    """Return values by name as they are; raises InputError at one that is no finite number."""
+    for name, value in values.items():
+        if not isfinite(value):
+            raise InputError(f"{name} must be a finite number, found {value}")
+    return values

@@ -1,13 +1,13 @@
-"""The first bending mode of a long body."""
+"""Effects of bodies: a vibration of the engine on one, and the first bending mode of a long one."""
 
 from __future__ import annotations
 
 from operator import attrgetter
 
 from vehgen.effects.base import Change, EffectParameter, Symbols
-from vehgen.effects.kinds import VehicleEffect
+from vehgen.effects.kinds import LineEffect, VehicleEffect
 from vehgen.effects.locator import EffectSite
-from vehgen.effects.places import long_bodies
+from vehgen.effects.places import long_bodies, pitching_bodies
 
 SHAPE_ERROR = 0.0015
 """No frame bends quite as a uniform beam: with modal masses of 0.75 to 1.25 times its, frequencies strayed by 0.12 % (rms of 11)."""
@@ -50,4 +50,30 @@ FRAME_BENDING_EFFECT = VehicleEffect(
     ),
     is_global=True,
     edit=_edit,
+)
+
+ENGINE_HARMONIC_EFFECT = LineEffect(
+    name="engine_harmonic",
+    title="Engine harmonic",
+    equation="F(t) = amplitude*sin(2 pi frequency (t + drift t^2/(2 T)) + phase)",
+    meaning="an engine's firing order shakes the body it stands on: the third order of an inline six lies at 3 rpm/60",
+    signature="a line in the spectrum before the hump and after it, at the same frequency in every run",
+    source="Wu & Li 2023, Sect. 4.2 (the unexplained peak at 25 to 30 Hz), doi:10.3390/s23249691",
+    attaches="body",
+    places=pitching_bodies,
+    parameters=(
+        EffectParameter("frequency", "Hz", "frequency of the line at the start of a run", low=5.0, high=45.0, starts=(25.0,)),
+        EffectParameter("drift", "", "relative change of the frequency over a run of T seconds", low=-0.03, high=0.03, starts=(0.0,)),
+        EffectParameter(
+            "amplitude",
+            "N",
+            "amplitude of the vertical force at the body's COG",
+            low=0.0,
+            high=0.1,
+            starts=(0.02,),
+            scale=attrgetter("load"),
+            of="the static load",
+        ),
+    ),
+    looked_for=(5.0, 40.0),
 )
