@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import scipy.integrate
 
+from tests.bundled import few
 from vehgen.commands import main
 from vehgen.files.manifest import MANIFEST
 
@@ -68,7 +69,7 @@ def test_build_writes_its_folder_and_nothing_else(work: Path, capsys: pytest.Cap
     )
 
 
-@pytest.mark.parametrize("name", ["truck_walking_beam", "tractor5_module"])
+@pytest.mark.parametrize("name", few(("truck_walking_beam", "tractor5_module")))
 def test_report_draws_a_built_vehicle_again_from_its_file(work: Path, capsys: pytest.CaptureFixture[str], name: str):
     assert main(["build", name, "--out", "first"]) == 0
     assert main(["report", "first/build.json", "--out", "again", "--json"]) == 0

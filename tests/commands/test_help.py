@@ -95,6 +95,7 @@ def test_reading_a_bad_file_needs_no_heavy_package(work: Path):
     assert found.stdout == "[]\n"
 
 
+@pytest.mark.slow
 def test_the_packages_names_are_found_when_asked_for():
     code = "import vehgen; print([name for name in vehgen.__all__ if not callable(getattr(vehgen, name))])"
     assert python("-c", code).stdout == "[]\n"
@@ -103,6 +104,7 @@ def test_the_packages_names_are_found_when_asked_for():
         _ = vehgen.Vehicl
 
 
+@pytest.mark.slow
 def test_functions_stand_before_rooms_of_their_names():
     code = (
         "import vehgen.simulate.modes, vehgen.report, vehgen.diagnose\n"

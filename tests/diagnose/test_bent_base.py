@@ -203,6 +203,7 @@ def test_a_slow_recorder_is_told_where_it_is_all_that_is_supposed_and_no_effect_
     assert (found.verdict, found.faults) == (("measurement_fault", faults) if told else ("not_in_library", ()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("chain", [POINT_SAMPLES, AcquisitionChain("bessel", 2, 15.0)], ids=["point samples", "a low-pass"])
 def test_a_declared_low_pass_is_doubted_where_nothing_explains_the_runs(detection_of, chain):
     """Behind 15 Hz where the recorder had 45, a healthy sedan ended without a word of the recorder."""

@@ -118,6 +118,7 @@ def test_a_vehicle_that_passes_nothing_on_asks_for_no_roughness(stuck, stuck_fit
         assert np.all(levels >= SMALLEST_LEVEL)
 
 
+@pytest.mark.slow
 def test_roughness_shifts_nothing_of_what_a_linear_vehicle_does(detection_of):
     fit = detection_of().base.least_squares
     number = next(i for i, trial in enumerate(fit.misfit.problem.trials) if trial.scenario.humps)

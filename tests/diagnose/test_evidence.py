@@ -33,6 +33,7 @@ def test_report_draws_the_same_page_from_the_file(written, tmp_path, capsys):
     assert (tmp_path / "report.html").read_bytes() == (written / "report.html").read_bytes()
 
 
+@pytest.mark.slow
 def test_the_page_tells_what_it_was_made_from_and_rings_the_place(written):
     origin = read_json(written / "diagnosis.json")["evidence"]["origin"]
     page = (written / "report.html").read_text(encoding="utf-8")
@@ -46,6 +47,7 @@ def test_the_page_tells_what_it_was_made_from_and_rings_the_place(written):
     assert "marked-suspension-front" not in page
 
 
+@pytest.mark.slow
 def test_the_file_holds_the_verdict_and_its_evidence(written):
     path = written / "diagnosis.json"
     assert path.stat().st_size < 2_000_000
@@ -67,6 +69,7 @@ def test_the_file_holds_the_verdict_and_its_evidence(written):
         _ = diagnosis.detection
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("place", "value", "said"),
     [
@@ -95,6 +98,7 @@ def test_a_damaged_file_is_refused_in_one_line(written, tmp_path, capsys, place,
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_what_a_stranger_writes_into_names_is_text_on_the_page(written, tmp_path):
     data = read_json(written / "diagnosis.json")
     data["reason"] = data["evidence"]["vehicle"] = "<script>alert(1)</script>"
@@ -138,6 +142,7 @@ def test_units_are_shown_whole(rate, tmp_path):
     assert Diagnosis.from_dict(diagnosis.to_dict()) == diagnosis
 
 
+@pytest.mark.slow
 def test_ctrl_c_while_evidence_is_collected_leaves_what_takes_no_time(rate):
     stages = []
 
@@ -154,6 +159,7 @@ def test_ctrl_c_while_evidence_is_collected_leaves_what_takes_no_time(rate):
     assert found.evidence.force is None
 
 
+@pytest.mark.slow
 def test_a_diagnosis_that_was_stopped_can_be_written_and_drawn(rate, tmp_path):
     gap = Gap(1.0, 1.0, 1.0, ())
     models = DiagnosisModels(rate, (), ())

@@ -75,6 +75,7 @@ def test_the_proposed_run_keeps_what_was_promised(tied, proposal, tmp_path_facto
     assert lead(fits) > 25
 
 
+@pytest.mark.slow
 def test_predictions_are_those_of_the_generator(tied):
     detection, fits = tied
     true = next(item for item in fits if item.last.effect.name == "cubic_stiffness")

@@ -79,6 +79,7 @@ def at_a_bound(fit):
     return replace(fit, least_squares=replace(fit.least_squares, x=x))
 
 
+@pytest.mark.slow
 def test_none_is_told_that_leaves_a_parameter_at_its_bound(detection_of, found_of):
     detection, bent = detection_of(UNLIKE, runs=HUMPS), at_a_bound(found_of.fits[0])
     assert bent.least_squares.on_bound

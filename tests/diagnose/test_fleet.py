@@ -139,6 +139,7 @@ def test_what_is_finished_is_kept_while_its_inputs_stay_the_same(fleet, here):
     assert len(here) == 8
 
 
+@pytest.mark.slow
 def test_ctrl_c_keeps_what_is_done(fleet, here):
     def stop(label, done, total, best):
         if best.startswith("first"):

@@ -76,6 +76,7 @@ def test_a_cubic_spring_is_explained_on_untouched_runs_without_memory(spring):
     assert spring.travel.share > 10 * spring.rate.share
 
 
+@pytest.mark.slow
 def test_the_law_is_told_in_a_sentence_and_as_plain_data(spring):
     text = spring.describe()
     assert "mm of travel" in text
@@ -115,6 +116,7 @@ def test_a_body_has_a_moment_over_its_pitch(cubic):
     assert " rad the force" in law.describe()
 
 
+@pytest.mark.slow
 def test_the_figure_has_three_panels_and_can_show_any_run(spring):
     figure = plot_force(force_evidence(spring, "low"))
     assert len(figure.axes) == 3

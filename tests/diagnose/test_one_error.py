@@ -97,6 +97,7 @@ def test_none_is_tried_after_a_stop_or_beside_an_effect_of_the_vehicle(detection
     assert (beside.fits, beside.stopped) == ((), False)
 
 
+@pytest.mark.slow
 def test_what_a_fit_supposes_beyond_belief_is_held_within(detection_of):
     """The base of runs with a wrong gain supposes other gains of four standard deviations; held within, it is the believable one."""
     detection = detection_of(GAIN, runs=HUMPS)

@@ -89,6 +89,7 @@ def test_a_file_may_add_effects_of_every_kind(detection, known, tmp_path):
     check(fit_candidates(detection, detection.base, [], listed, quiet)[0], known, names)
 
 
+@pytest.mark.slow
 def test_packages_may_add_effects_of_every_kind(detection, known, monkeypatch):
     names = {f"own_{name}": name for name in TWINS}
     points = [SimpleNamespace(name=own, load=lambda own=own: replace(EFFECTS[names[own]], name=own)) for own in names]

@@ -55,6 +55,7 @@ def strokes(folder):
     return runs
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("factor", "kind", "words", "cure"),
     [

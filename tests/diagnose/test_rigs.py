@@ -141,6 +141,7 @@ def stroke(folder, compressed, extended, rest, zero=0.0):
     return runs
 
 
+@pytest.mark.slow
 def test_friction_of_a_damper_is_named_from_its_load_cell(tmp_path):
     verdict = diagnose(tmp_path / "dyno.yaml", stroke(tmp_path, 80.0, 80.0, 0.0)).verdict
     assert (verdict.verdict, [item.name for item in verdict.effects]) == ("named", ["dry_friction"])

@@ -34,6 +34,7 @@ def test_friction_far_below_where_its_search_begins_is_worth_a_fit(detection_of,
     assert len(found) < len(candidates)
 
 
+@pytest.mark.slow
 def test_every_law_at_a_place_that_is_kept_is_worth_a_fit(detection_of, monkeypatch):
     monkeypatch.setattr(screening, "MAX_CANDIDATES", 3)
     detection = detection_of(Effect("dry_friction", "front", {"force": 150.0}), runs=HUMPS)

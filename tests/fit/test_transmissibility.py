@@ -109,6 +109,7 @@ def test_clocks_that_the_road_shifted_are_shifted_back(tmp_path):
         vehgen.transmissibility(tmp_path / "F.zip", vehicle="sedan2", sensors=SENSORS[:1], forward="y", segment=4.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "factor", "bands"), [("ktr", 1.3, {8.0, 12.0, 15.0}), ("kr", 1.3, {0.5, 2.0}), ("mf", 1.5, {8.0, 12.0, 15.0})]
 )
