@@ -71,7 +71,8 @@ def test_the_facts_that_help_most_are_asked_for_with_how_to_give_them(open_summa
 
 
 def test_wider_intervals_and_doubtful_runs_are_spoken_of(summary, capsys):
-    far = tuple(replace(item, sigmas=-5.0) for item in summary.conditions)
+    far = tuple(replace(item, sigmas=-5.0, value=-0.05 if item.name == "speed" else item.value) for item in summary.conditions)
     text = printed(capsys, replace(summary, conditions=far, run_chi2={"hump": 2.25}, interval_inflation=1.5))
     assert "(chi2 2.25): all intervals are wider by the factor 1.50" in text
-    assert "hump: its speed was fitted 5.0 standard deviations off" in text
+    assert text.count("hump: fitted far off what was known of it: ") == 1
+    assert "speed (-5.0%, 5.0 standard deviations)" in text

@@ -296,7 +296,7 @@ def test_a_phone_that_writes_another_unit_is_refused_with_it(tmp_path, capsys):
         (lambda name, text: None if "Location" in name else text, (), "recorded no GPS speed; give"),
         (lambda name, text: text, ("--lead", "40"), "the lead must be"),
         (lambda name, text: text, ("--rate", "30"), "the rate must be"),
-        (lambda name, text: text, ("--speed", "fast"), "--speed: expected a number in m/s"),
+        (lambda name, text: text, ("--speed", "fast"), "--speed: expected a number in m/s or 'axles', found 'fast'"),
         (lambda name, text: text, ("--speed", "0"), "--speed must be a positive number"),
     ],
 )

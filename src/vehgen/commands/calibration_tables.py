@@ -98,6 +98,20 @@ def _listed(names: list[str]) -> str:
     return ", ".join(names[:MOST_NAMES]) + (" ..." if len(names) > MOST_NAMES else "")
 
 
+def _far_off(outcome: CalibrationSummary) -> list[str]:
+    """Say of each run what its fit supposes far off what was known of it, the farthest of a name, and which way."""
+    runs: dict[str, dict[str, ConditionSummary]] = {}
+    for item in sorted(outcome.conditions, key=lambda item: abs(item.sigmas)):
+        if abs(item.sigmas) > FAR_OFF_SIGMAS:
+            runs.setdefault(item.run, {})[item.name] = item
+    found = []
+    for run, own in runs.items():
+        sizes = {name: f"{item.value:+.3g} {item.unit}" if item.unit else f"{item.value:+.1%}" for name, item in reversed(own.items())}
+        parts = ", ".join(f"{name} ({size}, {abs(own[name].sigmas):.1f} standard deviations)" for name, size in sizes.items())
+        found.append(f"{run}: fitted far off what was known of it: {parts}; look at the run")
+    return found
+
+
 def _warnings(outcome: CalibrationSummary) -> list[str]:
     found = list(dict.fromkeys(item.told for item in outcome.recorder))
     rank, searched = outcome.rank, outcome.searched
@@ -110,11 +124,7 @@ def _warnings(outcome: CalibrationSummary) -> list[str]:
     bound = [name for name, item in outcome.parameters.items() if item.status == "bound"]
     if bound:
         found.append(f"set by the search range, not by the data: {', '.join(bound)}")
-    found += [
-        f"{item.run}: its {item.name} was fitted {abs(item.sigmas):.1f} standard deviations off what was known of it: look at the run"
-        for item in outcome.conditions
-        if abs(item.sigmas) > FAR_OFF_SIGMAS
-    ]
+    found += _far_off(outcome)
     found += [
         f"the tyre of {name} would have left the road (its load falls to {share:.2f} of the static load): the linear tyre does not hold"
         for name, share in outcome.tyre_load_minimum.items()
