@@ -1,4 +1,4 @@
-"""Bundled vehicles as parameters of tests: a few that differ most, and all others marked slow."""
+"""Bundled vehicles as parameters of tests: a few that differ most, and all others marked thorough."""
 
 from __future__ import annotations
 
@@ -11,5 +11,5 @@ FEW = ("drop_test", "sedan2", "tractor5_cab", "truck_walking_beam", "rig", "with
 
 
 def few(names: Iterable[str]) -> list[object]:
-    """Return names as parameters, those that are not of FEW marked slow."""
-    return [name if name in FEW else pytest.param(name, marks=pytest.mark.slow) for name in names]
+    """Return names as parameters, those that are not of FEW marked thorough."""
+    return [name if name in FEW else pytest.param(name, marks=pytest.mark.thorough) for name in names]

@@ -119,13 +119,13 @@ def check_same(calibration, here, runner):
     assert here.bootstrap == there.bootstrap
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_bootstrap_is_the_same_on_threads(calibration, here):
     with ThreadPoolExecutor(2) as pool:
         check_same(calibration, here, Runner(pool))
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_bootstrap_is_the_same_in_other_processes(calibration, here):
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
         check_same(calibration, here, Runner(pool))

@@ -86,7 +86,7 @@ def test_an_individual_that_cannot_be_simulated_has_an_infinite_objective(proble
     assert np.flatnonzero(np.isinf(PsdObjective(problem).quick(points))).tolist() == [7]
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_joint_fit_finds_the_truth_within_its_intervals(problem):
     found = calibrate_problem(problem, small())
     outcome = summarise(found, combinations=("kf/mf",))
@@ -98,7 +98,7 @@ def test_a_joint_fit_finds_the_truth_within_its_intervals(problem):
     assert found.steps[0].fits[0].chi2 == pytest.approx(1.0, abs=0.1)
 
 
-@pytest.mark.parametrize(("method", "sensors"), [("shcm", ("F",)), pytest.param("dhcm", ("F", "R"), marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("method", "sensors"), [("shcm", ("F",)), pytest.param("dhcm", ("F", "R"), marks=pytest.mark.thorough)])
 def test_the_papers_methods_find_the_truth_too(problem, method, sensors):
     found = calibrate_problem(problem, small(method, sensors=sensors))
     assert found.array == pytest.approx(truth_of(problem), rel=0.05)

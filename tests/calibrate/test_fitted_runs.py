@@ -68,7 +68,7 @@ def test_each_run_tells_its_speed_clock_and_chi2_with_what_was_known(summary):
     assert all(value == pytest.approx(1.0, abs=0.2) for value in summary.run_chi2.values())
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_each_step_of_dhcm_is_simulated_at_its_own_clock(tmp_path):
     problem = misstated_run(tmp_path)
     found = calibrate_problem(problem, Settings(method="dhcm", search=GeneticSearch(1, 10, 0), starts=2))

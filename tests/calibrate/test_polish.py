@@ -35,7 +35,7 @@ def test_fits_that_no_data_tell_apart_are_one(fit):
     assert [item.loss for item in kept] == [fit.loss, beyond.loss]
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_starts_that_end_alike_give_one_fit_as_good_as_the_best_of_them(problem):
     random = np.random.default_rng(4)
     points = [problem.space.unit(problem.space.start), *random.uniform(0.3, 0.7, (3, problem.space.size))]

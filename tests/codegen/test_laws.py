@@ -143,7 +143,7 @@ def liftoff(model, axle, loads):
 
 
 @pytest.mark.parametrize("law", sorted(CASES))
-@pytest.mark.parametrize("name", ["sedan2", pytest.param("tractor5", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["sedan2", pytest.param("tractor5", marks=pytest.mark.thorough)])
 def test_law_against_scipy(name, law):
     result, found, expected = compare(
         name, law, 2.0 if name == "sedan2" else 3.7, height=0.06 if law == "tyre_liftoff" and name == "sedan2" else HEIGHT

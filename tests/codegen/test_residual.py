@@ -59,7 +59,7 @@ def test_every_bundled_vehicle(name):
     assert_same(interpret(write_residual_step(model), model.values(), excitation, 4), newmark_response(model, excitation, 4))
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @settings(max_examples=40, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 @given(st.integers(0, 10**9), st.sampled_from(["", "k", "c", "kc"]))
 def test_any_layout_with_some_springs_or_dampers_at_zero(seed, zero):

@@ -45,7 +45,7 @@ def assert_both_forms_agree(vehicle, rng, share=0.4):
     return found
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", sorted(name for name, law in LAWS.items() if "suspension" in law.attaches_to))
 def test_every_law_on_all_suspensions_of_a_truck(name):
     laws = {axle: {"suspension": {"laws": [entry(LAWS[name])]}} for axle in AXLES}

@@ -35,7 +35,7 @@ def error_over_peak(found, expected):
     return np.abs(found - expected).max(axis=-2) / np.abs(expected).max(axis=-2)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["quarter_car", "sedan2", "tractor5", "tractor5_cab", "b_double", "vbi2d_2A3"])
 def test_bundled_vehicles_err_by_less_than_1e_4_of_the_peak(name):
     model = sensed(load_vehicle(name))
@@ -52,7 +52,7 @@ def test_bundled_vehicles_err_by_less_than_1e_4_of_the_peak(name):
         assert 0 < error_over_peak(found.responses[individual], double).max() < 1e-4
 
 
-@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 8))])
+@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.thorough) for seed in range(2, 8))])
 def test_random_layouts_err_by_less_than_1e_4_of_the_peak(seed):
     vehicle = parse_vehicle(to_yaml(random_layout(np.random.default_rng(seed))))
     model = sensed(vehicle)

@@ -77,7 +77,7 @@ def test_a_calibration_survives_its_file(run, tmp_path):
         again.vehicle_text(tmp_path, "x")
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_calibrate_prints_tables_for_people(run, tmp_path, capsys):
     assert main(["calibrate", "sedan2.yaml", run, "--method", "shcm", "--sensors", "F", "--out", str(tmp_path / "o"), *SMALL]) == 0
     printed = capsys.readouterr().out
@@ -85,7 +85,7 @@ def test_calibrate_prints_tables_for_people(run, tmp_path, capsys):
     assert "body heave" in printed or "heave" in printed
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_search_stopped_by_hand_leaves_its_best_and_goes_on(run, tmp_path, capsys, monkeypatch):
     from vehgen.calibrate.genetic import GeneticSearch
 
@@ -146,7 +146,7 @@ def test_what_cannot_be_done_is_said_in_one_line(run, tmp_path, capsys, argument
     assert error.count("\n") == 1
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize("command", [("sensors", "--count", "1"), ("sensitivity", "--out", "s")])
 def test_a_terminal_is_told_how_far_sensors_and_sensitivity_are(command, run, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)

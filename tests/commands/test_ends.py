@@ -193,7 +193,7 @@ def test_commands_work_without_docstrings_and_assertions(work: Path):
             assert stripped.stdout == plain.stdout
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_run_without_numbas_compiler_says_what_it_costs(work: Path):
     (work / "run.yaml").write_text(RUN)
     found = python("-m", "vehgen", "simulate", "run.yaml", folder=work, NUMBA_DISABLE_JIT="1")
@@ -203,7 +203,7 @@ def test_a_run_without_numbas_compiler_says_what_it_costs(work: Path):
     )
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_cache_that_cannot_be_used_costs_time_only(work: Path):
     (work / "run.yaml").write_text(RUN)
     (work / "taken").write_text("mine")
@@ -215,7 +215,7 @@ def test_a_cache_that_cannot_be_used_costs_time_only(work: Path):
     assert (work / "run_response.csv").exists()
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.skipif(not Path("/dev/null").exists(), reason="needs a home in which nothing can be made")
 def test_a_home_that_takes_nothing_costs_time_only(work: Path):
     (work / "run.yaml").write_text(RUN)

@@ -18,7 +18,7 @@ def fleet(work):
     return work
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_fleet_becomes_a_table_and_a_page(fleet, capsys):
     assert main(["diagnose", "--fleet", "fleet", "--effects", "dry_friction", "--json"]) == 2
     captured = capsys.readouterr()

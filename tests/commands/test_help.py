@@ -29,7 +29,7 @@ def test_every_command_has_help_with_an_example_that_can_be_typed(name: str, cap
     assert make_parser().parse_args(words).command == name
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_examples_on_bundled_models_work(capsys: pytest.CaptureFixture[str]):
     for command in COMMANDS:
         words = shlex.split(command.EXAMPLE.partition(">")[0])[1:]
@@ -95,7 +95,7 @@ def test_reading_a_bad_file_needs_no_heavy_package(work: Path):
     assert found.stdout == "[]\n"
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_packages_names_are_found_when_asked_for():
     code = "import vehgen; print([name for name in vehgen.__all__ if not callable(getattr(vehgen, name))])"
     assert python("-c", code).stdout == "[]\n"
@@ -104,7 +104,7 @@ def test_the_packages_names_are_found_when_asked_for():
         _ = vehgen.Vehicl
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_functions_stand_before_rooms_of_their_names():
     code = (
         "import vehgen.simulate.modes, vehgen.report, vehgen.diagnose\n"

@@ -39,7 +39,7 @@ def again(base, detection):
     return base_anew(base, detection.validation_runs, detection.floor.noises, detection.band)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_base_that_is_astray_comes_back(detection, astray):
     assert astray.training > 10
     found = again(astray, detection)
@@ -58,7 +58,7 @@ def test_any_other_base_stays_as_it_is(detection, astray, monkeypatch, kind):
     assert len(tried) == (kind == "no better")
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_base_that_another_noise_led_astray_comes_back(detection, trials_of, monkeypatch):
     """The first fit of a detection is good; what begins from it, beside noise that was found from it, is not."""
     plain = detecting.fit_base

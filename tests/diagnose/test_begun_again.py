@@ -30,7 +30,7 @@ def strained(fit: LeastSquaresFit) -> LeastSquaresFit:
     return LeastSquaresFit(fit.misfit, x, float(np.mean(residuals**2)), float((residuals**2).sum()))
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_errors_at_their_bounds_are_begun_anew(fit):
     begun = strained(fit)
     found = without_strain(begun, ())

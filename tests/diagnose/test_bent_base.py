@@ -93,7 +93,7 @@ def test_a_recording_that_is_put_right_keeps_the_noise_of_the_base(detection_of)
         np.testing.assert_array_equal(noises[trial.name].levels, known.levels)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize(("clock", "blamed"), [pytest.param(None, True, marks=pytest.mark.slow), ((1.1, 0.2), True), ((1.1, 0.0), False)])
 def test_axles_are_not_blamed_where_a_clock_leaves_noise(detection_of, monkeypatch, clock, blamed):
     parameters = perturbed("sedan2", 3)
@@ -102,7 +102,7 @@ def test_axles_are_not_blamed_where_a_clock_leaves_noise(detection_of, monkeypat
     assert bool(list(axle_hypotheses(BaseRefits(detection_of(parameters=parameters, runs=HUMPS))))) is blamed
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize(("dearer", "blamed"), [(30.0, False), (40.0, True)])
 def test_axles_are_blamed_where_a_speed_leaves_noise_with_many_other_errors(detection_of, monkeypatch, dearer, blamed):
     """A sedan's wheelbase 0.3 m off was taken for speeds 8 % off, with gains, heights and humps four standard deviations off."""
@@ -121,7 +121,7 @@ def test_axles_are_blamed_where_a_speed_leaves_noise_with_many_other_errors(dete
     assert bool(list(axle_hypotheses(case))) is blamed
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_another_hump_is_tried_in_every_shape(trials_of):
     """Which one is right a refit tells: where speeds are a little off, a wrong one may correlate better."""
     longer = tuple(RunSpec((Hump(0.9, item.road[0].height, item.road[0].at),), item.speed, item.duration, item.name) for item in HUMPS)
@@ -161,7 +161,7 @@ def with_exchanged_humps(trials):
     return found
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize(("low", "high", "quiet"), [(0.030, 0.034, True), (0.026, 0.035, False)])
 def test_exchanged_humps_are_told_whether_or_not_the_base_bends_far_enough(trials_of, low, high, quiet):
     """Heights 12 % off, the most that a run may err by, had explained a sedan's: nothing was said to be missing."""
@@ -188,7 +188,7 @@ def test_humps_as_stated_are_not_exchanged(detection_of):
     assert exchanged_humps(detection_of(runs=over(0.030, 0.034))) == ()
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("kinds", "reason", "told"), [(("low_pass",), "", True), (("low_pass", "hump_form"), "", False), (("low_pass",), "imitates", False)]
 )
@@ -203,7 +203,7 @@ def test_a_slow_recorder_is_told_where_it_is_all_that_is_supposed_and_no_effect_
     assert (found.verdict, found.faults) == (("measurement_fault", faults) if told else ("not_in_library", ()))
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize("chain", [POINT_SAMPLES, AcquisitionChain("bessel", 2, 15.0)], ids=["point samples", "a low-pass"])
 def test_a_declared_low_pass_is_doubted_where_nothing_explains_the_runs(detection_of, chain):
     """Behind 15 Hz where the recorder had 45, a healthy sedan ended without a word of the recorder."""

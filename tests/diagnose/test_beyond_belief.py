@@ -28,7 +28,7 @@ def verdict_of(monkeypatch, detection, believed, effects, faults_of_believed=())
     return Decision(quiet, chosen, False, lambda stage, done, total, best: None).decide().verdict
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_where_believable_errors_do_as_well_nothing_is_wrong(monkeypatch, detection_of):
     detection = detection_of(runs=HUMPS)
     found = verdict_of(monkeypatch, detection, supposing(detection, BELIEVED_SIGMAS), ["cubic_stiffness"])
@@ -41,7 +41,7 @@ def restated(trials, **changed):
     return detect([replace(item, scenario=item.scenario.adjusted(**changed)) if item.name == "fast" else item for item in trials])
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize(("changed", "fault"), [({"height": 0.85}, "hump_height"), ({"speed": 1.07}, "speed")])
 def test_one_error_has_its_size_where_it_may_be_as_large_as_it_will(trials_of, changed, fault):
     (told,) = supposed_mistakes(supposing(restated(trials_of(runs=HUMPS), **changed), FREE_SIGMAS))
@@ -123,7 +123,7 @@ def test_an_effect_of_the_vehicle_is_told_in_place_of_a_mistake(monkeypatch, det
     assert found.verdict == verdict
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_believable_errors_are_small(detection_of):
     believed = supposing(detection_of(CUBIC, runs=HUMPS), BELIEVED_SIGMAS)
     for part in (believed.base.least_squares, believed.base.validation_fit):

@@ -43,7 +43,7 @@ def test_nothing_hidden_is_found_to_be_nothing(trials_of):
     assert found.detection.chi < 1.06
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_hidden_spring_is_placed_named_and_measured(trials_of):
     found = diagnose_trials(trials_of(CUBIC, runs=HUMPS))
     assert {item.place.label for item in found.passed} == {"suspension rear", "tyre rear"}
@@ -79,7 +79,7 @@ def test_a_sensor_that_reads_too_much_is_told_from_a_force(record):
     assert low - 0.005 <= 1.15 <= high + 0.005
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_one_run_names_nothing(cubic):
     found = diagnose_trials(load_trials(cubic[:1])).verdict
     assert found.verdict == "insufficient_data"

@@ -51,7 +51,7 @@ def test_roads_drawn_under_a_linear_vehicle_answer_as_its_frequency_response_doe
         assert np.abs((ours - theirs) / size[:, None] / size[None, :]).max() < 0.15
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_noise_of_a_linear_vehicle_stays_as_it_is(detection_of):
     detection = detection_of()
     assert noises_of_laws(detection.base, detection.floor.noises) is detection.floor.noises
@@ -118,7 +118,7 @@ def test_a_vehicle_that_passes_nothing_on_asks_for_no_roughness(stuck, stuck_fit
         assert np.all(levels >= SMALLEST_LEVEL)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_roughness_shifts_nothing_of_what_a_linear_vehicle_does(detection_of):
     fit = detection_of().base.least_squares
     number = next(i for i, trial in enumerate(fit.misfit.problem.trials) if trial.scenario.humps)

@@ -28,7 +28,7 @@ def settled(detection, names=NAMES, kept_at="", nowhere=False):
     return candidates, fits, settle(fitter, fitter.first_order_gains(), candidates, fits.append, kept_at=kept_at)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_law_that_was_hidden_settles_and_leaves_only_its_rivals(detection_of):
     candidates, fits, rivals = settled(detection_of(CUBIC, runs=HUMPS))
     assert fits[-1].last.label == "cubic_stiffness at rear"
@@ -37,7 +37,7 @@ def test_the_law_that_was_hidden_settles_and_leaves_only_its_rivals(detection_of
     assert len(fits) + len(rivals) < len(candidates) / 2
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize(("ends", "hopeless"), [(True, BESIDE_SETTLED), (False, HOPELESS)])
 def test_beside_what_settles_a_gap_only_what_leaves_next_to_nothing_is_refined(detection_of, monkeypatch, ends, hopeless):
     detection = detection_of(CUBIC, runs=HUMPS)
@@ -74,7 +74,7 @@ def test_laws_at_a_place_that_is_kept_stay_rivals(detection_of):
     assert fits[-1].last.place == "rear"
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize("nowhere", [True, False])
 def test_laws_of_bodies_are_tried_at_once_where_no_single_force_explains_the_gap(detection_of, monkeypatch, nowhere):
     monkeypatch.setattr(early_end, "MOST_AT_ONCE", 1)
@@ -96,7 +96,7 @@ def test_special_cases_and_candidates_that_no_run_tells_apart_stay_rivals(detect
     assert not early_end._is_inseparable(known["dry_friction at front"], known["sensor_delay at F"])
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize("limit", ["most", "strain"])
 def test_nothing_is_left_out_where_none_settles(detection_of, monkeypatch, limit):
     if limit == "strain":
@@ -107,7 +107,7 @@ def test_nothing_is_left_out_where_none_settles(detection_of, monkeypatch, limit
     assert len(fits) <= early_end.MOST_AT_ONCE
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_an_effect_at_an_end_of_its_range_settles_nothing(detection_of):
     detection = detection_of(CUBIC, runs=HUMPS)
     _, fits, _ = settled(detection)

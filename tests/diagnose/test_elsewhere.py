@@ -38,7 +38,7 @@ def here(trials_of):
     return diagnose_trials(trials_of(CUBIC, runs=HUMPS), [EFFECTS[name] for name in TRIED]).verdict.to_dict()
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_what_is_sent_to_and_fro_finds_the_same(trials_of, here):
     found = diagnose_trials(trials_of(CUBIC, runs=HUMPS), [EFFECTS[name] for name in TRIED], runner=Sent())
     assert found.verdict.to_dict() == here

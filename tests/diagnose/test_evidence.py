@@ -26,14 +26,14 @@ def written(told):
     return told[1]
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_report_draws_the_same_page_from_the_file(written, tmp_path, capsys):
     assert main(["report", str(written / "diagnosis.json"), "--out", str(tmp_path), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["files"] == [str(tmp_path / "report.html")]
     assert (tmp_path / "report.html").read_bytes() == (written / "report.html").read_bytes()
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_page_tells_what_it_was_made_from_and_rings_the_place(written):
     origin = read_json(written / "diagnosis.json")["evidence"]["origin"]
     page = (written / "report.html").read_text(encoding="utf-8")
@@ -47,7 +47,7 @@ def test_the_page_tells_what_it_was_made_from_and_rings_the_place(written):
     assert "marked-suspension-front" not in page
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_file_holds_the_verdict_and_its_evidence(written):
     path = written / "diagnosis.json"
     assert path.stat().st_size < 2_000_000
@@ -69,7 +69,7 @@ def test_the_file_holds_the_verdict_and_its_evidence(written):
         _ = diagnosis.detection
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("place", "value", "said"),
     [
@@ -98,7 +98,7 @@ def test_a_damaged_file_is_refused_in_one_line(written, tmp_path, capsys, place,
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_what_a_stranger_writes_into_names_is_text_on_the_page(written, tmp_path):
     data = read_json(written / "diagnosis.json")
     data["reason"] = data["evidence"]["vehicle"] = "<script>alert(1)</script>"
@@ -125,7 +125,7 @@ def rate(record, tmp_path_factory):
     return detect(load_trials(record(), load_vehicle(path)))
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_units_are_shown_whole(rate, tmp_path):
     models = DiagnosisModels(rate, (), ())
     evidence = collect(models, quick=True)
@@ -142,7 +142,7 @@ def test_units_are_shown_whole(rate, tmp_path):
     assert Diagnosis.from_dict(diagnosis.to_dict()) == diagnosis
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_ctrl_c_while_evidence_is_collected_leaves_what_takes_no_time(rate):
     stages = []
 
@@ -159,7 +159,7 @@ def test_ctrl_c_while_evidence_is_collected_leaves_what_takes_no_time(rate):
     assert found.evidence.force is None
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_diagnosis_that_was_stopped_can_be_written_and_drawn(rate, tmp_path):
     gap = Gap(1.0, 1.0, 1.0, ())
     models = DiagnosisModels(rate, (), ())

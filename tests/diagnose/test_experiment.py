@@ -56,7 +56,7 @@ def lead(fits):
     return total["bump_stop"] - total["cubic_stiffness"]
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_laws_that_low_humps_cannot_tell_apart_want_a_higher_one(tied, proposal):
     assert abs(lead(tied[1])) < 9
     assert proposal.separates
@@ -75,7 +75,7 @@ def test_the_proposed_run_keeps_what_was_promised(tied, proposal, tmp_path_facto
     assert lead(fits) > 25
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_predictions_are_those_of_the_generator(tied):
     detection, fits = tied
     true = next(item for item in fits if item.last.effect.name == "cubic_stiffness")

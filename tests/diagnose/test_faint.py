@@ -53,7 +53,7 @@ def test_none_is_told_where_nothing_is_hidden(detection_of):
     assert faintly_told(found, again) is None
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "spoil",
     [
@@ -79,7 +79,7 @@ def at_a_bound(fit):
     return replace(fit, least_squares=replace(fit.least_squares, x=x))
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_none_is_told_that_leaves_a_parameter_at_its_bound(detection_of, found_of):
     detection, bent = detection_of(UNLIKE, runs=HUMPS), at_a_bound(found_of.fits[0])
     assert bent.least_squares.on_bound
@@ -118,7 +118,7 @@ def test_none_is_told_whose_number_ends_its_range(detection_of, found_of, monkey
     assert faintly_told(found_of, detection) is None
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_laws_of_tyres_are_fitted_where_their_axles_parameters_are_at_bounds(detection_of, monkeypatch):
     detection = detection_of(runs=HUMPS)
     names = ("tyre_damping", "tyre_footprint", "relaxation")
@@ -171,7 +171,7 @@ def test_what_its_validation_run_does_not_show_is_checked_on_the_run_that_shows_
     assert [(item.name, item.place) for item in told.verdict.effects] == [("asymmetric_damping", "rear")]
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_all_that_fell_is_fitted_again_to_runs_that_changed_places(detection_of, found_of):
     """Contenders beyond the first few were weighed on the runs that had been fitted before, and not known on the run that is fitted now."""
     detection, best = detection_of(UNLIKE, runs=HUMPS), found_of.fits[0]

@@ -120,7 +120,7 @@ PLAIN_CASES = {
 QUICK_CASES = {"g for m/s^2 in one run", "turned in one run", "speeds exchanged"}
 
 
-@pytest.mark.parametrize("case", [case if case in QUICK_CASES else pytest.param(case, marks=pytest.mark.slow) for case in PLAIN_CASES])
+@pytest.mark.parametrize("case", [case if case in QUICK_CASES else pytest.param(case, marks=pytest.mark.thorough) for case in PLAIN_CASES])
 def test_a_plain_mistake_is_named_before_any_effect_is_looked_for(plain, case):
     make, expected, value = PLAIN_CASES[case]
     (fault,) = plain_mistakes(detect(make(plain)))
@@ -249,7 +249,7 @@ def test_a_run_of_another_vehicle_is_told_from_the_others(mixed):
     assert (fault.kind, fault.runs) == ("other_vehicle", ("high",))
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize("lost", [1, 2], ids=["from what fits all runs", "from others"])
 def test_a_run_of_another_vehicle_is_fitted_from_several_starts(mixed, monkeypatch, lost):
     """From the file's values, and from those that fit all runs, a fit may end far off: that alone is no reason."""
@@ -340,7 +340,7 @@ def test_a_start_that_speeds_alone_put_elsewhere_is_no_finding():
     assert fault.value < -1.0
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_near_copy_of_a_pass_is_no_run_of_its_own(plain):
     low = next(trial for trial in plain if trial.name == "low")
     random = np.random.default_rng(5)
@@ -350,13 +350,13 @@ def test_a_near_copy_of_a_pass_is_no_run_of_its_own(plain):
     assert (fault.kind, set(fault.runs)) == ("copy", {"low", "again"})
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_two_passes_over_one_hump_at_one_speed_are_no_copies(trials_of):
     twice = tuple(replace(run, name=name) for run, name in ((RUNS[0], "low"), (RUNS[0], "again"), (RUNS[2], "fast")))
     assert recorded_mistakes(detect(trials_of(runs=twice))) == ()
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_drift_is_told_though_the_noise_hides_it(plain):
     def drift(values):
         values[:, F_Q] += np.linspace(0, 1, len(values))
@@ -386,7 +386,7 @@ def test_an_effect_is_no_fault(detection_of, effect):
         assert explain_gap(detection) == ()
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_verdict_names_run_channel_and_cure(plain):
     verdict = diagnose_trials(edited(plain, times(1 / 9.81, F_AZ), "high")).verdict
     assert verdict.verdict == "measurement_fault"

@@ -120,7 +120,7 @@ def test_every_vehicle_has_a_row_and_a_broken_one_stops_no_other(made, apart):
     assert {len(row) for row in cells} == {len(columns)}
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_what_is_finished_is_kept_while_its_inputs_stay_the_same(fleet, here):
     first = diagnosed(fleet)
     assert here == ["first", "second"]
@@ -139,7 +139,7 @@ def test_what_is_finished_is_kept_while_its_inputs_stay_the_same(fleet, here):
     assert len(here) == 8
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_ctrl_c_keeps_what_is_done(fleet, here):
     def stop(label, done, total, best):
         if best.startswith("first"):
@@ -237,7 +237,7 @@ def test_a_cluster_that_loses_a_worker_finds_the_same(fleet, apart):
     ]
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_own_effects_travel_as_text(fleet, here):
     own = fleet.parent / "own.yaml"
     parameter = "{k3: {unit: N/m^3, low: 1e4, high: 1e9, starts: [1e7], meaning: cubic stiffness}}"
@@ -267,7 +267,7 @@ def test_a_run_that_names_no_vehicle_is_refused_at_its_place(fleet):
         load_fleet_vehicle(fleet / "empty")
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_page_is_drawn_again_and_quotes_what_strangers_wrote(apart, tmp_path):
     hostile = FleetRow("<b>&", "failed", error="<script>")
     (tmp_path / "fleet.json").write_text(json_text(Fleet(apart.fleet, (*apart.rows, hostile), apart.made_by)))

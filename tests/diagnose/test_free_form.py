@@ -68,7 +68,7 @@ def test_the_true_spring_lies_within_the_interval_of_the_curve(spring):
     assert d[0] < -0.015 < 0.015 < d[-1]
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_cubic_spring_is_explained_on_untouched_runs_without_memory(spring):
     assert [run.validation for run in spring.runs] == [False, False, True]
     assert spring.explained > 0.35
@@ -76,7 +76,7 @@ def test_a_cubic_spring_is_explained_on_untouched_runs_without_memory(spring):
     assert spring.travel.share > 10 * spring.rate.share
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_law_is_told_in_a_sentence_and_as_plain_data(spring):
     text = spring.describe()
     assert "mm of travel" in text
@@ -93,7 +93,7 @@ def test_places_without_a_travel_have_no_law(cubic):
     assert fit_free_form(()) is None
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_place_tested_before_another_recorder_was_found_is_tested_anew(cubic):
     """A second look may change the recorder, and with it how many unknowns a fit has: the diagnosis ended in a traceback."""
     detection, results = cubic
@@ -116,7 +116,7 @@ def test_a_body_has_a_moment_over_its_pitch(cubic):
     assert " rad the force" in law.describe()
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_figure_has_three_panels_and_can_show_any_run(spring):
     figure = plot_force(force_evidence(spring, "low"))
     assert len(figure.axes) == 3

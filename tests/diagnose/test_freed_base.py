@@ -140,7 +140,7 @@ def test_nothing_is_sought_from_where_a_fit_ended_that_freed_nothing():
     assert split_idle([law], lambda candidate: None, 1, ("mr",), lambda fit: fitted(0.8, 700.0)) == ([law], [])
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_freed_parameters_begin_where_the_effects_fit_ended(detection_of):
     detection = detection_of(CUBIC, runs=HUMPS)
     fitter = Fitter(detection, detection.base, ())

@@ -47,7 +47,7 @@ def test_a_law_that_two_suspensions_have_in_different_strength_is_named_at_each(
     }
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_group_is_taken_apart_at_its_axles_the_simplest_law_first(detection_of):
     base = detection_of(*BOTH, runs=HUMPS).base
 

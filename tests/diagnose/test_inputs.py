@@ -111,7 +111,7 @@ def test_exchanged_phones_are_named(plain):
     assert "F and R have been exchanged in all runs" in finding.message
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_phones_exchanged_in_an_untouched_run_only_are_named_with_the_run(plain):
     untouched = split_runs(plain)[1][0].name
     (finding,) = explain_gap(detect(edited(plain, exchange, only=untouched)))
@@ -155,7 +155,7 @@ def test_recordings_that_have_nothing_to_do_with_the_vehicle_are_refused(plain):
     assert finding.kind == "stranger"
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "effect",
     [

@@ -28,7 +28,7 @@ def test_friction_is_marked_as_jumping_and_its_steps_are_halved_once_at_most(fou
     assert all(trial.scenario.dt >= 0.499e-3 for trial in friction.least_squares.misfit.problem.trials)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_at_the_truth_plain_steps_tell_the_recording_but_for_a_sample_next_to_a_jump(found):
     """The recording was made with steps of 0.05 ms by another integrator; over the rough road the friction jumps some hundred times."""
     misfit, x = found.chosen[-1].least_squares.misfit, found.chosen[-1].least_squares.x
@@ -44,7 +44,7 @@ def test_at_the_truth_plain_steps_tell_the_recording_but_for_a_sample_next_to_a_
     assert np.median(np.abs(left)) < 0.75
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_several_minima_are_tried_and_the_force_is_told_within_its_interval(found):
     fit = found.chosen[-1]
     assert fit.equivalent_minima
@@ -54,7 +54,7 @@ def test_several_minima_are_tried_and_the_force_is_told_within_its_interval(foun
     assert fit.training < 1.1
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_place_test_leaves_parameters_that_the_effect_has_not_biased(found):
     detection = found.detection
     misfit, x = detection.base.least_squares.misfit, detection.base.least_squares.x

@@ -58,7 +58,7 @@ def spoilt_by(detection, is_clear):
     )
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize("is_clear", [True, False])
 def test_a_recorder_is_judged_by_the_better_model_however_clear_it_was(detection, is_clear):
     """A missing effect can look like a low-pass that nothing else comes near."""

@@ -31,7 +31,7 @@ def chain_of(detection_of):
     return fit
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_damper_that_stood_in_for_a_spring_is_left_out(chain_of):
     detection, chain = chain_of(CUBIC)
     rounds = [SearchRound(detection.base, (), (), (chain[0],)), SearchRound(chain[0], (), (), (chain[1],))]

@@ -28,7 +28,7 @@ def mixed(trials_of):
     return [own if trial.name == "fast" else trial for trial, own in zip(trials_of(runs=HUMPS), other, strict=True)]
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_run_by_another_vehicle_is_odd(mixed):
     detection = detect(mixed)
     assert detection.is_quiet
@@ -85,7 +85,7 @@ def louder(trials_of):
     return detect(found)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_sensor_that_reads_more_in_one_run_is_told_with_its_factor(louder):
     found = disagreement(louder)
     assert isinstance(found, OddChannel)
@@ -108,7 +108,7 @@ def test_so_is_one_over_a_measured_road(trials_of):
     assert odd.factor == pytest.approx(GAIN, abs=0.02)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_first_order_gains_are_those_of_a_fit_with_that_number_free(louder):
     runs = AllRuns(louder)
     run = [trial.name for trial in runs.trials].index("fast")

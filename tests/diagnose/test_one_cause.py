@@ -24,7 +24,7 @@ def at_other_speeds(trials, *errors):
     return [replace(trial, scenario=trial.scenario.adjusted(speed=1 / (1 + error))) for trial, error in pairs]
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_clock_that_is_as_late_in_all_runs_is_named_or_the_other_as_early(detection_of):
     detection = detection_of(LATE, runs=HUMPS)
     assert detection.is_quiet, "each run may have a clock of its own"
@@ -39,7 +39,7 @@ def test_a_clock_that_is_as_late_in_all_runs_is_named_or_the_other_as_early(dete
     assert found.gap.after < 1.06
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_speeds_that_are_all_off_the_same_way_are_one_error_beside_small_ones(trials_of):
     detection = detect(at_other_speeds(trials_of(runs=HUMPS), 0.03, 0.043, 0.035))
     assert detection.is_quiet
@@ -51,7 +51,7 @@ def test_speeds_that_are_all_off_the_same_way_are_one_error_beside_small_ones(tr
     assert high - low < 0.04
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize("errors", [(0.03, -0.03, 0.03), (0.012, 0.016, 0.014)], ids=["either way", "small"])
 def test_speeds_that_runs_may_well_have_are_no_error_of_all(trials_of, errors):
     assert verdict_of(detect(at_other_speeds(trials_of(runs=HUMPS), *errors))).verdict == "no_missing_effect"

@@ -31,7 +31,7 @@ def tried(detection, strained=None, found=NOTHING, names=NAMES):
     return one_error(strained or detection, believed, found, candidates_of(detection, names))
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("effect", "label", "value"),
     [pytest.param(GAIN, "sensor_gain at F_az", 1.15, marks=pytest.mark.slow), (FAST, "speed_error at all runs", 1.05)],
@@ -84,7 +84,7 @@ def test_none_is_told_where_many_small_errors_are_likelier(detection_of):
     assert tried(detection, replace(detection, base=replace(detection.base, training=0.5)), names=("sensor_gain",)).fits == ()
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_none_is_tried_after_a_stop_or_beside_an_effect_of_the_vehicle(detection_of):
     detection = detection_of(GAIN, runs=HUMPS)
     stopped = tried(detection, found=SimpleNamespace(stopped=True, models=SimpleNamespace(chosen=())))
@@ -97,7 +97,7 @@ def test_none_is_tried_after_a_stop_or_beside_an_effect_of_the_vehicle(detection
     assert (beside.fits, beside.stopped) == ((), False)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_what_a_fit_supposes_beyond_belief_is_held_within(detection_of):
     """The base of runs with a wrong gain supposes other gains of four standard deviations; held within, it is the believable one."""
     detection = detection_of(GAIN, runs=HUMPS)

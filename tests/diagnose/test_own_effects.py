@@ -79,7 +79,7 @@ def check(fits, known, names):
     assert fits[0].training < 0.1 * fits[1].training
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_file_may_add_effects_of_every_kind(detection, known, tmp_path):
     (tmp_path / "own.yaml").write_text(FILE, encoding="utf-8")
     effects = load_effects(tmp_path / "own.yaml")
@@ -89,7 +89,7 @@ def test_a_file_may_add_effects_of_every_kind(detection, known, tmp_path):
     check(fit_candidates(detection, detection.base, [], listed, quiet)[0], known, names)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_packages_may_add_effects_of_every_kind(detection, known, monkeypatch):
     names = {f"own_{name}": name for name in TWINS}
     points = [SimpleNamespace(name=own, load=lambda own=own: replace(EFFECTS[names[own]], name=own)) for own in names]

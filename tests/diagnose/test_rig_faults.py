@@ -55,7 +55,7 @@ def strokes(folder):
     return runs
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("factor", "kind", "words", "cure"),
     [

@@ -87,7 +87,7 @@ def test_a_carriage_without_friction_lacks_nothing(tmp_path):
     assert diagnose(tmp_path / "carriage.yaml", write(tmp_path, 0.0)).verdict.verdict == "no_missing_effect"
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_load_cells_noise_is_as_loud_in_gentle_runs(tmp_path):
     found = diagnose(tmp_path / "carriage.yaml", write(tmp_path, 0.0, (0.07, 0.25, 0.12, 0.18), cell=2.0))
     assert found.verdict.verdict == "no_missing_effect"
@@ -141,7 +141,7 @@ def stroke(folder, compressed, extended, rest, zero=0.0):
     return runs
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_friction_of_a_damper_is_named_from_its_load_cell(tmp_path):
     verdict = diagnose(tmp_path / "dyno.yaml", stroke(tmp_path, 80.0, 80.0, 0.0)).verdict
     assert (verdict.verdict, [item.name for item in verdict.effects]) == ("named", ["dry_friction"])
@@ -149,7 +149,7 @@ def test_friction_of_a_damper_is_named_from_its_load_cell(tmp_path):
     assert 0.8 < verdict.gap.after < 1.3
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize(("friction", "expected"), [(0.0, []), (80.0, ["dry_friction"])])
 def test_a_false_zero_of_the_load_cell_says_nothing_of_the_damper(tmp_path, friction, expected):
     verdict = diagnose(tmp_path / "dyno.yaml", stroke(tmp_path, friction, friction, 0.0, zero=12.0)).verdict

@@ -37,7 +37,7 @@ def test_two_effects_are_found_one_after_the_other(two):
     assert len(two.rounds) >= 2
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_vehicle_file_of_a_pair_holds_the_force_and_tells_of_the_sensor(two, tmp_path):
     text = effect_file(two.chosen[-1], two.detection.problem, two.verdict, tmp_path, "both")
     path = tmp_path / "both.yaml"
@@ -46,7 +46,7 @@ def test_the_vehicle_file_of_a_pair_holds_the_force_and_tells_of_the_sensor(two,
     assert "sensor_gain at F_az is an effect of the runs" in text
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_gaps_are_told_by_run_channel_and_band(two):
     before = {(item.run, item.channel, item.band): item.chi for item in band_gaps(two.detection)}
     after = {(item.run, item.channel, item.band): item.chi for item in band_gaps(two.detection, two.chosen[-1])}
@@ -55,14 +55,14 @@ def test_gaps_are_told_by_run_channel_and_band(two):
     assert max(after.values()) < 2 < max(before.values())
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_every_run_alone_asks_for_the_same_spring(two):
     spring = next(item for item in two.chosen[-1].effects if item.effect.name == "cubic_stiffness")
     for own in estimates_by_run(two.chosen[-1], spring):
         assert own.value == pytest.approx(1e8, abs=max(2.5 * own.half_width, 1e7))
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_gap_is_told_beside_height_and_speed(two):
     gaps = {item.run: item for item in run_gaps(two.detection)}
     assert {name: (item.height, round(item.speed, 6)) for name, item in gaps.items()} == {

@@ -19,7 +19,7 @@ from vehgen.simulate import SimulatorPool
 LAWS = [EFFECTS[name] for name in ("dry_friction", "hysteresis", "bump_stop", "quadratic_damping", "cubic_stiffness", "asymmetric_damping")]
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize("force", [15.0, 150.0])
 def test_friction_far_below_where_its_search_begins_is_worth_a_fit(detection_of, monkeypatch, force):
     """Friction that holds what truly slips is of no use to first order; where it is small, so is its first order."""
@@ -34,7 +34,7 @@ def test_friction_far_below_where_its_search_begins_is_worth_a_fit(detection_of,
     assert len(found) < len(candidates)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_every_law_at_a_place_that_is_kept_is_worth_a_fit(detection_of, monkeypatch):
     monkeypatch.setattr(screening, "MAX_CANDIDATES", 3)
     detection = detection_of(Effect("dry_friction", "front", {"force": 150.0}), runs=HUMPS)

@@ -34,7 +34,7 @@ def shaken(trials_of, detection_of):
     return add
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_line_of_an_engine_is_found_and_takes_no_part_in_the_noise(shaken, detection_of):
     clean, found = detection_of(runs=HUMPS), detect(shaken(lambda speed: ENGINE_HZ))
     assert not found.is_quiet
@@ -54,7 +54,7 @@ def test_the_line_of_a_wheel_follows_the_speed(shaken):
         assert trial.lines
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_line_of_one_run_and_none_at_all_change_nothing(shaken, detection_of):
     assert not steady_lines(detection_of(runs=HUMPS).base)
     assert not any(trial.lines for trial in detect(shaken(lambda speed: ENGINE_HZ, names=("high",))).trials)

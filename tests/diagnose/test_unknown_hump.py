@@ -11,7 +11,7 @@ from vehgen.fit.trial import load_trials
 from vehgen.vehicle import load_vehicle
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize("factor", [0.7, 1.4])
 def test_height_and_length_are_found_where_the_run_file_guesses_them(tmp_path, factor):
     vehicle = load_vehicle("sedan2")
@@ -31,7 +31,7 @@ def test_height_and_length_are_found_where_the_run_file_guesses_them(tmp_path, f
         assert factor * (1 + item.value) == pytest.approx(1.0, abs=0.01), item
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_guess_that_claims_to_be_exact_leaves_a_gap(tmp_path):
     (tmp_path / "truth").mkdir()
     write_case(Case("sedan2", None, (), RUNS[:3], seed=3), tmp_path, tmp_path / "truth")

@@ -57,7 +57,7 @@ def test_the_pages_snippets_run(examples, capsys):
     assert vehgen.load_vehicle(examples / "laden.yaml").bodies.keys() > space["vehgen"].load_vehicle("tractor5").bodies.keys()
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_tutorial_in_python_says_what_the_tutorial_says(examples, capsys):
     runpy.run_path(str(DOCS / "tutorial.py"))
     told = " ".join(capsys.readouterr().out.split())

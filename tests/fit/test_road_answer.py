@@ -44,7 +44,7 @@ def test_records_of_a_rough_road_hold_what_the_window_shows_of_it(driven):
     np.testing.assert_allclose(whitened_powers(driven), 1.0, atol=0.25)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_without_the_windows_spread_channels_would_have_to_agree_as_they_do_not(driven, monkeypatch):
     monkeypatch.setattr(module, "LINES_BESIDE", 0)
     assert whitened_powers(driven).max() > 5.0

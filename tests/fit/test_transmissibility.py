@@ -76,7 +76,7 @@ def apart(found):
     return {band.low for _, band in found.apart}
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_right_model_lies_within(right):
     assert right.channels == ("F_az", "R_az")
     assert right.averages == pytest.approx(52, abs=4)
@@ -109,7 +109,7 @@ def test_clocks_that_the_road_shifted_are_shifted_back(tmp_path):
         vehgen.transmissibility(tmp_path / "F.zip", vehicle="sedan2", sensors=SENSORS[:1], forward="y", segment=4.0)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("name", "factor", "bands"), [("ktr", 1.3, {8.0, 12.0, 15.0}), ("kr", 1.3, {0.5, 2.0}), ("mf", 1.5, {8.0, 12.0, 15.0})]
 )
@@ -218,7 +218,7 @@ def test_a_result_survives_json_and_shows_itself(right):
     assert {len(row) for row in rows} == {len(columns)}
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_command_writes_its_result_and_draws_it_again(exports, tmp_path, capsys):
     words = [word for sensor in ("F:body=body,x=1.1", "R:body=body,x=-1.5") for word in ("--sensor", sensor)]
     out = tmp_path / "out"

@@ -14,7 +14,7 @@ from tests.fuzzing.judge import ACCEPTED
 FILES = 108
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_mutilated_files_are_read_or_clearly_refused(worker: Worker):
     faults = Faults()
     for number in range(FILES):

@@ -18,7 +18,7 @@ def mischief(name: str) -> Case:
     return Case("mischief", {"mischief.yaml": name.encode()}, "mischief.yaml")
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", MISCHIEF)
 def test_mischief_is_seen(worker: Worker, name: str):
     verdict = worker.try_case(mischief(name), Limits(0.5), patience=1.0)

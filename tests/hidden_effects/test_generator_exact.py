@@ -165,7 +165,7 @@ def friction_with_events(p, F):
     return kept, np.hstack(out)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_friction_against_events_of_scipy():
     p = nominal("sedan2")
     force = 700.0

@@ -98,7 +98,7 @@ def test_a_channel_reads_late_with_its_gain_and_offset(pushed):
     assert found.t[-1] <= run.duration - 2.0 * BEFORE
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_servo_and_its_measured_force_make_the_same_motion():
     rig = next(rig for rig in (bare("carriage", seed) for seed in range(50)) if rig.numbers["servo"])
     rig = replace(rig, hidden=(Hidden("dry_friction", "rail", {"force": 0.1 * rig.numbers["size"]}),))
@@ -136,7 +136,7 @@ def test_sharp_hysteresis_and_friction_by_direction_may_be_called_dry_friction()
     assert all(accepted(law, {}, scale) == {} for law in LAWS if law not in ("hysteresis", "directional_friction"))
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("family", "seed"), [("half_car", 0), ("half_car", 2), pytest.param("dyno", 1, marks=pytest.mark.slow), ("carriage", 3)]
 )

@@ -80,7 +80,7 @@ def test_two_frictions_stick_one_by_one():
     assert motion.force[0] == pytest.approx(np.minimum(12.0 * motion.t, 10.0), abs=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_reversal_within_a_step_is_not_taken_for_its_own_beginning():
     """In this drop a friction begins to slip and turns within one step of the integration."""
     rig = draw_rig(1, 7, 0)

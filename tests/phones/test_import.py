@@ -362,7 +362,7 @@ def test_the_run_file_says_through_which_low_pass_the_phone_was_put_on_the_grid(
     assert {chain.cut_off for chain in chains.values()} == {None if kept == "unknown" else 25.0}
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_phone_that_the_vehicle_matches_badly_is_laid_roughly_or_set_by_its_energy(tmp_path, capsys, monkeypatch):
     """As where a law is missing that the file lacks: the match still tells the time, but its clock less well."""
     good = facts(capsys, tmp_path / "good.yaml", both("hump_2ms"))

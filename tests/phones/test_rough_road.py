@@ -31,7 +31,7 @@ def write_rear(folder, motion, **options):
     return write_phone(folder / "rear.zip", time, values[:, 1], values[:, 2], seed=2, **options)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize(("shift", "drift"), [(0.0, 0.0), (7.3, 8e-5), (40.0, -1.2e-4)])
 def test_clocks_are_found_without_epochs(tmp_path, motion, front, shift, drift):
     """What is read is the motion itself: the rear place's, later by the way from axle to axle, which no recording can tell."""

@@ -210,7 +210,7 @@ def test_the_largest_motion_is_alike_in_all_modes():
     assert all(np.isfinite(shape.get_xy()).all() for shape in shapes.values())
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(3, 12))])
+@pytest.mark.parametrize("seed", [0, 1, 2, *(pytest.param(seed, marks=pytest.mark.thorough) for seed in range(3, 12))])
 def test_any_vehicle_can_be_drawn(seed):
     m = random_model(seed)
     figure = draw_vehicle(m)

@@ -24,7 +24,7 @@ def nearby(track, tracks, ways):
 
 
 @pytest.mark.parametrize("footprint", [0.0, 0.24])
-@pytest.mark.parametrize("deformation", [pytest.param((1.0, 1.0, 0.0, 0.0), marks=pytest.mark.slow), (1.03, 0.9, 0.05, 2e-5)])
+@pytest.mark.parametrize("deformation", [pytest.param((1.0, 1.0, 0.0, 0.0), marks=pytest.mark.thorough), (1.03, 0.9, 0.05, 2e-5)])
 @pytest.mark.parametrize("parts", ROADS.values(), ids=ROADS)
 def test_every_wheel_is_where_the_road_is(parts, deformation, footprint):
     track = Track(parts, footprint, 1.1, deformation)
