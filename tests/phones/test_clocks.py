@@ -63,3 +63,14 @@ def test_of_a_hump_only_the_correlation_tells():
     assert near.correlation < TRUSTED
     assert (found.backwards < 0.3, near.backwards) == (True, 1.0)
     assert not near.is_trusted
+
+
+def test_how_loud_a_channel_is_beside_its_prediction():
+    """One recorded twice as loud, and one that is predicted to rest, of which nothing is said."""
+    time = np.arange(-2.0, 22.0, STEP)
+    recorded = 2 * np.interp(time, np.arange(0, 20.0, STEP), answer(20.0, 1.0)[:, 0], left=0.0, right=0.0)
+    noise = np.random.default_rng(3).standard_normal(len(time))
+    resting = partial(answer, 20.0)
+    (found,) = match([(time, np.column_stack([recorded, noise]))], lambda scale: resting(scale) * [1.0, 0.0], [slice(0, 2)], STEP, [None])
+    assert found.shift == pytest.approx(0.0, abs=STEP)
+    assert found.loudness == pytest.approx((2.0, 1.0), rel=0.02)

@@ -135,10 +135,13 @@ def _correlations(values: Array, template: Array) -> Array:
 
 
 def _loudness(values: Array, template: Array, first: int) -> tuple[float, ...]:
-    """Return the root mean square of each channel over that of its prediction, which begins at the channel's sample `first`."""
+    """Return the root mean square of each channel over that of its prediction, which begins at the channel's sample `first`.
+
+    1 for a channel that is predicted to rest, as the pitch rate of a body that only heaves.
+    """
     laid = values[max(first, 0) : max(first + len(template), 0)]
-    sizes = [np.sqrt(np.mean(item**2, axis=0)) for item in (laid, template[max(-first, 0) :][: len(laid)]) if len(laid)]
-    return tuple((sizes[0] / np.maximum(sizes[1], 1e-30)).tolist()) if sizes else ()
+    told, expected = (np.sqrt(np.sum(item**2, axis=0)) for item in (laid, template[max(-first, 0) :][: len(laid)]))
+    return tuple(np.divide(told, expected, out=np.ones_like(told), where=expected > 0).tolist())
 
 
 def _vertex(three: Array) -> float:
