@@ -12,8 +12,8 @@ from vehgen.errors import InputError
     [
         ("300 kN/m", "kS takes a number in SI units here, found '300 kN/m'"),
         (None, "kS takes a number in SI units here, found None"),
-        (float("nan"), "kS must be a finite number, found nan"),
-        (float("inf"), "kS must be a finite number, found inf"),
+        (float("nan"), "`values`: kS must be a finite number, found nan"),
+        (float("inf"), "`values`: kS must be a finite number, found inf"),
     ],
 )
 def test_a_value_that_is_no_number_in_si_is_refused(asked, value, message):

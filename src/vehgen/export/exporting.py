@@ -13,6 +13,7 @@ from vehgen.export.source import ExportSource
 from vehgen.files import check_results, write_bytes
 from vehgen.mechanics import ModelLike, Output, Place
 from vehgen.simulate.state_space import model_with_channels
+from vehgen.vehicle.model import finite
 
 SHORTEST_EXPORT_STEP, LONGEST_EXPORT_STEP = 1e-6, 0.1
 """Time steps of exported programs [s]."""
@@ -64,10 +65,7 @@ def export(
     place = export_place(found.vehicle.name, to, out)
     stem = place.stem if chosen.suffix else chosen.stem(found.vehicle.name)
     check_results([place if chosen.suffix else place / stem])  # before the work; what is written is checked again
-    numbers = found.values(parameter_set, values)
-    for name, value in numbers.items():
-        if not math.isfinite(value):
-            raise ArgumentError(f"`values`: {name} must be a finite number, found {value}", "values")
+    numbers = finite(found.values(parameter_set, values))
     return _write(chosen, ExportSource(found, numbers, linear, float(step), stem), place)
 
 

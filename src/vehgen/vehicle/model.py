@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, PrivateAttr
 
-from vehgen.errors import InputError, Position, did_you_mean, shown
+from vehgen.errors import ArgumentError, InputError, Position, did_you_mean, shortened, shown
 from vehgen.files.document import Located, locate_arguments
 from vehgen.files.entry import FileModel, called_by_hand_only, file_form, validate
 from vehgen.files.expressions import Expression, ExpressionError
@@ -159,7 +159,7 @@ class Vehicle(FileModel):
             try:
                 values[name] = float(value)
             except (TypeError, ValueError) as error:
-                raise InputError(f"{self.name}: {name} takes a number in SI units here, found {value!r}") from error
+                raise InputError(f"{self.name}: {name} takes a number in SI units here, found {shortened(repr(value))}") from error
         return values
 
     def all_values(self, free: Mapping[str, float]) -> dict[str, float]:
@@ -236,5 +236,5 @@ def finite(values: Mapping[str, float]) -> Mapping[str, float]:
     """Return values by name as they are; raises InputError at one that is no finite number."""
     for name, value in values.items():
         if not isfinite(value):
-            raise InputError(f"{name} must be a finite number, found {value}")
+            raise ArgumentError(f"`values`: {name} must be a finite number, found {value}", "values")
     return values

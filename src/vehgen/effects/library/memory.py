@@ -27,8 +27,6 @@ DRY_FRICTION_EFFECT = suspension_law(
         ),
     ),
 )
-
-
 ASYMMETRIC_FRICTION_EFFECT = suspension_law(
     name="asymmetric_friction",
     law="asymmetric_friction",
