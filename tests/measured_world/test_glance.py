@@ -80,4 +80,6 @@ def test_the_page_shows_all_sets_as_their_records_have_them():
     root = Path(__file__).parents[2]
     files = (root / "benchmarks" / "measured_world" / "results").glob("sealed_effects*.jsonl")
     listed = sorted(files, key=lambda path: int(path.stem.rpartition("_")[2].replace("effects", "1")))
-    assert glance(listed) in (root / "docs" / "hidden-effects.md").read_text(encoding="utf-8")
+    page = (root / "docs" / "hidden-effects.md").read_text(encoding="utf-8")
+    assert glance(listed) in page
+    assert kinds(listed[-6:]) in page

@@ -42,7 +42,7 @@ FURTHER = 0.25
 VALIDATION_FALL = 200.0
 """Validation runs that show no gap speak for an effect whose squares fall by so much with it, in -2 ln of the likelihood.
 
-Laws fitted to vehicles that hid nothing took 174 off at most (docs/hidden-effects.md)."""
+Laws fitted to vehicles that hid nothing took 174 off at most (docs/hidden-effects-sets.md)."""
 FAINT_FALL, FAINT_VALIDATION = 150.0, 40.0
 """Where chi shows no gap, an effect is told that lets -2 ln of the likelihood fall by so much on the training runs, beyond the price of its
 numbers, and by so much on the validation runs.
