@@ -63,7 +63,7 @@ def test_a_bad_vehicle_of_a_run_is_one_line_on_stderr(fault: str, work: Path, ca
     [
         ("vehicle: quarter_car\nsped: 1 m/s\n", "run.yaml:2:1: unknown key 'sped'; did you mean 'speed' or 'sample'?"),
         ("vehicle: quarter_car\nspeed: 1 kg\nduration: 1 s\n", "run.yaml:2:8: expected m/s, found kg in '1 kg'"),
-        ("vehicle: quarter_car\nspeed: 1 m/s\n", "run.yaml:1:1: a run without a hump needs `duration`, e.g. 10 s"),
+        ("vehicle: quarter_car\nspeed: 1 m/s\n", "run.yaml:1:1: a run without a hump or recording needs `duration`, e.g. 10 s"),
         (
             "vehicle: quarter_car\nspeed: 1 m/s\nset: a\nduration: 1 s\n",
             "run.yaml:3:6: quarter_car has no parameter set 'a'; none is declared",

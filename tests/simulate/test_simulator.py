@@ -145,6 +145,18 @@ def test_a_run_without_end_is_refused(tmp_path):
         simulate(run_of(tmp_path, "vehicle: tractor5\nspeed: 2 m/s\n"))
 
 
+def test_a_run_without_hump_lasts_as_long_as_its_recording(tmp_path):
+    text = "vehicle: tractor5\nspeed: 2 m/s\nroad: [{iso8608: {class: A}}]\nrecording: measured.csv\n"
+    (tmp_path / "measured.csv").write_text("t [ms],a\n-500,0\n250,1\n1200,2\n")
+    assert simulate(run_of(tmp_path, text)).time[-1] == pytest.approx(1.2)
+    assert simulate(run_of(tmp_path, text + "duration: 0.3 s\n")).time[-1] == pytest.approx(0.3)
+    hump = "{hump: {shape: half_sine, length: 0.4 m, height: 4 cm, at: 1 m}}, "
+    assert simulate(run_of(tmp_path, text.replace("[", "[" + hump))).time[-1] > 3
+    (tmp_path / "measured.csv").unlink()
+    with pytest.raises(InputError, match=r"run.yaml:4:12: no file .*measured.csv"):
+        simulate(run_of(tmp_path, text))
+
+
 def test_lint_finds_what_is_odd():
     model = derive(
         parse_vehicle(

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
+from vehgen.files.tables import read_columns
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.road import (
     ConstantSpeed,
@@ -26,6 +28,7 @@ from vehgen.simulate.initial_state import initial_state
 from vehgen.simulate.measured_tables import Finder, hump_table, input_table, profile_table, speed_table
 from vehgen.simulate.run_file import Run
 from vehgen.simulate.run_file.acquisition import channel_chains
+from vehgen.simulate.run_file.checks import TIME_COLUMN
 from vehgen.simulate.run_file.entries import DisplacementEntry, ForceEntry, HumpEntry
 from vehgen.simulate.scenario import Scenario
 from vehgen.simulate.signals import Signal
@@ -43,6 +46,7 @@ def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) 
     InputError
         For files that cannot be read, dimensions that do not fit, a run with no end, and one that would cost too much.
     """
+    run = _as_recorded(run)
     file = run.file
     offsets = model.wheel_offsets(values)
     speed = _speed(run)
@@ -57,7 +61,7 @@ def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) 
             duration = pass_time(track, speed, offsets) + AFTER_LAST_HUMP
         _check_cost(run, duration, speed, model)
     else:
-        raise InputError("a run without a hump needs `duration`, e.g. 10 s", run.document.position)
+        raise InputError("a run without a hump or recording needs `duration`, e.g. 10 s", run.document.position)
     ground = tuple(_ground(run, link) for link in ground_links(model))
     forces = tuple(
         Signal(harmonic=entry.harmonic) if entry.harmonic else _measured(run, entry, "forces", name) for name, entry in file.forces.items()
@@ -69,6 +73,16 @@ def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) 
 def ground_links(model: EquationsOfMotion) -> tuple[str, ...]:
     """Return the links to the ground, in the order of a model's inputs."""
     return tuple(name.partition(".")[2] for name in model.inputs[len(model.vehicle.axles) :])
+
+
+def _as_recorded(run: Run) -> Run:
+    """Return a run that says how long it is, where it has no hump: as long as its recording."""
+    file = run.file
+    if file.duration is not None or file.recording is None or any(entry.hump for entry in file.road):
+        return run
+    with placed(run, "recording"):
+        found = read_columns(Path(run.folder) / file.recording, (TIME_COLUMN,)).in_si(0, "s", "time")
+    return replace(run, file=file.model_copy(update={"duration": float(found.values[0].max())}))
 
 
 def _check_cost(run: Run, duration: float, speed: SpeedLaw, model: EquationsOfMotion) -> None:
