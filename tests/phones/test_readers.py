@@ -93,9 +93,10 @@ def test_plain_csv_with_a_column_map(tmp_path):
     assert export.streams["speed"].values == pytest.approx(2.0)
 
 
+@pytest.mark.parametrize("above", ["", "# a log\n\n# ", "# a log\n"])
 @pytest.mark.parametrize("name", ["az", "az [g]", "-az"])
-def test_a_plain_csv_is_in_the_units_of_its_headings(tmp_path, name):
-    (tmp_path / "log.csv").write_text("t [ms],az [g],v (km/h)\n0,0,36\n10,1,36\n20,2,36\n")
+def test_a_plain_csv_is_in_the_units_of_its_headings(tmp_path, name, above):
+    (tmp_path / "log.csv").write_text(above + "t [ms],az [g],v (km/h)\n0,0,36\n10,1,36\n20,2,36\n")
     found = read_export(tmp_path / "log.csv", ColumnMap("t", name, speed="v", speed_unit="km/h")).streams
     assert found["vertical_acceleration"].time == pytest.approx([0.0, 0.01, 0.02])
     assert abs(found["vertical_acceleration"].values[1, 0]) == pytest.approx(9.80665)
@@ -107,7 +108,7 @@ def test_a_plain_csv_is_in_the_units_of_its_headings(tmp_path, name):
     [
         ("a,b\n1,2\n", None, "of no app that vehgen knows (its columns: 'a', 'b')"),
         ("a,b\n1,2\n", ColumnMap("a", "c"), "has no column 'c'"),
-        ("a,b\n1,2\n3,four\n", ColumnMap("a", "b"), "log.csv:3:2: expected a number in column 'b', found 'four'"),
+        ("# ;\na,b\n1,2\n3,four\n", ColumnMap("a", "b"), "log.csv:4:2: expected a number in column 'b', found 'four'"),
         ("a,b\n1,2\n", ColumnMap("a", "b", time_unit="kg"), "expected a unit of s, found 'kg'"),
         ("a,b [g]\n1,2\n", ColumnMap("a", "b", acceleration_unit="m/s^2"), "log.csv says g, `columns` m/s^2"),
         ("", None, "is empty"),

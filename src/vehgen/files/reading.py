@@ -108,16 +108,19 @@ def read_text(path: Path, most: int, kind: str = "a text file", *, state: bool =
 
 
 def read_lines(path: Path, most: int, kind: str = "a text file") -> Iterator[str]:
-    r"""Yield the lines of a UTF-8 file one by one, with the ends they have: `\n`, `\r\n` or `\r`; a byte order mark is left out.
+    r"""Yield the lines of a UTF-8 or marked UTF-16 file with the ends they have: `\n`, `\r\n` or `\r`; a byte order mark is left out.
 
     Raises
     ------
     InputError
         As :func:`open_regular`, for a line beyond LONGEST_LINE, and at the line and column of bytes that are not UTF-8.
     """
-    with open_regular(path, most, kind) as stream, io.TextIOWrapper(stream, encoding="utf-8-sig", newline="") as text:
+    with open_regular(path, most, kind) as stream:
         total = 0
         try:
+            encoding = "utf-16" if stream.read(2) in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
+            stream.seek(0)
+            text = io.TextIOWrapper(stream, encoding=encoding, newline="")
             for line in split_lines(text, path):
                 total += len(line)
                 if total > most:

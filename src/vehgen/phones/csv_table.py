@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError, Position, did_you_mean, shortened, shown
 from vehgen.files.reading import split_lines
-from vehgen.files.tables.csv_table import csv_rows
+from vehgen.files.tables.csv_table import csv_rows, without_comments
 from vehgen.files.tables.headings import name_and_unit
 from vehgen.files.units import ACCELERATION, FREQUENCY, TIME, Dimension, factor_to_si, parse_unit
 from vehgen.files.units import SPEED as SPEED_DIMENSION
@@ -117,7 +117,7 @@ def read_table(data: bytes, file: str, export: str = "") -> Table:
     encoding = next((item for item in encodings if _is_text(data, item)), None)
     if encoding is None:
         raise InputError(f"{name} is not text; a CSV file was expected")
-    first = next((line for line in split_lines(_text(data, encoding), name) if line.strip("\r\n")), "")
+    first = next((line for line in _lines(data, encoding, name) if line.strip("\r\n")), "")
     bare = re.sub(r'"[^"]*"', "", first)
     delimiter = next((sign for sign in ("\t", ";") if sign in bare), ",")
     rows = [row for _, row in itertools.islice(_rows(data, encoding, delimiter, name), 50)]
@@ -134,6 +134,10 @@ def _text(data: bytes, encoding: str) -> io.TextIOWrapper:
     return io.TextIOWrapper(io.BytesIO(data), encoding=encoding, newline="")
 
 
+def _lines(data: bytes, encoding: str, name: str) -> Iterator[str]:
+    return without_comments(split_lines(_text(data, encoding), name))
+
+
 def _is_text(data: bytes, encoding: str) -> bool:
     """Say whether bytes are text of this encoding, without holding it."""
     try:
@@ -144,7 +148,7 @@ def _is_text(data: bytes, encoding: str) -> bool:
 
 def _rows(data: bytes, encoding: str, delimiter: str, name: str) -> Iterator[tuple[int, list[str]]]:
     """Yield the line and the cells of every row that is not blank."""
-    for line, row in csv_rows(split_lines(_text(data, encoding), name), name, delimiter):
+    for line, row in csv_rows(_lines(data, encoding, name), name, delimiter):
         if any(cell.strip() for cell in row):
             yield line, row
 

@@ -49,6 +49,40 @@ def test_other_units_that_do_not_fit_are_refused(tmp_path: Path, heading: str):
         read(tmp_path, f"t,{heading}\n0,1\n1,2\n").in_si(1, "m/s^2", "acceleration")
 
 
+COMMENTED = "# made by a logger\n\n# 2026, 3 min\n"
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+@pytest.mark.parametrize("heading", ["t,az [g]", "# t,az (g)", "t\taz [g]"])
+def test_comments_stand_above_the_heading(tmp_path: Path, heading: str, encoding: str):
+    text = f"{COMMENTED}{heading}\n0,1\n1,2\n" if "," in heading else f"{COMMENTED}{heading}\n0\t1,0\n1\t2,0\n"
+    (tmp_path / "run.csv").write_text(text, encoding=encoding)
+    table = read_columns(tmp_path / "run.csv", ("t", "az"))
+    assert table.in_si(1, "m/s^2", "acceleration").values[1] == pytest.approx([GRAVITY, 2 * GRAVITY])
+    assert [str(place).rpartition("run.csv")[2] for place in (table.place(0), table.heading(1))] == [":5:1", ":4:2"]
+    with pytest.raises(InputError, match=r"run\.csv:4:2: height is measured in m, found 'g'"):
+        table.in_si(1, "m", "height")
+    with pytest.raises(InputError, match=r"run\.csv:4:1: no column 'ay'"):
+        read_columns(tmp_path / "run.csv", ("t", "ay"))
+
+
+def test_a_comment_below_the_heading_is_no_number(tmp_path: Path):
+    with pytest.raises(InputError, match=r"run\.csv:4:1: '# stopped' in column 't' is not a finite number"):
+        read(tmp_path, "# from here\nt,az\n0,1\n# stopped\n")
+
+
+@pytest.mark.parametrize("name", ["# t", "t"])
+def test_a_heading_may_be_named_with_its_sign(tmp_path: Path, name: str):
+    assert read(tmp_path, "# t,az\n0,1\n", (name, "az")).values[0] == [0.0]
+
+
+@pytest.mark.parametrize("damaged", ["t,az\n0,1\n".encode("utf-16")[:-1], b"\xff\xfe\x00\xd8t\x00"])
+def test_damaged_utf16_is_one_line(tmp_path: Path, damaged: bytes):
+    (tmp_path / "run.csv").write_bytes(damaged)
+    with pytest.raises(InputError, match=r"run\.csv:1:1: not UTF-8 text: .*; save the file as UTF-8$"):
+        read_columns(tmp_path / "run.csv", ("t", "az"))
+
+
 def test_a_stated_unit_does_not_contradict_a_word(tmp_path: Path):
     assert read(tmp_path, "t,az (in)\n0,1\n").in_si(1, "m/s^2", "acceleration", "g").values[1] == pytest.approx([GRAVITY])
     with pytest.raises(InputError, match="correct one of them"):

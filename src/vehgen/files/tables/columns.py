@@ -26,7 +26,8 @@ class TableColumns:
     """Columns of a table: `values`, one `shape (n_rows,)` each, the `units` that the file itself gives to them, and where they stand.
 
     `cells` are the numbers of their cells in a row, `lines shape (n_rows,)` the file's lines or rows; both count from 1. `unit_lines` are
-    those in which the units stand (default: the headings' line). The units of `doubtful` columns may be words: they count where they fit.
+    those in which the units stand (default: `first`, the headings' line). The units of `doubtful` columns may be words: they count where
+    they fit.
     """
 
     path: Path
@@ -37,6 +38,7 @@ class TableColumns:
     units: tuple[str | None, ...]
     unit_lines: tuple[int, ...] = ()
     doubtful: frozenset[int] = frozenset()
+    first: int = 1
 
     def place(self, row: int, column: int = 0) -> Position:
         """Return the place of a number: `row` counts from 0, negative ones from the end; `column` is its index in `names`."""
@@ -44,11 +46,11 @@ class TableColumns:
 
     def heading(self, column: int) -> Position:
         """Return the place of a column's heading."""
-        return Position(self.path, 1, self.cells[column])
+        return Position(self.path, self.first, self.cells[column])
 
     def unit_place(self, column: int) -> Position:
         """Return the place of a column's unit, or of its heading where it has none."""
-        return Position(self.path, self.unit_lines[column] if self.unit_lines else 1, self.cells[column])
+        return Position(self.path, self.unit_lines[column] if self.unit_lines else self.first, self.cells[column])
 
     def in_si(self, column: int, usual: str, quantity: str, stated: str | None = None, place: Position | None = None) -> TableColumns:
         """Return the table with a column in SI units.

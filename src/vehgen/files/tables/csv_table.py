@@ -16,6 +16,7 @@ from vehgen.files.tables.rows import read_rows
 
 MOST_ROWS = 2_000_000
 """No table is longer: at 200 samples a second, two and three quarter hours."""
+_NUMBER = re.compile(r'[\s"]*[-+.]*\d')
 _QUOTED = re.compile(r'"[^"]*"')
 
 
@@ -27,12 +28,20 @@ def read_csv(path: Path, names: tuple[str, ...]) -> TableColumns:
     InputError
         For a file that is missing, not regular or too large, and as :func:`vehgen.files.tables.rows.read_rows`.
     """
-    lines = read_lines(path, MAX_TABLE_BYTES, "a CSV file")
-    first = next(lines, "")
+    lines = without_comments(read_lines(path, MAX_TABLE_BYTES, "a CSV file"))
+    above, first = next(((above, line) for above, line in enumerate(lines) if line.strip()), (0, ""))
     separator = _separator(first, names)
-    rows: Iterator[tuple[int, list[str]]] = csv_rows(itertools.chain([first], lines), path, separator)
-    header = [cell.strip() for cell in next(rows, (1, []))[1]]
-    return read_rows(path, header, ((line, list(row)) for line, row in rows), names, comma=separator != ",")
+    rows = csv_rows(itertools.chain(itertools.repeat("\n", above), [first], lines), path, separator)
+    header = [cell.strip() for cell in next((row for _, row in rows if row), [])]
+    return read_rows(path, header, ((line, list(row)) for line, row in rows), names, comma=separator != ",", first=above + 1)
+
+
+def without_comments(lines: Iterable[str]) -> Iterator[str]:
+    """Yield lines, comments (`# ...`) above the heading as empty ones; what numbers follow is the heading, though it begins with `#`."""
+    above = True
+    for line, after in itertools.pairwise(itertools.chain(lines, [""])):
+        above = above and line.lstrip()[:1] in ("", "#") and not _NUMBER.match(after)
+        yield "\n" if above else line
 
 
 def csv_rows(lines: Iterable[str], where: Path | str, delimiter: str = ",") -> Iterator[tuple[int, list[str]]]:

@@ -50,10 +50,11 @@ def declared_unit(text: str | None) -> str | None:
 
 
 def name_and_unit(heading: str) -> tuple[str, str | None]:
-    """Split a heading such as `az [m/s²]` into name and unit; round brackets without a unit belong to the name."""
-    found = _BRACKETED.fullmatch(heading.strip())
+    """Split a heading such as `az [m/s²]` or `# t (s)` into name and unit; round brackets without a unit belong to the name."""
+    plain = heading.strip().lstrip("# ")
+    found = _BRACKETED.fullmatch(plain)
     if found is None or (found.group(2) is None and not is_unit(found.group(3))):
-        return heading.strip(), None
+        return plain, None
     return found.group(1), declared_unit(found.group(2) if found.group(2) is not None else found.group(3))
 
 

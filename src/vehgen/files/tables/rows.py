@@ -18,7 +18,7 @@ Cell = str | float
 Rows = Iterator[tuple[int, list[Cell]]]
 
 
-def read_rows(path: Path, header: Sequence[str], rows: Rows, names: tuple[str, ...], comma: bool = False) -> TableColumns:
+def read_rows(path: Path, header: Sequence[str], rows: Rows, names: tuple[str, ...], comma: bool = False, first: int = 1) -> TableColumns:
     """Read columns of numbers below their headings; a row of units may stand between them.
 
     Parameters
@@ -31,6 +31,8 @@ def read_rows(path: Path, header: Sequence[str], rows: Rows, names: tuple[str, .
         The columns wanted.
     comma
         Whether a comma may be the decimal sign.
+    first
+        The headings' line.
 
     Raises
     ------
@@ -46,7 +48,7 @@ def read_rows(path: Path, header: Sequence[str], rows: Rows, names: tuple[str, .
     signs: set[str] = set()
     for line, row in rows:
         if not places:
-            places = [find_heading(path, header, name) for name in names]
+            places = [find_heading(path, header, name, first) for name in names]
             units = [name_and_unit(header[place])[1] for place in places]
             doubtful = frozenset(i for i, place in enumerate(places) if may_be_word(header[place]))
             if (below := _units_row(row, places)) is not None:
@@ -73,14 +75,14 @@ def read_rows(path: Path, header: Sequence[str], rows: Rows, names: tuple[str, .
         raise InputError("a header line and at least one line of numbers were expected", Position(path, 1, 1))
     cells = tuple(place + 1 for place in places)
     values = tuple(np.array(column) for column in columns)
-    found = TableColumns(path, names, values, cells, np.array(lines, dtype=np.int64), tuple(units), doubtful=doubtful)
+    found = TableColumns(path, names, values, cells, np.array(lines, dtype=np.int64), tuple(units), doubtful=doubtful, first=first)
     return found if below is None else _with_units(found, below, units_line)
 
 
 def _with_units(table: TableColumns, below: list[str | None], line: int) -> TableColumns:
     """Return a table with the units of a row of its own; where that has none, those of the headings stay."""
     units = tuple(own or other for own, other in zip(below, table.units, strict=True))
-    unit_lines = tuple(line if own else 1 for own in below)
+    unit_lines = tuple(line if own else table.first for own in below)
     return replace(table, units=units, unit_lines=unit_lines, doubtful=frozenset(i for i in table.doubtful if not below[i]))
 
 
