@@ -33,7 +33,7 @@ CASES = [
     ("no unit of a parameter", "{kF: 1.2 MN/m}", "{kF: @1.2}", "missing unit: kF must be in N/m, found no unit"),
     ("symbol in a parameter", "{kF: 1.2 MN/m}", "{kF: @2*kF}", "expected a plain quantity in N/m, found a symbol in '2*kF'"),
     ("parameter by zero", "{kF: 1.2 MN/m}", "{kF: @1 N/m/0}", "'1 N/m/0' has no value: float division by zero"),
-    ("unit of a parameter", "{kF: 1.2 MN/m}", "{kF: 1.2 @MNm}", "'MNm' after 1.2 is not a unit; did you mean 'MN'"),
+    ("unit of a parameter", "{kF: 1.2 MN/m}", "{kF: 1.2 @MNm}", "'MNm' after 1.2 is not a unit; did you mean 'MN m'"),
     (
         "negative parameter",
         "parameters: {kF: 1.2",

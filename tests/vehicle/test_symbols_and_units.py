@@ -69,6 +69,7 @@ FAULTS: list[Fault] = [
     ("later sum of unlike units", "x: -b2", "x: -b2 + (@1 kg + b1)", "cannot add kg and m"),
     ("unit unknown", "8000 kg, m", "8000 @kgs, m", "'kgs' after 8000 is not a unit; did you mean 'kg'?"),
     ("unit in small letters", "k: 100 kN/m", "k: 100 @kn/m", "'kn' after 100 is not a unit; did you mean 'kN'?"),
+    ("unit without its space", "k: 100 kN/m", "k: 100 @kNm", "'kNm' after 100 is not a unit; did you mean 'kN m'?"),
     ("unit in quotes", "8000 kg, m", '"8000 @kgs", m', "'kgs' after 8000 is not a unit"),
     ("unit's exponent", "8000 kg, m", "8000 @kg^99, m", "the exponent of a unit must be between -9 and 9, found 99"),
     (

@@ -116,6 +116,7 @@ MAX_EXPONENT = 9
 _UNIT_FACTOR = re.compile(r"([A-Za-z]+)(?:(?:\^|\*\*)(-?[0-9]+))?")
 _TURNS = re.compile(r"(?<![A-Za-z_])(Hz|rpm)(?![A-Za-z0-9_])")
 _IN_GRAVITIES = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(m?g)\s*", re.ASCII)
+_RUN_TOGETHER = re.compile(rf"\s*({'|'.join(sorted(UNITS.keys() - {'ms'}, key=len, reverse=True))})")
 _JOIN = re.compile(r"\s*([/*·])\s*|\s+")
 
 
@@ -161,20 +162,22 @@ def _continues_name(text: str, position: int) -> bool:
 
 
 def nearest_unit(word: str) -> str:
-    """Say which units are nearest to `word`: those that differ in capitals only, else those spelt alike."""
-    same = [unit for unit in UNITS if unit.lower() == word.lower()]
-    return "did you mean " + " or ".join(repr(unit) for unit in same) + "?" if same else did_you_mean(word, UNITS)
-
-
-def _first_word(text: str) -> str:
-    return text.strip().split("/")[0].split(" ")[0]
+    """Say which units differ from `word` in capitals only, else which is it with spaces and `^`, else which are spelt alike."""
+    first = word.strip().split("/")[0].split(" ")[0]
+    near = [unit for unit in UNITS if unit.lower() == first.lower() and unit != first]
+    apart = _RUN_TOGETHER.sub(r" \1", word).replace("/ ", "/").strip()
+    apart = re.sub(r"(?<=[A-Za-z])(?=[2-4]\b)", "^", apart)
+    found = read_unit(apart)
+    if not near and found and found[2] == len(apart) and (" " not in apart or re.search(r"N|\^", apart)):
+        near = [apart]
+    return "did you mean " + " or ".join(shown(unit) for unit in near) + "?" if near else did_you_mean(first, UNITS)
 
 
 def parse_unit(text: str) -> tuple[float, Dimension]:
     """Parse a whole unit such as `kN s/m`; raises InputError naming the nearest unit."""
     found = read_unit(text.strip())
     if found is None or found[2] != len(text.strip()):
-        raise InputError(f"unknown unit {shown(text)}; {nearest_unit(_first_word(text))}")
+        raise InputError(f"unknown unit {shown(text)}; {nearest_unit(text)}")
     return found[0], found[1]
 
 
