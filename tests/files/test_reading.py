@@ -63,6 +63,16 @@ def test_paths_that_no_file_can_have(tmp_path):
     assert len(str(caught.value)) < 400
 
 
+def test_a_missing_file_is_told_with_its_nearest_neighbour(tmp_path):
+    for name in ("hump_2ms.csv", "hump_2ms.yaml", "a.csv"):
+        (tmp_path / name).touch()
+    with pytest.raises(InputError, match=r"no file .*humps_2ms\.csv; did you mean 'hump_2ms\.csv'\?$"):
+        read_bytes(tmp_path / "humps_2ms.csv", 10)
+    for name in ("b.csv", "hump_2ms.mf4", "absent/hump_2ms.csv"):
+        with pytest.raises(InputError, match=rf"no file .*{name}$"):
+            read_bytes(tmp_path / name, 10)
+
+
 def test_an_unreadable_folder_is_no_traceback(tmp_path, monkeypatch):
     def refuse(path):
         raise PermissionError(13, "Permission denied")

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import codecs
+import difflib
 import io
 import os
 import stat
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import IO, BinaryIO, TextIO
 
-from vehgen.errors import InputError, Position, escaped
+from vehgen.errors import InputError, Position, escaped, shown
 from vehgen.files.inputs_seen import note_read
 
 LONGEST_LINE = 1_000_000
@@ -57,12 +59,21 @@ def open_regular(path: Path, most: int, kind: str = "a file", *, state: bool = F
             os.close(handle)
             raise
     except FileNotFoundError as error:
-        raise InputError(f"no file {name}") from error
+        raise InputError(f"no file {name}{_near(path)}") from error
     except OSError as error:
         raise InputError(f"cannot read {name}: {error.strerror}; {kind} was expected") from error
     except ValueError as error:
         raise InputError(f"'{name}' cannot be a path: {error}; {kind} was expected") from error
     return os.fdopen(handle, "rb")
+
+
+def _near(path: Path) -> str:
+    """Return a hint at the file whose name is nearest to that of a missing one."""
+    with suppress(OSError):
+        beside = [item.stem for item in path.parent.iterdir() if item.suffix == path.suffix]
+        for stem in difflib.get_close_matches(path.stem, beside, 1):
+            return f"; did you mean {shown(stem + path.suffix)}?"
+    return ""
 
 
 def _check(status: os.stat_result, path: Path, most: int, kind: str) -> None:
