@@ -1,5 +1,7 @@
 """Humps found and refused, GPS speeds, clipping."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -31,6 +33,17 @@ def test_handling_the_phone_long_before_is_passed_over():
     values = crossing()
     values[50:150] += np.random.default_rng(1).normal(0, 1.0, 100)
     assert find_hump(T, values, 4.5, "phone").onset == pytest.approx(8.0, abs=0.03)
+
+
+@pytest.mark.parametrize(("share", "first", "other"), [(0.9, 8.0, 30.0), (1.1, 30.0, 8.0), (0.5, 8.0, None)])
+def test_another_pass_as_loud_is_told(share, first, other):
+    time = np.arange(0, 50, 0.01)
+    values = np.r_[crossing(), np.zeros(len(T))] + share * np.r_[np.zeros(2200), crossing(seed=1), np.zeros(300)]
+    event = find_hump(time, values, 4.5, "phone")
+    assert event.onset == pytest.approx(first, abs=0.05)
+    told = re.match(r"phone: \d+% as loud at ([\d.]+) s as in the pass from ([\d.]+) s, which is taken", " ".join(event.warnings))
+    assert [float(text) for text in told.groups()] == pytest.approx([other + 2, event.onset], abs=2.5) if other else told is None
+    assert find_hump(T, crossing(), 4.5, "phone").warnings == ()
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -254,6 +254,16 @@ def test_clipping_is_reported(tmp_path, capsys):
     assert "acceleration z is clipped at 12.5 m/s^2" in found["warnings"][0]
 
 
+def test_a_second_pass_is_told(tmp_path, capsys):
+    def twice(name, text):
+        rest = [line.partition(",") for line in text.splitlines()[1:]] if "/" not in name else []
+        return text + "".join(f"{float(time) + 20},{values}\n" for time, _, values in rest)
+
+    export = changed(tmp_path / "a.zip", both("hump_2ms")[0], twice)
+    assert "as loud at" in facts(capsys, tmp_path / "run.yaml", [export], sensors=(L1,))["warnings"][0]
+    assert facts(capsys, tmp_path / "run.yaml", [export], sensors=(L1 + ",to=19.9",))["warnings"] == []
+
+
 def scaled(factor):
     """Return a change of the last three numbers of every line, its accelerations."""
 

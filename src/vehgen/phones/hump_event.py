@@ -21,7 +21,8 @@ QUIET_NEEDED = 1.0
 SMALLEST_CONTRAST = 4.0
 """Least ratio of the burst's running RMS to that of the quiet before."""
 BEFORE_HUMP_S, AFTER_HUMP_S, UNSETTLED_SHARE = 3.0, 3.0, 0.6
-"""Seconds searched before a crossing, seconds after it by which the vehicle has settled, share of the burst left if it has not."""
+"""Seconds searched before a crossing, seconds after it by which the vehicle has settled, share of the burst left if it has not, or that
+is another pass."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,7 @@ class HumpEvent:
     onset: float
     loudest: float
     contrast: float
+    warnings: tuple[str, ...] = ()
 
 
 def find_hump(time: Array, upward: Array, crossing: float, name: str) -> HumpEvent:
@@ -75,7 +77,11 @@ def find_hump(time: Array, upward: Array, crossing: float, name: str) -> HumpEve
     late = running[min(split + round((crossing + AFTER_HUMP_S) / step), len(running) - 1) : -width]
     if len(late) and float(np.median(late)) > UNSETTLED_SHARE * peak:
         raise _no_hump(name, time[loudest], "followed by no rest")
-    return HumpEvent(onset, float(time[loudest]), contrast)
+    running[np.abs(time - time[loudest]) < crossing + AFTER_HUMP_S] = 0
+    other = int(np.argmax(running))
+    again = f"{name}: {running[other] / peak:.0%} as loud at {time[other]:.2f} s as in the pass from {onset:.2f} s, which is taken"
+    told = (f"{again}: cut what is not the crossing with from= and to=",) if running[other] > UNSETTLED_SHARE * peak else ()
+    return HumpEvent(onset, float(time[loudest]), contrast, told)
 
 
 def _no_hump(name: str, moment: float, why: str) -> InputError:

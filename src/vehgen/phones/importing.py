@@ -167,6 +167,7 @@ def _assemble(
         used = phone.acceleration.between(zero, zero + float(time[-1]))
         warnings += clipping_warnings(phone.name, used)
         warnings += [f"{phone.name}: {text}" for text in (orientation.warnings if orientation else ())]
+        warnings += event.warnings if event else ()
         warnings += _loudness_warnings(names, item) if item.is_trusted else []
         if is_hump and not item.is_trusted:
             warnings.append(
