@@ -17,6 +17,7 @@ from vehgen.errors import ArgumentError, InputError
 from vehgen.files.units import STANDARD_GRAVITY
 from vehgen.measure.quality import NoiseFloor, find_clipping, noise_floor
 from vehgen.phones.clocks import Match
+from vehgen.phones.csv_table import ColumnMap
 from vehgen.phones.detect import read_export
 from vehgen.phones.export import Stream
 from vehgen.phones.hump_event import HumpEvent
@@ -96,21 +97,12 @@ def read_pass(exports: Sequence[str | os.PathLike[str]], plan: Plan) -> Imported
     InputError
         For exports that cannot be read or used; it says what would help.
     """
-    if len(exports) != len(plan.sensors) or not exports:
-        count = f"{len(exports)} exports and {len(plan.sensors)} sensors"
-        raise ArgumentError(f"{count}: give one of `sensors` for each export, in the same order", "sensors")
     if not 1.0 <= plan.top <= 500.0:
         raise ArgumentError(f"`top`: the top of the band must be from 1 to 500 Hz, found {plan.top:g} Hz", "top")
     if not 2 * plan.top <= plan.rate <= 1000.0 or abs(1000 / plan.rate - round(1000 / plan.rate)) > 1e-9:
         reach = f"from {2 * plan.top:g} to 1000 Hz with a step of whole milliseconds"
         raise ArgumentError(f"`rate`: the rate must be {reach}, found {plan.rate:g} Hz", "rate")
-    names = [sensor.name for sensor in plan.sensors]
-    if len(set(names)) < len(names):
-        raise ArgumentError(f"`sensors`: two sensors have one name ({', '.join(names)}); each needs its own", "sensors")
-    phones = [
-        make_phone(read_export(Path(path), plan.columns), sensor, Path(path).name, plan.top)
-        for path, sensor in zip(exports, plan.sensors, strict=True)
-    ]
+    phones = read_phones(exports, plan.sensors, plan.columns, plan.top)
     outputs = [output for phone in phones for output in phone.sensor.outputs(phone.rotation is not None)]
     simulator = Simulator(plan.vehicle, outputs)
     values = plan.vehicle.values(plan.parameter_set)
@@ -126,6 +118,21 @@ def read_pass(exports: Sequence[str | os.PathLike[str]], plan: Plan) -> Imported
         raise ArgumentError("the simulated response fits the recordings too badly to find the speed from its axles; give `speed`", "speed")
     stood_out = [item if isinstance(item, HumpEvent) else None for item in events]
     return _assemble(phones, plan, speed, stood_out, matches, arrivals, distance, wheels)
+
+
+def read_phones(
+    exports: Sequence[str | os.PathLike[str]], sensors: Sequence[PhoneSensor], columns: ColumnMap | None, top: float
+) -> list[Phone]:
+    """Read the phones of one vehicle for a band up to `top` [Hz]; raises InputError, also where exports and sensors do not match."""
+    if len(exports) != len(sensors) or not exports:
+        count = f"{len(exports)} exports and {len(sensors)} sensors"
+        raise ArgumentError(f"{count}: give one of `sensors` for each export, in the same order", "sensors")
+    names = [sensor.name for sensor in sensors]
+    if len(set(names)) < len(names):
+        raise ArgumentError(f"`sensors`: two sensors have one name ({', '.join(names)}); each needs its own", "sensors")
+    return [
+        make_phone(read_export(Path(path), columns), sensor, Path(path).name, top) for path, sensor in zip(exports, sensors, strict=True)
+    ]
 
 
 def _assemble(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +12,9 @@ from numpy.typing import NDArray
 from vehgen.errors import ArgumentError
 from vehgen.measure.transmissibility import FEWEST_AVERAGES
 from vehgen.phones.csv_table import ColumnMap
-from vehgen.phones.detect import read_export
-from vehgen.phones.importing import clipping_warnings
+from vehgen.phones.importing import clipping_warnings, read_phones
 from vehgen.phones.mutual_clocks import ClockMap, check_epochs, epoch_shift, find_drift, find_shift
-from vehgen.phones.phone import Phone, make_phone, speed_stream
+from vehgen.phones.phone import Phone, speed_stream
 from vehgen.phones.plan import PhoneSensor
 
 Array = NDArray[np.float64]
@@ -81,19 +79,9 @@ def read_drive(
     InputError
         For exports that cannot be read or used, or have nothing in common.
     """
-    if len(exports) != len(sensors):
-        raise ArgumentError(
-            f"{len(exports)} exports and {len(sensors)} sensors: give one of `sensors` for each export, in order", "sensors"
-        )
-    names = [sensor.name for sensor in sensors]
-    if len(set(names)) < len(names):
-        raise ArgumentError(f"`sensors`: two sensors have one name ({', '.join(names)}); each needs its own", "sensors")
     if not 1.0 <= top <= TOP_SHARE * GRID_RATE_HZ:
         raise ArgumentError(f"`bands`: they must end between 1 and {TOP_SHARE * GRID_RATE_HZ:g} Hz, found {top:g} Hz", "bands")
-    phones = [
-        _usable(make_phone(read_export(Path(path), columns), sensor, Path(path).name, top))
-        for path, sensor in zip(exports, sensors, strict=True)
-    ]
+    phones = [_usable(phone) for phone in read_phones(exports, sensors, columns, top)]
     clocks, clock_notes, warnings = _clocks(phones, segment)
     begin = max(float(clock.inverse(np.array(phone.begin))) for phone, clock in zip(phones, clocks, strict=True)) + EDGE_S
     end = min(float(clock.inverse(np.array(phone.end))) for phone, clock in zip(phones, clocks, strict=True)) - EDGE_S
