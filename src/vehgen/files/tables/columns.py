@@ -107,6 +107,11 @@ class TableColumns:
                 raise InputError(reason, self.place(int(row), column))
 
 
+def unmeasured(number: float) -> str:
+    """Return what is wrong with a number that no sensor measured."""
+    return f"beyond {LARGEST_MEASURED:g}, which nothing measures" if np.isfinite(number) else "not a finite number"
+
+
 def _contradicts(own: str, usual: str, factor: float) -> bool:
     """Return whether a table's own unit is not worth `factor` of the usual one; what is no unit at all says nothing."""
     theirs = factor_to_si(own, parse_unit(usual)[1])

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from vehgen.errors import InputError, Position, shown
-from vehgen.files.tables.columns import LARGEST_MEASURED, MAX_TABLE_NUMBERS, TableColumns
+from vehgen.files.tables.columns import LARGEST_MEASURED, MAX_TABLE_NUMBERS, TableColumns, unmeasured
 from vehgen.files.tables.headings import declared_unit, find_heading, is_unit, may_be_word, name_and_unit
 
 Cell = str | float
@@ -59,7 +59,9 @@ def read_rows(path: Path, header: Sequence[str], rows: Rows, names: tuple[str, .
         for name, place, column in zip(names, places, columns, strict=True):
             number = _number(row[place], signs if comma else None) if place < len(row) else np.nan
             if not -LARGEST_MEASURED <= number <= LARGEST_MEASURED:
-                raise _wrong(row, name, place, path, line)
+                text = _text(row[place]) if place < len(row) else ""
+                position = Position(path, line, min(place, max(len(row) - 1, 0)) + 1)
+                raise InputError(f"{shown(text)} in column {shown(name)} is {unmeasured(number)}", position)
             if len(signs) > 1:
                 raise InputError(
                     f"{shown(row[place])} in column {shown(name)}: a decimal comma and a decimal point in one table; one was expected",
@@ -117,14 +119,3 @@ def _number(cell: Cell, signs: set[str] | None) -> float:
         return float(cell.replace(",", "."))
     except ValueError:
         return float("nan")
-
-
-def _wrong(row: list[Cell], name: str, place: int, path: Path, line: int) -> InputError:
-    text = _text(row[place]) if place < len(row) else ""
-    position = Position(path, line, min(place, max(len(row) - 1, 0)) + 1)
-    try:
-        finite = np.isfinite(float(text))
-    except ValueError:
-        finite = False
-    reason = f"beyond {LARGEST_MEASURED:g}, which nothing measures" if finite else "not a finite number"
-    return InputError(f"{shown(text)} in column {shown(name)} is {reason}", position)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError, Position, shown
-from vehgen.files.tables.columns import LARGEST_MEASURED, MAX_TABLE_NUMBERS, TableColumns
+from vehgen.files.tables.columns import LARGEST_MEASURED, MAX_TABLE_NUMBERS, TableColumns, unmeasured
 from vehgen.files.tables.csv_table import MOST_ROWS
 from vehgen.files.tables.headings import declared_unit, find_heading, may_be_word, name_and_unit
 
@@ -53,8 +53,8 @@ class Sheet:
         wrong = np.flatnonzero(~(np.abs(numbers) <= LARGEST_MEASURED))
         if len(wrong):
             row = int(wrong[0])
-            reason = f"beyond {LARGEST_MEASURED:g}, which nothing measures" if np.isfinite(numbers[row]) else "not a finite number"
-            raise InputError(f"{numbers[row]:g} in column {shown(name)} is {reason}", Position(self.path, int(lines[row]), cell + 1))
+            said = f"{numbers[row]:g} in column {shown(name)} is {unmeasured(numbers[row])}"
+            raise InputError(said, Position(self.path, int(lines[row]), cell + 1))
         return numbers
 
 
