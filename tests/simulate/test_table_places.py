@@ -39,3 +39,5 @@ def test_it_is_refused_at_its_row(tmp_path: Path, run: str, table: str, said: st
     with pytest.raises(InputError) as caught:
         make_scenario(found, model, model.values())
     assert f"v.csv:{said}" in str(caught.value)
+    line, column = next((n, line.index("v.csv") + 1) for n, line in enumerate(run.splitlines(), 1) if "v.csv" in line)
+    assert str(caught.value).endswith(f" (asked for by {tmp_path / 'run.yaml'}:{line}:{column})")

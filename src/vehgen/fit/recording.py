@@ -18,6 +18,7 @@ from vehgen.measure.quality import find_clipping, has_cut
 from vehgen.mechanics import GRAVITY
 from vehgen.mechanics.outputs import Output
 from vehgen.simulate import Run
+from vehgen.simulate.budgets import placed
 from vehgen.simulate.run_file.acquisition import channel_chains, check_nyquist
 from vehgen.simulate.run_file.checks import TIME_COLUMN
 from vehgen.simulate.run_file.sensors import ChannelEntry, SensorEntry
@@ -83,8 +84,6 @@ def read_recording(run: Run) -> Recording:
         raise InputError("this run has no `recording`, the CSV file of what its sensors measured", document.position)
     if not file.sensors:
         raise InputError("this run has a recording but no `sensors`", document.position)
-    path = run.folder / file.recording
-    place = document.find(("recording",))
     channels, units, signs, columns = [], [], [], []
     for sensor_name, sensor in file.sensors.items():
         for quantity, entry in sensor.channels.items():
@@ -97,9 +96,15 @@ def read_recording(run: Run) -> Recording:
             )
             signs.append(1 if isinstance(entry, str) else entry.sign)
     try:
-        table = read_columns(path, (TIME_COLUMN, *columns)).in_si(0, "s", "time")
+        table = read_columns(run.folder / file.recording, (TIME_COLUMN, *columns)).in_si(0, "s", "time")
     except InputError as error:
-        raise InputError(error.message, error.position or place) from error
+        lacking = (f"no column {shown(name)};" in error.message for name in columns)
+        at = next(
+            (("sensors", item.sensor, "channels", item.quantity) for item, own in zip(channels, lacking, strict=True) if own),
+            ("recording",),
+        )
+        with placed(run, *at):
+            raise
     for number, unit in enumerate(units, 1):
         table = table.in_si(number, *unit)
     values = np.column_stack(table.values[1:]) * np.array(signs, dtype=np.float64)

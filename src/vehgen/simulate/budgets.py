@@ -22,13 +22,16 @@ MOST_AVERAGED = 7_000.0
 
 @contextmanager
 def placed(run: Run, *path: str | int, key: bool = False) -> Iterator[None]:
-    """Give an InputError without a place the place of a value (or key) of the run file."""
+    """Give an InputError without a place that of a value (or key) of the run file, and tell it with one of another file."""
     try:
         yield
     except InputError as error:
-        if error.position is not None:
+        place, other = run.document.find(path, key=key), error.position
+        if other is None:
+            raise InputError(error.message, place) from error
+        if other.file == place.file:
             raise
-        raise InputError(error.message, run.document.find(path, key=key)) from error
+        raise InputError(f"{error.message} (asked for by {place})", other) from error
 
 
 def check_run(run: Run, duration: float, way: float, n_wheels: int) -> None:
