@@ -1,4 +1,4 @@
-"""Asymmetric friction holds dry friction as a special case: which of the two is named, and where both are fitted."""
+"""What holds a special case, as asymmetric friction does dry friction: which of the two is named, and where both are fitted."""
 
 from types import SimpleNamespace
 
@@ -33,8 +33,9 @@ def fit(name, place, training):
     )
 
 
-def test_a_special_case_that_does_as_well_goes_first_and_is_no_tie():
-    general, plain = fit("asymmetric_friction", "rear", 1.02), fit("dry_friction", "rear", 1.05)
+@pytest.mark.parametrize(("holder", "held"), [("asymmetric_friction", "dry_friction"), ("relaxation", "damper_mount")])
+def test_a_special_case_that_does_as_well_goes_first_and_is_no_tie(holder, held):
+    general, plain = fit(holder, "rear", 1.02), fit(held, "rear", 1.05)
     other = fit("hysteresis", "rear", 5.0)
     ranked = simplest_first([general, other, plain], BASE)
     assert ranked == [plain, general, other]

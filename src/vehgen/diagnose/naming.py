@@ -135,7 +135,7 @@ class Naming:
         if fit.least_squares.on_bound:
             told.append(f"on the bound of its range: {', '.join(fit.least_squares.on_bound)}")
         told += [wording.constant_force(item) for item in _constant_forces(fit)]
-        told += self._more_general(fit) if _constant_forces(fit) else []
+        told += self._more_general(fit)
         left = excess(fit.training)
         if left > limit.AGAIN**2 - 1:
             told.append(f"chi {np.sqrt(1 + left):.2f} is left unexplained")

@@ -80,6 +80,7 @@ RELAXATION_EFFECT = suspension_law(
     name="relaxation",
     law="relaxation",
     frees=("k", "c"),
+    special_case="damper_mount",  # where no dashpot is left beside it
     signature="stiffness and damping change with frequency, not with amplitude: low and high frequencies want different k and c",
     parameters=(
         EffectParameter(
