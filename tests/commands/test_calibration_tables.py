@@ -49,6 +49,17 @@ def test_runs_are_told_with_what_was_known_of_them(summary, capsys):
     assert "kf/mf" in text
 
 
+def test_errors_near_what_was_known_are_counted_and_not_listed(summary, capsys):
+    near = tuple(replace(item, sigmas=0.99) for item in summary.conditions)
+    text = printed(capsys, replace(summary, conditions=near))
+    told = {item.name for item in near if item.name in ("delay", "speed", "height", "clock")}
+    always = [item for item in near if item.run == "hump" and item.name in told]
+    assert "wander" not in text
+    assert f"{sum(item.run == 'hump' for item in near) - len(always)} others within 1" in text
+    far = (*near[:-1], replace(near[-1], name="wander", sigmas=-1.0))
+    assert "wander" in printed(capsys, replace(summary, conditions=far))
+
+
 def test_what_is_told_comes_before_what_is_not(open_summary, capsys):
     text = printed(capsys, open_summary)
     places = [

@@ -14,6 +14,9 @@ MAX_CHI2 = 1.2
 """Above this the residuals are larger than the noise model allows."""
 FAR_OFF_SIGMAS = 3.0
 """A run's condition this far off what was known is doubtful."""
+NEVER_LEFT_OUT = ("delay", "speed", "height", "clock")
+"""Conditions of a run that are told however near they are to what was known; others only from LITTLE_OFF_SIGMAS on."""
+LITTLE_OFF_SIGMAS = 1.0
 WORTH_ASKING = 0.8
 """A fact that leaves more than this share of the intervals' widths is not asked for."""
 MOST_NAMES = 8
@@ -73,13 +76,17 @@ def _show_runs(outcome: CalibrationSummary) -> None:
     steps = {item.step for item in outcome.conditions}
     rows: list[tuple[str, ...]] = []
     for run, items in groupby(sorted(outcome.conditions, key=lambda item: item.run), key=lambda item: item.run):
-        for number, item in enumerate(items):
-            chi2 = f"{outcome.run_chi2[run]:.3f}" if run in outcome.run_chi2 and number == 0 else ""
+        every = list(items)
+        told = [item for item in every if item.name in NEVER_LEFT_OUT or abs(item.sigmas) >= LITTLE_OFF_SIGMAS]
+        own = []
+        for item in told:
             what = f"{item.name}, {item.step}" if len(steps) > 1 else item.name
             what += "" if item.place == "run" else f" of {item.place}"
-            rows.append(
-                (run if number == 0 else "", chi2, what, _size(item, item.value, "+"), _size(item, item.prior), f"{item.sigmas:+.2f}")
-            )
+            own.append((what, _size(item, item.value, "+"), _size(item, item.prior), f"{item.sigmas:+.2f}"))
+        if len(told) < len(every):
+            own.append((f"{len(every) - len(told)} {'others' if told else 'errors'}", "", "", "within 1"))
+        chi2 = f"{outcome.run_chi2[run]:.3f}" if run in outcome.run_chi2 else ""
+        rows += [(run, chi2, *row) if number == 0 else ("", "", *row) for number, row in enumerate(own)]
     if rows:
         columns = ("run", "chi2", "fitted along", "off what the run file states", "known to", "sigmas")
         print_table("runs, as the fit found them", columns, rows, right=(1, 3, 4, 5))
