@@ -8,7 +8,7 @@ import pytest
 from tests.diagnose.conftest import HUMPS
 from vehgen.diagnose.detect.detection import detect
 from vehgen.diagnose.detect.noise_floor import lead_in_lines
-from vehgen.diagnose.detect.steady_lines import steady_lines
+from vehgen.diagnose.detect.steady_lines import _standing_out, steady_lines
 from vehgen.fit.lead_in import lead_in
 
 ENGINE_HZ, TURNS_PER_M = 17.0, 2.5
@@ -43,6 +43,15 @@ def test_the_line_of_an_engine_is_found_and_takes_no_part_in_the_noise(shaken, d
         assert np.abs(np.array(trial.lines) - ENGINE_HZ).max() < 0.5
         ratio = found.floor.noises[trial.name].sigma / clean.floor.noises[trial.name].sigma
         assert ratio == pytest.approx(np.ones(len(ratio)), rel=0.2)
+
+
+@pytest.mark.parametrize(("width", "told"), [(1, 1), (10, 10), (40, 0)])
+def test_all_of_a_line_that_wanders_stands_out_and_no_broad_resonance(width, told):
+    """An engine's line of 25 Hz that wanders by 2 % lies on ten lines of a record of 20 s."""
+    frequency = np.arange(1, 500) * 0.08
+    power = np.random.default_rng(3).chisquare(2, (len(frequency), 2)) / 2
+    power[300 : 300 + width, 0] += 300.0
+    assert np.count_nonzero(_standing_out(frequency, power)) == told
 
 
 @pytest.mark.slow
