@@ -10,10 +10,13 @@ from tests.fit.profile_world import FINE, RATE, SIGMA, fine_channels, low_passed
 from vehgen.fit.chain_estimate import estimate_chain
 from vehgen.fit.fine_response import fine_response, trusted_band
 from vehgen.fit.nuisances import Nuisances
+from vehgen.fit.recorders import MOST_LEFT
+
+NUISANCES = Nuisances(0.05, 0.005)
 
 
 def recorded(folder, sampled, speed, road):
-    return misfit_of(read_run(folder, sampled, speed, road), Nuisances(0.05, 0.005))
+    return misfit_of(read_run(folder, sampled, speed, road), NUISANCES)
 
 
 def delayed(misfit, x, seconds):
@@ -49,6 +52,19 @@ def test_a_low_pass_is_found_with_its_cut_off(tmp_path, rough, order, cut_off):
     assert found.best.chain.delay == pytest.approx(-late, rel=0.02)
     assert found.is_clear
     assert found.scale < 1.2
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_an_engines_line_that_no_chain_explains_hides_no_chain(tmp_path, rough, known):
+    """It wanders from 21 to 21.5 Hz, five times as loud as the noise."""
+    road, channels = rough
+    sampled = channels[::FINE].copy()
+    t = np.arange(len(sampled)) / RATE
+    sampled += 5 * SIGMA * np.sin(2 * np.pi * (21 * t + 0.25 * t**2 / t[-1]))[:, None]
+    trial = replace(read_run(tmp_path, sampled, 12.0, road), lines=(21.0, 21.5) if known else ())
+    found = estimate_chain(*misfit_of(trial, NUISANCES))
+    assert (found.best.chain.filter == "none" and found.is_clear and found.scale < 1.2) == known
+    assert (found.scale > MOST_LEFT) == (not known)
 
 
 def test_resampling_in_software_is_an_ideal_low_pass(tmp_path, rough):

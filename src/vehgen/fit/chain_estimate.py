@@ -138,7 +138,7 @@ class ChainSearch:
     @property
     def size(self) -> int:
         """Number of whitened residuals."""
-        return sum(2 * item.shape[1] * item.shape[2] for item in self.slopes)
+        return sum(2 * int(self._compared(t).sum()) * item.shape[2] for t, item in enumerate(self.slopes))
 
     @property
     def rate(self) -> float:
@@ -199,11 +199,16 @@ class ChainSearch:
             frequency = self.misfit.frequency(t)
             factors = np.column_stack([item.response(frequency) for item in chains])
             left = self.misfit.measured(t) - self.misfit.channel_lines(t, response[0], self.misfit.errors_of(self.x, t))
+            left, factors = left * self._compared(t)[:, None], factors * self._compared(t)[:, None]
             residuals.append(flatten(self.misfit.whiten(t, left)))
             slopes.append(flatten(self.misfit.whiten(t, self.slopes[t] * factors), first=1).T)
         errors = self.misfit.split(self.x)[1]
         supposed = np.concatenate([np.zeros(len(self.x) - len(errors)), errors])  # errors are held about none, not about the fit's
         return _projected(np.concatenate([*residuals, supposed[self.free]]), np.vstack([*slopes, self.priors]))
+
+    def _compared(self, number: int) -> NDArray[np.bool_]:
+        """Return which spectral lines of a trial tell of its chains: not those of an engine, which no chain explains."""
+        return self.misfit.problem.trials[number].beside_lines(self.misfit.frequency(number))
 
     def _best_cut_off(self, kind: FilterKind, order: int, channels: Sequence[str], beside: Mapping[str, AcquisitionChain]) -> ChainFit:
         """Return the best cut-off of a kind of low-pass."""

@@ -36,6 +36,8 @@ QUICK_PRIME = 13
 """Transforms of numbers without larger prime factors take up to 1.6 times as long as the quickest; of a prime near 1500, nine times."""
 MOST_SKIPPED = 0.5
 """No more than this share of a recording is left out."""
+LINE_WIDTH, LINE_LEAKS = 0.03, 2.5
+"""A line that is no noise reaches this share of its frequency to both sides, or else so many lines."""
 LONGEST_STEP_S = 1e-3
 """Longest internal step [s]: through 10 ms steps a stiffness comes out 17 % wrong at 15 Hz (Newmark's period error)."""
 SLOW_PERIOD_ERROR = 1e-3
@@ -85,6 +87,13 @@ class Trial:
     def channel_factors(self, frequency: Array) -> Complex:
         """Return what the recorders make of spectral lines of the channels: factors `shape (n, n_channels)` at frequencies [Hz]."""
         return channel_factors(self.scenario, self.channels, frequency)
+
+    def beside_lines(self, frequency: Array) -> NDArray[np.bool_]:
+        """Return which of the spectral lines of a record, at evenly spaced frequencies [Hz], none of the trial's `lines` reaches."""
+        beside = np.ones(len(frequency), dtype=np.bool_)
+        for line in self.lines:
+            beside &= np.abs(frequency - line) > max(LINE_WIDTH * line, LINE_LEAKS * float(frequency[1] - frequency[0]))
+        return beside
 
     def for_slow_motions(self, highest: float) -> Trial:
         """Return the trial as it serves for motions up to a frequency [Hz]: with the longest step, and no filter that leaves them as is.

@@ -48,8 +48,6 @@ CLEARLY_LOUDER = 3.0
 """Lead-ins are louder than their noise where their power in a band is so many standard deviations above it."""
 LINE_STANDS_OUT = 20.0
 """A spectral line of more than so many times the median power of its band is none of them."""
-LINE_WIDTH, LINE_LEAKS = 0.03, 2.5
-"""A line that is no noise reaches this share of its frequency to both sides, or else so many lines."""
 SAME_SQUARES, SAME_SHIFT = 0.1, 10.0
 """Noises are the same by which what a fit leaves of a run has mean squares whose logarithms differ by less, and whose shifts differ by a
 smaller sum of squares, in units of the noise.
@@ -187,9 +185,7 @@ def _with_own_level(part: Trial | None, noise: Noise, band: tuple[float, float])
 def lead_in_lines(part: Trial, band: tuple[float, float]) -> tuple[Complex, RoadAnswer]:
     """Return the spectral lines within a band [Hz] of a lead-in without its mean, and the road's way into them; none that is no noise."""
     frequency = np.asarray(np.fft.rfftfreq(len(part.recording.time), part.recording.dt), dtype=np.float64)
-    inside = (frequency >= max(band[0], 1.0)) & (frequency <= band[1])
-    for line in part.lines:
-        inside &= np.abs(frequency - line) > max(LINE_WIDTH * line, LINE_LEAKS * frequency[1])
+    inside = (frequency >= max(band[0], 1.0)) & (frequency <= band[1]) & part.beside_lines(frequency)
     lines = transform(part.recording.values - part.recording.values.mean(axis=0), part.recording.dt, inside)
     return lines, road_answer(part, frequency[inside], part.values, NUISANCES.speed_spread(part))
 
