@@ -9,10 +9,10 @@ from vehgen.late_imports import import_late
 
 if TYPE_CHECKING:
     from vehgen.codegen.cache import cache_folder
-    from vehgen.codegen.excitation import Excitation
     from vehgen.codegen.kernel import Kernel, KernelResult
     from vehgen.codegen.kernel_source import KernelSource, write_kernel
     from vehgen.codegen.parallel import compile_all
+    from vehgen.codegen.population_run import Excitation
 
 __all__ = ["Excitation", "Kernel", "KernelResult", "KernelSource", "cache_folder", "compile_all", "write_kernel"]
 
@@ -20,7 +20,7 @@ import_late(
     __name__,
     {
         "vehgen.codegen.cache": ("cache_folder",),
-        "vehgen.codegen.excitation": ("Excitation",),
+        "vehgen.codegen.population_run": ("Excitation",),
         "vehgen.codegen.kernel": (
             "Kernel",
             "KernelResult",

@@ -8,23 +8,36 @@ from __future__ import annotations
 
 import hashlib
 import importlib.util
+import inspect
 import os
 import sys
 import tempfile
 import threading
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from importlib import metadata
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 
 from vehgen.codegen.cache_pruning import prune
 from vehgen.codegen.kernel_store import PARTS, private_folder, read_parts, refuse_open_folder, writable_folder, write_parts
 from vehgen.errors import CacheWarning, InputError
+
+_LOOPS_HEAD = '''"""{name} of {module}, compiled; written by vehgen.codegen.cache."""
+
+from __future__ import annotations
+
+import numba
+import numpy as np
+{imports}
+
+@numba.njit("{signature}", nogil=True, cache=True, fastmath={{"contract", "nsz"}}, error_model="numpy")
+'''
 
 
 def cache_folder() -> Path:
@@ -155,3 +168,21 @@ def _numba_beside_the_source() -> Iterator[None]:
     finally:
         for key, value in kept.items():
             setattr(numba.config, key, value)
+
+
+@cache
+def compile_loops(function: Callable[..., Any], signature: str, imports: str = "") -> Callable[..., Any]:
+    """Return a function compiled for arguments of one signature.
+
+    Parameters
+    ----------
+    function
+        Of a module's own level: its source is compiled as it stands, so that it may use numpy as `np`, and nothing else of its module.
+    signature
+        What it takes and returns, in numba's words.
+    imports
+        A line that imports what else it uses.
+    """
+    head = _LOOPS_HEAD.format(name=function.__name__, module=function.__module__, signature=signature, imports=imports)
+    compiled: Callable[..., Any] = getattr(import_kernel(head + inspect.getsource(function)), function.__name__)
+    return compiled

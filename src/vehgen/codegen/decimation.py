@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.codegen.compiled_loops import compile_loops
+from vehgen.codegen.cache import compile_loops
 
 Array = NDArray[np.float64]
 MANY_NUMBERS = 5_000_000

@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.codegen.cache import cache_folder, import_kernel, is_compiled, kernel_name
-from vehgen.codegen.excitation import Excitation
 from vehgen.codegen.kernel_source import KernelSource, Precision, write_kernel
-from vehgen.codegen.population_run import PopulationRun, compile_time_loop, own_drives
+from vehgen.codegen.population_run import Excitation, PopulationRun, compile_time_loop, own_drives
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria

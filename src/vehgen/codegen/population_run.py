@@ -1,4 +1,4 @@
-"""A population through a compiled kernel: blocks of lanes, shared among threads."""
+"""A population, moved by an excitation, through a compiled kernel: blocks of lanes, shared among threads."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.codegen.compiled_loops import compile_loops
-from vehgen.codegen.excitation import Excitation
+from vehgen.codegen.cache import compile_loops
 from vehgen.codegen.kernel_source import KernelSource
 from vehgen.codegen.time_loop import LOOP_IMPORTS, LOOP_SIGNATURE, SHARED_SIGNATURE, advance_block, read_shared
 
@@ -26,6 +25,35 @@ BLOCK_SIZE = 32
 """Individuals that a thread takes at once."""
 WORTH_THREADS = 250_000
 """Blocks times steps times coordinates below which one core is as quick as several."""
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """What moves a vehicle, at the ends of every step of `dt` [s].
+
+    `inputs`, `rates` `shape (n_steps + 1, n_inputs)`: displacement inputs [m] and their rates [m/s]; `forces` `shape (n_steps + 1,
+    n_forces)` [N]. All three may have an axis more ahead, of individuals each with inputs of its own.
+    """
+
+    dt: float
+    inputs: Array
+    rates: Array
+    forces: Array
+
+    @property
+    def n_steps(self) -> int:
+        """Number of time steps."""
+        return int(self.inputs.shape[-2]) - 1
+
+    @property
+    def time(self) -> Array:
+        """Times of the inputs [s]."""
+        return np.arange(self.n_steps + 1, dtype=np.float64) * self.dt
+
+    @property
+    def nbytes(self) -> int:
+        """Size of its arrays [bytes]."""
+        return int(self.inputs.nbytes + self.rates.nbytes + self.forces.nbytes)
 
 
 def aligned(size: int, number: type[np.floating[Any]] = np.float64) -> NDArray[Any]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.codegen.compiled_loops import compile_loops
+from vehgen.codegen.cache import compile_loops
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
