@@ -1,6 +1,7 @@
 """What shakes a vehicle all the time, before the hump too, is no noise: an engine's line, and a wheel's that is out of round."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -52,6 +53,25 @@ def test_all_of_a_line_that_wanders_stands_out_and_no_broad_resonance(width, tol
     power = np.random.default_rng(3).chisquare(2, (len(frequency), 2)) / 2
     power[300 : 300 + width, 0] += 300.0
     assert np.count_nonzero(_standing_out(frequency, power)) == told
+
+
+def left_by(runs):
+    """Return a base that leaves noise but for a line: by run its frequency [Hz], the speed [m/s], and whether it crosses humps alone."""
+    frequency, parts, spectra = np.arange(1, 500) * 0.08, [], {}
+    for name, (line, speed, humps) in runs.items():
+        spectra[name] = np.ones((len(frequency), 1))
+        spectra[name][np.abs(frequency - line) < 0.01] += 300.0
+        trial = SimpleNamespace(name=name, scenario=SimpleNamespace(over_humps_alone=humps, top_speed=speed))
+        misfit = SimpleNamespace(problem=SimpleNamespace(trials=[trial]), frequency=lambda number: frequency)
+        parts.append(SimpleNamespace(misfit=misfit))
+    return SimpleNamespace(parts=parts, spectra=spectra)
+
+
+def test_the_line_of_an_engine_is_in_runs_over_rough_roads_too_and_that_of_a_wheel_at_another_speed_is_not():
+    engine = left_by({"low": (24.0, 2.0, True), "high": (24.0, 4.0, True), "rough": (8.0, 10.0, False)})
+    assert steady_lines(engine) == dict.fromkeys(("low", "high", "rough"), pytest.approx((24.0,)))
+    wheel = left_by({"low": (8.0, 2.0, True), "high": (16.0, 4.0, True), "rough": (24.0, 10.0, False)})
+    assert steady_lines(wheel) == {"low": pytest.approx((8.0,)), "high": pytest.approx((16.0,))}
 
 
 @pytest.mark.slow

@@ -27,15 +27,23 @@ LIKE = 0.04
 
 
 def steady_lines(base: ModelFit) -> dict[str, tuple[float, ...]]:
-    """Return the frequencies [Hz] of steady lines by run; empty where no two runs over humps show one."""
+    """Return the frequencies [Hz] of steady lines by run; empty where no two runs over humps show one.
+
+    What two of these show at one frequency is in runs over other roads, too.
+    """
     found: dict[str, Array] = {}
     speeds: dict[str, float] = {}
+    elsewhere: list[str] = []
     for part in base.parts:
         for number, trial in enumerate(part.misfit.problem.trials):
             if trial.scenario.over_humps_alone:
                 found[trial.name] = _standing_out(part.misfit.frequency(number), base.spectra[trial.name])
                 speeds[trial.name] = trial.scenario.top_speed
-    return _shared(found, speeds)
+            else:
+                elsewhere.append(trial.name)
+    shared = _shared(found, speeds)
+    alike = [f for run, own in shared.items() for f in own if _is_among(f, [g for other in shared if other != run for g in shared[other]])]
+    return {**shared, **dict.fromkeys(elsewhere, tuple(dict.fromkeys(alike)))} if alike else shared
 
 
 def without_lines(trials: Sequence[Trial], lines: Mapping[str, tuple[float, ...]]) -> tuple[Trial, ...]:
