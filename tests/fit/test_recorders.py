@@ -136,6 +136,8 @@ def test_where_folding_might_matter_unseen_the_band_ends_before_it(tmp_path, rou
     assert 20.0 <= recorder.band[1] < 40.0
     assert f"above {recorder.band[1]:.3g} Hz nothing is compared" in recorder.describe()
     assert find_recorder(*misfit_of(trial, SMALL, sigma), band=(0.5, 20.0)).band == (0.5, 20.0)
+    shaken = replace(trial, lines=(36.0,))  # before the hump, too: no folding made it
+    assert find_recorder(*misfit_of(shaken, SMALL, sigma)).band == (0.5, pytest.approx(1.03 * 36.0))
 
 
 @pytest.mark.parametrize(

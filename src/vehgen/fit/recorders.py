@@ -13,7 +13,7 @@ import numpy as np
 from vehgen.fit.chain_estimate import ChainEstimate, ChainSearch, group_delay
 from vehgen.fit.fine_response import fine_response, trusted_band
 from vehgen.fit.misfit import Array, Misfit
-from vehgen.fit.trial import Trial
+from vehgen.fit.trial import LINE_WIDTH, Trial
 from vehgen.measure.acquisition import UNKNOWN, AcquisitionChain
 
 MOST_LEFT = 2.0
@@ -158,8 +158,8 @@ def find_recorder(
 ) -> FoundRecorder:
     """Return what stands for the unknown recorders of a fit's runs.
 
-    Where several chains would do, the band ends at the frequency up to which folding matters in no run. Sensors have chains of their own
-    where these do far better than one for all.
+    Where several chains would do, the band ends at the frequency up to which folding matters in no run, but above the lines that are there
+    before a hump, too, which folding cannot make. Sensors have chains of their own where these do far better than one for all.
 
     Parameters
     ----------
@@ -186,7 +186,8 @@ def find_recorder(
     if clear:
         return FoundRecorder(shared, asked, False, channels, apart)
     tops = [trusted_band(trial, fine_response(misfit, x, t), misfit.noises[trial.name]) for t, trial in enumerate(trials)]
-    top = max(min([*tops, asked[1]]), asked[1] / 2)
+    steady = [(1 + LINE_WIDTH) * line for trial in trials for line in trial.lines]
+    top = min(max(min(tops), asked[1] / 2, *steady), asked[1])
     return FoundRecorder(shared, (asked[0], top), top < asked[1], channels, apart)
 
 
