@@ -9,21 +9,9 @@ from vehgen.files.result_fields import Array1D
 
 @dataclass(frozen=True, eq=False)
 class ChannelCurves:
-    """What one panel of a figure shows.
+    """What one panel of a figure shows of a run's channel: two curves over `x`, frequency [Hz] or time [s], `shape (n,)` each.
 
-    Attributes
-    ----------
-    run, channel, quantity
-        What was measured.
-    x
-        Frequency [Hz] or time [s], `shape (n,)`.
-    measured, simulated
-        Both curves, `shape (n,)`.
-
-    Raises
-    ------
-    ValueError
-        For curves of different lengths, or of fewer than two points.
+    Raises ValueError for curves of different lengths, or of fewer than two points.
     """
 
     run: str

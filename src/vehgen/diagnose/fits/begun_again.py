@@ -54,9 +54,11 @@ def without_strain(fit: LeastSquaresFit, effects: Sequence[Candidate]) -> LeastS
         return fit
     misfit, n = fit.misfit, fit.misfit.n_parameters
     begun = fit.x[n : n + len(misfit.shared)]
-    x = np.concatenate([fit.x[:n], begun, align(misfit, fit.x[:n], begun.tolist())])
-    again = refine(misfit.problem, fit, x, effects)
-    return again if again.loss < fit.loss else fit
+    errors = [align(misfit, fit.x[:n], begun.tolist())]
+    if misfit.shared:  # a sensor's delay that clocks at bounds hold where it is would lay them there again
+        errors.append(np.zeros(misfit.n_errors))
+    fits = [fit, *(refine(misfit.problem, fit, np.concatenate([fit.x[:n], begun, own]), effects) for own in errors)]
+    return min(fits, key=lambda item: item.loss)
 
 
 def release(
