@@ -95,16 +95,8 @@ def read_recording(run: Run) -> Recording:
                 (sensor.quantities[quantity], quantity, stated, document.find(("sensors", sensor_name, "channels", quantity, "unit")))
             )
             signs.append(1 if isinstance(entry, str) else entry.sign)
-    try:
+    with placed(run, "recording"):
         table = read_columns(run.folder / file.recording, (TIME_COLUMN, *columns)).in_si(0, "s", "time")
-    except InputError as error:
-        lacking = (f"no column {shown(name)};" in error.message for name in columns)
-        at = next(
-            (("sensors", item.sensor, "channels", item.quantity) for item, own in zip(channels, lacking, strict=True) if own),
-            ("recording",),
-        )
-        with placed(run, *at):
-            raise
     for number, unit in enumerate(units, 1):
         table = table.in_si(number, *unit)
     values = np.column_stack(table.values[1:]) * np.array(signs, dtype=np.float64)
