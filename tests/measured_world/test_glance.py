@@ -83,3 +83,7 @@ def test_the_page_shows_all_sets_as_their_records_have_them():
     page = (root / "docs" / "hidden-effects.md").read_text(encoding="utf-8")
     assert glance(listed) in page
     assert kinds(listed[-6:]) in page
+    of_library, right, tied, _, _, _, outside, so = glance(listed[-6:]).splitlines()[-1].split(" | ")[1:9]
+    assert f"| {of_library} (the last six sets) | {right} named right" in page
+    assert f"{tied} as one of several" in page
+    assert f"| {outside} (the same sets) | {so} told as such" in page
