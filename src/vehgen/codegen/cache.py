@@ -1,4 +1,4 @@
-"""Generated kernels become modules: compiled once, then loaded from the cache by every later process.
+"""Generated kernels become modules, plain loops functions: compiled once, then loaded from the cache by every later process.
 
 numba keeps compiled code only for functions that live in a file, so a kernel's source is written to a temporary folder together with what
 the cache holds of it, imported from there, and what numba wrote anew is kept. The cache is `$VEHGEN_CACHE`, else the user's cache folder.

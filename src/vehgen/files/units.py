@@ -117,6 +117,7 @@ _UNIT_FACTOR = re.compile(r"([A-Za-z]+)(?:(?:\^|\*\*)(-?[0-9]+))?")
 _TURNS = re.compile(r"(?<![A-Za-z_])(Hz|rpm)(?![A-Za-z0-9_])")
 _IN_GRAVITIES = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(m?g)\s*", re.ASCII)
 _RUN_TOGETHER = re.compile(rf"\s*({'|'.join(sorted(UNITS.keys() - {'ms'}, key=len, reverse=True))})")
+"""A unit within units written together; `ms` there is metres times seconds."""
 _JOIN = re.compile(r"\s*([/*·])\s*|\s+")
 
 
