@@ -59,8 +59,8 @@ class Decision(Ending):
         self.notes += variety_notes(detection.trials)
         if mistakes := recorded_mistakes(detection) or exchanged_humps(detection):
             return self._mistaken(mistakes)
-        if detection.is_quiet:
-            return self._without_gap()
+        if (cause := self._one_cause()) or detection.is_quiet:
+            return cause or self._without_gap()
         if detection.chi <= limit.WEAK and is_strained(self.base.least_squares) and (strained := self._freed()):
             return strained
         mistakes = plain_mistakes(detection) or wrongly_declared(detection)
@@ -95,7 +95,7 @@ class Decision(Ending):
             if left := supposed_mistakes(believed):
                 return self._mistaken(left)
             other.notes.append(wording.supposed([item.message for item in mistakes]))
-            return self._one_cause() or other._quiet()
+            return other._quiet()
         if mistaken := other._one_mistake():
             return mistaken
         found = other._explain_gap()
@@ -115,13 +115,13 @@ class Decision(Ending):
         return self._faint(found) or (None if law is None else self._propose(wording.not_seen_again(self._words(law.last)), law))
 
     def _quiet(self) -> Decided:
-        """Return the verdict where chi shows no gap: one error of all runs, a faint effect, runs that disagree, or nothing."""
+        """Return the verdict where chi shows no gap: a faint effect, runs that disagree, or nothing."""
         if isinstance(odd := disagreement(self.detection), OddChannel):
             return self._mistaken((odd_mistake(odd),))
-        return self._one_cause() or self._faint() or self._disagreeing(odd) or self._nothing()
+        return self._faint() or self._disagreeing(odd) or self._nothing()
 
     def _one_cause(self) -> Decided | None:
-        """Return the verdict where all runs suppose the same error, each within belief: it is one of all runs."""
+        """Return the verdict where all runs suppose the same error: it is one of all runs."""
         found = one_cause(self.detection, self._candidates(self.base))
         if found is None:
             return None

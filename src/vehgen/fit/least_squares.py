@@ -144,15 +144,15 @@ def fit_least_squares(
     options = options or FitOptions()
     given = noises is not None
     noises = noises or first or first_noises(problem)
-    misfit = Misfit(problem, noises, problem.space.values(unit), options.nuisances, options.band, shared, known)
     begun = [(value - item.neutral) / item.scale for item, value in zip(shared, numbers, strict=True)] if numbers else [0.0] * len(shared)
+    misfit = Misfit(problem, noises, problem.space.values(unit), options.nuisances, options.band, shared, known, begun=begun)
     errors = align(misfit, unit, begun) if start is None else start(misfit) if callable(start) else start
     x = np.concatenate([np.clip(unit, 0.0, 1.0), begun, errors])
     result, last = _fit(misfit, x, prior_data, options, options.tolerance if given else COARSE_TOLERANCE, nearby)
     for left in reversed(range(0 if given else options.noise_rounds - 1)):
         noises = estimate_noises(misfit, result)
-        found, supposed = misfit.split(result)
-        misfit = Misfit(problem, noises, problem.space.values(found), options.nuisances, options.band, shared, known, supposed)
+        (found, supposed), begun = misfit.split(result), result[misfit.n_parameters : misfit.n_parameters + len(shared)].tolist()
+        misfit = Misfit(problem, noises, problem.space.values(found), options.nuisances, options.band, shared, known, supposed, begun)
         result, last = _fit(misfit, result, prior_data, options, COARSE_TOLERANCE if left else options.tolerance, last)
     values, errors = problem.space.values(misfit.split(result)[0]), misfit.split(result)[1]
     spectrum = misfit.residual_spectrum(result)

@@ -164,7 +164,8 @@ class _Trial:
         n = len(self.by_parameter) + len(shared)
         by_error = dict(zip(slopes, lines[n:], strict=True))
         ahead, behind = (misfit.unread(self.number, self.centre, self.error, later) for later in (WINDOW_SHIFT_S, -WINDOW_SHIFT_S))
-        read = misfit.read_slopes(self.number, unread[0], self.error, (ahead - behind) / (2 * WINDOW_SHIFT_S))
+        frequency, later = misfit.frequency(self.number), (ahead - behind) / (2 * WINDOW_SHIFT_S)
+        read = misfit.errors[self.number].read_slopes(frequency, self.error, unread[0], later)
         rows = [by_error[i - len(common)] if i in simulated else read[i] for i in range(len(items))]
         return -misfit.whiten(self.number, np.concatenate([lines[:n], np.reshape(rows, (-1, *lines.shape[1:]))])), slopes
 

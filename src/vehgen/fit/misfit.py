@@ -63,8 +63,9 @@ class Misfit:
         What may be wrong with runs or sensors, fitted along.
     known
         Errors of all runs that stand, by name and place.
-    supposed
-        Errors `shape (n_errors,)` at which the road's part of the noise is computed, too (default: none).
+    supposed, begun
+        Errors `shape (n_errors,)` and adjustments `shape (len(shared),)`, in their units, at which the road's part of the noise is
+        computed, too: at another speed axles meet it one sooner after the other (default: none, and neutral ones).
     """
 
     def __init__(
@@ -77,6 +78,7 @@ class Misfit:
         shared: Sequence[Adjustment] = (),
         known: Mapping[tuple[str, str], float] | None = None,
         supposed: Array | None = None,
+        begun: Sequence[float] | Array = (),
     ) -> None:
         self.problem = problem
         self.noises = noises
@@ -86,7 +88,8 @@ class Misfit:
         self.known = dict(known or {})
         self.common = tuple(item for item in self.nuisances.of_all_runs(problem.trials) if (item.name, item.place) not in self.known)
         self.errors = tuple(RunErrors.of(trial, self.common, self.nuisances.of_run(trial), self.known) for trial in problem.trials)
-        at = np.concatenate([np.zeros(self.n_unknowns - self.n_errors), np.zeros(self.n_errors) if supposed is None else supposed])
+        self.begun = np.array(begun) if len(begun) else np.zeros(len(self.shared))
+        at = np.concatenate([np.zeros(self.n_parameters), self.begun, np.zeros(self.n_errors) if supposed is None else supposed])
         self._weights = [self._weight(t, problem.best_values(reference), at) for t in range(len(problem.trials))]
 
     def alone(self, number: int, x: Array, band: tuple[float, float] | None = None) -> Misfit:
@@ -110,7 +113,8 @@ class Misfit:
         own = {name: value for name, value in reference.items() if name not in trial.fixed}
         reading = self.errors[number].reading(frequency, self.errors_of(x, number))
         spread = self.nuisances.speed_spread(trial)
-        return as_read(road_answer(trial, frequency, trial.values | own, spread, windowed=windowed), reading)
+        driven = replace(trial, scenario=self._adjusted(trial.scenario, self.adjusted(x)))
+        return as_read(road_answer(driven, frequency, trial.values | own, spread, windowed=windowed), reading)
 
     @property
     def n_parameters(self) -> int:
@@ -206,7 +210,9 @@ class Misfit:
 
     def _driven(self, number: int, trial: Trial, numbers: Array, error: Array) -> Scenario:
         """Return what a trial drives through, at adjustments and errors."""
-        scenario = self.errors[number].scenario(trial.scenario, error)
+        return self._adjusted(self.errors[number].scenario(trial.scenario, error), numbers)
+
+    def _adjusted(self, scenario: Scenario, numbers: Array) -> Scenario:
         for item, value in zip(self.shared, numbers, strict=True):
             scenario = item.scenario(scenario, float(value))
         return scenario
@@ -229,13 +235,6 @@ class Misfit:
         """Return what trial `number`'s sensors make of spectral lines of motions `shape (..., n_lines, n_channels)`."""
         reading = self.errors[number].reading(self.frequency(number), error)
         return lines if reading is None else reading.apply(lines)
-
-    def read_slopes(self, number: int, lines: Complex, error: Array, later: Complex) -> dict[int, Complex]:
-        """Return the derivatives of :meth:`read` of lines `shape (n_lines, n_channels)` by errors of readings alone, by their number.
-
-        `later` are the derivatives of the lines by how late their windows are [1/s].
-        """
-        return self.errors[number].read_slopes(self.frequency(number), error, lines, later)
 
     def read_at(self, number: int, lines: Complex, x: Array) -> Complex:
         """Return :meth:`read` of lines at all unknowns x."""

@@ -117,7 +117,7 @@ class FittedModel:
         trial = replace(self.trial, name=run.name, scenario=scenario, recording=measurement)
         problem = Problem((trial,), fitted.problem.space)
         noises, known = {run.name: noise or self.noise}, fitted.common_errors(self.fit.least_squares.x)
-        return Misfit(problem, noises, self.fit.least_squares.values, OF_NEW_RUNS, fitted.band, fitted.shared, known)
+        return Misfit(problem, noises, self.fit.least_squares.values, OF_NEW_RUNS, fitted.band, fitted.shared, known, begun=fitted.begun)
 
     def local(self, run: CandidateRun, channels: tuple[str, ...]) -> tuple[Misfit, Array]:
         """Return the misfit over a run with some channels only, and its derivatives at the fit."""

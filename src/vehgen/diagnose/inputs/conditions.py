@@ -119,14 +119,14 @@ def findings_of_conditions(
 
 
 def alike_conditions(
-    conditions: Sequence[Condition], runs: Sequence[str], spread: float = ALIKE_SPREAD
+    conditions: Sequence[Condition], runs: Sequence[str], spread: float = ALIKE_SPREAD, least: float = ALIKE_SIGMAS
 ) -> tuple[tuple[Condition, ...], ...]:
-    """Return what all `runs` suppose alike, an error of each: they lie within `spread` standard deviations of one another."""
+    """Return what all `runs` suppose alike, an error of each: the same way by `least` standard deviations, within `spread` of them."""
     found = []
     for name, place in dict.fromkeys((item.name, item.place) for item in conditions if item.name in OF_ALL_RUNS):
         same = tuple(item for item in conditions if (item.name, item.place) == (name, place))
         sigmas = [item.sigmas for item in same]
-        off = min(sigmas) >= ALIKE_SIGMAS or max(sigmas) <= -ALIKE_SIGMAS
+        off = min(sigmas) >= least or max(sigmas) <= -least
         every = len(same) >= LEAST_ALIKE and {item.run for item in same} == set(runs)
         if every and off and max(sigmas) - min(sigmas) <= spread:
             found.append(same)

@@ -131,10 +131,9 @@ class Fitter:
     def weigh_again(self, fit: ModelFit) -> ModelFit:
         """Return a first effect's fit to the training runs as it is, by the noise that is now known."""
         old = fit.least_squares.misfit
-        misfit = Misfit(
-            old.problem, self.detection.floor.noises, fit.least_squares.values, old.nuisances, self.detection.band, old.shared, old.known
-        )
-        return evaluate_fit(fit.effects, replace(fit.least_squares, misfit=misfit), (), self.detection.floor.noises)
+        noises, values, band = self.detection.floor.noises, fit.least_squares.values, self.detection.band
+        misfit = Misfit(old.problem, noises, values, old.nuisances, band, old.shared, old.known, begun=old.begun)
+        return evaluate_fit(fit.effects, replace(fit.least_squares, misfit=misfit), (), noises)
 
     def fit_all(self, candidates: Sequence[Candidate], runner: Runner, slow_first: bool = True) -> Iterator[ModelFit | None]:
         """Yield what :meth:`fit` returns for each of some candidates, fitted wherever a runner works."""

@@ -1,4 +1,4 @@
-"""An error that all runs suppose alike, each within belief: one error of all runs, and not as many that happen to agree."""
+"""An error that all runs suppose alike: one error of all runs, and not as many that happen to agree."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ import numpy as np
 from vehgen.diagnose.detect.detection import Detection, with_runs
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit, refine
-from vehgen.diagnose.inputs.conditions import alike_conditions
+from vehgen.diagnose.inputs.conditions import ALIKE_SIGMAS, alike_conditions
+from vehgen.diagnose.select.common_speed import at_common_speed
 from vehgen.diagnose.select.estimates import fitted_numbers
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.one_error import SUPPOSED_AS, leaves_noise, taken_over
@@ -41,28 +42,42 @@ def one_cause(detection: Detection, candidates: Sequence[Candidate]) -> tuple[De
     Clocks that are set run by run, and speeds that are read run by run, are off by as many different amounts. Where all agree, one cause
     made them, and no run needs an error of its own. Where all are off the same way, and far together, one number of all runs is likelier,
     with its price, and small errors of each beside it. None where such an error does not leave noise of all runs, or where the runs do
-    not tell its size.
+    not tell its size. What a base leaves that cannot be as fast as the runs were may look like more than noise.
 
     Parameters
     ----------
     detection
-        A base that leaves noise.
+        A base, and what it supposes of the runs.
     candidates
         Every effect at every place.
     """
     conditions = [item for part in detection.base.parts for item in part.conditions()]
     runs = [trial.name for trial in detection.trials]
-    for alike in alike_conditions(conditions, runs, np.inf):
+    for alike in alike_conditions(conditions, runs, np.inf, 0.0):
         candidate = next((item for item in candidates if _says(item, alike[0])), None)
-        begin = None if candidate is None else taken_over(detection.base, candidate)
-        if candidate is None or begin is None:
+        if candidate is None or not (_agree(alike) or _far_together(alike)):
             continue
-        parts = detection.problem.trials, detection.validation_runs
-        sure = with_runs(detection, *([_sure_of(OF_ONE_KIND[alike[0].name], trial) for trial in part] for part in parts))
-        fit = None if sure.is_quiet else _instead(sure, candidate, alike, begin[1]) or _beside(detection, candidate, alike, begin)
+        speed = alike[0].name == "speed"
+        found, begin = at_common_speed(detection) if speed else (detection, taken_over(detection.base, candidate))
+        if begin is None:
+            continue
+        parts = found.problem.trials, found.validation_runs
+        sure = with_runs(found, *([_sure_of(OF_ONE_KIND[alike[0].name], trial) for trial in part] for part in parts))
+        fit = None if sure.is_quiet else _instead(sure, candidate, alike, begin[1]) or _beside(found, candidate, alike, begin)
         if fit is not None:
             return sure, (fit, *_other_way(sure, fit, candidates))
     return None
+
+
+def _agree(alike: Sequence[Condition]) -> bool:
+    """Return whether runs are all off by so much alike that one cause is as good as theirs."""
+    sigmas = [item.sigmas for item in alike]
+    return min(map(abs, sigmas)) >= ALIKE_SIGMAS and max(sigmas) - min(sigmas) <= AGREE_WITHIN
+
+
+def _far_together(alike: Sequence[Condition]) -> bool:
+    """Return whether runs, all off the same way, are so far off together that it is no chance."""
+    return bool(abs(sum(item.sigmas for item in alike)) >= FAR_TOGETHER * len(alike) ** 0.5)
 
 
 def _other_way(sure: Detection, fit: ModelFit, candidates: Sequence[Candidate]) -> list[ModelFit]:
@@ -75,8 +90,7 @@ def _other_way(sure: Detection, fit: ModelFit, candidates: Sequence[Candidate]) 
 
 def _instead(sure: Detection, candidate: Candidate, alike: Sequence[Condition], number: tuple[float]) -> ModelFit | None:
     """Return the fit of one error of all runs in place of theirs, where these agree."""
-    sigmas = [item.sigmas for item in alike]
-    if max(sigmas) - min(sigmas) > AGREE_WITHIN:
+    if not _agree(alike):
         return None
     fit = Fitter(sure, sure.base, ()).fit_begun((candidate, number))
     return fit if fit is not None and leaves_noise(fit, sure) else None
@@ -86,7 +100,7 @@ def _beside(
     detection: Detection, candidate: Candidate, alike: Sequence[Condition], begin: tuple[StartingPoint, tuple[float]]
 ) -> ModelFit | None:
     """Return the fit of one error of all runs beside small ones of each, where it is likelier than theirs alone."""
-    if abs(sum(item.sigmas for item in alike)) < FAR_TOGETHER * len(alike) ** 0.5:
+    if not _far_together(alike):
         return None
     rough = Fitter(detection, detection.base, ()).fit_from(candidate, *begin)
     if rough is None:
