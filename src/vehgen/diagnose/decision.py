@@ -10,7 +10,6 @@ from vehgen.diagnose.combining import Combiner
 from vehgen.diagnose.design.experiment import VISIBLE
 from vehgen.diagnose.detect.detection import BELIEVED_SIGMAS, FREE_SIGMAS, look_again, run_gaps, supposing
 from vehgen.diagnose.detect.odd_run import OddChannel, OddRun, disagreement
-from vehgen.diagnose.ending import Ending
 from vehgen.diagnose.fits.begun_again import is_strained
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.checks import variety_notes
@@ -20,19 +19,18 @@ from vehgen.diagnose.inputs.judging import odd_mistake, plain_mistakes, recorded
 from vehgen.diagnose.inputs.recorders import wrongly_declared
 from vehgen.diagnose.localise.localisation import localise
 from vehgen.diagnose.result import Decided
-from vehgen.diagnose.select.criteria import fall, freed_instead, p_value_of, passes
-from vehgen.diagnose.select.faint import faint_exchange, faint_look_again, faint_round, faintly_told
+from vehgen.diagnose.select.criteria import freed_instead, p_value_of, passes
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import split_idle
 from vehgen.diagnose.select.group_members import with_members
 from vehgen.diagnose.select.needless import without_needless
-from vehgen.diagnose.select.one_cause import BEFORE, one_cause
-from vehgen.diagnose.select.one_error import believable_law, explains_easily, one_error, price_of_belief
+from vehgen.diagnose.select.one_error import explains_easily, one_error, price_of_belief
 from vehgen.diagnose.select.placebo_laws import COUNT, compare_with_placebo_laws
 from vehgen.diagnose.select.ranking import SearchRound, own_numbers
 from vehgen.diagnose.select.reaching_runs import with_reaching_run
 from vehgen.diagnose.select.search import LEADING, LOOKS_AGAIN, fit_leading_again, noise_by_its_law, search_round
-from vehgen.diagnose.select.validation import seen_again, validation_fall
+from vehgen.diagnose.select.validation import seen_again
+from vehgen.diagnose.without_gap import WithoutGap
 from vehgen.errors import InputError
 
 LOOK_AGAIN_SHARE = 0.5
@@ -43,7 +41,7 @@ BELIEF_TOO_DEAR = 60.0
 """Errors beyond belief without which -2 ln L rises by more are told, though chi stays quiet: by healthy runs it rose by 37 at most."""
 
 
-class Decision(Ending):
+class Decision(WithoutGap):
     """One diagnosis on its way: what was detected, the library, and the rounds so far."""
 
     def decide(self) -> Decided:
@@ -72,6 +70,8 @@ class Decision(Ending):
 
     def _without_gap(self) -> Decided:
         """Return the verdict where the base explains the runs."""
+        if law := self._by_one_recorder():
+            return law
         return self._strained(mistakes) if (mistakes := supposed_mistakes(self.detection)) else self._quiet()
 
     def _freed(self) -> Decided | None:
@@ -108,51 +108,11 @@ class Decision(Ending):
         simpler = 0 < len(found.verdict.faults) < len(mistakes) and other.undone is not None and other.undone[1].at_once
         return found if simpler or explains_easily(found) else self._mistaken(mistakes)
 
-    def _instead(self, strained: ModelFit) -> Decided | None:
-        """Return the verdict where a law of the vehicle explains what a strained base has to suppose of the runs."""
-        found = faint_round(self.detection, self._candidates(self.base), self.runner)
-        law = believable_law(found.fits, strained)
-        return self._faint(found) or (None if law is None else self._propose(wording.not_seen_again(self._words(law.last)), law))
-
     def _quiet(self) -> Decided:
         """Return the verdict where chi shows no gap: a faint effect, runs that disagree, or nothing."""
         if isinstance(odd := disagreement(self.detection), OddChannel):
             return self._mistaken((odd_mistake(odd),))
         return self._faint() or self._disagreeing(odd) or self._nothing()
-
-    def _one_cause(self) -> Decided | None:
-        """Return the verdict where all runs suppose the same error: it is one of all runs."""
-        found = one_cause(self.detection, self._candidates(self.base))
-        if found is None:
-            return None
-        sure, fits = found
-        other = Decision(sure, self.effects, self.everything, self.progress, self.runner)
-        other.notes += [*self.notes, BEFORE]
-        other.rounds = [SearchRound(sure.base, (), (), fits)]
-        return other._name([fits[0]])
-
-    def _faint(self, found: SearchRound | None = None) -> Decided | None:
-        """Return the verdict where an effect too small for chi is told by how far -2 ln of the likelihood falls with it.
-
-        `found` are fits of a search that chi asked for (default: none were made).
-        """
-        if not self.validation_runs:
-            return None
-        self.progress("look for faint effects", 0, 1, "")
-        found = faint_round(self.detection, self._candidates(self.base), self.runner) if found is None else replace(found, faint=True)
-        found, detection = faint_look_again(found, self.detection, self.runner)
-        best = faintly_told(found, detection)
-        if best is None and (exchanged := faint_exchange(found, detection, self.runner)) is not None:
-            found, detection = exchanged
-            best = faintly_told(found, detection)
-        if best is None:
-            return None
-        if mistakes := wrongly_declared(self.detection):
-            return self._mistaken(mistakes)
-        self.notes.append(wording.faint(self.detection.chi, fall(found, best), validation_fall(found.current, best)))
-        self.detection, self.base = detection, detection.base
-        self.rounds[:], self.chain = [found], [best]
-        return self._name(self.chain)
 
     def _explain_gap(self, by_law: bool = True) -> Decided:
         detection = self.detection

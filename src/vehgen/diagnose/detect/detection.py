@@ -197,6 +197,17 @@ def supposing(detection: Detection, most_sigmas: float) -> Detection:
     return _detection(detection.problem, detection.validation_runs, detection.floor, base, detection.recorder, detection.asked_band)
 
 
+def with_one_recorder(detection: Detection) -> Detection | None:
+    """Return a detection with one usual low-pass, that leaves least, for sensors that seem to have their own; None where none has."""
+    if (recorder := detection.recorder) is None or not recorder.apart:
+        return None
+    rate, runs, noises = slowest_rate(detection.trials), list(detection.validation_runs), detection.floor.noises
+    usual = [item for item in replace(recorder, apart=()).with_usual(rate) if item.is_usual(rate)]
+    tried = [(*_recorded(item, detection.problem, runs, noises, detection.base), item) for item in usual]
+    problem, runs, base, one = min(tried, key=lambda item: item[2].squares)
+    return _detection(problem, runs, detection.floor, base, one, detection.asked_band)
+
+
 def _with_telling_runs(detection: Detection) -> Detection:
     """Return a detection with other validation runs where its own cannot show what is missing."""
     other = split_by_gap(detection.base, detection.trials)
