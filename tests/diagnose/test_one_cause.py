@@ -52,6 +52,18 @@ def test_speeds_that_are_all_off_the_same_way_are_one_error_beside_small_ones(tr
 
 
 @pytest.mark.thorough
+def test_speeds_that_no_run_may_have_are_one_error_of_all(trials_of):
+    """A base holds each at 4 %: it loses the runs' phase, and leaves more than noise, or supposes what cannot be believed."""
+    errors = 0.06, 0.07, 0.055
+    found = verdict_of(detect(at_other_speeds(trials_of(runs=HUMPS), *errors)))
+    (named,) = found.effects
+    assert (found.verdict, named.name) == ("named", "speed_error")
+    low, high = named.parameters["scale"].interval
+    assert low < 1 + sum(errors) / 3 < high
+    assert found.gap.after < 1.06
+
+
+@pytest.mark.thorough
 @pytest.mark.parametrize("errors", [(0.03, -0.03, 0.03), (0.012, 0.016, 0.014)], ids=["either way", "small"])
 def test_speeds_that_runs_may_well_have_are_no_error_of_all(trials_of, errors):
     assert verdict_of(detect(at_other_speeds(trials_of(runs=HUMPS), *errors))).verdict == "no_missing_effect"

@@ -7,9 +7,9 @@ import pytest
 import scipy.signal
 
 from tests.diagnose.conftest import CUBIC, HUMPS, edited
-from vehgen.diagnose import decision
+from vehgen.diagnose import decision, without_gap
 from vehgen.diagnose.decision import Decision
-from vehgen.diagnose.detect.detection import detect
+from vehgen.diagnose.detect.detection import detect, with_one_recorder
 from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.recorders import wrongly_declared
 from vehgen.diagnose.pipeline import with_evidence
@@ -46,6 +46,12 @@ def test_a_healthy_vehicle_behind_two_recorders_lacks_nothing(trials_of, monkeyp
     assert found.chi < 1.03
     (note,) = with_evidence(Decision(found, [], False, lambda *_: None)._nothing(), lambda *_: None).verdict.notes
     assert note.startswith("the recorders' low-passes are not stated, and differ")
+    one = with_one_recorder(found)
+    assert one is not None
+    assert one.recorder is not None
+    assert one.recorder.apart == ()
+    assert one.recorder.is_usual(100.0)
+    assert one.base.squares > found.base.squares + 100.0
     monkeypatch.setattr(chain_estimate, "FAR_BETTER", np.inf)
     shared = detect(trials, BAND_HZ)
     assert shared.recorder is not None
@@ -59,6 +65,23 @@ def test_a_missing_effect_is_not_taken_for_low_passes_of_the_sensors(trials_of):
     assert found.recorder is not None
     assert found.recorder.apart == ()
     assert not found.is_quiet
+
+
+@pytest.mark.parametrize("fallen", [149.0, 151.0])
+@pytest.mark.parametrize("told", [None, "told"])
+def test_one_recorder_and_an_effect_stand_in_place_of_each_sensors_own_where_they_explain_far_more(detection_of, monkeypatch, fallen, told):
+    """By the fall that tells an effect; else all is as it was before."""
+    known = detection_of(CUBIC, runs=HUMPS)
+    one = replace(known)
+    found = SearchRound(one.base, (), (), (one.base,))
+    monkeypatch.setattr(without_gap, "with_one_recorder", lambda detection: one)
+    monkeypatch.setattr(without_gap, "faint_round", lambda detection, candidates, runner: found)
+    monkeypatch.setattr(without_gap, "merit", lambda fit: known.base.squares - fallen)
+    made = Decision(known, [], False, lambda *_: None)
+    monkeypatch.setattr(made, "_faint", lambda found: told)
+    assert made._by_one_recorder() == (told if fallen > 150 else None)
+    assert made.detection is (one if told and fallen > 150 else known)
+    assert with_one_recorder(known) is None, "run files declare them"
 
 
 SLOW = AcquisitionChain("butterworth", 4, 12.0)
@@ -96,10 +119,11 @@ def test_what_nobody_declares_cannot_be_declared_wrongly(detection_of, monkeypat
 @pytest.mark.parametrize("faint", [False, True])
 def test_a_wrong_declaration_is_told_before_any_effect(detection_of, monkeypatch, faint):
     fault = MeasurementFault("recorder", (), ("F_az",), "F_az: `acquisition` says otherwise", "write unknown")
-    monkeypatch.setattr(decision, "wrongly_declared", lambda detection: (fault,))
+    for module in (decision, without_gap):
+        monkeypatch.setattr(module, "wrongly_declared", lambda detection: (fault,))
     monkeypatch.setattr(decision, "plain_mistakes", lambda detection: ())
-    monkeypatch.setattr(decision, "faint_look_again", lambda found, detection, runner: (found, detection))
-    monkeypatch.setattr(decision, "faintly_told", lambda found, detection: found.current)
+    monkeypatch.setattr(without_gap, "faint_look_again", lambda found, detection, runner: (found, detection))
+    monkeypatch.setattr(without_gap, "faintly_told", lambda found, detection: found.current)
     detection = detection_of(CUBIC, runs=HUMPS)
     made = Decision(detection, [], False, lambda *_: None)
     told = made._faint(SearchRound(detection.base, (), (), ())) if faint else made.decide()
