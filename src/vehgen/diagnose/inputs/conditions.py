@@ -23,6 +23,8 @@ STANDS_OUT, CLOCKS_SPREAD_S, LEAST_SHIFT_M = 6.0, 0.01, 0.3
 OF_ALL_RUNS, LEAST_ALIKE, ALIKE_SIGMAS, ALIKE_SPREAD = ("clock", "speed", "height", "length"), 3, 1.0, 0.5
 """Conditions that all runs, so many at least, suppose alike are told: so many standard deviations off at least in each run,
 within so many from the least to the largest."""
+FAR_TOGETHER = 4.0
+"""Conditions of all runs, all off the same way, whose sum is so many of its standard deviations off are so by no chance."""
 EITHER_WAY = 2.0
 """Whether a clock tells the starts or the way does, a start that is a finding is off by so many times the others' spread."""
 FAR_APART, TIMED_SPREAD_S = 5.0, 0.005
@@ -133,10 +135,18 @@ def alike_conditions(
     return tuple(found)
 
 
+def far_together(alike: Sequence[Condition]) -> bool:
+    """Return whether conditions, all off the same way, are so far off together that it is no chance."""
+    return bool(abs(sum(item.sigmas for item in alike)) >= FAR_TOGETHER * len(alike) ** 0.5)
+
+
 def alike_in_all_runs(conditions: Sequence[Condition], runs: Sequence[str]) -> tuple[str, ...]:
     """Return what all `runs` suppose alike, in sentences: no finding, but that they agree says more than each of them."""
-    every = "every run supposes it, and nearly as much"
-    return tuple(f"{every}: {_sentence(alike, tuple(runs))[1]}" for alike in alike_conditions(conditions, runs))
+    known = dict.fromkeys(alike_conditions(conditions, runs), "every run supposes it, and nearly as much")
+    for alike in alike_conditions(conditions, runs, np.inf, 0.0):
+        if far_together(alike):
+            known.setdefault(alike, "every run supposes it, each another amount, in the mean")
+    return tuple(f"{words}: {_sentence(alike, tuple(runs))[1]}" for alike, words in known.items())
 
 
 def moved_roads(

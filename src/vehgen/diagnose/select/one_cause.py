@@ -10,7 +10,7 @@ import numpy as np
 from vehgen.diagnose.detect.detection import Detection, with_runs
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit, evaluate_fit, refine
-from vehgen.diagnose.inputs.conditions import ALIKE_SIGMAS, alike_conditions
+from vehgen.diagnose.inputs.conditions import ALIKE_SIGMAS, alike_conditions, far_together
 from vehgen.diagnose.select.common_speed import at_common_speed
 from vehgen.diagnose.select.estimates import fitted_numbers
 from vehgen.diagnose.select.fitter import Fitter
@@ -26,8 +26,6 @@ from vehgen.simulate.run_file.knowledge import UncertaintyEntry
 AGREE_WITHIN = 0.25
 """From the least to the largest in so many standard deviations of what each run may be off by; that three are all off the same way, each by
 one at least, and agree so, is a chance of one in 1000."""
-FAR_TOGETHER = 4.0
-"""The sum over the runs is so many of its standard deviations off."""
 OF_ONE_KIND = {"clock": ("clock",), "speed": ("speed", "wander")}
 """The errors that a run does not have where it supposes none of a kind: a driver who strays all the way drives another speed."""
 BEFORE = "each run might have had such an error of its own, but all agree: chi before is that of runs without any"
@@ -55,7 +53,7 @@ def one_cause(detection: Detection, candidates: Sequence[Candidate]) -> tuple[De
     runs = [trial.name for trial in detection.trials]
     for alike in alike_conditions(conditions, runs, np.inf, 0.0):
         candidate = next((item for item in candidates if _says(item, alike[0])), None)
-        if candidate is None or not (_agree(alike) or _far_together(alike)):
+        if candidate is None or not (_agree(alike) or far_together(alike)):
             continue
         speed = alike[0].name == "speed"
         found, begin = at_common_speed(detection) if speed else (detection, taken_over(detection.base, candidate))
@@ -73,11 +71,6 @@ def _agree(alike: Sequence[Condition]) -> bool:
     """Return whether runs are all off by so much alike that one cause is as good as theirs."""
     sigmas = [item.sigmas for item in alike]
     return min(map(abs, sigmas)) >= ALIKE_SIGMAS and max(sigmas) - min(sigmas) <= AGREE_WITHIN
-
-
-def _far_together(alike: Sequence[Condition]) -> bool:
-    """Return whether runs, all off the same way, are so far off together that it is no chance."""
-    return bool(abs(sum(item.sigmas for item in alike)) >= FAR_TOGETHER * len(alike) ** 0.5)
 
 
 def _other_way(sure: Detection, fit: ModelFit, candidates: Sequence[Candidate]) -> list[ModelFit]:
@@ -100,7 +93,7 @@ def _beside(
     detection: Detection, candidate: Candidate, alike: Sequence[Condition], begin: tuple[StartingPoint, tuple[float]]
 ) -> ModelFit | None:
     """Return the fit of one error of all runs beside small ones of each, where it is likelier than theirs alone."""
-    if not _far_together(alike):
+    if not far_together(alike):
         return None
     rough = Fitter(detection, detection.base, ()).fit_from(candidate, *begin)
     if rough is None:
