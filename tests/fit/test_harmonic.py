@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from vehgen.fit.harmonic import Harmonic, find_line, harmonic_adjustments
-from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import EVEN, Noise
 from vehgen.fit.problem import make_problem
@@ -81,12 +80,9 @@ def test_a_line_is_found_where_it_is_and_taken_out(shaken):
     lined = Misfit(problem, noises, problem.space.start, shared=harmonic_adjustments("body", {trials[0].name: SIGMA}))
     numbers = [(frequency - lined.shared[0].neutral) / lined.shared[0].scale, drift / lined.shared[1].scale]
     before = np.mean(plain.residuals(x) ** 2)
-    with_line = np.concatenate([x[: plain.n_parameters], numbers, x[plain.n_parameters :]])
+    after = np.mean(lined.residuals(np.concatenate([x[: plain.n_parameters], numbers, x[plain.n_parameters :]])) ** 2)
     assert before > 20
-    assert np.mean(lined.residuals(with_line) ** 2) < 2.5
-    delay = [item.name for item in plain.errors[0].own].index("delay")
-    assert delay not in linearise(plain, x).slopes[0]
-    assert delay in linearise(lined, with_line).slopes[0]  # an engine keeps its own time, so a late run is simulated
+    assert after < 2.5
 
 
 def test_a_line_drifts_from_where_the_recording_begins(shaken):

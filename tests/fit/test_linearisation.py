@@ -1,7 +1,5 @@
 """Derivatives of a misfit by what its sensors do not know of themselves, held against differences of the whole misfit."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -11,9 +9,7 @@ from vehgen.fit import linearisation as module
 from vehgen.fit.alignment import MOST_SHARPENED, MOST_SIGMAS, error_bounds
 from vehgen.fit.linearisation import MOST_MISSED, Lineariser, linearise
 from vehgen.fit.nuisances import Nuisances
-from vehgen.fit.run_errors import RunErrors
 from vehgen.fit.trial import load_trials
-from vehgen.simulate.signals import Signal
 
 
 @pytest.fixture(scope="module")
@@ -55,40 +51,12 @@ def test_derivatives_by_errors_of_runs_are_those_of_whole_simulations(late, tmp_
         found = linearise(misfit, x, one_sided=one_sided)
         names = [item.name for item in (*misfit.errors[0].own, *misfit.common)]  # those of all runs count from -1 downwards
         own = {item.name for item in misfit.errors[0].own}
-        assert {names[i] for i in found.slopes[0]} == (own - {"clock", "delay"}) | {"axle_position"}
+        assert {names[i] for i in found.slopes[0]} == (own - {"clock"}) | {"axle_position"}
         for i in found.slopes[0]:
             column = misfit.own_columns(0).start + i
             step = 1e-5 * np.eye(len(x))[column]
             expected = (misfit.whitened_spectrum(x + step)[0] - misfit.whitened_spectrum(x - step)[0]) / 2e-5
             assert np.linalg.norm(found.spectra[0][column] - expected) < 1e-2 * np.linalg.norm(expected), names[i]
-
-
-def test_a_run_that_begins_later_moves_all_channels_as_their_clocks_would(tmp_path):
-    """Held against whole steps of the simulation, which shift what it does exactly; shorter ones move no hump's edge across a step."""
-    hump = load_trials(write_run(tmp_path, "hump", sedan_truth()))[0]
-    misfit, _ = misfit_of(hump, Nuisances())
-    x = np.concatenate([np.zeros(misfit.n_parameters), np.full(misfit.n_unknowns - misfit.n_parameters, 0.3)])
-    place = [item.name for item in misfit.errors[0].own].index("delay")
-    column, own = misfit.own_columns(0).start + place, hump.scenario.dt / misfit.errors[0].own[place].sigma
-
-    def difference(steps):
-        step = steps * own * np.eye(len(x))[column]
-        return (misfit.whitened_spectrum(x + step)[0] - misfit.whitened_spectrum(x - step)[0]) / (2 * steps * own)
-
-    expected = 1.5 * difference(1) - 0.6 * difference(2) + 0.1 * difference(3)
-    found = linearise(misfit, x).spectra[0][column]
-    assert np.linalg.norm(found - expected) < 1e-3 * np.linalg.norm(expected)
-    assert np.linalg.norm(difference(1e-3) - expected) > 3e-3 * np.linalg.norm(expected)
-
-
-def test_what_keeps_its_own_time_is_not_shifted_with_the_road(late):
-    """A stated state at the start, a measured force: their derivatives by a delay are those of simulations."""
-    misfit, _ = late
-    trial, errors = misfit.problem.trials[0], misfit.errors[0]
-    state, force = np.zeros(2 * trial.simulator.model.n_dof), Signal(time=np.arange(2.0), values=np.ones(2))
-    assert errors.shifts
-    for scenario in (replace(trial.scenario, initial=state), replace(trial.scenario, forces=(force,))):
-        assert not RunErrors.of(replace(trial, scenario=scenario), errors.common, errors.own, {}).shifts
 
 
 def test_derivatives_by_errors_of_runs_are_taken_anew_when_asked(late):
@@ -97,9 +65,9 @@ def test_derivatives_by_errors_of_runs_are_taken_anew_when_asked(late):
     first = derive(x)
     moved = x + 0.2
     kept, anew = derive(moved), derive.linearise_anew(moved)
-    own = misfit.own_columns(0).start + 1
-    assert np.array_equal(kept.slopes[0][1], first.slopes[0][1])
-    assert not np.array_equal(anew.slopes[0][1], first.slopes[0][1])
+    own = misfit.own_columns(0).start
+    assert np.array_equal(kept.slopes[0][0], first.slopes[0][0])
+    assert not np.array_equal(anew.slopes[0][0], first.slopes[0][0])
     assert anew.spectra[0][own] == pytest.approx(linearise(misfit, moved, one_sided=True).spectra[0][own])
 
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
 
 import numpy as np
 import scipy.integrate
@@ -26,10 +25,8 @@ class Adjustment:
     """Something about all runs or one sensor that a single number changes; this one changes nothing.
 
     `place` is a sensor, a channel, or the runs; `scale` the size of a typical change, 0 for a number that stands; `neutral` the number
-    that changes nothing; `low` and `high` bound it. `is_delayed` tells whether its part of the readings comes later in a delayed run.
+    that changes nothing; `low` and `high` bound it.
     """
-
-    is_delayed: ClassVar[bool] = True
 
     place: str
     scale: float = 1.0

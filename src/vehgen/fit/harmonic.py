@@ -36,8 +36,6 @@ class Harmonic(Adjustment):
     `sigma` is the standard deviation of every channel's noise by trial, `shape (n_channels,)`, by which channels are weighed.
     """
 
-    is_delayed = False
-
     sigma: Mapping[str, Array] = field(default_factory=dict)
 
     def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:

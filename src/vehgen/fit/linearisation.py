@@ -151,10 +151,10 @@ class _Trial:
     def block(self, known: Slopes | None) -> tuple[Complex, Slopes]:
         """Return the trial's whitened derivatives by its columns, and those of its motions by its own errors."""
         misfit, shared, common = self.misfit, self.misfit.shared, self.misfit.common
-        items, simulated = misfit.errors[self.number].items, self._simulated()
+        items = misfit.errors[self.number].items
         steps = UNIT_DIFFERENCE * np.eye(len(shared))
         by_shared = [self._by_shared(step * item.scale) for item, step in zip(shared, steps, strict=True)]
-        wanted = [i for i in simulated if i - len(common) not in (known or {})]
+        wanted = [i for i, item in enumerate(items) if item.moves_vehicle and i - len(common) not in (known or {})]
         slopes: Slopes = {**(known or {}), **{i - len(common): own for i, own in self._by_errors(wanted).items()}}
         motions = np.concatenate(
             [self.centre[None], self.by_parameter, np.reshape(by_shared, (-1, *self.centre.shape)), *(own[None] for own in slopes.values())]
@@ -166,17 +166,8 @@ class _Trial:
         ahead, behind = (misfit.unread(self.number, self.centre, self.error, later) for later in (WINDOW_SHIFT_S, -WINDOW_SHIFT_S))
         frequency, later = misfit.frequency(self.number), (ahead - behind) / (2 * WINDOW_SHIFT_S)
         read = misfit.errors[self.number].read_slopes(frequency, self.error, unread[0], later)
-        rows = [by_error[i - len(common)] if i in simulated else read[i] for i in range(len(items))]
+        rows = [by_error[i - len(common)] if item.moves_vehicle else read[i] for i, item in enumerate(items)]
         return -misfit.whiten(self.number, np.concatenate([lines[:n], np.reshape(rows, (-1, *lines.shape[1:]))])), slopes
-
-    def _simulated(self) -> list[int]:
-        """Return which errors' derivatives take simulations: a delay's does not where it shifts all that is recorded.
-
-        Differences would miss a few per cent of it: a step so short moves no edge of a hump across a step of the simulation.
-        """
-        errors = self.misfit.errors[self.number]
-        shifted = errors.shifts and all(item.is_delayed for item in self.misfit.shared)
-        return [i for i, item in enumerate(errors.items) if item.moves_vehicle and not (shifted and item.name == "delay")]
 
     def _by_shared(self, step: Array) -> Array:
         """Return the change of the motions per UNIT_DIFFERENCE, when adjustments are moved by these steps."""

@@ -83,15 +83,15 @@ class Reading:
         Parameters
         ----------
         name, place
-            The error; a delay is the same in all channels.
+            The error.
         lines, read
             Lines of motions, and what the channels read of them, both `shape (n_lines, n_channels)`.
         """
         x = 2 * self.frequency / self.rate
-        factor = -1j * self._omega if name in ("delay", "clock", "lag") else _exponent(name, x) if name in LOW_PASS_POWERS else None
+        factor = -1j * self._omega if name in ("clock", "lag") else _exponent(name, x) if name in LOW_PASS_POWERS else None
         found = np.zeros_like(read)
         for i, (channel, sensor, quantity) in enumerate(self.channels):
-            if factor is not None and (name == "delay" or sensor == place) and (name != "lag" or quantity == "pitch_rate"):
+            if factor is not None and sensor == place and (name != "lag" or quantity == "pitch_rate"):
                 found[:, i] = factor * read[:, i]
             elif name == "gain" and channel == place:
                 found[:, i] = read[:, i] / (1 + self.values.get(("gain", channel), 0.0))

@@ -28,8 +28,7 @@ class RunErrors:
     Numbers of errors `shape (size,)` count in standard deviations, the common ones first. `channels` holds name, sensor and quantity of
     every channel; `known` common errors [units], by name and place, that stand; `rate` is the recording's [Hz]; `forces` names the forces
     that act, `ground` the links whose ground ends move, `axles` the axles, in the model's order, and `behind` how far each runs behind the
-    first to arrive [m]; `shifts` tells whether all that happens comes with the road, so that a delay shifts it as a whole, and `begin` the
-    place of an initial displacement or velocity in the state, by its error's name and place.
+    first to arrive [m]; `begin` tells the place of an initial displacement or velocity in the state, by its error's name and place.
     """
 
     common: tuple[Nuisance, ...]
@@ -41,7 +40,6 @@ class RunErrors:
     ground: tuple[str, ...] = ()
     axles: tuple[str, ...] = ()
     behind: tuple[float, ...] = ()
-    shifts: bool = False
     begin: Mapping[tuple[str, str], int] = field(default_factory=dict)
 
     @classmethod
@@ -51,9 +49,7 @@ class RunErrors:
         model = trial.simulator.model
         begin = {(f"initial_{item.key}", item.owner): item.place for item in initial_values(trial.run, model)}
         axles, behind = tuple(model.layout.axles), tuple(model.wheel_offsets(trial.values).tolist())
-        scenario = trial.scenario
-        shifts = bool(scenario.track.parts) and not scenario.forces and scenario.initial is None and not any(scenario.ground)
-        return cls(common, own, channels, known, 1 / trial.recording.dt, model.forces, ground_links(model), axles, behind, shifts, begin)
+        return cls(common, own, channels, known, 1 / trial.recording.dt, model.forces, ground_links(model), axles, behind, begin)
 
     @property
     def items(self) -> tuple[Nuisance, ...]:
@@ -146,9 +142,8 @@ class RunErrors:
     def read_slopes(self, frequency: Array, numbers: Array, lines: Complex, later: Complex) -> dict[int, Complex]:
         """Return the derivatives of what is read by the errors that change readings alone, by their number, `shape (n_lines, n_channels)`.
 
-        And that by the delay, as if all clocks were late. Of lines of motions `shape (n_lines, n_channels)`, whose derivatives by how late
-        each channel's window is [1/s] are `later`: a late clock moves the window, too, and along the valley in which clocks and a sensor's
-        delay make up for each other even that counts.
+        Of lines of motions `shape (n_lines, n_channels)`, whose derivatives by how late each channel's window is [1/s] are `later`: a late
+        clock moves the window, too, and along the valley in which clocks and a sensor's delay make up for each other even that counts.
         """
         values = self._values(numbers)
         reading = Reading.of(frequency, self.rate, self.channels, values, self._late(values))
@@ -159,6 +154,4 @@ class RunErrors:
                 found[i] = item.sigma * reading.slope(item.name, item.place, lines, read)
             if item.name in OF_TIME:
                 found[i] += reading.apply(later * self._late({(item.name, item.place): item.sigma}))
-            if item.name == "delay":
-                found[i] = item.sigma * (reading.slope("delay", "", lines, read) + reading.apply(later))
         return found
