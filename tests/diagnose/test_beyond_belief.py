@@ -7,7 +7,7 @@ import pytest
 from benchmarks.hidden_effects.generator import Effect
 
 from tests.diagnose.conftest import CUBIC, HUMPS
-from vehgen.diagnose import decision
+from vehgen.diagnose import decision, without_gap
 from vehgen.diagnose.decision import Decision
 from vehgen.diagnose.detect.detection import BELIEVED_SIGMAS, FREE_SIGMAS, Detection, detect, supposing
 from vehgen.diagnose.inputs.fault import MeasurementFault
@@ -77,8 +77,8 @@ def test_a_law_that_supposes_nothing_is_told_in_place_of_errors_beyond_belief():
 @pytest.mark.parametrize("suits", [True, False])
 def test_a_law_that_is_not_seen_again_is_too_weak_to_name_but_no_mistake(monkeypatch, detection_of, suits):
     law = SimpleNamespace(last="the law")
-    monkeypatch.setattr(decision, "faint_round", lambda *_: SimpleNamespace(fits=(law,)))
-    monkeypatch.setattr(decision, "believable_law", lambda fits, strained: fits[0] if suits else None)
+    monkeypatch.setattr(without_gap, "faint_round", lambda *_: SimpleNamespace(fits=(law,)))
+    monkeypatch.setattr(without_gap, "believable_law", lambda fits, strained: fits[0] if suits else None)
     monkeypatch.setattr(Decision, "_faint", lambda self, found: None)
     monkeypatch.setattr(Decision, "_words", lambda self, last: last)
     monkeypatch.setattr(Decision, "_propose", lambda self, reason, best: (reason, best))

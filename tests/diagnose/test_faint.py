@@ -7,7 +7,7 @@ import pytest
 from benchmarks.hidden_effects.generator import Effect
 
 from tests.diagnose.conftest import HUMPS
-from vehgen.diagnose import decision
+from vehgen.diagnose import without_gap
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.pipeline import diagnose_trials
@@ -165,8 +165,8 @@ def test_what_its_validation_run_does_not_show_is_checked_on_the_run_that_shows_
     assert checked != detection.validation_runs[0].name
     assert shares[checked] == max(shares[trial.name] for trial in detection.problem.trials)
     assert faintly_told(found, exchanged).last.label == "asymmetric_damping at rear"
-    monkeypatch.setattr(decision, "faintly_told", lambda round_, now: None if now is not exchanged else faintly_told(round_, now))
-    monkeypatch.setattr(decision, "faint_exchange", lambda *_: (found, exchanged))
+    monkeypatch.setattr(without_gap, "faintly_told", lambda round_, now: None if now is not exchanged else faintly_told(round_, now))
+    monkeypatch.setattr(without_gap, "faint_exchange", lambda *_: (found, exchanged))
     told = diagnose_trials(trials_of(UNLIKE, runs=HUMPS), [EFFECTS[name] for name in NAMES])
     assert [(item.name, item.place) for item in told.verdict.effects] == [("asymmetric_damping", "rear")]
 

@@ -8,7 +8,9 @@ from benchmarks.hidden_effects.generator import Effect
 from tests.diagnose.conftest import HUMPS
 from vehgen.diagnose.decision import Decision
 from vehgen.diagnose.detect.detection import detect
+from vehgen.diagnose.inputs.conditions import alike_in_all_runs
 from vehgen.effects import EFFECTS
+from vehgen.fit.nuisances import Condition
 
 LATE = Effect("sensor_delay", "R", {"time": 0.013})
 CHOSEN = [EFFECTS[name] for name in ("sensor_delay", "speed_error", "cubic_stiffness")]
@@ -73,3 +75,14 @@ def test_an_error_that_the_library_does_not_have_is_not_named(detection_of):
     found = Decision(detection_of(LATE, runs=HUMPS), CHOSEN[1:], False, lambda *_: None).decide().verdict
     assert found.verdict == "no_missing_effect"
     assert any("the clock of R in all runs is" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(
+    ("speeds", "told"), [((0.012, 0.021, 0.035, 0.024), True), ((0.012, 0.021, 0.035), False), ((-0.001, 0.03, 0.035, 0.03), False)]
+)
+def test_what_every_run_supposes_and_is_far_off_together_is_told(speeds, told):
+    """Speeds known to 1 %: four whose sum is more than four of its standard deviations off, and none the other way."""
+    conditions = [Condition(f"run{i}", "speed", "", value, "", 0.01) for i, value in enumerate(speeds)]
+    found = alike_in_all_runs(conditions, [f"run{i}" for i in range(len(speeds))])
+    more = ("every run supposes it, each another amount, in the mean: the speed in all runs was 2.3 % more than stated",)
+    assert found == (more if told else ())
