@@ -7,8 +7,8 @@ import pytest
 from benchmarks.hidden_effects.generator import Effect
 
 from tests.diagnose.conftest import HUMPS
-from vehgen.diagnose import without_gap
 from vehgen.diagnose import thresholds as limit
+from vehgen.diagnose import without_gap
 from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.select import criteria, faint
