@@ -83,7 +83,11 @@ def test_the_page_shows_all_sets_as_their_records_have_them():
     page = (root / "docs" / "hidden-effects.md").read_text(encoding="utf-8")
     assert glance(listed) in page
     assert kinds(listed[-6:]) in page
-    of_library, right, tied, _, _, _, outside, so = glance(listed[-6:]).splitlines()[-1].split(" | ")[1:9]
+    of_library, right, tied, wrong, none, other, outside, so, *_, held = glance(listed[-6:]).splitlines()[-1].strip("| ").split(" | ")[1:]
     assert f"| {of_library} (the last six sets) | {right} named right" in page
     assert f"{tied} as one of several" in page
+    assert f"{none} not seen" in page
+    assert f"{wrong} as another cause" in page
+    assert f", {other} otherwise |" in page
+    assert f"{held} intervals hold the truth" in page
     assert f"| {outside} (the same sets) | {so} told as such" in page
