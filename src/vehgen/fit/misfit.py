@@ -113,7 +113,7 @@ class Misfit:
         own = {name: value for name, value in reference.items() if name not in trial.fixed}
         reading = self.errors[number].reading(frequency, self.errors_of(x, number))
         spread = self.nuisances.speed_spread(trial)
-        driven = replace(trial, scenario=self._adjusted(trial.scenario, self.adjusted(x)))
+        driven = replace(trial, scenario=self._with_adjustments(trial.scenario, self.adjusted(x)))
         return as_read(road_answer(driven, frequency, trial.values | own, spread, windowed=windowed), reading)
 
     @property
@@ -210,9 +210,9 @@ class Misfit:
 
     def _driven(self, number: int, trial: Trial, numbers: Array, error: Array) -> Scenario:
         """Return what a trial drives through, at adjustments and errors."""
-        return self._adjusted(self.errors[number].scenario(trial.scenario, error), numbers)
+        return self._with_adjustments(self.errors[number].scenario(trial.scenario, error), numbers)
 
-    def _adjusted(self, scenario: Scenario, numbers: Array) -> Scenario:
+    def _with_adjustments(self, scenario: Scenario, numbers: Array) -> Scenario:
         for item, value in zip(self.shared, numbers, strict=True):
             scenario = item.scenario(scenario, float(value))
         return scenario
