@@ -37,14 +37,36 @@ def test_every_wheel_is_where_the_road_is(parts, deformation, footprint):
 
 @pytest.mark.parametrize("footprint", [0.0, 0.24])
 @pytest.mark.parametrize("parts", ROADS.values(), ids=ROADS)
-def test_drives_nearby_are_those_drives_to_the_first_order(parts, footprint):
+def test_drives_nearby_change_as_drives_a_step_apart_do(parts, footprint):
+    """What a derivative by a way is: where the road has corners, what it is at one point says nothing of moves like a fit's."""
+    track, half = Track(parts, footprint), 5e-4
+    later, sooner = (AdjustedSpeed(SPEED.law, SPEED.delay + by, SPEED.scale, SPEED.anchor, SPEED.wander) for by in (half, -half))
+    small = AdjustedSpeed(SPEED.law, SPEED.delay + 1e-8, SPEED.scale, SPEED.anchor, SPEED.wander)
+    (found,) = nearby(track, [], [(small, OFFSETS)])
+    here, there, back = (wheel_inputs(track, law, OFFSETS, TIME) for law in (SPEED, later, sooner))
+    for name in ("heights", "rates"):
+        by_delay = (getattr(found, name) - getattr(here, name))[1:-1] / 1e-8
+        expected = (getattr(there, name) - getattr(back, name))[1:-1] / 1e-3
+        assert np.linalg.norm(by_delay - expected) <= 2e-3 * np.linalg.norm(expected)
+
+
+@pytest.mark.parametrize("footprint", [0.0, 0.24])
+@pytest.mark.parametrize("parts", ROADS.values(), ids=ROADS)
+def test_drives_over_tracks_nearby_are_those_drives(parts, footprint):
     track, near = Track(parts, footprint), Track(parts, footprint, deformation=(1 + 1e-6, 1.0, 0.0, 0.0))
+    (found,) = nearby(track, [near], [])
+    expected = wheel_inputs(near, SPEED, OFFSETS, TIME)
+    assert found.heights == pytest.approx(expected.heights, abs=1e-12)
+    assert found.rates == pytest.approx(expected.rates, abs=1e-9)
+
+
+@pytest.mark.parametrize("parts", ROADS.values(), ids=ROADS)
+def test_drives_nearby_are_those_drives_to_the_first_order(parts):
+    """Over a road without corners."""
+    track = Track(parts, 0.24)
     faster = AdjustedSpeed(SPEED.law, SPEED.delay, SPEED.scale + 1e-7, SPEED.anchor, SPEED.wander)
     farther = OFFSETS + np.array([0.0, 1e-7, 0.0, -1e-7])
-    ways = [(faster, OFFSETS), (SPEED, farther)]
-    over_near, at_faster, behind = nearby(track, [near], ways)
-    assert over_near.heights == pytest.approx(wheel_inputs(near, SPEED, OFFSETS, TIME).heights, abs=1e-12)
-    assert over_near.rates == pytest.approx(wheel_inputs(near, SPEED, OFFSETS, TIME).rates, abs=1e-9)
+    at_faster, behind = nearby(track, [], [(faster, OFFSETS), (SPEED, farther)])
     assert at_faster.heights == pytest.approx(wheel_inputs(track, faster, OFFSETS, TIME).heights, abs=1e-8)
     assert behind.heights == pytest.approx(wheel_inputs(track, SPEED, farther, TIME).heights, abs=1e-9)
 

@@ -18,8 +18,10 @@ LONGEST_PASS_S = 1e6
 SHORT_PASSAGE, LOOKED_EVERY = 0.3, 32
 """Humps are looked up where they are alone, unless that is more than this share of a run; every so many moments the way is looked at for
 where that is."""
-_SLOPE_STEP_M = 1e-6
-"""Distance over which a road's slope is taken [m]: a wheel's way between two simulations of a difference is as short."""
+_STANDS_M = 1e-9
+"""A wheel that comes no farther than this in half a step stands [m]."""
+_BEFORE_M = 1e-6
+"""Humps are looked up from so far before they begin [m]."""
 
 
 @dataclass(frozen=True)
@@ -67,8 +69,9 @@ def nearby_inputs(
     """Find the road under every axle in drives that hardly differ from another one.
 
     Over other tracks the ways are the same. At other speeds, or with axles at other distances, heights change as the road slopes where
-    the wheels are: exact to the first order in how far the ways differ, which derivatives by differences need, at the price of two looks
-    at the road for all of them.
+    the wheels are, in the mean of a wheel's way in one step: exact to the first order in how far the ways differ, which derivatives by
+    differences need, at the price of one look at the road for all of them. The slope at a point would not do: that of a measured road has
+    steps between any two moments, which look at times a step apart like slow motions.
 
     Parameters
     ----------
@@ -84,7 +87,7 @@ def nearby_inputs(
         found.write(other.height(found.under), own)
     if ways:
         heights = track.height(found.under)
-        slopes = (track.height(found.under + _SLOPE_STEP_M) - heights) / _SLOPE_STEP_M
+        slopes = found.slopes(heights)
         moments = _looked_at(found.pieces, _moments(time))
         way = speed.distance(moments)
         for (law, behind), own in zip(ways, inputs[len(tracks) :], strict=True):
@@ -119,6 +122,14 @@ class _Passage:
         """Return each axle's value `shape (n_axles,)` where that axle is under way, to be used with `under`."""
         return _of_axles(self.pieces, values) if self.pieces else values[:, None]
 
+    def slopes(self, heights: Array) -> Array:
+        """Return how steep the road is under every axle, in the mean of its way in the step about each moment; level where it stands."""
+        if not self.pieces:
+            return _slopes(heights, self.under)
+        ends = np.cumsum([last + 1 - first for _, first, last in self.pieces])[:-1]
+        pairs = zip(np.split(heights, ends), np.split(self.under, ends), strict=True)
+        return np.concatenate([_slopes(*pair) for pair in pairs])
+
     def write(self, heights: Array, inputs: WheelInputs) -> None:
         """Write what heights at `under` make where inputs are zeros."""
         if not self.pieces:
@@ -129,6 +140,11 @@ class _Passage:
             begin += len(own)
             inputs.heights[first // 2 : last // 2, axle] = own[1::2]
             inputs.rates[first // 2 : last // 2, axle] = (own[2::2] - own[:-2:2]) / self.step
+
+
+def _slopes(heights: Array, under: Array) -> Array:
+    rise, run = np.gradient(heights, axis=-1), np.gradient(under, axis=-1)
+    return np.divide(rise, run, out=np.zeros_like(rise), where=np.abs(run) > _STANDS_M)
 
 
 def _pieces(spans: Array | None, speed: SpeedLaw, offsets: Array, moments: Array) -> tuple[tuple[int, int, int], ...]:
@@ -181,10 +197,10 @@ def _spans(tracks: Sequence[Track]) -> Array | None:
         return None
     spans: list[list[float]] = []
     for first, last in known:
-        if spans and first - _SLOPE_STEP_M <= spans[-1][1]:
+        if spans and first - _BEFORE_M <= spans[-1][1]:
             spans[-1][1] = max(spans[-1][1], last)
         else:
-            spans.append([first - _SLOPE_STEP_M, last])
+            spans.append([first - _BEFORE_M, last])
     return np.array(spans)
 
 
