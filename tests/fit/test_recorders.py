@@ -7,6 +7,7 @@ import pytest
 
 from tests.fit.profile_world import FINE, SIGMA, fine_channels, low_passed, misfit_of, read_run, rough_road
 from vehgen.fit.chain_estimate import ChainEstimate, ChainFit, estimate_chain, group_delay
+from vehgen.fit.misfit import Misfit
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.recorders import FoundRecorder, clearest, find_recorder, has_unknown
 from vehgen.measure.acquisition import POINT_SAMPLES, AcquisitionChain
@@ -65,6 +66,18 @@ def test_the_low_pass_that_a_recording_was_made_through_stands_in_the_channels_t
     assert applied.scenario.chain("F_q") == own
     assert {applied.scenario.chain(name) for name in ("F_az", "R_az", "R_q")} == {recorder.chain}
     assert not has_unknown([applied])
+
+
+def test_a_low_pass_beyond_the_band_of_a_fit_is_found_where_more_is_to_be_compared(tmp_path, rough):
+    """A band that was cut for folding, before a better fit told the recorder, opens again."""
+    late = 0.4159 / 38.0
+    misfit, x = late_fit(read_run(tmp_path, low_passed(rough[1], 4, 38.0), 12.0, rough[0]), late)
+    cut = Misfit(misfit.problem, misfit.noises, misfit.problem.space.start, misfit.nuisances, (0.5, 20.0))
+    found = find_recorder(cut, x, band=(0.5, 40.0))
+    assert not found.is_like(find_recorder(cut, x))
+    assert found.is_like(find_recorder(misfit, x))
+    assert (found.estimate.is_clear, found.band, found.chain.filter) == (True, (0.5, 40.0), "butterworth")
+    assert found.chain.cut_off == pytest.approx(38.0, rel=0.03)
 
 
 def test_the_low_pass_found_leaves_noise_where_the_assumed_one_does_not(tmp_path, rough):

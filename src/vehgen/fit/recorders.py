@@ -159,7 +159,8 @@ def find_recorder(
     """Return what stands for the unknown recorders of a fit's runs.
 
     Where several chains would do, the band ends at the frequency up to which folding matters in no run, but above the lines that are there
-    before a hump, too, which folding cannot make. Sensors have chains of their own where these do far better than one for all.
+    before a hump, too, which folding cannot make. Sensors have chains of their own where these do far better than one for all. All of the
+    band to be compared tells of chains, also what a fit through another chain had to leave out.
 
     Parameters
     ----------
@@ -170,7 +171,8 @@ def find_recorder(
     band
         The band to be compared [Hz] (default: the fit's).
     """
-    trials, asked = misfit.problem.trials, band or misfit.band
+    asked = band or misfit.band
+    misfit, trials = _within(misfit, x, asked), misfit.problem.trials
     unknown = [name for trial in trials for name in trial.channels if not trial.scenario.chain(name).is_known]
     channels = tuple(channels or dict.fromkeys(unknown))
     search = ChainSearch.of(misfit, x)
@@ -189,6 +191,15 @@ def find_recorder(
     steady = [(1 + LINE_WIDTH) * line for trial in trials for line in trial.lines]
     top = min(max(min(tops), asked[1] / 2, *steady), asked[1])
     return FoundRecorder(shared, (asked[0], top), top < asked[1], channels, apart)
+
+
+def _within(misfit: Misfit, x: Array, band: tuple[float, float]) -> Misfit:
+    """Return the misfit over another band, the road's part of the noise as its unknowns have it."""
+    if misfit.band == band:
+        return misfit
+    (unit, errors), n = misfit.split(x), misfit.n_parameters
+    values, adjusted = misfit.problem.space.values(unit), x[n : n + len(misfit.shared)]
+    return Misfit(misfit.problem, misfit.noises, values, misfit.nuisances, band, misfit.shared, misfit.known, errors, adjusted)
 
 
 def by_sensor(trials: Sequence[Trial], channels: Sequence[str]) -> list[tuple[str, ...]]:
