@@ -84,7 +84,7 @@ def collect(models: DiagnosisModels, quick: bool = False) -> Evidence:
         conditions=tuple(_conditions(models.last)),
         force=None if quick else _force(models),
         responses=response_curves(models),
-        origin=origin_of(detection.trials, models.libraries),
+        origin=origin_of((*detection.trials, *models.left_out), models.libraries),
     )
 
 

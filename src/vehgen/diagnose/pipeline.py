@@ -9,6 +9,7 @@ from vehgen.diagnose.collecting import collect
 from vehgen.diagnose.decision import Decision
 from vehgen.diagnose.detect.detection import Detection, detect
 from vehgen.diagnose.detect.splitting import kind_of_run, split_runs
+from vehgen.diagnose.left_out import leave_out
 from vehgen.diagnose.localise.localisation import localise, shortlist
 from vehgen.diagnose.result import Decided, Diagnosis
 from vehgen.diagnose.select.search import DiagnosisProgress, search_round
@@ -30,7 +31,8 @@ def diagnose_trials(
     Parameters
     ----------
     trials
-        Runs with recordings, of one vehicle. At least three are needed to name anything: one in three is kept for validation.
+        Runs with recordings, of one vehicle. At least three are needed to name anything: one in three is kept for validation. Runs with
+        a recording that is clipped, stuck or drifts are left out where three others remain.
     effects
         The library to try (default: all effects known).
     everywhere
@@ -54,10 +56,11 @@ def diagnose_trials(
     with one_blas_thread():
         say = progress or (lambda stage, done, total, best: None)
         say("detect", 0, 1, "")
-        detection = detect(sorted(trials, key=kind_of_run), band)  # whatever order they came in
+        usable, left_out = leave_out(sorted(trials, key=kind_of_run))  # whatever order they came in
+        detection = detect(usable, band)
         say("detect", 1, 1, f"chi {detection.chi:.3f}")
         found = Decision(detection, list(effects if effects is not None else library().values()), everywhere, say, runner).decide()
-        return with_evidence(found, say)
+        return with_evidence(left_out.told_beside(found), say)
 
 
 def with_evidence(found: Decided, progress: DiagnosisProgress) -> Diagnosis:

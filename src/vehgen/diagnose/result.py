@@ -24,6 +24,7 @@ class DiagnosisModels:
 
     `rounds` are the looks for one effect each, the first on the base; `chosen` the fits that were added, each on top of the one before.
     `law` describes an unknown force that no effect of the library explains. `libraries` are the files that effects were read from.
+    `left_out` are runs that were not looked at, for what their recordings show.
     """
 
     detection: Detection
@@ -31,6 +32,7 @@ class DiagnosisModels:
     chosen: tuple[ModelFit, ...]
     law: FreeForm | None = None
     libraries: tuple[str, ...] = ()
+    left_out: tuple[Trial, ...] = ()
 
     @property
     def last(self) -> ModelFit:
@@ -84,7 +86,7 @@ class Diagnosis(Result):
 
     @property
     def trials(self) -> tuple[Trial, ...]:
-        """All runs, those for fitting first."""
+        """All runs that were looked at, those for fitting first."""
         return self.detection.trials
 
     @property

@@ -84,7 +84,7 @@ class Verdict(Result):
 
     `reason` says it in plain sentences; `places` are the places that pass the place test; `next_experiment` what would tell more; `notes`
     what a careful reader should know; `free_form` describes the unknown force where no effect of the library does; `faults` are mistakes of
-    the measurement, to be put right before anything is named.
+    the measurement, to be put right before anything is named; beside effects, those of runs that were left out.
     """
 
     KIND: ClassVar[str] = "verdict"
