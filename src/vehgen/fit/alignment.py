@@ -2,7 +2,8 @@
 
 How a speed and its wander are off turns the phase of fast motions by whole cycles, and least squares would lock onto a wrong one. So speeds
 are tried, and lengths of a hump that is but guessed, each with the delay at which measured and simulated correlate best; from the best of
-them each run's own errors are fitted to slow motions, then to faster and faster ones.
+them each run's own errors are fitted to slow motions, then to faster and faster ones. Over a measured road they are fitted to all of these
+at once, too, and the better of both stands: there the few lines of slow motions may ask for a speed that wanders far off.
 """
 
 from __future__ import annotations
@@ -86,10 +87,13 @@ def _laid_over(misfit: Misfit, x: Array, number: int, bands: Sequence[float]) ->
             best, start = likeness, tried
     if "speed" not in names:
         return start
-    for highest in bands:
-        if WIDER * low < highest < high:
-            start = _fitted(misfit.alone(number, x, (low, highest)), start)
-    return start
+    found, reached = start, [highest for highest in bands if WIDER * low < highest < high]
+    for highest in reached:
+        found = _fitted(misfit.alone(number, x, (low, highest)), found)
+    if "odometer" not in names or len(reached) < 2:
+        return found
+    fast = misfit.alone(number, x, (low, reached[-1]))
+    return min(found, _fitted(fast, start), key=lambda errors: _loss(fast, errors))
 
 
 def error_bounds(misfit: Misfit, most: float = MOST_SIGMAS) -> tuple[Array, Array]:
@@ -109,6 +113,10 @@ def _fitted(alone: Misfit, start: Array) -> Array:
     begun = np.concatenate([np.zeros(len(alone.shared)), start])
     bounds = np.append(-shared, low), np.append(shared, high)
     return descend(alone, begun, Lineariser(alone, SLOPES_SERVE, secants=FORETOLD), bounds, TOLERANCE, STEPS)[len(alone.shared) :]
+
+
+def _loss(alone: Misfit, errors: Array) -> float:
+    return float((alone.residuals(np.concatenate([np.zeros(len(alone.shared)), errors])) ** 2).sum())
 
 
 def best_delay(measured: Array, simulated: Array, dt: float, band: tuple[float, float]) -> tuple[float, float]:
