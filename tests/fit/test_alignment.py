@@ -6,6 +6,7 @@ import scipy.signal
 
 from tests.fit.profile_world import FINE, fine_channels, misfit_of, read_run, rough_road
 from tests.fit.recordings import sedan_truth, write_run
+from vehgen.fit import alignment as module
 from vehgen.fit.alignment import LATEST, align, best_delay, error_bounds
 from vehgen.fit.least_squares import first_noises
 from vehgen.fit.misfit import Misfit
@@ -65,6 +66,25 @@ def test_a_speed_that_turns_fast_motions_by_whole_cycles_is_found(tmp_path):
     assert not errors[: len(misfit.common)].any()
     unaligned = np.sum(misfit.residuals(x) ** 2)
     assert np.sum(misfit.residuals(begun) ** 2) < 0.1 * unaligned
+
+
+@pytest.mark.parametrize("astray", [0.5, -0.5, 0.0])
+def test_of_slow_motions_first_and_all_at_once_the_better_is_taken_over_a_measured_road(tmp_path, monkeypatch, astray):
+    """Where slow motions lead a speed's wander astray, fast ones may hold it there."""
+    road = rough_road()
+    trial = read_run(tmp_path, fine_channels(road, 12.0)[::FINE], 12.0, road)
+    misfit, x = misfit_of(trial, Nuisances())
+    moved = []
+
+    def fitted(alone, start):
+        moved.append(alone.band[1])
+        at_once = moved.count(alone.band[1]) == 2
+        return np.zeros_like(start) if at_once else np.full_like(start, astray)
+
+    monkeypatch.setattr(module, "_fitted", fitted)
+    errors = align(misfit, x[: misfit.n_parameters])
+    assert moved == [3.0, 8.0, 20.0, 20.0]
+    assert np.abs(errors[misfit.own_columns(0).start - misfit.n_parameters :]).max() < 1e-12
 
 
 def test_a_run_whose_begin_is_known_is_left_as_it_is(tmp_path):
