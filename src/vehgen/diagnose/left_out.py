@@ -14,7 +14,7 @@ from vehgen.fit.trial import Trial
 
 FEWEST_RUNS = 3
 """So many runs must be left: with fewer nothing could be named."""
-TOLD: tuple[VerdictName, ...] = ("named", "several_effects", "ambiguous", "not_in_library")
+BESIDE_A_MISTAKE: tuple[VerdictName, ...] = ("named", "several_effects", "ambiguous", "not_in_library")
 """Verdicts on the other runs that stand beside a mistake; by any other one the mistake is what is to be told."""
 
 
@@ -32,7 +32,7 @@ class LeftOut:
         verdict, messages = found.verdict, [item.message for item in self.faults]
         runs = join_names([trial.name for trial in self.trials], "and")
         told = replace(verdict, faults=(*self.faults, *verdict.faults))
-        if verdict.verdict in TOLD:
+        if verdict.verdict in BESIDE_A_MISTAKE:
             told = replace(told, notes=(*verdict.notes, f"{runs} left out: {'; '.join(messages)}"))
         else:
             notes = (*verdict.notes, f"without {runs}: {verdict.reason}")
