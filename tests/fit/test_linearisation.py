@@ -6,8 +6,10 @@ import pytest
 from tests.fit.profile_world import FINE, fine_channels, misfit_of, read_run, rough_road
 from tests.fit.recordings import sedan_truth, write_run
 from vehgen.fit import linearisation as module
+from vehgen.fit.adjustments import SpeedScale
 from vehgen.fit.alignment import MOST_SHARPENED, MOST_SIGMAS, error_bounds
 from vehgen.fit.linearisation import MOST_MISSED, Lineariser, linearise
+from vehgen.fit.misfit import Misfit
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.trial import load_trials
 
@@ -64,6 +66,22 @@ def test_derivatives_by_errors_of_runs_are_those_of_whole_simulations(late, tmp_
             step = size * np.eye(len(x))[column]
             expected = (misfit.whitened_spectrum(x + step)[0] - misfit.whitened_spectrum(x - step)[0]) / (2 * size)
             assert np.linalg.norm(found.spectra[0][column] - expected) < 2e-2 * np.linalg.norm(expected), names[i]
+
+
+@pytest.mark.parametrize("one_sided", [True, False])
+def test_a_speed_off_in_all_runs_changes_what_each_runs_own_does(late, one_sided):
+    """Else one would seem to tell them apart, and fits ran off along what is the same."""
+    known, x = late
+    shared = (SpeedScale("all", 0.01, 1.0),)
+    misfit = Misfit(known.problem, known.noises, known.problem.space.start, known.nuisances, known.band, shared)
+    n = misfit.n_parameters
+    at = np.concatenate([x[:n], [0.0], x[n:]])
+    place, speed = next((i, item) for i, item in enumerate(misfit.errors[0].own) if item.name == "speed")
+    column = misfit.own_columns(0).start + place
+    at[column] = 0.0
+    spectra = linearise(misfit, at, one_sided=one_sided).spectra[0]
+    own = spectra[column] / speed.sigma
+    assert np.linalg.norm(spectra[n] / 0.01 - own) < 1e-4 * np.linalg.norm(own)
 
 
 def test_derivatives_by_errors_of_runs_are_taken_anew_when_asked(late):

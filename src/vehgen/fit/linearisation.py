@@ -152,8 +152,7 @@ class _Trial:
         """Return the trial's whitened derivatives by its columns, and those of its motions by its own errors."""
         misfit, shared, common = self.misfit, self.misfit.shared, self.misfit.common
         items = misfit.errors[self.number].items
-        steps = UNIT_DIFFERENCE * np.eye(len(shared))
-        by_shared = [self._by_shared(step * item.scale) for item, step in zip(shared, steps, strict=True)]
+        by_shared = [self._by_shared(i) for i in range(len(shared))]
         wanted = [i for i, item in enumerate(items) if item.moves_vehicle and i - len(common) not in (known or {})]
         slopes: Slopes = {**(known or {}), **{i - len(common): own for i, own in self._by_errors(wanted).items()}}
         motions = np.concatenate(
@@ -169,8 +168,12 @@ class _Trial:
         rows = [by_error[i - len(common)] if item.moves_vehicle else read[i] for i, item in enumerate(items)]
         return -misfit.whiten(self.number, np.concatenate([lines[:n], np.reshape(rows, (-1, *lines.shape[1:]))])), slopes
 
-    def _by_shared(self, step: Array) -> Array:
-        """Return the change of the motions per UNIT_DIFFERENCE, when adjustments are moved by these steps."""
+    def _by_shared(self, place: int) -> Array:
+        """Return the derivative of the motions by an adjustment, in units of its scale."""
+        item, trial = self.misfit.shared[place], self.misfit.problem.trials[self.number]
+        step = UNIT_DIFFERENCE * item.scale * np.eye(len(self.numbers))[place]
+        if item.scenario(trial.scenario, float(self.numbers[place] + step[place])) is not trial.scenario:
+            return np.asarray(self._by_moves(step[None], np.zeros((1, len(self.error))))[0])
         ahead = self.misfit.respond(self.number, self.middle, self.numbers + step, self.error)[0]
         if self.one_sided:
             return np.asarray((ahead - self.centre) / UNIT_DIFFERENCE)
@@ -182,11 +185,22 @@ class _Trial:
         if not wanted:
             return {}
         steps = UNIT_DIFFERENCE * np.eye(len(self.error))[wanted]
-        moved = np.vstack([np.zeros((1, len(self.error))), steps] + ([] if self.one_sided else [-steps]))
-        responses, n = self.misfit.respond_nearby(self.number, self.middle[0], self.numbers, self.error + moved), len(wanted)
+        return dict(zip(wanted, self._by_moves(np.zeros((len(wanted), len(self.numbers))), steps), strict=True))
+
+    def _by_moves(self, numbers: Array, errors: Array) -> Array:
+        """Return the changes of the motions per UNIT_DIFFERENCE by moves of adjustments and errors, rows each, that change a run's drive.
+
+        All see the road alike: a speed that is off in all runs changes what each run's own does that is off by as much.
+        """
+        n = len(numbers)
+        rows = [np.zeros((1, steps.shape[1])) for steps in (numbers, errors)]
+        moved = [
+            np.vstack([zero, steps, *(() if self.one_sided else (-steps,))]) for zero, steps in zip(rows, (numbers, errors), strict=True)
+        ]
+        responses = self.misfit.respond_nearby(self.number, self.middle[0], self.numbers + moved[0], self.error + moved[1])
         if self.one_sided:
-            return dict(zip(wanted, (responses[1:] - responses[0]) / UNIT_DIFFERENCE, strict=True))
-        return dict(zip(wanted, (responses[1 : n + 1] - responses[n + 1 :]) / (2 * UNIT_DIFFERENCE), strict=True))
+            return np.asarray((responses[1:] - responses[0]) / UNIT_DIFFERENCE)
+        return np.asarray((responses[1 : n + 1] - responses[n + 1 :]) / (2 * UNIT_DIFFERENCE))
 
 
 class Lineariser:

@@ -199,14 +199,15 @@ class Misfit:
         return self._adjust(number, trial, response, numbers, error)
 
     def respond_nearby(self, number: int, values: Array, numbers: Array, errors: Array) -> Array:
-        """Return how the places of trial `number`'s sensors move at several errors of the trial that hardly differ.
+        """Return how the places of trial `number`'s sensors move at several adjustments and errors of the trial that hardly differ.
 
-        As :meth:`respond` at searched values `shape (n_parameters,)` [SI], at errors `shape (n, n_errors)` of the trial; differences from
-        the first are right to the first order. `shape (n, n_samples, n_channels)`.
+        As :meth:`respond` at searched values `shape (n_parameters,)` [SI], at adjustments `shape (n, n_adjustments)` and the trial's errors
+        `shape (n, n_errors)`; differences from the first are right to the first order. `shape (n, n_samples, n_channels)`.
         """
-        trial = self.problem.trials[number]
-        first, *others = (self._driven(number, trial, numbers, error) for error in errors)
-        return self._adjust(number, trial, self.problem.respond_nearby(values, trial, first, others), numbers, errors[0])
+        trial, pairs = self.problem.trials[number], list(zip(numbers, errors, strict=True))
+        first, *others = (self._driven(number, trial, *pair) for pair in pairs)
+        found = self.problem.respond_nearby(values, trial, first, others)
+        return np.stack([self._adjust(number, trial, own[None], *pair)[0] for own, pair in zip(found, pairs, strict=True)])
 
     def _driven(self, number: int, trial: Trial, numbers: Array, error: Array) -> Scenario:
         """Return what a trial drives through, at adjustments and errors."""
