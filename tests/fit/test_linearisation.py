@@ -3,15 +3,19 @@
 import numpy as np
 import pytest
 
-from tests.fit.profile_world import FINE, fine_channels, misfit_of, read_run, rough_road
+from tests.fit.profile_world import FINE, SIGMA, fine_channels, misfit_of, read_run, rough_road
+from tests.fit.profile_world import write_run as write_rough_run
 from tests.fit.recordings import sedan_truth, write_run
 from vehgen.fit import linearisation as module
 from vehgen.fit.adjustments import SpeedScale
 from vehgen.fit.alignment import MOST_SHARPENED, MOST_SIGMAS, error_bounds
 from vehgen.fit.linearisation import MOST_MISSED, Lineariser, linearise
 from vehgen.fit.misfit import Misfit
+from vehgen.fit.noise import EVEN, Noise
 from vehgen.fit.nuisances import Nuisances
+from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
+from vehgen.vehicle import bundled_models
 
 MOVES = {"delay": 0.01, "speed": 0.02, "wander": 0.2, "odometer": 1.0, "axle_position": 1.0}
 """How many standard deviations take a wheel about as far as it comes in one step."""
@@ -66,6 +70,25 @@ def test_derivatives_by_errors_of_runs_are_those_of_whole_simulations(late, tmp_
             step = size * np.eye(len(x))[column]
             expected = (misfit.whitened_spectrum(x + step)[0] - misfit.whitened_spectrum(x - step)[0]) / (2 * size)
             assert np.linalg.norm(found.spectra[0][column] - expected) < 2e-2 * np.linalg.norm(expected), names[i]
+
+
+@pytest.mark.parametrize("one_sided", [True, False])
+def test_derivatives_by_a_length_between_axles_are_those_of_moves_of_a_step(tmp_path, one_sided):
+    """As those by where an axle stands: a searched wheelbase moves the rear wheel along the same road."""
+    text = bundled_models()["sedan2"].read_text(encoding="utf-8")
+    (tmp_path / "long.yaml").write_text(text.replace("{value: 2.8 m,", "{value: 2.8 m, range: [2.7 m, 2.9 m],"), encoding="utf-8")
+    road = rough_road()
+    run = write_rough_run(tmp_path, fine_channels(road, 12.0)[::FINE], 12.0, road)
+    problem = make_problem(load_trials(run, tmp_path / "long.yaml"), ("wheelbase", "kf"))
+    trial = problem.trials[0]
+    assert problem.lengths_between_axles(trial) == (0,)
+    misfit = Misfit(problem, {trial.name: Noise(EVEN, SIGMA)}, problem.space.start, Nuisances(), (0.5, 40.0))
+    x = np.concatenate([problem.space.unit(problem.space.start), np.full(misfit.n_errors, 0.3)])
+    found = linearise(misfit, x, one_sided=one_sided).spectra[0]
+    for place, size in enumerate((12.0 * trial.scenario.dt / 0.2, 1e-5)):
+        step = size * np.eye(len(x))[place]
+        expected = (misfit.whitened_spectrum(x + step)[0] - misfit.whitened_spectrum(x - step)[0]) / (2 * size)
+        assert np.linalg.norm(found[place] - expected) < 2e-2 * np.linalg.norm(expected)
 
 
 @pytest.mark.parametrize("one_sided", [True, False])

@@ -132,35 +132,39 @@ def linearise(misfit: Misfit, x: Array, *, one_sided: bool = False, slopes_of: L
 
 
 class _Trial:
-    """One trial of a misfit at unknowns x, for its derivatives."""
+    """One trial of a misfit at unknowns x, for its derivatives.
+
+    What moves wheels along the road - a length between axles, an adjustment or an error of the drive - is derived in one simulation of
+    several individuals that all see the road alike: else a speed that is off in all runs would seem to do something else than each run's
+    own, and a length between axles something else than an axle that stands elsewhere.
+    """
 
     def __init__(self, misfit: Misfit, x: Array, number: int, one_sided: bool) -> None:
         self.misfit, self.number, self.one_sided = misfit, number, one_sided
-        self.numbers, self.error = misfit.adjusted(x), misfit.errors_of(x, number)
-        space, unit, n = misfit.problem.space, misfit.split(x)[0], misfit.n_parameters
-        self.middle = space.values(unit)[None]
-        if one_sided:
-            moved = space.values(unit + np.vstack([np.eye(n), np.zeros((1, n))]) * UNIT_DIFFERENCE)
-            responses = misfit.respond(number, moved, self.numbers, self.error)
-            self.centre, self.by_parameter = responses[n], (responses[:n] - responses[n]) / UNIT_DIFFERENCE
-        else:
-            moved = space.values(unit + np.vstack([np.eye(n), -np.eye(n), np.zeros((1, n))]) * UNIT_DIFFERENCE)
-            responses = misfit.respond(number, moved, self.numbers, self.error)
-            self.centre, self.by_parameter = responses[2 * n], (responses[:n] - responses[n : 2 * n]) / (2 * UNIT_DIFFERENCE)
+        self.unit, self.numbers, self.error = misfit.split(x)[0], misfit.adjusted(x), misfit.errors_of(x, number)
+        trial, n = misfit.problem.trials[number], misfit.n_parameters
+        self.lengths = misfit.problem.lengths_between_axles(trial)
+        still = [i for i in range(n) if i not in self.lengths]
+        steps = np.eye(n)[still]
+        moves = np.vstack([np.zeros((1, n)), steps, *(() if one_sided else (-steps,))]) * UNIT_DIFFERENCE
+        responses = misfit.respond(number, misfit.problem.space.values(self.unit + moves), self.numbers, self.error)
+        self.centre = responses[0]
+        self.by_parameter = dict(zip(still, self._differences(responses), strict=True))
 
     def block(self, known: Slopes | None) -> tuple[Complex, Slopes]:
         """Return the trial's whitened derivatives by its columns, and those of its motions by its own errors."""
-        misfit, shared, common = self.misfit, self.misfit.shared, self.misfit.common
+        misfit, common = self.misfit, self.misfit.common
         items = misfit.errors[self.number].items
-        by_shared = [self._by_shared(i) for i in range(len(shared))]
+        by_drive = [i for i in range(len(misfit.shared)) if self._changes_drive(i)]
         wanted = [i for i, item in enumerate(items) if item.moves_vehicle and i - len(common) not in (known or {})]
-        slopes: Slopes = {**(known or {}), **{i - len(common): own for i, own in self._by_errors(wanted).items()}}
-        motions = np.concatenate(
-            [self.centre[None], self.by_parameter, np.reshape(by_shared, (-1, *self.centre.shape)), *(own[None] for own in slopes.values())]
-        )
-        unread = misfit.unread(self.number, motions, self.error)
+        found = iter(self._by_moves(self.lengths, by_drive, wanted))
+        by_parameter = {**self.by_parameter, **{i: next(found) for i in self.lengths}}
+        by_shared = {i: next(found) if i in by_drive else self._by_shared(i) for i in range(len(misfit.shared))}
+        slopes: Slopes = {**(known or {}), **{i - len(common): next(found) for i in wanted}}
+        motions = [self.centre, *(by_parameter[i] for i in sorted(by_parameter)), *by_shared.values(), *slopes.values()]
+        unread = misfit.unread(self.number, np.stack(motions), self.error)
         lines = misfit.read(self.number, unread[1:], self.error)
-        n = len(self.by_parameter) + len(shared)
+        n = len(by_parameter) + len(by_shared)
         by_error = dict(zip(slopes, lines[n:], strict=True))
         ahead, behind = (misfit.unread(self.number, self.centre, self.error, later) for later in (WINDOW_SHIFT_S, -WINDOW_SHIFT_S))
         frequency, later = misfit.frequency(self.number), (ahead - behind) / (2 * WINDOW_SHIFT_S)
@@ -168,38 +172,37 @@ class _Trial:
         rows = [by_error[i - len(common)] if item.moves_vehicle else read[i] for i, item in enumerate(items)]
         return -misfit.whiten(self.number, np.concatenate([lines[:n], np.reshape(rows, (-1, *lines.shape[1:]))])), slopes
 
+    def _changes_drive(self, place: int) -> bool:
+        """Return whether an adjustment changes what the trial drives through."""
+        item, scenario = self.misfit.shared[place], self.misfit.problem.trials[self.number].scenario
+        return item.scenario(scenario, float(self.numbers[place] + UNIT_DIFFERENCE * item.scale)) is not scenario
+
     def _by_shared(self, place: int) -> Array:
-        """Return the derivative of the motions by an adjustment, in units of its scale."""
-        item, trial = self.misfit.shared[place], self.misfit.problem.trials[self.number]
-        step = UNIT_DIFFERENCE * item.scale * np.eye(len(self.numbers))[place]
-        if item.scenario(trial.scenario, float(self.numbers[place] + step[place])) is not trial.scenario:
-            return np.asarray(self._by_moves(step[None], np.zeros((1, len(self.error))))[0])
-        ahead = self.misfit.respond(self.number, self.middle, self.numbers + step, self.error)[0]
-        if self.one_sided:
-            return np.asarray((ahead - self.centre) / UNIT_DIFFERENCE)
-        behind = self.misfit.respond(self.number, self.middle, self.numbers - step, self.error)[0]
-        return np.asarray((ahead - behind) / (2 * UNIT_DIFFERENCE))
+        """Return the derivative of the motions by an adjustment of what sensors read, in units of its scale."""
+        step = UNIT_DIFFERENCE * self.misfit.shared[place].scale * np.eye(len(self.numbers))[place]
+        values = self.misfit.problem.space.values(self.unit)[None]
+        numbers = [self.numbers + step, *(() if self.one_sided else (self.numbers - step,))]
+        moved = [self.misfit.respond(self.number, values, own, self.error)[0] for own in numbers]
+        return np.asarray(self._differences(np.stack([self.centre, *moved]))[0])
 
-    def _by_errors(self, wanted: list[int]) -> Slopes:
-        """Return the derivatives of the motions by these errors, all from one simulation of several individuals."""
-        if not wanted:
-            return {}
-        steps = UNIT_DIFFERENCE * np.eye(len(self.error))[wanted]
-        return dict(zip(wanted, self._by_moves(np.zeros((len(wanted), len(self.numbers))), steps), strict=True))
+    def _by_moves(self, parameters: Sequence[int], adjustments: Sequence[int], errors: Sequence[int]) -> Array:
+        """Return the derivatives of the motions by these parameters, adjustments and errors in turn, all from one simulation."""
+        sizes = len(self.unit), len(self.numbers), len(self.error)
+        chosen = [*parameters, *(sizes[0] + i for i in adjustments), *(sizes[0] + sizes[1] + i for i in errors)]
+        if not chosen:
+            return np.zeros((0, *self.centre.shape))
+        steps = UNIT_DIFFERENCE * np.eye(sum(sizes))[chosen]
+        moves = np.vstack([np.zeros((1, sum(sizes))), steps, *(() if self.one_sided else (-steps,))])
+        units, numbers, own = np.split(moves, np.cumsum(sizes)[:-1], axis=1)
+        scales = np.array([item.scale for item in self.misfit.shared])
+        values = self.misfit.problem.space.values(self.unit + units)
+        return self._differences(self.misfit.respond_nearby(self.number, values, self.numbers + numbers * scales, self.error + own))
 
-    def _by_moves(self, numbers: Array, errors: Array) -> Array:
-        """Return the changes of the motions per UNIT_DIFFERENCE by moves of adjustments and errors, rows each, that change a run's drive.
-
-        All see the road alike: a speed that is off in all runs changes what each run's own does that is off by as much.
-        """
-        n = len(numbers)
-        rows = [np.zeros((1, steps.shape[1])) for steps in (numbers, errors)]
-        moved = [
-            np.vstack([zero, steps, *(() if self.one_sided else (-steps,))]) for zero, steps in zip(rows, (numbers, errors), strict=True)
-        ]
-        responses = self.misfit.respond_nearby(self.number, self.middle[0], self.numbers + moved[0], self.error + moved[1])
+    def _differences(self, responses: Array) -> Array:
+        """Return derivatives from the response itself and those after each move, then, if two-sided, after each to the other side."""
         if self.one_sided:
             return np.asarray((responses[1:] - responses[0]) / UNIT_DIFFERENCE)
+        n = len(responses) // 2
         return np.asarray((responses[1 : n + 1] - responses[n + 1 :]) / (2 * UNIT_DIFFERENCE))
 
 

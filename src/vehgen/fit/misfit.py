@@ -199,10 +199,10 @@ class Misfit:
         return self._adjust(number, trial, response, numbers, error)
 
     def respond_nearby(self, number: int, values: Array, numbers: Array, errors: Array) -> Array:
-        """Return how the places of trial `number`'s sensors move at several adjustments and errors of the trial that hardly differ.
+        """Return how the places of trial `number`'s sensors move in several drives that hardly differ.
 
-        As :meth:`respond` at searched values `shape (n_parameters,)` [SI], at adjustments `shape (n, n_adjustments)` and the trial's errors
-        `shape (n, n_errors)`; differences from the first are right to the first order. `shape (n, n_samples, n_channels)`.
+        As :meth:`respond` at searched values `shape (n, n_parameters)` [SI], each with its adjustments `shape (n, n_adjustments)` and
+        errors of the trial `shape (n, n_errors)`; differences from the first are right to the first order.
         """
         trial, pairs = self.problem.trials[number], list(zip(numbers, errors, strict=True))
         first, *others = (self._driven(number, trial, *pair) for pair in pairs)

@@ -76,13 +76,18 @@ class Problem:
             return rank_population(trial.simulator, self.population(values, trial), trial.scenario, reduction)
 
     def respond_nearby(self, values: Array, trial: Trial, scenario: Scenario, others: Sequence[Scenario]) -> Array:
-        """Simulate searched values `shape (space.size,)` [SI] over a scenario of a trial and others that hardly differ from it.
+        """Simulate searched values `shape (1 + len(others), space.size)` [SI] over a scenario of a trial and others, all hardly different.
 
         Returns
         -------
         Responses `shape (1 + len(others), n_samples, n_channels)`, that of `scenario` first (see :meth:`Simulator.run_nearby`).
         """
-        return trial.simulator.run_nearby(self.population(values[None], trial)[0], scenario, others)
+        return trial.simulator.run_nearby(self.population(values, trial), scenario, others)
+
+    def lengths_between_axles(self, trial: Trial) -> tuple[int, ...]:
+        """Return which searched parameters decide where a trial's axles meet the road."""
+        deciding = trial.simulator.layout_parameters if trial.scenario.track.parts else frozenset[str]()
+        return tuple(i for i, name in enumerate(self.space.names) if name in deciding and name not in trial.fixed)
 
     def with_trials(self, trials: Sequence[Trial]) -> Problem:
         """Return the problem over other trials."""

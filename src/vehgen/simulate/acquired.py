@@ -20,7 +20,7 @@ from vehgen.codegen import Excitation, Kernel, KernelResult
 from vehgen.codegen.decimation import Phases, decimate
 from vehgen.measure.acquisition import AcquisitionChain
 from vehgen.simulate.last_used import LastUsed
-from vehgen.simulate.nearby import nearby_excitation
+from vehgen.simulate.nearby import Drive, nearby_excitation
 from vehgen.simulate.scenario import Scenario
 
 Array = NDArray[np.float64]
@@ -75,7 +75,7 @@ def acquire(
     scenario: Scenario,
     offsets: Array,
     threads: int | None = None,
-    nearby: Sequence[Scenario] = (),
+    nearby: Sequence[Drive] = (),
 ) -> KernelResult:
     """Run a population whose axles stand alike and return what its recorders keep.
 
@@ -92,22 +92,23 @@ def acquire(
     threads
         How many cores to use (default: all).
     nearby
-        Scenarios that hardly differ: the first individual is run over `scenario`, each other one over one of these.
+        Drives that hardly differ: the first individual is run over `scenario`, each other one as one of these.
     """
     found = _acquired(kernel, parameters, scenario, offsets, threads, nearby)
     return replace(found, responses=found.responses[:, scenario.skipped :]) if scenario.skipped else found
 
 
 def _acquired(
-    kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, threads: int | None, nearby: Sequence[Scenario]
+    kernel: Kernel, parameters: Array, scenario: Scenario, offsets: Array, threads: int | None, nearby: Sequence[Drive]
 ) -> KernelResult:
     chains = _filters(scenario, [channel.name for channel in kernel.model.channels])
-    distinct, begin = set(chains), initial_states(scenario, len(parameters), nearby)
+    distinct, begin = set(chains), initial_states(scenario, len(parameters), [item for item, _ in nearby])
 
     def excitation(ahead: int) -> Excitation:
         """Return what drives the individuals, so many samples longer than the scenario."""
         longer = extended(scenario, ahead)
-        return nearby_excitation(longer, [extended(item, ahead) for item in nearby], offsets) if nearby else longer.excitation(offsets)
+        drives = [(extended(item, ahead), behind) for item, behind in nearby]
+        return nearby_excitation(longer, offsets, drives) if drives else longer.excitation(offsets)
 
     if all(chain.is_point_sample for chain in distinct):
         return kernel.run(parameters, excitation(0), scenario.decimation, begin, threads)

@@ -107,23 +107,22 @@ class Simulator:
         """Return the distinct layouts of axles in a population `shape (n_layouts, n_axles)` [m], and the number of each individual's."""
         return _distinct_rows(np.round(self.wheel_offsets(parameters), 12))
 
-    def run_nearby(self, individual: Array, scenario: Scenario, others: Sequence[Scenario]) -> Array:
-        """Simulate one individual over a scenario and others that hardly differ from it: right to the first order, for derivatives.
+    def run_nearby(self, parameters: Array, scenario: Scenario, others: Sequence[Scenario]) -> Array:
+        """Simulate individuals that hardly differ, over a scenario and others alike: right to the first order, for derivatives.
 
         Parameters
         ----------
-        individual
-            `shape (n_parameters,)`.
+        parameters
+            `shape (1 + len(others), n_parameters)`.
         scenario, others
-            Scenarios of the same length, step and chains.
+            One for each individual, of the same length, step and chains.
 
         Returns
         -------
         Responses `shape (1 + len(others), n_samples, n_channels)`, that of `scenario` first.
         """
-        parameters = np.repeat(individual[None, :], 1 + len(others), axis=0)
-        layout = np.round(self.wheel_offsets(parameters[:1]), 12)[0]
-        result = acquire(self.kernel, parameters, scenario, layout, 1, others)
+        layout, *layouts = np.round(self.wheel_offsets(parameters), 12)
+        result = acquire(self.kernel, parameters, scenario, layout, 1, list(zip(others, layouts, strict=True)))
         return self._add_static(parameters, result.responses, result.failures)
 
     def jacobian(self, parameters: Array, scenario: Scenario, names: Sequence[str], relative_step: float = 1e-4) -> tuple[Array, Array]:
@@ -189,10 +188,13 @@ class Simulator:
         return found
 
     @cached_property
+    def layout_parameters(self) -> frozenset[str]:
+        """Names of the parameters that the distances between axles depend on."""
+        return frozenset().union(*self.distance_parameters.values())
+
+    @cached_property
     def _layout_columns(self) -> list[int]:
-        """Columns of the parameters that the distances between axles depend on."""
-        names = frozenset().union(*self.distance_parameters.values())
-        return [i for i, name in enumerate(self.model.parameters) if name in names]
+        return [i for i, name in enumerate(self.model.parameters) if name in self.layout_parameters]
 
     def _add_static(self, parameters: Array, responses: Array, failures: Mapping[int, str]) -> Array:
         """Add the static load to channels that ask for the whole load of a tyre or hinge, except where an individual failed."""
