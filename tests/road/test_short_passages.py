@@ -50,6 +50,17 @@ def test_drives_nearby_change_as_drives_a_step_apart_do(parts, footprint):
         assert np.linalg.norm(by_delay - expected) <= 2e-3 * np.linalg.norm(expected)
 
 
+@pytest.mark.parametrize("at", [4.031, 4.0315, 4.032])
+def test_a_drive_nearby_comes_upon_a_hump_as_it_does_wherever_the_way_is_looked_at(at):
+    """One that begins within half a step of a moment that was looked at lies a step within its piece, too."""
+    time, track, speed = np.arange(0, 12, 1e-3), Track((Hump.from_shape("half_sine", at, 0.5, 0.03),)), ConstantSpeed(2.0)
+    found = WheelInputs(*np.zeros((2, len(time), len(OFFSETS))))
+    nearby_inputs(track, speed, [], [(AdjustedSpeed(speed, 1e-8), OFFSETS)], OFFSETS, time, [found])
+    here, there, back = (wheel_inputs(track, AdjustedSpeed(speed, by), OFFSETS, time) for by in (0.0, 5e-4, -5e-4))
+    expected = (there.rates - back.rates) / 1e-3
+    assert np.linalg.norm((found.rates - here.rates) / 1e-8 - expected) < 2e-3 * np.linalg.norm(expected)
+
+
 @pytest.mark.parametrize("footprint", [0.0, 0.24])
 @pytest.mark.parametrize("parts", ROADS.values(), ids=ROADS)
 def test_drives_over_tracks_nearby_are_those_drives(parts, footprint):

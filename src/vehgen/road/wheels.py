@@ -20,6 +20,8 @@ SHORT_PASSAGE, LOOKED_EVERY = 0.3, 32
 where that is."""
 _STANDS_M = 1e-9
 """A wheel that comes no farther than this in half a step stands [m]."""
+_ON_EITHER_SIDE = 2
+"""So many moments more on either side of a hump, a step: its slope at an end is that in the mean of a step, too."""
 _BEFORE_M = 1e-6
 """Humps are looked up from so far before they begin [m]."""
 
@@ -162,7 +164,13 @@ def _pieces(spans: Array | None, speed: SpeedLaw, offsets: Array, moments: Array
     firsts = numbers[np.maximum(ends[..., 0] - 1, 0)].tolist()
     lasts = numbers[np.minimum(ends[..., 1], len(numbers) - 1)].tolist()
     pairs = ((axle, zip(*own, strict=True)) for axle, own in enumerate(zip(firsts, lasts, strict=True)))
-    return tuple((axle, first, last) for axle, own in pairs for first, last in own if first < last)
+    most = len(moments) - 1
+    return tuple(
+        (axle, max(first - _ON_EITHER_SIDE, 0), min(last + _ON_EITHER_SIDE, most))
+        for axle, own in pairs
+        for first, last in own
+        if first < last
+    )
 
 
 def _looked_at(pieces: Sequence[tuple[int, int, int]], moments: Array) -> Array:
