@@ -11,6 +11,7 @@ from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.result import Decided, DiagnosisModels
 from vehgen.diagnose.verdict import Gap, Verdict
 from vehgen.effects import effects_named
+from vehgen.report.pages.diagnosis_page import diagnosis_page
 
 RUNS = (*HUMPS, RunSpec((Hump(0.5, 0.03, 5.0),), 3.0, 5.0, "middle"))
 FRICTION = Effect("dry_friction", "rear", {"force": 800.0})
@@ -70,5 +71,27 @@ def test_a_mistake_of_the_other_runs_stands_beside_that_of_the_run_left_out(tria
     told = left_out.told_beside(decided)
     assert [item.kind for item in told.verdict.faults] == ["clipped", "gain"]
     assert told.verdict.notes == ("without high: The measurement is at fault: low",)
+    assert told.verdict.reason.startswith("The measurement is at fault: high: F_az is clipped at ")
+    assert told.verdict.reason.endswith("; low: R_az reads 20 % too much")
     assert told.models.left_out == left_out.trials
     assert LeftOut().told_beside(decided) is decided
+
+
+@pytest.mark.parametrize("stopped", [True, False])
+def test_of_a_stopped_diagnosis_only_that_is_told_beside_the_run_left_out(trials_of, stopped):
+    """Else a mistake stands in the place of a verdict that asks for more; what it asks for would not put the mistake right."""
+    verdict = Verdict("insufficient_data", "No verdict: it was stopped", (), Gap(2.0, 2.0, 1.0), next_experiment="run it to its end")
+    _, left_out = leave_out(edited(trials_of(runs=RUNS), clip, only="high"))
+    told = left_out.told_beside(Decided(DiagnosisModels(None, (), ()), verdict, stopped)).verdict
+    assert [item.kind for item in told.faults] == ["clipped"]
+    assert told.verdict == ("insufficient_data" if stopped else "measurement_fault")
+    assert told.next_experiment == ("run it to its end" if stopped else None)
+    assert told.reason.startswith("No verdict" if stopped else "The measurement is at fault: high")
+
+
+@pytest.mark.parametrize("whole", [True, False])
+def test_a_page_says_whether_what_it_shows_has_the_mistake_in_it(trials_of, whole):
+    runs = edited(trials_of(runs=RUNS if not whole else HUMPS), clip, only="high")
+    page = diagnosis_page(diagnose_trials(runs, effects_named(["dry_friction"])))
+    assert ("shows the gap with the mistake in it" in page) is whole
+    assert ("Runs with a mistake are left out of what follows" in page) is not whole

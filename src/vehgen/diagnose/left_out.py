@@ -15,7 +15,8 @@ from vehgen.fit.trial import Trial
 FEWEST_RUNS = 3
 """So many runs must be left: with fewer nothing could be named."""
 BESIDE_A_MISTAKE: tuple[VerdictName, ...] = ("named", "several_effects", "ambiguous", "not_in_library")
-"""Verdicts on the other runs that stand beside a mistake; by any other one the mistake is what is to be told."""
+"""Verdicts on the other runs that stand beside a mistake; by any other one the mistake is what is to be told, but where nothing was decided
+as the diagnosis was stopped."""
 
 
 @dataclass(frozen=True)
@@ -32,11 +33,12 @@ class LeftOut:
         verdict, messages = found.verdict, [item.message for item in self.faults]
         runs = join_names([trial.name for trial in self.trials], "and")
         told = replace(verdict, faults=(*self.faults, *verdict.faults))
-        if verdict.verdict in BESIDE_A_MISTAKE:
+        if verdict.verdict in BESIDE_A_MISTAKE or found.stopped:
             told = replace(told, notes=(*verdict.notes, f"{runs} left out: {'; '.join(messages)}"))
         else:
             notes = (*verdict.notes, f"without {runs}: {verdict.reason}")
-            told = replace(told, verdict="measurement_fault", reason=mistaken(messages), notes=notes)
+            reason = mistaken([item.message for item in told.faults])
+            told = replace(told, verdict="measurement_fault", reason=reason, notes=notes, next_experiment=None)
         return replace(found, verdict=told, models=replace(found.models, left_out=self.trials))
 
 

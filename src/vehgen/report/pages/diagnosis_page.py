@@ -38,6 +38,7 @@ def diagnosis_page(diagnosis: Diagnosis) -> str:
         vehicle=evidence.vehicle,
         verdict=diagnosis.verdict,
         stopped=diagnosis.stopped,
+        mistakes_left_out=_mistakes_left_out(diagnosis),
         noise=[f"{item.channel} {item.least:.3g} to {item.largest:.3g} {QUANTITY_UNITS.get(item.quantity, '')}" for item in evidence.noise],
         parameters=[_parameter(item) for item in evidence.parameters],
         conditions=[
@@ -61,6 +62,12 @@ def diagnosis_page(diagnosis: Diagnosis) -> str:
         origin=evidence.origin,
         marked=_marked(diagnosis),
     )
+
+
+def _mistakes_left_out(diagnosis: Diagnosis) -> bool:
+    """Return whether no run that is shown has a mistake."""
+    shown = {item.run for item in diagnosis.verdict.gap.runs}
+    return all(fault.runs and not shown.intersection(fault.runs) for fault in diagnosis.verdict.faults)
 
 
 def _parameter(item: BaseParameter) -> dict[str, str]:
