@@ -68,11 +68,11 @@ def test_a_speed_that_turns_fast_motions_by_whole_cycles_is_found(tmp_path):
     assert np.sum(misfit.residuals(begun) ** 2) < 0.1 * unaligned
 
 
-@pytest.mark.parametrize("astray", [0.5, -0.5, 0.0])
-def test_of_slow_motions_first_and_all_at_once_the_better_is_taken_over_a_measured_road(tmp_path, monkeypatch, astray):
+@pytest.mark.parametrize(("astray", "known"), [(0.5, ""), (-0.5, ""), (0.0, ""), (0.5, "uncertainty: {odometer: 0}\n")])
+def test_of_slow_motions_first_and_all_at_once_the_better_is_taken_over_a_measured_road(tmp_path, monkeypatch, astray, known):
     """Where slow motions lead a speed's wander astray, fast ones may hold it there."""
     road = rough_road()
-    trial = read_run(tmp_path, fine_channels(road, 12.0)[::FINE], 12.0, road)
+    trial = read_run(tmp_path, fine_channels(road, 12.0)[::FINE], 12.0, road, extra=known)
     misfit, x = misfit_of(trial, Nuisances())
     moved = []
 

@@ -6,8 +6,9 @@ import pytest
 from tests.fit.profile_world import FINE, SIGMA, fine_channels, misfit_of, read_run, rough_road
 from tests.fit.profile_world import write_run as write_rough_run
 from tests.fit.recordings import sedan_truth, write_run
+from vehgen.diagnose.inputs.adjustments import ClockRate, RecorderFilter, RunLevel
 from vehgen.fit import linearisation as module
-from vehgen.fit.adjustments import SpeedScale
+from vehgen.fit.adjustments import Adjustment, Footprint, Gain, SensorDelay, SpeedScale, Tilt
 from vehgen.fit.alignment import MOST_SHARPENED, MOST_SIGMAS, error_bounds
 from vehgen.fit.linearisation import MOST_MISSED, Lineariser, linearise
 from vehgen.fit.misfit import Misfit
@@ -61,15 +62,17 @@ def test_derivatives_by_errors_of_runs_are_those_of_whole_simulations(late, tmp_
     error = np.concatenate([np.zeros(whole.n_parameters), np.full(whole.n_unknowns - whole.n_parameters, 0.3)])
     for misfit, x in (late, (whole, error)):
         found = linearise(misfit, x, one_sided=one_sided)
-        names = [item.name for item in (*misfit.errors[0].own, *misfit.common)]  # those of all runs count from -1 downwards
+        items = misfit.errors[0].items
         own = {item.name for item in misfit.errors[0].own}
-        assert {names[i] for i in found.slopes[0]} == (own - {"clock"}) | {"axle_position"}
-        for i in found.slopes[0]:
-            column = misfit.own_columns(0).start + i
-            size = MOVES.get(names[i], 1e-5)
+        assert {name for name, *_ in found.slopes[0]} == (own - {"clock"}) | {"axle_position"}
+        columns = misfit.columns(0)[-len(items) :]
+        for item, column in zip(items, columns, strict=True):
+            if not item.moves_vehicle:
+                continue
+            size = MOVES.get(item.name, 1e-5)
             step = size * np.eye(len(x))[column]
             expected = (misfit.whitened_spectrum(x + step)[0] - misfit.whitened_spectrum(x - step)[0]) / (2 * size)
-            assert np.linalg.norm(found.spectra[0][column] - expected) < 2e-2 * np.linalg.norm(expected), names[i]
+            assert np.linalg.norm(found.spectra[0][column] - expected) < 2e-2 * np.linalg.norm(expected), item.name
 
 
 @pytest.mark.parametrize("one_sided", [True, False])
@@ -105,6 +108,56 @@ def test_a_speed_off_in_all_runs_changes_what_each_runs_own_does(late, one_sided
     spectra = linearise(misfit, at, one_sided=one_sided).spectra[0]
     own = spectra[column] / speed.sigma
     assert np.linalg.norm(spectra[n] / 0.01 - own) < 1e-4 * np.linalg.norm(own)
+    derive, moved = Lineariser(misfit, 5), at.copy()
+    derive(at)
+    moved[:n] -= 0.1
+    moved[column] = 0.3
+    spectra = derive(moved).spectra[0]  # derivatives that serve again are of one point, too
+    own = spectra[column] / speed.sigma
+    assert np.linalg.norm(spectra[n] / 0.01 - own) < 1e-4 * np.linalg.norm(own)
+
+
+ADJUSTMENTS = {
+    "speed": SpeedScale("all", 0.01, 1.0),
+    "clock": ClockRate("all", 0.01, 1.0),
+    "footprint": Footprint("all", 0.02, 0.1),
+    "gain": Gain("F_az", 0.05, 1.0),
+    "delay": SensorDelay("R", 0.005),
+    "tilt": Tilt("F", 0.02),
+    "level": RunLevel("all", 0.05, 1.0, run="hump"),
+    "filter": RecorderFilter("all", 0.1, np.log(20.0), runs=("hump",), channels=("F_az",)),
+}
+
+
+@pytest.mark.parametrize("name", ADJUSTMENTS)
+def test_derivatives_by_adjustments_are_those_of_the_whole_misfit(tmp_path, name):
+    shared = (ADJUSTMENTS[name], *([Adjustment("F", 0.1)] if name == "tilt" else []))
+    trial = load_trials(write_run(tmp_path, "hump", sedan_truth()))[0]
+    problem = make_problem([trial], ("kf",))
+    misfit = Misfit(problem, {trial.name: Noise(EVEN, SIGMA)}, problem.space.start, Nuisances(), (0.5, 40.0), shared)
+    x = np.concatenate([problem.space.unit(problem.space.start), np.zeros(len(shared)), np.full(misfit.n_errors, 0.3)])
+    step = 1e-3 * np.eye(len(x))[1]
+    expected = (misfit.whitened_spectrum(x + step)[0] - misfit.whitened_spectrum(x - step)[0]) / 2e-3
+    assert np.linalg.norm(expected) > 0.1
+    assert np.linalg.norm(linearise(misfit, x).spectra[0][1] - expected) < 1e-2 * np.linalg.norm(expected)
+
+
+def test_a_measured_force_changes_nothing_of_what_the_road_does(tmp_path):
+    """Its gain, and what it is late, are errors of each run, by which it is another one in every drive nearby."""
+    time, road = np.arange(0.0, 9.0, 0.01), rough_road()
+    np.savetxt(tmp_path / "f.csv", np.column_stack([time, 300 * np.sin(6 * np.pi * time)]), delimiter=",", header="t,force", comments="")
+    force = "forces:\n  shaker: {body: body, file: f.csv, unit: N}\n"
+    misfit, x = misfit_of(read_run(tmp_path, fine_channels(road, 12.0)[::FINE], 12.0, road, extra=force), Nuisances())
+    x[misfit.n_parameters :] = 0.3
+    found = linearise(misfit, x).spectra[0]
+    conditions = misfit.conditions(x)
+    assert {"force_gain", "speed", "delay", "axle_position", "odometer"} <= {item.name for item in conditions}
+    for column, item in enumerate(conditions, start=misfit.n_parameters):
+        if item.name in MOVES or item.name.startswith("force"):
+            size = MOVES.get(item.name, 1e-3)
+            step = size * np.eye(len(x))[column]
+            expected = (misfit.whitened_spectrum(x + step)[0] - misfit.whitened_spectrum(x - step)[0]) / (2 * size)
+            assert np.linalg.norm(found[column] - expected) < 2e-2 * np.linalg.norm(expected), item.name
 
 
 def test_derivatives_by_errors_of_runs_are_taken_anew_when_asked(late):
@@ -114,8 +167,8 @@ def test_derivatives_by_errors_of_runs_are_taken_anew_when_asked(late):
     moved = x + 0.2
     kept, anew = derive(moved), derive.linearise_anew(moved)
     own = misfit.own_columns(0).start
-    assert np.array_equal(kept.slopes[0][0], first.slopes[0][0])
-    assert not np.array_equal(anew.slopes[0][0], first.slopes[0][0])
+    assert kept.slopes[0] is first.slopes[0]
+    assert all(not np.array_equal(anew.slopes[0][item], own) for item, own in first.slopes[0].items())
     assert anew.spectra[0][own] == pytest.approx(linearise(misfit, moved, one_sided=True).spectra[0][own])
 
 

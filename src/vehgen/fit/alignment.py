@@ -90,7 +90,7 @@ def _laid_over(misfit: Misfit, x: Array, number: int, bands: Sequence[float]) ->
     found, reached = start, [highest for highest in bands if WIDER * low < highest < high]
     for highest in reached:
         found = _fitted(misfit.alone(number, x, (low, highest)), found)
-    if "odometer" not in names or len(reached) < 2:
+    if not trial.scenario.over_measured_road or len(reached) < 2:
         return found
     fast = misfit.alone(number, x, (low, reached[-1]))
     return min(found, _fitted(fast, start), key=lambda errors: _loss(fast, errors))

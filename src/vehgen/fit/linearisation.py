@@ -1,7 +1,8 @@
 """A misfit linearised at a point: the derivatives of its whitened spectra, as a value that may serve again nearby.
 
-Derivatives are differences of simulated responses. Those by the errors of runs (clock, speed, hump) cost a simulation each and change
-little along a fit, so that one linearisation may take them from another; those by the errors of sensors cost next to nothing.
+Derivatives are differences of simulated responses. Those by what moves wheels along the road, or the road (start, speed, hump), each see
+the road anew; they change little along a fit, so that one linearisation may take them from another. Those by the errors of sensors cost
+next to nothing.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.fit.misfit import Array, Complex, Misfit
+from vehgen.fit.nuisances import Nuisance
 from vehgen.fit.window import flatten
 
 UNIT_DIFFERENCE = 1e-6
@@ -22,8 +24,11 @@ WINDOW_SHIFT_S = 1e-5
 """The same for the windows of channels that are late [s]."""
 MOST_MISSED = 0.25
 """A share of what a step did; derivatives that miss more of it are computed anew, not corrected by it."""
-Slopes = dict[int, Array]
-"""Derivatives of a run's motions `shape (n_samples, n_channels)` by its errors, by their number: its own from 0 on."""
+Drive = tuple[str, str, float, float]
+"""What changes how a run is driven: an error, an adjustment or a length between axles. Its name, its place, its knot in time [s], and what
+a unit of the unknown is."""
+Slopes = dict[Drive, Array]
+"""Derivatives of a run's motions `shape (n_samples, n_channels)` by what changes its drive."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +36,7 @@ class Linearisation:
     """Derivatives of a misfit's whitened spectra at a point.
 
     `blocks` holds a trial's derivatives each, `shape (n_columns, n_lines, n_channels)`, by the unknowns that it depends on (`columns`);
-    `slopes` those of its motions by its own errors; `n_priors` counts the errors of sensors and runs.
+    `slopes` those of its motions by what changes its drive; `n_priors` counts the errors of sensors and runs.
     """
 
     blocks: tuple[Complex, ...]
@@ -124,7 +129,8 @@ def linearise(misfit: Misfit, x: Array, *, one_sided: bool = False, slopes_of: L
     one_sided
         Take differences to one side, which takes half of the time.
     slopes_of
-        A linearisation nearby, with the same runs and errors, whose derivatives by the runs' errors serve again (default: compute them).
+        A linearisation nearby, with the same runs, whose derivatives by what changes drives serve again where it has all that are needed:
+        from two points together, a speed that is off in all runs would seem to differ from each run's own (default: compute them).
     """
     found = [_Trial(misfit, x, t, one_sided).block(None if slopes_of is None else slopes_of.slopes[t]) for t in range(len(misfit.errors))]
     columns = tuple(misfit.columns(t) for t in range(len(misfit.errors)))
@@ -152,33 +158,51 @@ class _Trial:
         self.by_parameter = dict(zip(still, self._differences(responses), strict=True))
 
     def block(self, known: Slopes | None) -> tuple[Complex, Slopes]:
-        """Return the trial's whitened derivatives by its columns, and those of its motions by its own errors."""
-        misfit, common = self.misfit, self.misfit.common
-        items = misfit.errors[self.number].items
-        by_drive = [i for i in range(len(misfit.shared)) if self._changes_drive(i)]
-        wanted = [i for i, item in enumerate(items) if item.moves_vehicle and i - len(common) not in (known or {})]
-        found = iter(self._by_moves(self.lengths, by_drive, wanted))
-        by_parameter = {**self.by_parameter, **{i: next(found) for i in self.lengths}}
-        by_shared = {i: next(found) if i in by_drive else self._by_shared(i) for i in range(len(misfit.shared))}
-        slopes: Slopes = {**(known or {}), **{i - len(common): next(found) for i in wanted}}
-        motions = [self.centre, *(by_parameter[i] for i in sorted(by_parameter)), *by_shared.values(), *slopes.values()]
+        """Return the trial's whitened derivatives by its columns, and those of its motions by what changes its drive."""
+        misfit, items = self.misfit, self.misfit.errors[self.number].items
+        slopes = self._slopes(known or {})
+        by_length = {i: slopes[self._of_parameter(i)] for i in self.lengths}
+        by_parameter = {**self.by_parameter, **by_length}
+        by_shared = [slopes[self._of_shared(i)] if self._changes_drive(i) else self._by_shared(i) for i in range(len(misfit.shared))]
+        by_error = [slopes[_of_error(item)] for item in items if item.moves_vehicle]
+        motions = [self.centre, *(by_parameter[i] for i in sorted(by_parameter)), *by_shared, *by_error]
         unread = misfit.unread(self.number, np.stack(motions), self.error)
         lines = misfit.read(self.number, unread[1:], self.error)
         n = len(by_parameter) + len(by_shared)
-        by_error = dict(zip(slopes, lines[n:], strict=True))
+        driven = iter(lines[n:])
         ahead, behind = (misfit.unread(self.number, self.centre, self.error, later) for later in (WINDOW_SHIFT_S, -WINDOW_SHIFT_S))
         frequency, later = misfit.frequency(self.number), (ahead - behind) / (2 * WINDOW_SHIFT_S)
         read = misfit.errors[self.number].read_slopes(frequency, self.error, unread[0], later)
-        rows = [by_error[i - len(common)] if item.moves_vehicle else read[i] for i, item in enumerate(items)]
+        rows = [next(driven) if item.moves_vehicle else read[i] for i, item in enumerate(items)]
         return -misfit.whiten(self.number, np.concatenate([lines[:n], np.reshape(rows, (-1, *lines.shape[1:]))])), slopes
 
+    def _slopes(self, known: Slopes) -> Slopes:
+        """Return the derivatives of the motions by all that changes the drive: known ones, where none is missing."""
+        items = self.misfit.errors[self.number].items
+        shared = [i for i in range(len(self.misfit.shared)) if self._changes_drive(i)]
+        errors = [i for i, item in enumerate(items) if item.moves_vehicle]
+        lengths = [self._of_parameter(i) for i in self.lengths]
+        wanted = [*lengths, *(self._of_shared(i) for i in shared), *(_of_error(items[i]) for i in errors)]
+        if all(item in known for item in wanted):
+            return known
+        return dict(zip(wanted, self._by_moves(self.lengths, shared, errors), strict=True))
+
+    def _of_parameter(self, place: int) -> Drive:
+        space = self.misfit.problem.space
+        return space.names[place], "", 0.0, float(space.slopes(space.start)[place])
+
+    def _of_shared(self, place: int) -> Drive:
+        item = self.misfit.shared[place]
+        return type(item).__name__, item.place, 0.0, item.scale
+
     def _changes_drive(self, place: int) -> bool:
-        """Return whether an adjustment changes what the trial drives through."""
+        """Return whether an adjustment changes what the trial drives through, in the same steps."""
         item, scenario = self.misfit.shared[place], self.misfit.problem.trials[self.number].scenario
-        return item.scenario(scenario, float(self.numbers[place] + UNIT_DIFFERENCE * item.scale)) is not scenario
+        moved = item.scenario(scenario, float(self.numbers[place] + UNIT_DIFFERENCE * item.scale))
+        return moved is not scenario and moved.same_samples(scenario)
 
     def _by_shared(self, place: int) -> Array:
-        """Return the derivative of the motions by an adjustment of what sensors read, in units of its scale."""
+        """Return the derivative of the motions by an adjustment of what sensors read, or of steps, in units of its scale."""
         step = UNIT_DIFFERENCE * self.misfit.shared[place].scale * np.eye(len(self.numbers))[place]
         values = self.misfit.problem.space.values(self.unit)[None]
         numbers = [self.numbers + step, *(() if self.one_sided else (self.numbers - step,))]
@@ -204,6 +228,10 @@ class _Trial:
             return np.asarray((responses[1:] - responses[0]) / UNIT_DIFFERENCE)
         n = len(responses) // 2
         return np.asarray((responses[1 : n + 1] - responses[n + 1 :]) / (2 * UNIT_DIFFERENCE))
+
+
+def _of_error(item: Nuisance) -> Drive:
+    return item.name, item.place, item.knot, item.sigma
 
 
 class Lineariser:

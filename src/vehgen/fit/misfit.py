@@ -199,7 +199,7 @@ class Misfit:
         return self._adjust(number, trial, response, numbers, error)
 
     def respond_nearby(self, number: int, values: Array, numbers: Array, errors: Array) -> Array:
-        """Return how the places of trial `number`'s sensors move in several drives that hardly differ.
+        """Return how the places of trial `number`'s sensors move in drives that hardly differ, `shape (n, n_samples, n_channels)`.
 
         As :meth:`respond` at searched values `shape (n, n_parameters)` [SI], each with its adjustments `shape (n, n_adjustments)` and
         errors of the trial `shape (n, n_errors)`; differences from the first are right to the first order.

@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from vehgen.files.quantities import Spread
 from vehgen.fit.trial import Trial
-from vehgen.road import MeasuredProfile
 from vehgen.simulate.initial_state import initial_values
 from vehgen.simulate.run_file.acquisition import channel_chains
 from vehgen.simulate.run_scenario import ground_links
@@ -130,7 +129,7 @@ class Nuisances:
             names += [Nuisance("wear", "", (1e3 * spread["wear"]) ** 2)]
         if has_road:
             names += [Nuisance("wander", f"{knot:.3g} s", spread["wander"], knot) for knot in wander_knots(trial)]
-        if any(isinstance(part, MeasuredProfile) for part in trial.scenario.track.parts):
+        if trial.scenario.over_measured_road:
             names.append(Nuisance("odometer", "", spread["odometer"]))
         sensors = list(dict.fromkeys(channel.sensor for channel in trial.recording.channels))
         late = sensors[1:] if driven else sensors  # a release starts no clock

@@ -77,7 +77,7 @@ def acquire(
     threads: int | None = None,
     nearby: Sequence[Drive] = (),
 ) -> KernelResult:
-    """Run a population whose axles stand alike and return what its recorders keep.
+    """Run a population whose axles stand alike, or drives that hardly differ, and return what their recorders keep.
 
     Parameters
     ----------

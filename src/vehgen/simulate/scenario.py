@@ -18,6 +18,7 @@ from vehgen.road import (
     SpeedLaw,
     Track,
     Wander,
+    WheelInputs,
     wheel_inputs,
 )
 from vehgen.simulate.last_used import LastUsed
@@ -72,6 +73,11 @@ class Scenario:
     def over_humps_alone(self) -> bool:
         """Whether the track has humps, and no road of known profile."""
         return 0 < len(self.humps) == len(self.track.parts)
+
+    @property
+    def over_measured_road(self) -> bool:
+        """Whether a part of the track is a road of known profile."""
+        return any(isinstance(part, MeasuredProfile) for part in self.track.parts)
 
     @cached_property
     def nulls(self) -> tuple[float, ...]:
@@ -168,6 +174,15 @@ class Scenario:
         """Whether the vehicle of another scenario drives over the same road, or one that differs in its height alone."""
         return self._road_key == other._road_key and (but_height or self.track.scale == other.track.scale)
 
+    def same_samples(self, other: Scenario) -> bool:
+        """Whether another scenario has the same steps, at the same times, and keeps the same of them in the same way."""
+        mine, its = ((item.start, item.dt, len(item.time), item.decimation, item.skipped) for item in (self, other))
+        return mine == its and self.chains is other.chains
+
+    def same_pushes(self, other: Scenario) -> bool:
+        """Whether forces and moving ground of another scenario are these."""
+        return self.ground is other.ground and self.forces is other.forces
+
     def same_speed(self, other: Scenario) -> bool:
         """Whether the vehicle of another scenario is always where this one is."""
         return self._speed_key == other._speed_key
@@ -178,14 +193,23 @@ class Scenario:
 
     def new_excitation(self, offsets: Array) -> Excitation:
         """Return what :meth:`excitation` does, neither looked up nor remembered."""
-        wheels = wheel_inputs(self.track, self.speed, self.axle_offsets(offsets), self.time)
-        n_axles, half = wheels.heights.shape[1], self.dt / 2
-        further = np.zeros((len(self.time), len(self.ground)))
-        inputs, rates = (np.hstack([own, further]) if self.ground else own for own in (wheels.heights, wheels.rates))
-        for i, signal in enumerate(self.ground, start=n_axles):
+        wheels, pushes = self.wheels(offsets), self.pushes()
+        if not self.ground:
+            return Excitation(self.dt, wheels.heights, wheels.rates, pushes.forces)
+        inputs, rates = np.hstack([wheels.heights, pushes.inputs]), np.hstack([wheels.rates, pushes.rates])
+        return Excitation(self.dt, inputs, rates, pushes.forces)
+
+    def wheels(self, offsets: Array) -> WheelInputs:
+        """Return the road under every axle, where the layout has `offsets shape (n_axles,)`."""
+        return wheel_inputs(self.track, self.speed, self.axle_offsets(offsets), self.time)
+
+    def pushes(self) -> Excitation:
+        """Return what excites the vehicle besides the road under its axles: moving ground, as the only inputs, and forces."""
+        inputs, rates = (np.zeros((len(self.time), len(self.ground))) for _ in range(2))
+        for i, signal in enumerate(self.ground):
             if signal is not None:
                 inputs[:, i] = signal.at(self.time)
-                rates[:, i] = (signal.at(self.time + half) - signal.at(self.time - half)) / self.dt
+                rates[:, i] = (signal.at(self.time + self.dt / 2) - signal.at(self.time - self.dt / 2)) / self.dt
         forces = np.column_stack([signal.at(self.time) for signal in self.forces]) if self.forces else np.zeros((len(self.time), 0))
         return Excitation(self.dt, inputs, rates, forces)
 

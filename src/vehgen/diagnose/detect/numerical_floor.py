@@ -49,7 +49,7 @@ class SmoothedProfile:
 def smooth_road(trial: Trial) -> Trial:
     """Return a trial over splines through the points of its measured profiles; a trial without any as it is."""
     track = trial.scenario.track
-    if not any(isinstance(part, MeasuredProfile) for part in track.parts):
+    if not trial.scenario.over_measured_road:
         return trial
     parts = tuple(SmoothedProfile(part) if isinstance(part, MeasuredProfile) else part for part in track.parts)
     return replace(trial, scenario=replace(trial.scenario, track=replace(track, parts=parts)))
