@@ -24,10 +24,10 @@ WINDOW_SHIFT_S = 1e-5
 """The same for the windows of channels that are late [s]."""
 MOST_MISSED = 0.25
 """A share of what a step did; derivatives that miss more of it are computed anew, not corrected by it."""
-Drive = tuple[str, str, float, float]
+DriveChange = tuple[str, str, float, float]
 """What changes how a run is driven: an error, an adjustment or a length between axles. Its name, its place, its knot in time [s], and what
 a unit of the unknown is."""
-Slopes = dict[Drive, Array]
+Slopes = dict[DriveChange, Array]
 """Derivatives of a run's motions `shape (n_samples, n_channels)` by what changes its drive."""
 
 
@@ -187,11 +187,11 @@ class _Trial:
             return known
         return dict(zip(wanted, self._by_moves(self.lengths, shared, errors), strict=True))
 
-    def _of_parameter(self, place: int) -> Drive:
+    def _of_parameter(self, place: int) -> DriveChange:
         space = self.misfit.problem.space
         return space.names[place], "", 0.0, float(space.slopes(space.start)[place])
 
-    def _of_shared(self, place: int) -> Drive:
+    def _of_shared(self, place: int) -> DriveChange:
         item = self.misfit.shared[place]
         return type(item).__name__, item.place, 0.0, item.scale
 
@@ -230,7 +230,7 @@ class _Trial:
         return np.asarray((responses[1 : n + 1] - responses[n + 1 :]) / (2 * UNIT_DIFFERENCE))
 
 
-def _of_error(item: Nuisance) -> Drive:
+def _of_error(item: Nuisance) -> DriveChange:
     return item.name, item.place, item.knot, item.sigma
 
 
