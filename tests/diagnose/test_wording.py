@@ -3,6 +3,7 @@
 import pytest
 
 from vehgen.diagnose import wording
+from vehgen.diagnose.phrases import effect_words, force_words, place_words
 from vehgen.diagnose.verdict import NamedParameter
 from vehgen.effects import EFFECTS
 from vehgen.fit.nuisances import Condition
@@ -12,7 +13,7 @@ def found(name, place, **values):
     effect = EFFECTS[name]
     units = {item.name: item.unit for item in effect.parameters}
     parameters = {key: NamedParameter(value, None, units[key]) for key, value in values.items()}
-    return wording.effect_words(effect.title, wording.place_words(effect.attaches, place), parameters)
+    return effect_words(effect.title, place_words(effect.attaches, place), parameters)
 
 
 def test_a_named_effect_reads_as_a_sentence():
@@ -75,7 +76,7 @@ def test_a_more_general_law_is_told_with_the_force_that_it_supposes():
 
 
 def test_what_is_in_no_library_is_told_by_where_it_is():
-    causes = [wording.force_words("suspension", "rear"), wording.force_words("tyre", "rear"), wording.force_words("sensor", "F")]
+    causes = [force_words("suspension", "rear"), force_words("tyre", "rear"), force_words("sensor", "F")]
     text = wording.not_in_library((12, "dry friction in the front suspension", 3.21), causes)
     assert "of 12 tried, dry friction in the front suspension comes nearest and leaves chi 3.21" in text
     assert text.endswith("an unknown force in the rear suspension, an unknown force in the rear tyre or leaving out the sensor F would")

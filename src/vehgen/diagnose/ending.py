@@ -19,6 +19,7 @@ from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.judging import Undone, explain_gap, find_mistakes, supposed_mistakes
 from vehgen.diagnose.localise.free_form import FreeForm, fit_free_form, recover, strongest
 from vehgen.diagnose.naming import Naming
+from vehgen.diagnose.phrases import candidate_words, force_words
 from vehgen.diagnose.result import Decided, DiagnosisModels
 from vehgen.diagnose.select.criteria import explained_shares, passes, unfinished
 from vehgen.diagnose.select.estimates import estimate, excluded
@@ -151,7 +152,7 @@ class Ending:
             self.notes.append(wording.supposed([item.message for item in supposed]))
         if first.fits:
             self.notes.append(wording.ranked([(self._words(fit.last), share) for fit, share in explained_shares(first, self.base)]))
-        causes = [wording.force_words(item.place.kind, item.place.name) for item in first.passed[:3]]
+        causes = [force_words(item.place.kind, item.place.name) for item in first.passed[:3]]
         freed = first.idle[0].last.freed if first.idle else ()
         ended = self._end("not_in_library", reason or wording.not_in_library(best, causes, freed))
         law = None if (shown := strongest(first.passed)) is None else fit_free_form(recover(self.detection, shown))
@@ -176,4 +177,4 @@ class Ending:
         return self._decided(verdict, chain)
 
     def _words(self, candidate: Candidate, parameters: Mapping[str, NamedParameter] | None = None) -> str:
-        return wording.candidate_words(self.detection.trials[0].run.vehicle, candidate, parameters)
+        return candidate_words(self.detection.trials[0].run.vehicle, candidate, parameters)

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 
 from vehgen.diagnose.inputs.checks import check_inputs
 from vehgen.diagnose.inputs.fault import MeasurementFault
+from vehgen.diagnose.phrases import join_names
 from vehgen.diagnose.result import Decided
 from vehgen.diagnose.verdict import VerdictName
-from vehgen.diagnose.wording import join_names, mistaken
+from vehgen.diagnose.wording import mistaken
 from vehgen.fit.trial import Trial
 
 FEWEST_RUNS = 3

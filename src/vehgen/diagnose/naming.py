@@ -13,6 +13,7 @@ from vehgen.diagnose.design.experiment import propose
 from vehgen.diagnose.detect.detection import Detection
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
+from vehgen.diagnose.phrases import candidate_words
 from vehgen.diagnose.select.alternatives import Alternative, alternatives_beside
 from vehgen.diagnose.select.criteria import excess, p_value_of, tied
 from vehgen.diagnose.select.estimates import estimate, unstable
@@ -99,7 +100,7 @@ class Naming:
         return next(item for item in self.rounds if any(own.key == fit.key for own in item.fits))
 
     def _words(self, candidate: Candidate, parameters: Mapping[str, NamedParameter] | None = None) -> str:
-        return wording.candidate_words(self.detection.trials[0].run.vehicle, candidate, parameters)
+        return candidate_words(self.detection.trials[0].run.vehicle, candidate, parameters)
 
     def _apart(self, fit: ModelFit, ties: Sequence[Alternative]) -> str | None:
         """Return which run would tell tied models apart, by what each predicts."""

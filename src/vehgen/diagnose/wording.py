@@ -6,83 +6,12 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 from vehgen.diagnose.detect.odd_run import OddRun
-from vehgen.diagnose.fits.candidate import Candidate
-from vehgen.diagnose.verdict import NamedParameter
-from vehgen.effects.places import ALIKE, ALL_RUNS, ALL_SUSPENSIONS, ALL_TYRES, EACH_TYRE
+from vehgen.diagnose.phrases import inner, join_names, share_words
 from vehgen.fit.nuisances import Condition
-from vehgen.vehicle import Vehicle
 
-SHARE_CALLED_ALL = 0.995
-"""A share from which on the text says "all"."""
 MOST_TOLD = 4
 """So many effects that do as well as one another are told in words, and how many more there are."""
 UNSEEN_RUNS = "on runs that it was not fitted to"
-_AT = {
-    "suspension": "in the {} suspension",
-    "tyre": "in the {} tyre",
-    "hinge": "in the hinge {}",
-    "body": "on the body {}",
-    "link": "in the link {}",
-}
-"""Where an effect is, by what it lives at."""
-
-
-def join_names(items: Sequence[str], word: str = "or") -> str:
-    """Return names joined as in a sentence, the last by a word."""
-    listed = list(items)
-    return listed[0] if len(listed) == 1 else f"{', '.join(listed[:-1])} {word} {listed[-1]}" if listed else "nothing"
-
-
-def place_words(attaches: str, place: str) -> str:
-    """Return where an effect is, in words: of an effect that lives at `attaches` (suspension, tyre, hinge, body, axles, sensor, run)."""
-    if place == ALL_TYRES:
-        return "in all tyres"
-    if place == EACH_TYRE:
-        return "in all tyres, of each its own"
-    if place == ALL_SUSPENSIONS:
-        return "in all suspensions, alike"
-    if ALIKE in place:
-        return f"in the suspensions of {join_names(place.split(ALIKE), 'and')}, alike"
-    if place == ALL_RUNS:
-        return "in all runs"
-    if attaches == "axles":
-        return f"at the axles {join_names(place.split('+'), 'and')}"
-    return _AT.get(attaches, "at {}").format(place)
-
-
-def effect_words(title: str, where: str, parameters: Mapping[str, NamedParameter]) -> str:
-    """Return an effect with its strength and its place: "Dry friction of about 446 N in the rear suspension".
-
-    Parameters
-    ----------
-    title
-        Its title; what stands in brackets is left out.
-    where
-        Its place in words, of :func:`place_words`.
-    parameters
-        Its parameters; more than one are listed by name.
-    """
-    told = [(name, f"{amount(item.value)} {item.unit}".strip()) for name, item in parameters.items()]
-    strength = f" of about {told[0][1]}" if len(told) == 1 else ""
-    listed = f" ({', '.join(f'{name} {value}' for name, value in told)})" if len(told) > 1 else ""
-    return f"{title.partition(' (')[0]}{strength} {where}{listed}"
-
-
-def candidate_words(vehicle: Vehicle, candidate: Candidate, parameters: Mapping[str, NamedParameter] | None = None) -> str:
-    """Return an effect at its place of a vehicle in words, with its strength where its parameters are known."""
-    effect = candidate.effect
-    attaches = "link" if candidate.place in vehicle.links else effect.attaches
-    return effect_words(effect.title, place_words(attaches, candidate.place), parameters or {})
-
-
-def amount(value: float) -> str:
-    """Return a number with three digits that count."""
-    return f"{value:.3g}" if not 999.5 <= abs(value) < 1e6 else f"{float(f'{value:.3g}'):.0f}"
-
-
-def share_words(share: float) -> str:
-    """Return a share of what the model missed: all, or a percentage."""
-    return "all" if share >= SHARE_CALLED_ALL else f"{100 * share:.0f} %"
 
 
 def named(effects: Sequence[str], gain: float | None, ties: Sequence[str] = ()) -> str:
@@ -91,7 +20,7 @@ def named(effects: Sequence[str], gain: float | None, ties: Sequence[str] = ()) 
     Parameters
     ----------
     effects
-        What was found, of :func:`effect_words`.
+        What was found, of `phrases.effect_words`.
     gain
         The share of the excess on validation runs that they close together; None where these show no gap.
     ties
@@ -102,8 +31,8 @@ def named(effects: Sequence[str], gain: float | None, ties: Sequence[str] = ()) 
     fitted = UNSEEN_RUNS.replace("it was", "they were") if several else UNSEEN_RUNS
     what = "what the model missed on the runs for fitting; the other runs show no gap" if gain is None else ""
     what = what or f"{share_words(gain or 0.0)} of what the model missed {fitted}"
-    more = f"; {join_names([*map(_inner, ties)])} would do as well as one of these" if ties else ""
-    return f"{join_names([effects[0], *map(_inner, effects[1:])], 'and')}: {who} {what}{more}"
+    more = f"; {join_names([*map(inner, ties)])} would do as well as one of these" if ties else ""
+    return f"{join_names([effects[0], *map(inner, effects[1:])], 'and')}: {who} {what}{more}"
 
 
 def several_effects(effects: Sequence[str], left: Sequence[float], gain: float | None) -> str:
@@ -112,14 +41,14 @@ def several_effects(effects: Sequence[str], left: Sequence[float], gain: float |
     Parameters
     ----------
     effects
-        What was found, of :func:`effect_words`, each beside those before it.
+        What was found, of `phrases.effect_words`, each beside those before it.
     left
         The chi of the base, then what each effect leaves.
     gain
         The share of the excess on validation runs that they close together; None where these show no gap.
     """
     steps = [f"{before:.3g} to {after:.3g}" for before, after in pairwise(left)]
-    told = [f"{_inner(text) if i else text} ({step})" for i, (text, step) in enumerate(zip(effects, steps, strict=True))]
+    told = [f"{inner(text) if i else text} ({step})" for i, (text, step) in enumerate(zip(effects, steps, strict=True))]
     what = "what the model missed on the runs for fitting" if gain is None else ""
     what = what or f"{share_words(gain or 0.0)} of what the model missed {UNSEEN_RUNS.replace('it was', 'they were')}"
     return f"{join_names(told, 'and')}, in brackets the chi before and after each: together they explain {what}, none does alone"
@@ -131,13 +60,13 @@ ONE_AT_A_TIME = "runs that move one part at a time (one axle, slow and fast, sma
 
 def ranked(effects: Sequence[tuple[str, float]]) -> str:
     """Return the note of effects that come nearest, with the share of the gap that each would close."""
-    told = join_names([f"{_inner(text) if i else text} {max(100 * share, 0):.0f} %" for i, (text, share) in enumerate(effects)], "and")
+    told = join_names([f"{inner(text) if i else text} {max(100 * share, 0):.0f} %" for i, (text, share) in enumerate(effects)], "and")
     return f"by the share of the gap that each would close alone: {told}"
 
 
 def ambiguous(effects: Sequence[str]) -> str:
-    """Return the verdict `ambiguous` between effects, of :func:`effect_words`, each of which explains the runs by itself."""
-    told = [effects[0], *map(_inner, effects[1:])]
+    """Return the verdict `ambiguous` between effects, of `phrases.effect_words`, each of which explains the runs by itself."""
+    told = [effects[0], *map(inner, effects[1:])]
     if len(told) > MOST_TOLD + 1:
         told[MOST_TOLD:] = [f"one of {len(told) - MOST_TOLD} others"]
     return f"{join_names(told)}: each explains the runs equally well"
@@ -148,13 +77,6 @@ def no_missing_effect(chi: float) -> str:
     return f"Nothing is missing: what the recalibrated model leaves is noise (chi {chi:.3f}, where 1 is noise alone)"
 
 
-def force_words(kind: str, name: str) -> str:
-    """Return what would explain the gap where the place test passes: an unknown force there, or a channel or sensor left out."""
-    if kind in ("channel", "sensor"):
-        return f"leaving out the {kind} {name}"
-    return f"an unknown force {place_words(kind, name)}"
-
-
 def not_in_library(best: tuple[int, str, float] | None, causes: Sequence[str], freed: Sequence[str] = ()) -> str:
     """Return the verdict that no effect of the library explains the gap.
 
@@ -163,7 +85,7 @@ def not_in_library(best: tuple[int, str, float] | None, causes: Sequence[str], f
     best
         How many effects were tried, which of them leaves least, and the chi that it leaves; None where none is left.
     causes, freed
-        What would explain the gap, of :func:`force_words`; base parameters of which other values do as much as any effect does.
+        What would explain the gap, of `phrases.force_words`; base parameters of which other values do as much as any effect does.
     """
     does_no_more = f"does more than other values of {join_names(freed)} do"
     tried = f"none of those tried {does_no_more if freed else 'can live where the model errs'}"
@@ -271,9 +193,9 @@ def constant_force_words(found: Condition) -> str:
 
 
 def more_general(effect: str, forces: Sequence[str]) -> str:
-    """Return the note that an effect, of :func:`effect_words`, does as well as the one named, its special case, with `forces` beside."""
+    """Return the note that an effect, of `phrases.effect_words`, does as well as the one named, its special case, with `forces` beside."""
     beside = f", with {join_names(forces, 'and')}" if forces else ""
-    return f"{_inner(effect)}{beside} would do as well; the one with fewer numbers is named"
+    return f"{inner(effect)}{beside} would do as well; the one with fewer numbers is named"
 
 
 def out_of_range(ratios: Mapping[str, float]) -> str:
@@ -292,8 +214,3 @@ def stopped(count: int, best: tuple[str, float] | None) -> str:
     """Return the verdict of a diagnosis that was stopped by hand: after how many candidates, and which one is best so far, with its chi."""
     done = f"{count} candidates" if count else "no candidate"
     return f"No verdict: stopped by hand after {done}" + (f"; the best so far is {best[0]}, chi {best[1]:.2f}" if best else "")
-
-
-def _inner(phrase: str) -> str:
-    """Return a phrase as it stands within a sentence; what begins with two capitals is a name."""
-    return phrase if phrase[1:2].isupper() else phrase[:1].lower() + phrase[1:]

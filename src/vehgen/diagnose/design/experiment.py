@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from vehgen.diagnose.design.candidate_runs import CandidateRun, free_places, list_runs
 from vehgen.diagnose.design.discrimination import FittedModel, Separation, at_most, peak, separate
 from vehgen.diagnose.fits.model_fit import ModelFit
+from vehgen.diagnose.phrases import join_names
 from vehgen.diagnose.select.search import DiagnosisProgress
-from vehgen.diagnose.wording import join_names
 from vehgen.fit.recording import RecordedChannel
 from vehgen.fit.trial import Trial
 from vehgen.mechanics.outputs import PointOutput
