@@ -43,6 +43,15 @@ def test_nothing_hidden_is_found_to_be_nothing(trials_of):
     assert found.detection.chi < 1.06
 
 
+@pytest.mark.parametrize("count", [1, 2])
+def test_runs_too_few_to_check_the_fit_do_not_tell_that_nothing_is_missing(trials_of, count):
+    found = diagnose_trials(trials_of(runs=HUMPS)[:count]).verdict
+    assert found.verdict == "insufficient_data"
+    assert f"noise (chi {found.gap.before:.3f}" in found.reason
+    assert f"at least three runs are needed, one of them for checking ({count} given)" in found.reason
+    assert found.next_experiment == "record at least three runs, with two hump heights or speeds"
+
+
 @pytest.mark.thorough
 def test_a_hidden_spring_is_placed_named_and_measured(trials_of):
     found = diagnose_trials(trials_of(CUBIC, runs=HUMPS))

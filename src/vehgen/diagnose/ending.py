@@ -129,7 +129,15 @@ class Ending:
     def _nothing(self) -> Decided:
         conditions = [item for part in self.base.parts for item in part.conditions()]
         self.notes += [*alike_in_all_runs(conditions, [trial.name for trial in self.detection.trials]), *self._edge()]
+        if not self.validation_runs:
+            return self._unchecked(wording.no_gap(self.detection.chi))
         return self._end("no_missing_effect", wording.no_missing_effect(self.detection.chi))
+
+    def _unchecked(self, found: str) -> Decided:
+        """Return the verdict that no run is left to check what the fit to all of them `found`."""
+        trials = self.detection.trials
+        more = f"record at least three runs{', with two hump heights or speeds' if trials[0].run.vehicle.axles else ''}"
+        return self._end("insufficient_data", wording.too_few_runs(found, len(trials)), more)
 
     def _propose(self, reason: str, best: ModelFit) -> Decided:
         self.progress("propose", 0, 1, "")

@@ -161,10 +161,19 @@ def faint(chi: float, on_training: float, on_validation: float) -> str:
     )
 
 
-def too_few_runs(chi: float, count: int) -> str:
-    """Return the verdict `insufficient_data` where no run is left for validation."""
-    needed = f"at least three runs are needed, one of them for checking ({count} given)"
-    return f"The runs cannot tell: a gap is there (chi {chi:.2f}, where 1 is noise alone), but {needed}"
+def a_gap(chi: float) -> str:
+    """Return that the base leaves more than noise, within a sentence."""
+    return f"a gap is there (chi {chi:.2f}, where 1 is noise alone)"
+
+
+def no_gap(chi: float) -> str:
+    """Return that the base leaves no more than noise of runs that all were fitted, within a sentence."""
+    return f"what the recalibrated model leaves is noise (chi {chi:.3f}, where 1 is noise alone), which a fit to so little can make so"
+
+
+def too_few_runs(found: str, count: int) -> str:
+    """Return the verdict `insufficient_data` where no run is left for validation; `found` is what the fit to all of them leaves."""
+    return f"The runs cannot tell: {found}, but at least three runs are needed, one of them for checking ({count} given)"
 
 
 def mistaken(faults: Sequence[str]) -> str:
