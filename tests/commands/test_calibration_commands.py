@@ -3,6 +3,7 @@ import os
 from importlib import import_module
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.fit.recordings import sedan_truth, write_run
@@ -55,6 +56,17 @@ def test_calibrate_writes_vehicle_result_and_figures(run, tmp_path, capsys, monk
     assert len(data["channels"]) == 4
     for folder, name in ((out, "calibration.json"), (tmp_path / "val", "validation.json")):
         same_figures_again(folder, name, tmp_path / "again", capsys)
+
+
+@pytest.mark.parametrize("factor", [1.0, 1000.0])
+def test_a_channel_in_a_unit_that_nobody_stated_is_warned_of(tmp_path, capsys, factor):
+    path = write_run(tmp_path, "hump", sedan_truth())
+    rows = np.loadtxt(path.with_suffix(".csv"), delimiter=",", skiprows=1)
+    rows[:, 1] *= factor
+    np.savetxt(path.with_suffix(".csv"), rows, delimiter=",", header="t,F_az,F_q,R_az,R_q", comments="")
+    assert main(["validate", "sedan2", str(path), "--out", str(tmp_path / "val"), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)["warnings"]
+    assert [item.split(" times ")[0].rsplit(" ", 1)[0] for item in told] == (["hump: F_az reads"] if factor > 1 else [])
 
 
 def same_figures_again(folder, name, again, capsys):

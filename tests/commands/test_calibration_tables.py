@@ -78,6 +78,8 @@ def test_the_facts_that_help_most_are_asked_for_with_how_to_give_them(open_summa
     assert "the kerb mass, known to 17 kg" in text
     assert "`kerb_mass: {value: ... kg, uncertainty: 17 kg}`" in text
     assert "then the load of front" in text
+    assert "(narrower by half: " in text
+    assert "narrower by half" not in printed(capsys, replace(open_summary, prior_data_advice=(replace(KERB_MASS, narrows=()),)))
     assert "help most" not in printed(capsys, replace(open_summary, prior_data_advice=(replace(KERB_MASS, width_left=0.95),)))
 
 

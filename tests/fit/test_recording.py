@@ -15,11 +15,11 @@ recording: data.csv
 """
 
 
-def write(folder, t=None, az=None, q=None, text=RUN):
+def write(folder, t=None, az=None, q=None, text=RUN, heading="t,az,q"):
     t = np.arange(600) * 0.01 if t is None else t
     az = np.sin(t) if az is None else az
     q = np.cos(t) if q is None else q
-    np.savetxt(folder / "data.csv", np.column_stack([t, az, q]), delimiter=",", header="t,az,q", comments="")
+    np.savetxt(folder / "data.csv", np.column_stack([t, az, q]), delimiter=",", header=heading, comments="")
     (folder / "run.yaml").write_text(text, encoding="utf-8")
     return load_run(folder / "run.yaml")
 
@@ -55,7 +55,11 @@ def test_a_column_is_found_by_any_heading_and_its_channel_has_a_name(tmp_path):
         ({"text": RUN.replace("deg/s", "dge/s")}, "unknown unit 'dge/s'"),
         ({"text": RUN.replace("az,", "ax,")}, r"data.csv:1:1: no column 'ax'; known: az, q, t \(asked for by .*run.yaml:6:12\)$"),
         ({"text": RUN.replace("{column: q,", "{column: w,")}, r"no column 'w'; .* \(asked for by .*run.yaml:6:12\)$"),
-        ({"t": np.arange(600) * 0.01 - (np.arange(600) == 7)}, r"data.csv:9:1: 't' must ascend"),
+        ({"heading": "Time,az,q"}, r"data.csv:1:1: no column 't'; .*; head the times 't', or let `vehgen import` read .* \(asked for by"),
+        (
+            {"t": np.arange(600) * 0.01 - (np.arange(600) == 7)},
+            r"data.csv:9:1: 't' must ascend; -0.93 comes after 0.06; `vehgen import` sets a clock right",
+        ),
         ({"q": np.r_[np.ones(599), 1e13]}, r"data.csv:601:3: .* which nothing measures \(asked for by .*run.yaml:6:12\)$"),
         ({"text": RUN.replace("data.csv", "date.csv")}, "no file"),
         ({"text": RUN.replace("recording: data.csv\n", "")}, "no `recording`"),

@@ -93,6 +93,19 @@ def test_plain_csv_with_a_column_map(tmp_path):
     assert export.streams["speed"].values == pytest.approx(2.0)
 
 
+@pytest.mark.parametrize(
+    ("row", "said"),
+    [
+        ("10,1,2,3", "log.csv:3:4: 4 cells below 3 headings"),
+        ("0,01,1,0,2,0", "log.csv:3:4: 6 cells below 3 headings; where each number is in two of them for its decimal comma, separate"),
+    ],
+)
+def test_a_row_of_more_cells_than_headings_is_refused(tmp_path, row, said):
+    (tmp_path / "log.csv").write_text(f"t,az,q\n0,0,0\n{row}\n20,1,2,\n")
+    with pytest.raises(InputError, match=said):
+        read_export(tmp_path / "log.csv", ColumnMap("t", "az"))
+
+
 @pytest.mark.parametrize("above", ["", "# a log\n\n# ", "# a log\n"])
 @pytest.mark.parametrize("name", ["az", "az [g]", "-az"])
 def test_a_plain_csv_is_in_the_units_of_its_headings(tmp_path, name, above):

@@ -25,6 +25,8 @@ CASES = [
     ),
     ("vehicle of a folder", "vehicle: rig.yaml", "vehicle: @.", "{folder} is a folder; a YAML file was expected"),
     ("vehicle of a number", "vehicle: rig.yaml", "vehicle: @5", "input should be a valid string (found '5')"),
+    ("vehicle of entries", "vehicle: rig.yaml", "vehicle: @{file: rig.yaml}", "expected a single text, found `key: value` entries"),
+    ("vehicle of a list", "vehicle: rig.yaml", "vehicle: @[rig.yaml]", "expected a single text, found a list"),
     ("unknown key", "title: a test", "@titel: a test", "unknown key 'titel'; did you mean 'title'?"),
     ("unknown set", "set: soft", "set: @sft", "rig has no parameter set 'sft'; did you mean 'soft'?"),
     ("unknown parameter", "{kF: 1.2 MN/m}", "{@kFF: 1.2 MN/m}", "rig has no parameter with a value 'kFF'; did you mean 'kF'?"),

@@ -65,6 +65,12 @@ class ChannelComparison:
             raise ValueError("a number a band was expected")
 
     @property
+    def loudness(self) -> float:
+        """The RMS of what was measured, over that of what was simulated, means taken off; infinite where nothing moves."""
+        simulated = float(np.std(self.simulated))
+        return float(np.std(self.measured)) / simulated if simulated > 0 else float("inf")
+
+    @property
     def psds(self) -> ChannelCurves:
         """The PSDs as curves."""
         return ChannelCurves(self.run, self.channel, self.quantity, self.frequency, self.measured_psd, self.simulated_psd)

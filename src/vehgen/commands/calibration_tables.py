@@ -151,9 +151,10 @@ def _advice(advice: tuple[FactAdvice, ...]) -> list[str]:
     if not advice or advice[0].width_left > WORTH_ASKING:
         return []
     best = advice[0]
+    halved = f" (narrower by half: {_listed(list(best.narrows))})" if best.narrows else ""
     found = [
-        f"what would help most is the {_named(best)}: intervals would keep {100 * best.width_left:.0f} % of their width on average "
-        f"(narrower by half: {_listed(list(best.narrows))}); write `{_entry(best)}` into a file and give it with --facts"
+        f"what would help most is the {_named(best)}: intervals would keep {100 * best.width_left:.0f} % of their width on "
+        f"average{halved}; write `{_entry(best)}` into a file and give it with --facts"
     ]
     second = min(advice, key=lambda item: item.width_left_beside_best)
     if second is not best and second.width_left_beside_best < WORTH_ASKING * best.width_left:

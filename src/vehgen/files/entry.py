@@ -133,6 +133,9 @@ def _message(fault: ErrorDetails) -> str:
         return message
     if fault["type"] in ("model_type", "dict_type"):
         return "expected `key: value` entries"
+    if fault["type"] == "string_type" and isinstance(fault["input"], dict | list):
+        kind = "`key: value` entries" if isinstance(fault["input"], dict) else "a list"
+        return f"expected a single text, found {kind}"
     if fault["type"] in ("tuple_type", "list_type"):
         return f"expected a list: [first, second], or lines that begin with `- ` (found {shown(str(fault['input']))})"
     if fault["type"] == "literal_error":

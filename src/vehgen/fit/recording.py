@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +14,7 @@ from pydantic_core import PydanticCustomError
 from vehgen.errors import InputError, shown
 from vehgen.files.quantities import read_quantity
 from vehgen.files.tables import TableColumns, read_columns
+from vehgen.files.tables.headings import MissingColumnError
 from vehgen.files.units import read_unit
 from vehgen.measure.acquisition import AcquisitionChain
 from vehgen.measure.quality import find_clipping, has_cut
@@ -95,7 +98,7 @@ def read_recording(run: Run) -> Recording:
                 (sensor.quantities[quantity], quantity, stated, document.find(("sensors", sensor_name, "channels", quantity, "unit")))
             )
             signs.append(1 if isinstance(entry, str) else entry.sign)
-    with placed(run, "recording"):
+    with placed(run, "recording"), _other_headings():
         table = read_columns(run.folder / file.recording, (TIME_COLUMN, *columns)).in_si(0, "s", "time")
     for number, unit in enumerate(units, 1):
         table = table.in_si(number, *unit)
@@ -108,6 +111,18 @@ def read_recording(run: Run) -> Recording:
         _check_samples(table, i + 1, values[:, i], channel)
         _check_recorder(table, i + 1, values[:, i], channel, chains[channel.name])
     return Recording(table.values[0], values, tuple(channels))
+
+
+@contextmanager
+def _other_headings() -> Iterator[None]:
+    """Tell what to do with a recording whose times have another heading."""
+    try:
+        yield
+    except MissingColumnError as error:
+        if error.column != TIME_COLUMN:
+            raise
+        cure = f"head the times {shown(TIME_COLUMN)}, or let `vehgen import` read the file: it is told which columns are which"
+        raise InputError(f"{error.message}; {cure}", error.position) from error
 
 
 def _channel(sensor_name: str, sensor: SensorEntry, quantity: str) -> RecordedChannel:
@@ -131,7 +146,7 @@ def _noise(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> f
 
 
 def _check_clock(table: TableColumns) -> None:
-    table.check_ascending(least=FEWEST_SAMPLES)
+    table.check_ascending(FEWEST_SAMPLES, "; `vehgen import` sets a clock right that stood still or went back")
     time = table.values[0]
     steps = np.diff(time)
     dt = float(np.median(steps))

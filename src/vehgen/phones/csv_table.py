@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 from vehgen.errors import ArgumentError, InputError, Position, did_you_mean, shortened, shown
 from vehgen.files.reading import split_lines
 from vehgen.files.tables.csv_table import csv_rows, without_comments
-from vehgen.files.tables.headings import name_and_unit
+from vehgen.files.tables.headings import name_and_unit, surplus_cells
+from vehgen.files.tables.rows import MISSING_CELLS
 from vehgen.files.units import ACCELERATION, FREQUENCY, TIME, Dimension, factor_to_si, parse_unit
 from vehgen.files.units import SPEED as SPEED_DIMENSION
 from vehgen.phones.export import PITCH_RATE_STREAM, SPEED_STREAM, VERTICAL_ACCELERATION_STREAM, PhoneExport, Stream
@@ -33,7 +34,6 @@ SAME_UNIT = 1e-9
 """Two units are the same whose factors to SI differ by no larger share."""
 _DECIMAL_COMMA = re.compile(r'^"?[+-]?\d*,\d+(?:[eE][+-]?\d+)?"?$')
 _NUMBER_CELL = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
-_MISSING = {"", "nan", "null", "na", "n/a", "-"}
 
 
 @dataclass(frozen=True)
@@ -49,8 +49,14 @@ class Table:
     decimal_comma: bool = False
 
     def rows(self) -> Iterator[tuple[int, list[str]]]:
-        """Yield the line and the cells of every row below the header that is not blank; raises InputError for what is no table."""
-        yield from itertools.islice(_rows(self.data, self.encoding, self.delimiter, self.name), 1, None)
+        """Yield the line and the cells of every row below the header that is not blank.
+
+        Raises InputError for what is no table, and for a row of more cells than headings.
+        """
+        for line, row in itertools.islice(_rows(self.data, self.encoding, self.delimiter, self.name), 1, None):
+            if any(cell.strip() for cell in row[len(self.header) :]):
+                raise InputError(surplus_cells(len(row), len(self.header)), Position(self.name, line, len(self.header) + 1))
+            yield line, row
 
     def column(self, index: int) -> Array:
         """Return a column as numbers `shape (n,)`; missing ones are NaN. Raises InputError as :meth:`columns`."""
@@ -80,7 +86,7 @@ class Table:
                 f"{shown(text)} in column {shown(self.header[index])} is beyond {LARGEST_EXPORTED:g}, which nothing measures",
                 Position(self.name, line, index + 1),
             )
-        if math.isnan(number) and text.lower() not in _MISSING:
+        if math.isnan(number) and text.lower() not in MISSING_CELLS:
             raise InputError(
                 f"expected a number in column {shown(self.header[index])}, found {shown(text)}", Position(self.name, line, index + 1)
             )

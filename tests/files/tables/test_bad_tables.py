@@ -26,6 +26,7 @@ CASES = [
     ("t;az\n0;1,2,3\n", "2:2: '1,2,3' in column 'az' is not a finite number"),
     ("t,az\n0,1,5\n", "2:3: 3 cells below 2 headings"),
     ("t;az\n0;1;5\n", "2:3: 3 cells below 2 headings"),
+    ("t,az\n0,00,1,5\n", "2:3: 4 cells below 2 headings; where each number is in two of them for its decimal comma, separate columns by"),
     ("t,az\ns,m/s^2\n", "1:1: a header line and at least one line of numbers were expected"),
     ("t,az\nfoo,banana\n0,1\n", "2:1: 'foo' in column 't' is not a finite number"),
     ("t,az\ns,5\n0,1\n", "2:1: 's' in column 't' is not a finite number"),

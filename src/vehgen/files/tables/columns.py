@@ -88,13 +88,15 @@ class TableColumns:
         kept = (self.values[0] >= low) & (self.values[0] <= high)
         return replace(self, values=tuple(column[kept] for column in self.values), lines=self.lines[kept])
 
-    def check_ascending(self, least: int = 2) -> None:
-        """Raise InputError where the numbers of the first column do not ascend, and for fewer than `least` rows."""
+    def check_ascending(self, least: int = 2, cure: str = "") -> None:
+        """Raise InputError where the numbers of the first column do not ascend, with a `cure`, and for fewer than `least` rows."""
         first = self.values[0]
         stuck = np.flatnonzero(~(np.diff(first) > 0))
         if len(stuck):
             row = int(stuck[0]) + 1
-            raise InputError(f"{shown(self.names[0])} must ascend; {first[row]:.12g} comes after {first[row - 1]:.12g}", self.place(row))
+            raise InputError(
+                f"{shown(self.names[0])} must ascend; {first[row]:.12g} comes after {first[row - 1]:.12g}{cure}", self.place(row)
+            )
         if len(first) < least:
             place = self.place(-1) if len(first) else self.heading(0)
             raise InputError(f"{len(first)} rows of numbers; at least {least} were expected", place)

@@ -27,6 +27,14 @@ _UNITS_AND_WORDS = ("in", "min")
 """Inches and minutes, or what came in and the least of something."""
 
 
+class MissingColumnError(InputError):
+    """A table has no column of a name: `column`."""
+
+    def __init__(self, column: str, known: Sequence[str], position: Position) -> None:
+        self.column = column
+        super().__init__(f"no column {shown(column)}; {did_you_mean(column, known)}", position)
+
+
 def spelled(text: str) -> str:
     """Return a unit as vehgen spells it: `m/s²` and `m/s2` are m/s^2, `°/s` is deg/s."""
     plain = text.strip()
@@ -64,17 +72,25 @@ def may_be_word(heading: str) -> bool:
     return found is not None and found.group(2) is None and found.group(3).strip() in _UNITS_AND_WORDS
 
 
+def surplus_cells(count: int, headings: int) -> str:
+    """Return what is wrong with a row of more cells than headings."""
+    halved = "; where each number is in two of them for its decimal comma, separate columns by semicolons" if count == 2 * headings else ""
+    return f"{count} cells below {headings} headings{halved}"
+
+
 def find_heading(path: Path, headings: Sequence[str], name: str, line: int = 1) -> int:
     """Return the index of the column with a heading, or with one that is the name and a unit in brackets.
 
     Raises
     ------
+    MissingColumnError
+        For a column that there is not, with the nearest names.
     InputError
-        For a column that there is not, with the nearest names, and for one that there is twice.
+        For one that there is twice.
     """
     known = list(headings) if name in headings else [name_and_unit(item)[0] for item in headings]
     if name not in known:
-        raise InputError(f"no column {shown(name)}; {did_you_mean(name, known)}", Position(path, line, 1))
+        raise MissingColumnError(name, known, Position(path, line, 1))
     index = known.index(name)
     if known.count(name) > 1:
         second = known.index(name, index + 1)

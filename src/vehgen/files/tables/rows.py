@@ -12,9 +12,11 @@ import numpy as np
 
 from vehgen.errors import InputError, Position, shown
 from vehgen.files.tables.columns import LARGEST_MEASURED, MAX_TABLE_NUMBERS, TableColumns, unmeasured
-from vehgen.files.tables.headings import declared_unit, find_heading, is_unit, may_be_word, name_and_unit
+from vehgen.files.tables.headings import declared_unit, find_heading, is_unit, may_be_word, name_and_unit, surplus_cells
 
 Cell = str | float
+MISSING_CELLS = {"", "nan", "null", "na", "n/a", "-"}
+"""What stands where a number is missing, capitals aside."""
 Rows = Iterator[tuple[int, list[Cell]]]
 
 
@@ -55,13 +57,14 @@ def read_rows(path: Path, header: Sequence[str], rows: Rows, names: tuple[str, .
                 units_line = line
                 continue
         if any(_text(cell) for cell in row[len(header) :]):
-            raise InputError(f"{len(row)} cells below {len(header)} headings", Position(path, line, len(header) + 1))
+            raise InputError(surplus_cells(len(row), len(header)), Position(path, line, len(header) + 1))
         for name, place, column in zip(names, places, columns, strict=True):
             number = _number(row[place], signs if comma else None) if place < len(row) else np.nan
             if not -LARGEST_MEASURED <= number <= LARGEST_MEASURED:
                 text = _text(row[place]) if place < len(row) else ""
                 position = Position(path, line, min(place, max(len(row) - 1, 0)) + 1)
-                raise InputError(f"{shown(text)} in column {shown(name)} is {unmeasured(number)}", position)
+                cure = "; `vehgen import` bridges gaps of a recording" if text.lower() in MISSING_CELLS else ""
+                raise InputError(f"{shown(text)} in column {shown(name)} is {unmeasured(number)}{cure}", position)
             if len(signs) > 1:
                 raise InputError(
                     f"{shown(row[place])} in column {shown(name)}: a decimal comma and a decimal point in one table; one was expected",
