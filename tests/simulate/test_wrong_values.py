@@ -32,3 +32,18 @@ def test_a_channel_that_there_is_not_is_told_with_the_nearest(tmp_path):
     assert response.channel(name).shape == (1, len(response.time))
     with pytest.raises(InputError, match=f"did you mean '{name}'"):
         response.channel(f"{name}s")
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: vehgen.load_vehicle(3), "`name`: a file or the name of a bundled model was expected, found int"),
+        (lambda: vehgen.road_response("quarter_car", speed="20"), "`speed`: a number in m/s was expected, found '20'"),
+        (lambda: vehgen.derive("quarter_car", ["x"]), "`outputs`: a list of PointOutput or ElementOutput was expected, found str"),
+        (lambda: vehgen.state_space("quarter_car", forces=["x"]), "`forces`: a list of Place was expected, found str"),
+    ],
+    ids=range(4),
+)
+def test_an_argument_of_another_kind_is_refused(call, message):
+    with pytest.raises(InputError, match=message):
+        call()

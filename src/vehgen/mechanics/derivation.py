@@ -13,11 +13,12 @@ from collections.abc import Iterable, Mapping
 
 import sympy as sp
 
+from vehgen.errors import ArgumentError
 from vehgen.mechanics.energies import Energies, Inertia, write_energies
 from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.kinematics import derive_kinematics
 from vehgen.mechanics.layout import lay_out
-from vehgen.mechanics.outputs import Output, Place, PointOutput, element_channel, point_channel
+from vehgen.mechanics.outputs import ElementOutput, Output, Place, PointOutput, element_channel, point_channel
 from vehgen.mechanics.rows import Row, SparseMatrix, add_outer, combine
 from vehgen.mechanics.symbols import number, parameter, to_sympy
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
@@ -42,6 +43,8 @@ def derive(vehicle: VehicleLike, outputs: Iterable[Output] = (), forces: Iterabl
         For an output or force at a place that the vehicle lacks, or a vehicle whose parts are nowhere.
     """
     vehicle, outputs, forces = as_vehicle(vehicle), tuple(outputs), tuple(forces)
+    _check_kinds("outputs", outputs, (PointOutput, ElementOutput))
+    _check_kinds("forces", forces, (Place,))
     layout = lay_out(vehicle)
     motion = derive_kinematics(vehicle)
     energies, inputs = write_energies(vehicle, motion)
@@ -85,6 +88,14 @@ def derive(vehicle: VehicleLike, outputs: Iterable[Output] = (), forces: Iterabl
         force_entries=force_entries,
         weight_entries=weight(energies) if vehicle.gravity else {},
     )
+
+
+def _check_kinds(argument: str, items: tuple[object, ...], kinds: tuple[type, ...]) -> None:
+    """Raise ArgumentError for an item of an argument that is of none of some kinds."""
+    for item in items:
+        if not isinstance(item, kinds):
+            expected = " or ".join(kind.__name__ for kind in kinds)
+            raise ArgumentError(f"`{argument}`: a list of {expected} was expected, found {type(item).__name__}", argument)
 
 
 def mass_matrix(energies: Energies) -> SparseMatrix:

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from numbers import Real
 from typing import ClassVar
 
 import numpy as np
 import scipy.integrate
 from numpy.typing import NDArray
 
-from vehgen.errors import ArgumentError, InputError, did_you_mean
+from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
 from vehgen.files.limits import SPEED_LIMIT
 from vehgen.files.provenance import file_hashes, versions
 from vehgen.files.result_fields import Array1D, Array2D, Number, rounded
@@ -147,6 +148,8 @@ def road_response(
     if len(set(names)) < len(names):
         raise InputError(f"two outputs are called {next(name for name in names if names.count(name) > 1)!r}; name the place differently")
     model = derive(vehicle, [output for _, output in wanted])
+    if not isinstance(speed, Real):
+        raise ArgumentError(f"`speed`: a number in m/s was expected, found {shown(speed)}", "speed")
     frequency = _lines(speed)
     lines = frequency_response(model, frequency, values=all_values(model, free), speed=speed).values[:, :, 0].T
     found = dict(zip((channel.name for channel in model.channels), lines, strict=True))

@@ -101,6 +101,8 @@ def load_vehicle(name: str | Path, beside: Path | None = None) -> Vehicle:
     InputError
         With file, line and column, what is wrong and what would be right.
     """
+    if not isinstance(name, str | os.PathLike):
+        raise ArgumentError(f"`name`: a file or the name of a bundled model was expected, found {type(name).__name__}", "name")
     path = find_vehicle_file(name, beside)
     document, files = _read_extended(path, ())
     return Vehicle.from_document(document, files, as_name(path.stem))
