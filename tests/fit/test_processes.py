@@ -7,6 +7,7 @@ import signal
 import threading
 import time
 from contextlib import closing
+from multiprocessing.reduction import ForkingPickler
 from pathlib import Path
 
 import pytest
@@ -130,6 +131,17 @@ def test_processes_end_with_the_iteration():
             assert len(multiprocessing.active_children()) == 2
         assert len(multiprocessing.active_children()) == 1  # the one that is free
     assert multiprocessing.active_children() == []
+
+
+def test_a_process_that_nobody_waits_for_any_more_ends_without_a_word(capfd):
+    with ProcessRunner(1) as runner, closing(runner.as_completed(slow, [1])) as answers:
+        next(answers)
+        (worker,) = runner._idle
+        worker.end.send_bytes(ForkingPickler.dumps(2))
+        worker.end.close()
+        worker.process.join()
+    assert worker.process.exitcode == 0
+    assert capfd.readouterr().err == ""
 
 
 @pytest.mark.parametrize(("asked", "told"), [("lock", "cannot be sent.*TypeError: .*lock"), ("unreadable", "cannot be read.*ValueError")])

@@ -164,7 +164,7 @@ def _work(end: Connection) -> None:
     warnings.simplefilter("ignore")
     packed: bytes | None = None
     function: Any = None
-    with suppress(EOFError):
+    with suppress(EOFError, OSError):  # nobody waits for it any more
         while True:
             data = end.recv_bytes()
             if data == FUNCTION_FOLLOWS:
