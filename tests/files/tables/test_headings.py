@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 
 import pandas as pd
@@ -9,6 +10,7 @@ import pytest
 
 from vehgen.errors import InputError
 from vehgen.files.tables import TableColumns, read_columns
+from vehgen.files.tables.headings import MissingColumnError
 
 INCH, MINUTE, GRAVITY = 0.0254, 60.0, 9.80665
 
@@ -110,3 +112,11 @@ def test_a_wrong_unit_is_told_where_it_stands(tmp_path: Path, text: str, said: s
 def test_a_unit_of_a_row_of_units_is_no_word(tmp_path: Path):
     with pytest.raises(InputError, match=r"run\.csv:2:2: acceleration is measured in m/s\^2, found 'in'"):
         read(tmp_path, "t,az (in)\ns,in\n0,1\n").in_si(1, "m/s^2", "acceleration")
+
+
+def test_a_missing_column_is_told_by_a_process_of_its_own_as_it_is_here(tmp_path: Path):
+    (tmp_path / "run.csv").write_text("time,az\n0,1\n")
+    with pytest.raises(MissingColumnError) as caught:
+        read_columns(tmp_path / "run.csv", ("t",))
+    sent = pickle.loads(pickle.dumps(caught.value))
+    assert (str(sent), sent.message, sent.position, sent.column) == (str(caught.value), caught.value.message, caught.value.position, "t")

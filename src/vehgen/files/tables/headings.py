@@ -30,9 +30,9 @@ _UNITS_AND_WORDS = ("in", "min")
 class MissingColumnError(InputError):
     """A table has no column of a name: `column`."""
 
-    def __init__(self, column: str, known: Sequence[str], position: Position) -> None:
+    def __init__(self, message: str, position: Position | None = None, column: str = "") -> None:
+        super().__init__(message, position)
         self.column = column
-        super().__init__(f"no column {shown(column)}; {did_you_mean(column, known)}", position)
 
 
 def spelled(text: str) -> str:
@@ -90,7 +90,7 @@ def find_heading(path: Path, headings: Sequence[str], name: str, line: int = 1) 
     """
     known = list(headings) if name in headings else [name_and_unit(item)[0] for item in headings]
     if name not in known:
-        raise MissingColumnError(name, known, Position(path, line, 1))
+        raise MissingColumnError(f"no column {shown(name)}; {did_you_mean(name, known)}", Position(path, line, 1), name)
     index = known.index(name)
     if known.count(name) > 1:
         second = known.index(name, index + 1)
