@@ -19,6 +19,7 @@ from vehgen.fit.trial import Trial, TrialLike, load_trials
 from vehgen.measure import ARTICULATED_BANDS, SPECTRA, TWO_AXLE_BANDS, band_rms, record_psd, relative_errors, welch_psd
 from vehgen.measure.astm import NOTE
 from vehgen.measure.curves import ChannelCurves
+from vehgen.measure.quality import in_foreign_unit
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 
 Array = NDArray[np.float64]
@@ -69,6 +70,11 @@ class ChannelComparison:
         """The RMS of what was measured, over that of what was simulated, means taken off; infinite where nothing moves."""
         simulated = float(np.std(self.simulated))
         return float(np.std(self.measured)) / simulated if simulated > 0 else float("inf")
+
+    @property
+    def in_foreign_unit(self) -> bool:
+        """Whether it stands above noise, and is so much louder or quieter than the vehicle's answer as only another unit makes it."""
+        return bool(self.audible.any()) and in_foreign_unit(self.loudness)
 
     @property
     def psds(self) -> ChannelCurves:

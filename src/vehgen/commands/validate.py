@@ -18,8 +18,6 @@ EXAMPLE = "vehgen validate calibrated/tractor5_calibrated.yaml road_b.yaml --out
 ARGUMENT_OPTIONS = {"reference": "--astm"}
 
 
-ANOTHER_UNIT = 4.0
-"""A channel that is so many times as loud as the vehicle's answer, or as quiet, is hardly in the unit that it is read in."""
 VALIDATION_CURVES = ("frequency", "measured_psd", "simulated_psd", "time", "measured", "simulated")
 """What validation.json holds and --json leaves out."""
 
@@ -78,5 +76,5 @@ def _doubts(found: Validation) -> list[str]:
     return [
         f"{item.run}: {item.channel} reads {item.loudness:.4g} times what the vehicle answers: is it in the unit that is stated?"
         for item in found.channels
-        if item.audible.any() and not 1 / ANOTHER_UNIT <= item.loudness <= ANOTHER_UNIT
+        if item.in_foreign_unit
     ]

@@ -21,6 +21,14 @@ CUT_NOISES = 8.0
 BY_CHANCE = 1e-6
 """... or where a round top would hold so many of its samples with this probability."""
 
+FOREIGN_UNIT = 4.0
+"""A channel so many times louder or quieter than the vehicle's answer is not in the unit that it is read in."""
+
+
+def in_foreign_unit(loudness: float) -> bool:
+    """Whether a channel that is `loudness` times as loud as the vehicle's answer is hardly in the unit that it is read in."""
+    return max(loudness, 1 / max(loudness, 1e-30)) > FOREIGN_UNIT
+
 
 @dataclass(frozen=True)
 class NoiseFloor:

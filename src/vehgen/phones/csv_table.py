@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from vehgen.errors import ArgumentError, InputError, Position, did_you_mean, shortened, shown
 from vehgen.files.reading import split_lines
 from vehgen.files.tables.csv_table import csv_rows, without_comments
-from vehgen.files.tables.headings import name_and_unit, surplus_cells
+from vehgen.files.tables.headings import check_cells, name_and_unit
 from vehgen.files.tables.rows import MISSING_CELLS
 from vehgen.files.units import ACCELERATION, FREQUENCY, TIME, Dimension, factor_to_si, parse_unit
 from vehgen.files.units import SPEED as SPEED_DIMENSION
@@ -54,8 +54,7 @@ class Table:
         Raises InputError for what is no table, and for a row of more cells than headings.
         """
         for line, row in itertools.islice(_rows(self.data, self.encoding, self.delimiter, self.name), 1, None):
-            if any(cell.strip() for cell in row[len(self.header) :]):
-                raise InputError(surplus_cells(len(row), len(self.header)), Position(self.name, line, len(self.header) + 1))
+            check_cells(self.name, line, row, len(self.header))
             yield line, row
 
     def column(self, index: int) -> Array:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError
 from vehgen.files.units import STANDARD_GRAVITY
-from vehgen.measure.quality import NoiseFloor, find_clipping, noise_floor
+from vehgen.measure.quality import FOREIGN_UNIT, NoiseFloor, find_clipping, in_foreign_unit, noise_floor
 from vehgen.phones.clocks import Match
 from vehgen.phones.csv_table import ColumnMap
 from vehgen.phones.detect import read_export
@@ -36,10 +36,8 @@ CLIPPED_IN_A_ROW = 3
 """Equal raw samples in a row at an axis's extreme that count as clipping: at a phone's rate an honest peak holds for one or two ..."""
 CLIPPED_DEVIATION = 4.0
 """... where the extreme is so many standard deviations from the median, so that a coarse axis at rest is not taken for a clipped one."""
-FOREIGN_UNIT = 4.0
-"""A channel so many times louder or quieter than the vehicle's answer is not in the unit that it is read in ..."""
 UNITS_TAKEN_AS_SI = (("g", 1 / STANDARD_GRAVITY), ("deg/s", 180 / np.pi))
-"""... but in one of these, an acceleration and a pitch rate, where its loudness is about as many times that of the answer."""
+"""A channel in a foreign unit is in one of these, an acceleration and a pitch rate, where that makes it about as loud as the answer."""
 SPEED_DOUBT = 0.01
 """Relative difference of speeds that deserves a warning."""
 
@@ -208,7 +206,7 @@ def _loudness_warnings(channels: list[str], found: Match) -> list[str]:
     """Say which channels are so much louder or quieter than the vehicle's answer as only another unit makes them."""
     warnings = []
     for (unit, worth), channel, ratio in zip(UNITS_TAKEN_AS_SI, channels, found.loudness, strict=False):
-        if max(ratio, 1 / max(ratio, 1e-30)) > FOREIGN_UNIT:
+        if in_foreign_unit(ratio):
             is_that = 1 / FOREIGN_UNIT < ratio / worth < FOREIGN_UNIT
             cause = f"as if in {unit}" if is_that else "check the units of the recording and of the road"
             warnings.append(f"{channel}: {ratio:.2g} times as loud as the vehicle's answer, {cause}")

@@ -72,10 +72,12 @@ def may_be_word(heading: str) -> bool:
     return found is not None and found.group(2) is None and found.group(3).strip() in _UNITS_AND_WORDS
 
 
-def surplus_cells(count: int, headings: int) -> str:
-    """Return what is wrong with a row of more cells than headings."""
-    halved = "; where each number is in two of them for its decimal comma, separate columns by semicolons" if count == 2 * headings else ""
-    return f"{count} cells below {headings} headings{halved}"
+def check_cells(where: Path | str, line: int, row: Sequence[str | float], headings: int) -> None:
+    """Raise InputError for a row of a table that has cells beyond its headings; empty ones count for nothing."""
+    if any(str(cell).strip() for cell in row[headings:]):
+        halved = "; where each number is in two of them for its decimal comma, separate columns by semicolons"
+        said = f"{len(row)} cells below {headings} headings{halved if len(row) == 2 * headings else ''}"
+        raise InputError(said, Position(where, line, headings + 1))
 
 
 def find_heading(path: Path, headings: Sequence[str], name: str, line: int = 1) -> int:

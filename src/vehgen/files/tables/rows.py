@@ -12,7 +12,7 @@ import numpy as np
 
 from vehgen.errors import InputError, Position, shown
 from vehgen.files.tables.columns import LARGEST_MEASURED, MAX_TABLE_NUMBERS, TableColumns, unmeasured
-from vehgen.files.tables.headings import declared_unit, find_heading, is_unit, may_be_word, name_and_unit, surplus_cells
+from vehgen.files.tables.headings import check_cells, declared_unit, find_heading, is_unit, may_be_word, name_and_unit
 
 Cell = str | float
 MISSING_CELLS = {"", "nan", "null", "na", "n/a", "-"}
@@ -56,8 +56,7 @@ def read_rows(path: Path, header: Sequence[str], rows: Rows, names: tuple[str, .
             if (below := _units_row(row, places)) is not None:
                 units_line = line
                 continue
-        if any(_text(cell) for cell in row[len(header) :]):
-            raise InputError(surplus_cells(len(row), len(header)), Position(path, line, len(header) + 1))
+        check_cells(path, line, row, len(header))
         for name, place, column in zip(names, places, columns, strict=True):
             number = _number(row[place], signs if comma else None) if place < len(row) else np.nan
             if not -LARGEST_MEASURED <= number <= LARGEST_MEASURED:
