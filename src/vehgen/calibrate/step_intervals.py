@@ -61,5 +61,5 @@ def _searching_all(problem: Problem, fit: LeastSquaresFit) -> LeastSquaresFit:
     known = old.problem.trials[0].values | old.problem.best_values(fit.values)
     values = np.array([known[name] for name in problem.space.names])
     whole = Problem(old.problem.trials, problem.space)
-    misfit = Misfit(whole, old.noises, values, old.nuisances, old.band, old.shared, old.known)
+    misfit = Misfit(whole, old.noises, values, old.nuisances, old.band, old.shared, old.known, old.split(fit.x)[1], old.begun)
     return replace(fit, misfit=misfit, x=np.concatenate([problem.space.unit(values), fit.x[old.n_parameters :]]), linearisation=None)

@@ -147,6 +147,8 @@ def fit_least_squares(
     begun = [(value - item.neutral) / item.scale for item, value in zip(shared, numbers, strict=True)] if numbers else [0.0] * len(shared)
     misfit = Misfit(problem, noises, problem.space.values(unit), options.nuisances, options.band, shared, known, begun=begun)
     errors = align(misfit, unit, begun) if start is None else start(misfit) if callable(start) else start
+    if given:
+        misfit = Misfit(problem, noises, problem.space.values(unit), options.nuisances, options.band, shared, known, errors, begun)
     x = np.concatenate([np.clip(unit, 0.0, 1.0), begun, errors])
     result, last = _fit(misfit, x, prior_data, options, options.tolerance if given else COARSE_TOLERANCE, nearby)
     for left in reversed(range(0 if given else options.noise_rounds - 1)):

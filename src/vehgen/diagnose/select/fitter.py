@@ -132,7 +132,8 @@ class Fitter:
         """Return a first effect's fit to the training runs as it is, by the noise that is now known."""
         old = fit.least_squares.misfit
         noises, values, band = self.detection.floor.noises, fit.least_squares.values, self.detection.band
-        misfit = Misfit(old.problem, noises, values, old.nuisances, band, old.shared, old.known, begun=old.begun)
+        errors = old.split(fit.least_squares.x)[1]
+        misfit = Misfit(old.problem, noises, values, old.nuisances, band, old.shared, old.known, errors, old.begun)
         return evaluate_fit(fit.effects, replace(fit.least_squares, misfit=misfit), (), noises)
 
     def fit_all(self, candidates: Sequence[Candidate], runner: Runner, slow_first: bool = True) -> Iterator[ModelFit | None]:
