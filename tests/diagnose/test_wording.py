@@ -96,3 +96,8 @@ def test_parts_of_a_gap_are_told_with_what_each_leaves():
         "by the share of the gap that each would close alone: Dry friction of about 446 N in the rear suspension 62 % and sensor gain of "
         "about 1.2 at F_az 0 %"
     )
+
+
+@pytest.mark.parametrize(("share", "words"), [(-0.78, "none"), (0.0, "none"), (0.42, "42 %"), (0.996, "all")])
+def test_a_law_that_makes_it_worse_explains_none(share: float, words: str):
+    assert wording.best_random_law(8, share).endswith(f"explains {words} of what the model missed")

@@ -75,7 +75,9 @@ def amount(value: float) -> str:
 
 
 def share_words(share: float) -> str:
-    """Return a share of what the model missed: all, or a percentage."""
+    """Return a share of what the model missed: all, a percentage, or none, also where a law makes it worse."""
+    if share <= 1 - SHARE_CALLED_ALL:
+        return "none"
     return "all" if share >= SHARE_CALLED_ALL else f"{100 * share:.0f} %"
 
 
