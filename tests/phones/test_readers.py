@@ -117,8 +117,29 @@ def test_a_plain_csv_is_in_the_units_of_its_headings(tmp_path, name, above):
 
 
 @pytest.mark.parametrize(
+    "moments",
+    [
+        ("2026-11-03T10:59:59.990Z", "nan", "2026-11-03 12:00:00.010+01:00"),
+        ("2026-11-03T23:59:59.990", "", "2026-11-04T00:00:00.010"),
+        ("09:05:06.25", "", "09:05:06.27"),
+    ],
+)
+def test_times_of_a_plain_csv_may_be_dates_and_times_of_day(tmp_path, moments):
+    (tmp_path / "log.csv").write_text("t [UTC],az\n" + "".join(f"{text},{i}\n" for i, text in enumerate(moments)))
+    time = read_export(tmp_path / "log.csv", ColumnMap("t", "az")).streams["vertical_acceleration"].time
+    assert time[[0, 2]] == pytest.approx([0.0, 0.02], abs=1e-6)
+    assert np.isnan(time[1])
+
+
+@pytest.mark.parametrize(
     ("text", "columns", "message"),
     [
+        ("t,b\n10:00:00,2\n10:00:71,2\n", ColumnMap("t", "b"), "log.csv:3:1: expected a time such as 2024-05-01T12:00:00.25 in column 't'"),
+        (
+            "t,b\n10:00:00,2\n",
+            ColumnMap("t", "b", time_unit="s"),
+            "log.csv holds times of day, which have no unit; leave `time_unit` out",
+        ),
         ("a,b\n1,2\n", None, "of no app that vehgen knows (its columns: 'a', 'b')"),
         ("a,b\n1,2\n", ColumnMap("a", "c"), "has no column 'c'"),
         ("# ;\na,b\n1,2\n3,four\n", ColumnMap("a", "b"), "log.csv:4:2: expected a number in column 'b', found 'four'"),

@@ -21,6 +21,7 @@ from vehgen.errors import ArgumentError, InputError, Position, did_you_mean, sho
 from vehgen.files.reading import split_lines
 from vehgen.files.tables.csv_table import csv_rows, without_comments
 from vehgen.files.tables.headings import check_cells, name_and_unit
+from vehgen.files.tables.moments import is_moment, moment
 from vehgen.files.tables.rows import MISSING_CELLS
 from vehgen.files.units import ACCELERATION, FREQUENCY, TIME, Dimension, factor_to_si, parse_unit
 from vehgen.files.units import SPEED as SPEED_DIMENSION
@@ -90,6 +91,30 @@ class Table:
                 f"expected a number in column {shown(self.header[index])}, found {shown(text)}", Position(self.name, line, index + 1)
             )
         return number if math.isfinite(number) else math.nan
+
+    def holds_moments(self, index: int) -> bool:
+        """Whether a column begins with a date and time of day, or a time of day, instead of a number."""
+        cells = (row[index].strip() for _, row in self.rows() if index < len(row))
+        return is_moment(next((text for text in cells if text.lower() not in MISSING_CELLS), ""))
+
+    def moments(self, index: int) -> Array:
+        """Return a column of dates and times of day, or of times of day, in seconds since the first, `shape (n,)`; missing ones are NaN.
+
+        Raises
+        ------
+        InputError
+            At the line and column of a text that is none.
+        """
+        found = array("d")
+        for line, row in self.rows():
+            text = row[index].strip() if index < len(row) else ""
+            try:
+                found.append(math.nan if text.lower() in MISSING_CELLS else moment(text.replace(",", ".")))
+            except ValueError as error:
+                message = f"expected a time such as 2024-05-01T12:00:00.25 in column {shown(self.header[index])}, found {shown(text)}"
+                raise InputError(message, Position(self.name, line, index + 1)) from error
+        times = np.array(found)
+        return np.asarray(times - times[np.isfinite(times)][0])
 
     def text(self, index: int) -> list[str]:
         """Return a column as text."""
@@ -187,7 +212,7 @@ def read_plain(table: Table, columns: ColumnMap | None) -> PhoneExport:
         shown = ", ".join(repr(item) for item in table.header[:12])
         message = f"{table.name} is of no app that vehgen knows (its columns: {shown}); say which columns are which with `columns`: "
         raise ArgumentError(f"{message}time=...,acceleration=...,pitch_rate=...", "columns")
-    time = _in_si(table, columns.time, columns.time_unit, TIME, "s")
+    time = _times(table, columns)
     wanted = (
         (VERTICAL_ACCELERATION_STREAM, columns.acceleration, columns.acceleration_unit, ACCELERATION, "m/s^2"),
         (PITCH_RATE_STREAM, columns.pitch_rate, columns.pitch_rate_unit, FREQUENCY, "rad/s"),
@@ -198,6 +223,17 @@ def read_plain(table: Table, columns: ColumnMap | None) -> PhoneExport:
         if column is not None:
             streams[name] = Stream(time, _in_si(table, column, unit, dimension, si)[:, None], (column,), si)
     return PhoneExport("plain CSV", streams)
+
+
+def _times(table: Table, columns: ColumnMap) -> Array:
+    """Return the times of a table's rows [s], `shape (n,)`, written as numbers or as moments."""
+    index = table.find(columns.time)
+    if table.holds_moments(index):
+        if columns.time_unit is not None:
+            message = f"the column {shown(columns.time)} of {table.name} holds times of day, which have no unit; leave `time_unit` out"
+            raise ArgumentError(message, "columns")
+        return table.moments(index)
+    return _in_si(table, columns.time, columns.time_unit, TIME, "s")
 
 
 def _in_si(table: Table, name: str, stated: str | None, dimension: Dimension, si: str) -> Array:

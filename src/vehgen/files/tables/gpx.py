@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from datetime import UTC, datetime
 from pathlib import Path
 from xml.parsers import expat
 
@@ -13,6 +12,7 @@ from vehgen.errors import InputError, Position, shown
 from vehgen.files.reading import read_bytes
 from vehgen.files.tables.columns import MAX_TABLE_BYTES, TableColumns
 from vehgen.files.tables.csv_table import MOST_ROWS
+from vehgen.files.tables.moments import moment
 from vehgen.files.tables.sheet import Sheet
 
 GPX_KIND = "a GPX file"
@@ -88,9 +88,8 @@ class _Points:
     def clock(self, text: str) -> float:
         """Return a moment [s since 1970], in UTC where it names no zone; raises InputError for what is none."""
         try:
-            found = datetime.fromisoformat(text)
-            return (found if found.tzinfo else found.replace(tzinfo=UTC)).timestamp()
-        except (ValueError, OverflowError) as error:
+            return moment(text)
+        except ValueError as error:
             raise self.fault(f"a time such as 2024-05-01T12:00:00Z was expected, found {shown(text)}") from error
 
 
