@@ -17,6 +17,7 @@ from vehgen.fit.parallel import Runner
 from vehgen.fit.prior_data import PriorData
 from vehgen.fit.problem import Problem
 from vehgen.fit.recorders import FoundRecorder, clearest, find_recorder, has_unknown
+from vehgen.fit.resolution import RESOLVED_BIAS, resolve
 
 SAME_ANSWER = 1.0
 """Two fits end in one minimum where the square of how far their answers differ is below this many times the noise's mean square."""
@@ -49,7 +50,8 @@ def polish(
     """Fit a problem from several points by least squares.
 
     All starts share the runs' alignment at the first of them. Of those that answer alike once the noise is roughly known, one goes on.
-    Where a recorder is not declared, its low-pass is found at the best of the fits, and every fit is polished again through it.
+    Where a recorder is not declared, its low-pass is found at the best of the fits, and every fit is polished again through it. The last
+    time every run is simulated in steps so short that they bend no estimate.
 
     Parameters
     ----------
@@ -84,7 +86,8 @@ def polish(
         recorder = found[clearest(found, [fit.loss for fit in tried])]
         fits = distinct(options.runner.map(partial(_through, problem, rough, prior_data, recorder=recorder), fits))
         last = replace(last, band=recorder.band)
-    fits = list(options.runner.map(partial(_anew, last, prior_data), fits))
+    fine = _resolved(min(fits, key=lambda fit: fit.loss))
+    fits = list(options.runner.map(partial(_anew, last, prior_data, problem=fine), fits))
     return Polish(tuple(sorted(fits, key=lambda fit: fit.loss)), recorder)
 
 
@@ -103,11 +106,18 @@ def _answer_alike(better: LeastSquaresFit, other: LeastSquaresFit) -> bool:
     return 2 * sum(float(np.vdot(lines, lines).real) for lines in apart) < SAME_ANSWER * better.chi2
 
 
-def _anew(options: FitOptions, prior_data: PriorData | None, fit: LeastSquaresFit) -> LeastSquaresFit:
-    """Return a fit done again from where it ended, by the noise that it leaves."""
+def _anew(options: FitOptions, prior_data: PriorData | None, fit: LeastSquaresFit, problem: Problem | None = None) -> LeastSquaresFit:
+    """Return a fit done again from where it ended, by the noise that it leaves, to the same runs, or to these in other steps."""
     unit, errors = fit.misfit.split(fit.x)
     noises = estimate_noises(fit.misfit, fit.x)
-    return fit_least_squares(fit.misfit.problem, unit, options, first=noises, start=errors, prior_data=prior_data)
+    return fit_least_squares(problem or fit.misfit.problem, unit, options, first=noises, start=errors, prior_data=prior_data)
+
+
+def _resolved(fit: LeastSquaresFit) -> Problem:
+    """Return the problem of a fit in steps that bend no estimate, by the noise that it leaves."""
+    old = fit.misfit
+    misfit = Misfit(old.problem, estimate_noises(old, fit.x), fit.values, old.nuisances, old.band, supposed=old.split(fit.x)[1])
+    return resolve(misfit, fit.x, RESOLVED_BIAS)
 
 
 def _through(

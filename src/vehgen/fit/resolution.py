@@ -19,12 +19,18 @@ from vehgen.fit.trial import Trial, samples_kept
 Array = NDArray[np.float64]
 RESOLVED_SHARE = 0.1
 """A step is short enough when half of it moves the whitened lines by this mean square or less (noise alone: 1)."""
+RESOLVED_BIAS = 0.1
+"""Where intervals are asked: by this sum of squares or less. What moves all lines by so much moves no estimate by more standard deviations
+than the root of it."""
 HALVINGS = 3
 """A run's step is halved so often at most, in all."""
 
 
-def resolve(misfit: Misfit, x: Array) -> Problem:
-    """Return the problem of a misfit with every trial's step halved as often as its response at `x` asks, and marked where it jumps."""
+def resolve(misfit: Misfit, x: Array, most_moved: float | None = None) -> Problem:
+    """Return the problem of a misfit with every trial's step halved as often as its response at `x` asks, and marked where it jumps.
+
+    `most_moved` is the sum of squares by which half a step may move a trial's whitened lines (default: RESOLVED_SHARE of their number).
+    """
     values, numbers = misfit.problem.space.values(misfit.split(x)[0])[None], misfit.adjusted(x)
     found = []
     for number, trial in enumerate(misfit.problem.trials):
@@ -34,8 +40,8 @@ def resolve(misfit: Misfit, x: Array) -> Problem:
         while trial.scenario.decimation < most:
             finer = halved(trial)
             fine = misfit.respond(number, values, numbers, error, finer)[0]
-            moved = float(np.mean(np.abs(misfit.whitened_signal(number, fine - coarse)) ** 2))
-            if not moved > RESOLVED_SHARE:
+            moved = np.abs(misfit.whitened_signal(number, fine - coarse)) ** 2
+            if not (np.mean(moved) > RESOLVED_SHARE if most_moved is None else 2 * np.sum(moved) > most_moved):
                 break
             trial, coarse = finer, fine
         found.append(replace(trial, jumps=_jumps(trial)))
