@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.problem import Problem
 from vehgen.fit.trial import Trial, samples_kept
+from vehgen.simulate.run_file.checks import MAX_STEPS
 
 Array = NDArray[np.float64]
 RESOLVED_SHARE = 0.1
@@ -37,7 +38,7 @@ def resolve(misfit: Misfit, x: Array, most_moved: float | None = None) -> Proble
         error = misfit.errors_of(x, number)
         most = samples_kept(trial.run, trial.recording.dt) * 2**HALVINGS
         coarse = misfit.respond(number, values, numbers, error, trial)[0]
-        while trial.scenario.decimation < most:
+        while trial.scenario.decimation < most and 2 * len(trial.scenario.time) <= MAX_STEPS:
             finer = halved(trial)
             fine = misfit.respond(number, values, numbers, error, finer)[0]
             moved = np.abs(misfit.whitened_signal(number, fine - coarse)) ** 2
