@@ -1,6 +1,6 @@
 """Errors of runs and sensors: each is found in recordings that another program made with it."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -206,3 +206,24 @@ def test_derivatives_are_those_of_the_residuals(tmp_path):
     information, gradient = found.normal(misfit.whitened_spectrum(x), x)
     assert information == pytest.approx(found.jacobian.T @ found.jacobian, rel=1e-9, abs=1e-6)
     assert gradient == pytest.approx(found.jacobian.T @ misfit.residuals(x), rel=1e-9, abs=1e-6)
+
+
+def test_a_fit_of_known_noise_weighs_roughness_by_the_errors_that_it_begins_at(tmp_path):
+    """Of a road far louder than sensors four channels agree only as well as their gains do: 3 % of one look like noise of the sensors."""
+    rough, spacing = 5e-4, 0.05  # a random walk's density: 2 rough^2 / (spacing (2 pi n)^2)
+    path = write_run(tmp_path, "run", TRUTH, noise=0.0, rough=rough, seed=4)
+    rows = np.loadtxt(tmp_path / "run.csv", delimiter=",", skiprows=1)
+    sigma = 0.05 * SIGMA
+    rows[:, 1:] = rows[:, 1:] * [1.03, 1.0, 1.0, 1.0] + sigma * np.random.default_rng(3).normal(size=rows[:, 1:].shape)
+    np.savetxt(tmp_path / "run.csv", rows, delimiter=",", header="t,F_az,F_q,R_az,R_q", comments="")
+    path.write_text(path.read_text(encoding="utf-8") + "acquisition: none\n", encoding="utf-8")
+    trial = load_trials([path])[0]
+    problem = make_problem([replace(trial, values={**trial.values, **TRUTH})], ("kf",))
+    noises = {trial.name: Noise(np.full(len(EVEN), 2 * rough**2 / (spacing * (0.2 * np.pi) ** 2)), sigma)}
+    unit = problem.space.unit(np.array([TRUTH["kf"]]))
+    options = FitOptions(Nuisances(**{item.name: 0.0 for item in fields(Nuisances) if item.name not in ("delay", "gain", "asked")}))
+    blind = fit_least_squares(problem, unit, options, noises=noises)
+    fit = fit_least_squares(problem, unit, options, noises=noises, start=blind.misfit.split(blind.x)[1])
+    gains = {item.place: item.value for item in fit.conditions() if item.name == "gain"}
+    assert gains["F_az"] - gains["R_az"] == pytest.approx(0.03, abs=0.003)
+    assert fit.loss < blind.loss - 50
