@@ -68,6 +68,11 @@ def test_paths_that_are_no_file(tmp_path: Path):
         load_vehicle("tracktor5.yaml")
 
 
+def test_a_bundled_model_in_a_folder_is_told_by_its_bare_name():
+    with pytest.raises(InputError, match=r"^no file .*tractor5\.yaml, and a bundled model is named without a folder: tractor5$"):
+        load_vehicle("no_folder/tractor5.yaml")
+
+
 @pytest.mark.parametrize("name", sorted(bundled_models()))
 def test_bundled_models_are_whole(name: str):
     vehicle = load_vehicle(name)

@@ -83,6 +83,8 @@ def _find_bundled(name: str | Path) -> Path:
     path, bundled = Path(name), bundled_models()
     if path.parent == Path() and path.stem in bundled and path.suffix in ("", ".yaml"):
         return bundled[path.stem]
+    if path.stem in bundled and path.suffix in ("", ".yaml"):
+        raise InputError(f"a bundled model is named without a folder: {path.stem}")
     raise InputError(f"no bundled model {shown(path.stem)}; {did_you_mean(path.stem, bundled)}")
 
 
