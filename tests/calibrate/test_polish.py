@@ -8,11 +8,14 @@ import scipy.linalg
 
 from tests.fit.recordings import sedan_truth, two_axle, write_run
 from vehgen.calibrate.polish import PolishOptions, distinct, polish
+from vehgen.fit import resolution
 from vehgen.fit.band import CALIBRATION_BAND_HZ
-from vehgen.fit.least_squares import FitOptions, fit_least_squares
+from vehgen.fit.least_squares import FitOptions, first_noises, fit_least_squares
+from vehgen.fit.misfit import Misfit
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.parallel import Runner
 from vehgen.fit.problem import make_problem
+from vehgen.fit.resolution import resolve
 from vehgen.fit.trial import load_trials
 
 OPTIONS = PolishOptions(Nuisances(), CALIBRATION_BAND_HZ, Runner())
@@ -65,3 +68,13 @@ def test_steps_of_the_simulation_bend_no_natural_frequency(tmp_path):
     found = hop_frequencies({**truth, **dict(zip(problem.space.names, fit.values, strict=True))})
     assert found == pytest.approx(hop_frequencies(truth), rel=1.5e-4)
     assert all(trial.scenario.dt < 1e-3 for trial in fit.misfit.problem.trials)
+
+
+def test_no_step_is_halved_beyond_a_run_s_memory(problem, monkeypatch):
+    misfit = Misfit(problem, first_noises(problem), problem.space.start)
+    x = np.concatenate([problem.space.unit(problem.space.start), np.zeros(misfit.n_errors)])
+    (trial,) = resolve(misfit, x, most_moved=0.0).trials
+    assert trial.scenario.dt == pytest.approx(1e-3 / 8)
+    monkeypatch.setattr(resolution, "MAX_RESPONSE_NUMBERS", 2 * 5 * len(problem.trials[0].scenario.time))
+    (trial,) = resolve(misfit, x, most_moved=0.0).trials
+    assert trial.scenario.dt == pytest.approx(1e-3 / 2)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.problem import Problem
 from vehgen.fit.trial import Trial, samples_kept
-from vehgen.simulate.run_file.checks import MAX_STEPS
+from vehgen.simulate.budgets import MAX_RESPONSE_NUMBERS, excitation_numbers
 
 Array = NDArray[np.float64]
 RESOLVED_SHARE = 0.1
@@ -38,7 +38,7 @@ def resolve(misfit: Misfit, x: Array, most_moved: float | None = None) -> Proble
         error = misfit.errors_of(x, number)
         most = samples_kept(trial.run, trial.recording.dt) * 2**HALVINGS
         coarse = misfit.respond(number, values, numbers, error, trial)[0]
-        while trial.scenario.decimation < most and 2 * len(trial.scenario.time) <= MAX_STEPS:
+        while trial.scenario.decimation < most and _may_be_halved(trial):
             finer = halved(trial)
             fine = misfit.respond(number, values, numbers, error, finer)[0]
             moved = np.abs(misfit.whitened_signal(number, fine - coarse)) ** 2
@@ -47,6 +47,12 @@ def resolve(misfit: Misfit, x: Array, most_moved: float | None = None) -> Proble
             trial, coarse = finer, fine
         found.append(replace(trial, jumps=_jumps(trial)))
     return Problem(tuple(found), misfit.problem.space)
+
+
+def _may_be_halved(trial: Trial) -> bool:
+    """Return whether half a trial's step leaves what excites it within a run's memory."""
+    scenario, n_wheels = trial.scenario, len(trial.simulator.model.inputs)
+    return excitation_numbers(2 * len(scenario.time), n_wheels, len(scenario.forces)) <= MAX_RESPONSE_NUMBERS
 
 
 def _jumps(trial: Trial) -> bool:

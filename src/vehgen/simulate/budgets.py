@@ -60,7 +60,8 @@ def check_run(run: Run, duration: float, way: float, n_wheels: int) -> None:
         raise InputError(
             f"a run of {duration:g} s keeps no sample: they are {run.decimation * file.step:g} s apart", run.document.find(said)
         )
-    numbers = steps * (2 * n_wheels + len(file.forces) + 1) + steps / run.decimation * (len(run.outputs()) + len(run.vehicle.axles))
+    numbers = excitation_numbers(steps, n_wheels, len(file.forces))
+    numbers += steps / run.decimation * (len(run.outputs()) + len(run.vehicle.axles))
     reason = None
     if steps > MAX_STEPS:
         reason = f"a run has at most {MAX_STEPS} steps; {duration:g} s in steps of {file.step:g} s are more"
@@ -76,6 +77,11 @@ def check_run(run: Run, duration: float, way: float, n_wheels: int) -> None:
             f"a road is averaged over a footprint for at most {MOST_AVERAGED:g} m; this run covers {way:.3g} m",
             run.document.find(("footprint",)),
         )
+
+
+def excitation_numbers(steps: float, n_wheels: int, n_forces: int) -> float:
+    """Return how many numbers excite a vehicle in so many steps: the road's height and rise at each wheel, forces, and times."""
+    return steps * (2 * n_wheels + n_forces + 1)
 
 
 def check_population(n_individuals: int, n_samples: float, n_channels: int) -> None:
