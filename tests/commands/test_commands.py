@@ -195,11 +195,13 @@ def test_static_of_a_vehicle_without_springs_has_no_empty_table(work: Path, caps
     assert run_json(capsys, "static", "bar.yaml")["springs"] == []
 
 
-def test_modes_of_what_nothing_holds_say_so(work: Path, capsys: pytest.CaptureFixture[str]):
+def test_modes_of_what_no_stiffness_holds_say_so(work: Path, capsys: pytest.CaptureFixture[str]):
     (work / "bar.yaml").write_text("name: bar\ngravity: false\nbodies: {bar: {mass: 10 kg, pitch_inertia: 2 kg m^2}}\n")
     assert main(["modes", "bar.yaml"]) == 0
     told = capsys.readouterr().err.splitlines()
-    assert told == [f"warning: nothing holds bar {motion}: 0 Hz; give it a spring, a tyre or a link" for motion in ("heave", "pitch")]
+    assert told == [
+        f"warning: no linear stiffness holds bar {motion}: 0 Hz; a spring, a tyre or a link would" for motion in ("heave", "pitch")
+    ]
     assert main(["modes", "quarter_car"]) == 0
     assert not capsys.readouterr().err
 

@@ -107,7 +107,10 @@ def test_what_is_not_utf8_has_line_and_column(tmp_path, content, place):
         ("t,a\n0,1\n1,1e13\n", r":3:2: '1e13' in column 'a' is beyond 1e\+12"),
         ("t,a\n0,1\n1,-1e300\n", r":3:2: '-1e300' in column 'a' is beyond"),
         ("t,a\n0,1\n1,nan\n", r":3:2: 'nan' in column 'a' is not a finite number; `vehgen import` bridges gaps of a recording"),
-        ("t,a\n10:00:00.01,1\n", r":2:1: '10:00:00.01' in column 't' is not a finite number; `vehgen import` reads times of day and dates"),
+        (
+            "t,a\n10:00:00.01,1\n",
+            r":2:1: '10:00:00.01' in column 't' is not a finite number; `vehgen import` reads the times of day of a recording",
+        ),
         ("t,a\n0,1\n7\n", r":3:1: '' in column 'a' is not a finite number"),
         ("t,a,t\n0,1,2\n", r":1:3: two columns are named 't'"),
         ("t,a\n", r":1:1: a header line and at least one line of numbers"),

@@ -121,25 +121,39 @@ def test_a_plain_csv_is_in_the_units_of_its_headings(tmp_path, name, above):
     [
         ("2026-11-03T10:59:59.990Z", "nan", "2026-11-03 12:00:00.010+01:00"),
         ("2026-11-03T23:59:59.990", "", "2026-11-04T00:00:00.010"),
-        ("09:05:06.25", "", "09:05:06.27"),
+        ("9:05:06.25", "", "09:05:06,27"),
+        ("", "23:59:59.99", "00:00:00.01"),
     ],
 )
 def test_times_of_a_plain_csv_may_be_dates_and_times_of_day(tmp_path, moments):
-    (tmp_path / "log.csv").write_text("t [UTC],az\n" + "".join(f"{text},{i}\n" for i, text in enumerate(moments)))
+    (tmp_path / "log.csv").write_text("t [UTC];az\n" + "".join(f"{text};{i}\n" for i, text in enumerate(moments)))
     time = read_export(tmp_path / "log.csv", ColumnMap("t", "az")).streams["vertical_acceleration"].time
-    assert time[[0, 2]] == pytest.approx([0.0, 0.02], abs=1e-6)
-    assert np.isnan(time[1])
+    known = np.isfinite(time)
+    assert known.tolist() == [text not in ("", "nan") for text in moments]
+    assert time[known] == pytest.approx([0.0, 0.02], abs=1e-6)
 
 
 @pytest.mark.parametrize(
     ("text", "columns", "message"),
     [
-        ("t,b\n10:00:00,2\n10:00:71,2\n", ColumnMap("t", "b"), "log.csv:3:1: expected a time such as 2024-05-01T12:00:00.25 in column 't'"),
         (
-            "t,b\n10:00:00,2\n",
-            ColumnMap("t", "b", time_unit="s"),
-            "log.csv holds times of day, which have no unit; leave `time_unit` out",
+            "t,b\n10:00:00,2\n10:00:71,2\n",
+            ColumnMap("t", "b"),
+            "log.csv:3:1: expected a time of day as above, such as 12:00:00.25 or 2024-",
         ),
+        ("t,b\n10:00:00,2\n12.5,2\n", ColumnMap("t", "b"), "log.csv:3:1: expected a time of day as above"),
+        (
+            "t,b\n2026-11-03T10:00:00Z,2\n2026-11-03T10:00:01,2\n",
+            ColumnMap("t", "b"),
+            "log.csv:3:1: expected a date and time with its zone as",
+        ),
+        (
+            "t,b\n05:12.34,2\n05:12.35,2\n",
+            ColumnMap("t", "b"),
+            "log.csv:2:1: expected seconds, or a time, such as 12:00:00.25 or 2024-05-01T",
+        ),
+        ("t,b\n3.11.2026 10:00:00,2\n", ColumnMap("t", "b"), "2024-05-01T12:00:00.25, in column 't', found '3.11.2026 10:00:00'"),
+        ("t,b\n10:00:00,2\n", ColumnMap("t", "b", time_unit="s"), "log.csv holds times of day, which have no unit; leave `time_unit` out"),
         ("a,b\n1,2\n", None, "of no app that vehgen knows (its columns: 'a', 'b')"),
         ("a,b\n1,2\n", ColumnMap("a", "c"), "has no column 'c'"),
         ("# ;\na,b\n1,2\n3,four\n", ColumnMap("a", "b"), "log.csv:4:2: expected a number in column 'b', found 'four'"),

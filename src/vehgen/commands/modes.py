@@ -8,7 +8,7 @@ from vehgen.commands.terminal import add_vehicle, load, print_json, print_table,
 
 EXAMPLE = "vehgen modes tractor5.yaml --set SHCM-1"
 FREE_HZ = 1e-3
-"""A motion as slow as this is held by nothing."""
+"""What is as slow as this has no stiffness but that of force laws, which modes leave out."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -23,7 +23,7 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.simulate.modes import natural_modes
 
     modes = natural_modes(vehicle, values)
-    warn(f"nothing holds {item.name}: 0 Hz; give it a spring, a tyre or a link" for item in modes if item.undamped_hz < FREE_HZ)
+    warn(f"no linear stiffness holds {item.name}: 0 Hz; a spring, a tyre or a link would" for item in modes if item.undamped_hz < FREE_HZ)
     if options.json:
         keys = ("name", "undamped_hz", "damped_hz", "damping_ratio")
         print_json({"n_dof": len(modes), "modes": [{key: getattr(mode, key) for key in keys} for mode in modes]})

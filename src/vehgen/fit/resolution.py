@@ -21,8 +21,8 @@ Array = NDArray[np.float64]
 RESOLVED_SHARE = 0.1
 """A step is short enough when half of it moves the whitened lines by this mean square or less (noise alone: 1)."""
 RESOLVED_BIAS = 0.1
-"""Where intervals are asked: by this sum of squares or less. What moves all lines by so much moves no estimate by more standard deviations
-than the root of it."""
+"""Where intervals are asked: by this sum of squares or less in each run. What moves the lines of a run by so much moves no estimate by more
+standard deviations than the root of it, 0.3 at worst and far less as a rule; what is left of a step's error is a third more."""
 HALVINGS = 3
 """A run's step is halved so often at most, in all."""
 

@@ -21,7 +21,7 @@ from vehgen.errors import ArgumentError, InputError, Position, did_you_mean, sho
 from vehgen.files.reading import split_lines
 from vehgen.files.tables.csv_table import csv_rows, without_comments
 from vehgen.files.tables.headings import check_cells, name_and_unit
-from vehgen.files.tables.moments import is_moment, moment
+from vehgen.files.tables.moments import OF_DAY, form_of, seconds
 from vehgen.files.tables.rows import MISSING_CELLS
 from vehgen.files.units import ACCELERATION, FREQUENCY, TIME, Dimension, factor_to_si, parse_unit
 from vehgen.files.units import SPEED as SPEED_DIMENSION
@@ -31,6 +31,7 @@ Array = NDArray[np.float64]
 MAX_COLUMNS = 200
 LARGEST_EXPORTED = 1e20
 """Beyond it a number was not measured; times in ns since 1970 are the largest that are."""
+DAY_S = 86_400.0
 SAME_UNIT = 1e-9
 """Two units are the same whose factors to SI differ by no larger share."""
 _DECIMAL_COMMA = re.compile(r'^"?[+-]?\d*,\d+(?:[eE][+-]?\d+)?"?$')
@@ -92,29 +93,39 @@ class Table:
             )
         return number if math.isfinite(number) else math.nan
 
-    def holds_moments(self, index: int) -> bool:
-        """Whether a column begins with a date and time of day, or a time of day, instead of a number."""
-        cells = (row[index].strip() for _, row in self.rows() if index < len(row))
-        return is_moment(next((text for text in cells if text.lower() not in MISSING_CELLS), ""))
+    def form_of_moments(self, index: int) -> str | None:
+        """Return the form of the moments that a column holds, by its first cell; None for one of numbers.
 
-    def moments(self, index: int) -> Array:
-        """Return a column of dates and times of day, or of times of day, in seconds since the first, `shape (n,)`; missing ones are NaN.
+        Raises InputError where that cell is neither, but has a colon as times have.
+        """
+        cells = ((line, row[index].strip()) for line, row in self.rows() if index < len(row))
+        line, first = next(((line, text) for line, text in cells if text.lower() not in MISSING_CELLS), (0, ""))
+        form = form_of(first)
+        if form is None and ":" in first:
+            raise self._no_moment(index, line, first, "seconds, or a time")
+        return form
 
-        Raises
-        ------
-        InputError
-            At the line and column of a text that is none.
+    def moments(self, index: int, form: str) -> Array:
+        """Return a column of moments of one form, in seconds since the first, `shape (n,)`; missing ones are NaN.
+
+        Times of day go on beyond midnight. Raises InputError at the line and column of a text that has another form.
         """
         found = array("d")
         for line, row in self.rows():
             text = row[index].strip() if index < len(row) else ""
             try:
-                found.append(math.nan if text.lower() in MISSING_CELLS else moment(text.replace(",", ".")))
+                found.append(math.nan if text.lower() in MISSING_CELLS else seconds(text, form))
             except ValueError as error:
-                message = f"expected a time such as 2024-05-01T12:00:00.25 in column {shown(self.header[index])}, found {shown(text)}"
-                raise InputError(message, Position(self.name, line, index + 1)) from error
+                raise self._no_moment(index, line, text, f"{form} as above") from error
         times = np.array(found)
-        return np.asarray(times - times[np.isfinite(times)][0])
+        known = np.isfinite(times)
+        if form == OF_DAY:
+            times[known] = np.unwrap(times[known], period=DAY_S)
+        return np.asarray(times - times[known][0])
+
+    def _no_moment(self, index: int, line: int, text: str, expected: str) -> InputError:
+        message = f"expected {expected}, such as 12:00:00.25 or 2024-05-01T12:00:00.25, in column {shown(self.header[index])}"
+        return InputError(f"{message}, found {shown(text)}", Position(self.name, line, index + 1))
 
     def text(self, index: int) -> list[str]:
         """Return a column as text."""
@@ -227,12 +238,13 @@ def read_plain(table: Table, columns: ColumnMap | None) -> PhoneExport:
 
 def _times(table: Table, columns: ColumnMap) -> Array:
     """Return the times of a table's rows [s], `shape (n,)`, written as numbers or as moments."""
-    index = table.find(columns.time)
-    if table.holds_moments(index):
+    reversed_sign = columns.time.startswith("-") and columns.time not in table.header
+    form = None if reversed_sign else table.form_of_moments(table.find(columns.time))
+    if form is not None:
         if columns.time_unit is not None:
             message = f"the column {shown(columns.time)} of {table.name} holds times of day, which have no unit; leave `time_unit` out"
             raise ArgumentError(message, "columns")
-        return table.moments(index)
+        return table.moments(table.find(columns.time), form)
     return _in_si(table, columns.time, columns.time_unit, TIME, "s")
 
 

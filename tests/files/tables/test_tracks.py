@@ -82,6 +82,7 @@ FAULTS = [
     (gpx([GOOD[0], GOOD[0]]), "run.gpx:4:1: the times of a track must ascend"),
     (gpx([GOOD[0], (91.0, 0.0, "", "")]), "run.gpx:4:3: a number of at most 90 was expected, found '91.000000000'"),
     (gpx([GOOD[0], (1.0, 1.0, "noon", "")]), "a time such as 2024-05-01T12:00:00Z was expected, found 'noon'"),
+    (gpx([GOOD[0], (1.0, 1.0, "10:00:00", "")]), "a time such as 2024-05-01T12:00:00Z was expected, found '10:00:00'"),
     (gpx(GOOD).replace("<time>2024-05-01T12:00:01Z</time>", ""), "run.gpx:4:"),
     (PUBLISHED.replace("022.4", "122.4"), "run.gpx:1:1: the check sum of the sentence is '6A', its text has 6B: the log is damaged"),
     (f"{rmc(0, 1)}\n{rmc(1, 1, 'V')}\n", "a log with at least two valid RMC sentences was expected"),

@@ -13,7 +13,7 @@ import numpy as np
 from vehgen.errors import InputError, Position, shown
 from vehgen.files.tables.columns import LARGEST_MEASURED, MAX_TABLE_NUMBERS, TableColumns, unmeasured
 from vehgen.files.tables.headings import check_cells, declared_unit, find_heading, is_unit, may_be_word, name_and_unit
-from vehgen.files.tables.moments import is_moment
+from vehgen.files.tables.moments import form_of
 
 Cell = str | float
 MISSING_CELLS = {"", "nan", "null", "na", "n/a", "-"}
@@ -64,7 +64,7 @@ def read_rows(path: Path, header: Sequence[str], rows: Rows, names: tuple[str, .
                 text = _text(row[place]) if place < len(row) else ""
                 position = Position(path, line, min(place, max(len(row) - 1, 0)) + 1)
                 cure = "; `vehgen import` bridges gaps of a recording" if text.lower() in MISSING_CELLS else ""
-                cure = "; `vehgen import` reads times of day and dates" if is_moment(text) else cure
+                cure = "; `vehgen import` reads the times of day of a recording" if form_of(text) else cure
                 raise InputError(f"{shown(text)} in column {shown(name)} is {unmeasured(number)}{cure}", position)
             if len(signs) > 1:
                 raise InputError(
