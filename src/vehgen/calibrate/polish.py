@@ -51,7 +51,7 @@ def polish(
 
     All starts share the runs' alignment at the first of them. Of those that answer alike once the noise is roughly known, one goes on.
     Where a recorder is not declared, its low-pass is found at the best of the fits, and every fit is polished again through it. The last
-    time every run is simulated in steps so short that they bend no estimate.
+    time every run is simulated in steps so short that its noise hides their error.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def _anew(options: FitOptions, prior_data: PriorData | None, fit: LeastSquaresFi
 
 
 def _resolved(fit: LeastSquaresFit) -> Problem:
-    """Return the problem of a fit in steps that bend no estimate, by the noise that it leaves."""
+    """Return the problem of a fit in steps whose error is hidden by the noise that it leaves."""
     old = fit.misfit
     misfit = Misfit(old.problem, estimate_noises(old, fit.x), fit.values, old.nuisances, old.band, supposed=old.split(fit.x)[1])
     return resolve(misfit, fit.x, RESOLVED_BIAS)
