@@ -47,6 +47,16 @@ def test_a_good_fit_is_scored_and_drawn_as_one_where_the_speed_was_misstated(sum
         assert np.std(curve.measured - curve.simulated) < 0.02 * np.std(curve.measured), (curve.run, curve.channel)
 
 
+def test_what_is_drawn_leaves_the_noise_alone_where_noise_is_small(tmp_path):
+    """In steps of 1 ms it would leave up to 1.7 times the noise: the simulation's own error."""
+    noise = 0.0005
+    runs = [declared(write_run(tmp_path, f"at_{speed:.0f}", sedan_truth(), speed, noise=noise, seed=int(speed))) for speed in (2.0, 3.0)]
+    found = calibrate_problem(make_problem(load_trials(runs)), Settings(search=GeneticSearch(1, 10, 0), starts=1))
+    for trial, response in zip(found.problem.trials, fitted_responses(found), strict=True):
+        left = np.std(trial.recording.values - response, axis=0) / np.std(trial.recording.values, axis=0)
+        assert left == pytest.approx(noise, rel=0.1)
+
+
 def test_tyre_loads_are_those_of_the_runs_as_they_were(calibration, tmp_path):
     trials = load_trials([declared(write_run(tmp_path, "right", sedan_truth(), TRUE_SPEED))])
     right = calibrate_problem(make_problem(trials), Settings(search=GeneticSearch(1, 10, 0), starts=1))

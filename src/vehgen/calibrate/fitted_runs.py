@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from vehgen.calibrate.calibration import Calibration, StepResult
 from vehgen.calibrate.objective import PsdObjective
 from vehgen.calibrate.result import ConditionSummary
+from vehgen.fit.resolution import as_fine
 from vehgen.fit.run_errors import RunErrors
 from vehgen.fit.trial import Trial
 from vehgen.measure import record_psd
@@ -40,8 +41,8 @@ def run_conditions(calibration: Calibration) -> tuple[ConditionSummary, ...]:
 def fitted_responses(calibration: Calibration) -> list[Array]:
     """Return what the result's sensors read in every run as it was fitted, `shape (n_samples, n_channels)` each.
 
-    A channel is simulated as the last step that used its sensor found the run, or else as the last step did; without a polish as the run
-    file states it.
+    A channel is simulated as the last step that used its sensor found the run, in that step's own steps of time, or else as the last step
+    did; without a polish as the run file states it.
     """
     problem, found = calibration.problem, []
     polished = _polished(calibration)
@@ -53,8 +54,8 @@ def fitted_responses(calibration: Calibration) -> list[Array]:
             used = np.array([number == 0 or channel.sensor in step.step.sensors for channel in trial.recording.channels])
             own = np.array([calibration.values[name] for name in step.problem.space.names])
             x, t = step.fits[0].x, _number(step, trial)
-            errors = misfit.errors[t]
-            motion = misfit.respond(t, own[None], misfit.adjusted(x), misfit.errors_of(x, t), solved)[0]
+            errors, fine = misfit.errors[t], as_fine(solved, misfit.problem.trials[t])
+            motion = misfit.respond(t, own[None], misfit.adjusted(x), misfit.errors_of(x, t), fine)[0]
             every = RunErrors.of(solved, errors.common, errors.own, errors.known)
             response = np.where(used, every.read(motion, trial.recording.dt, misfit.errors_of(x, t)), response)
         found.append(response)
@@ -106,9 +107,10 @@ def _number(step: StepResult, trial: Trial) -> int:
 
 
 def _scenario(calibration: Calibration, trial: Trial) -> Scenario:
-    """Return a run's scenario as the last polished step found it."""
+    """Return a run's scenario as the last polished step found it, in its steps of time."""
     polished = _polished(calibration)
     if not polished:
         return trial.scenario
     fit, t = polished[-1].fits[0], _number(polished[-1], trial)
-    return fit.misfit.errors[t].scenario(trial.scenario, fit.misfit.errors_of(fit.x, t))
+    fine = as_fine(trial, fit.misfit.problem.trials[t])
+    return fit.misfit.errors[t].scenario(fine.scenario, fit.misfit.errors_of(fit.x, t))
