@@ -73,8 +73,8 @@ def test_steps_of_the_simulation_bend_no_natural_frequency(tmp_path):
 def test_no_step_is_halved_beyond_a_run_s_memory(problem, monkeypatch):
     misfit = Misfit(problem, first_noises(problem), problem.space.start)
     x = np.concatenate([problem.space.unit(problem.space.start), np.zeros(misfit.n_errors)])
-    (trial,) = resolve(misfit, x, most_moved=0.0).trials
+    (trial,) = resolve(misfit, x, most_bias=0.0).trials
     assert trial.scenario.dt == pytest.approx(1e-3 / 8)
     monkeypatch.setattr(resolution, "MAX_RESPONSE_NUMBERS", 2 * 5 * len(problem.trials[0].scenario.time))
-    (trial,) = resolve(misfit, x, most_moved=0.0).trials
+    (trial,) = resolve(misfit, x, most_bias=0.0).trials
     assert trial.scenario.dt == pytest.approx(1e-3 / 2)

@@ -21,16 +21,19 @@ Array = NDArray[np.float64]
 RESOLVED_SHARE = 0.1
 """A step is short enough when half of it moves the whitened lines by this mean square or less (noise alone: 1)."""
 RESOLVED_BIAS = 0.1
-"""Where intervals are asked: by this sum of squares or less in each run. What moves the lines of a run by so much moves no estimate by more
-standard deviations than the root of it, 0.3 at worst and far less as a rule; what is left of a step's error is a third more."""
+"""Where intervals are asked: by this sum of squares or less over all runs. What moves the lines by so much moves no estimate by more
+standard deviations than the root of it, 0.3 at worst and far less as a rule."""
+STEP_ERROR = 4 / 3
+"""The error of a step beside what half of it moves: the method is of second order, and half a step keeps a quarter of the error."""
 HALVINGS = 3
 """A run's step is halved so often at most, in all."""
 
 
-def resolve(misfit: Misfit, x: Array, most_moved: float | None = None) -> Problem:
+def resolve(misfit: Misfit, x: Array, most_bias: float | None = None) -> Problem:
     """Return the problem of a misfit with every trial's step halved as often as its response at `x` asks, and marked where it jumps.
 
-    `most_moved` is the sum of squares by which half a step may move a trial's whitened lines (default: RESOLVED_SHARE of their number).
+    `most_bias` is the sum of squares by which the step's error may move the whitened lines of all trials together, shared out evenly
+    (default: half a step moves those of a trial by no more than RESOLVED_SHARE of their number).
     """
     values, numbers = misfit.problem.space.values(misfit.split(x)[0])[None], misfit.adjusted(x)
     found = []
@@ -42,7 +45,11 @@ def resolve(misfit: Misfit, x: Array, most_moved: float | None = None) -> Proble
             finer = halved(trial)
             fine = misfit.respond(number, values, numbers, error, finer)[0]
             moved = np.abs(misfit.whitened_signal(number, fine - coarse)) ** 2
-            if not (np.mean(moved) > RESOLVED_SHARE if most_moved is None else 2 * np.sum(moved) > most_moved):
+            if most_bias is None:
+                hidden = np.mean(moved) <= RESOLVED_SHARE
+            else:
+                hidden = 2 * STEP_ERROR**2 * np.sum(moved) <= most_bias / len(misfit.problem.trials)
+            if hidden:
                 break
             trial, coarse = finer, fine
         found.append(replace(trial, jumps=_jumps(trial)))
