@@ -21,6 +21,16 @@ def test_a_value_that_is_no_number_in_si_is_refused(asked, value, message):
         asked("quarter_car", {"kS": value})
 
 
+@pytest.mark.parametrize("asked", [vehgen.natural_modes, vehgen.static_loads, vehgen.state_space])
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [("kS", "negative k: axles.axle1.suspension.k is -1"), ("cS", "negative c"), ("mG", "negative mass: axles.axle1.mass")],
+)
+def test_a_value_that_cannot_be_of_a_spring_a_damper_or_a_mass_is_refused(asked, name, message):
+    with pytest.raises(InputError, match=message):
+        asked("quarter_car", values={name: -1.0})
+
+
 def test_a_channel_that_there_is_not_is_told_with_the_nearest(tmp_path):
     (tmp_path / "run.yaml").write_text(
         "vehicle: quarter_car\nspeed: 2 m/s\nroad: [{hump: {shape: versine, length: 0.5 m, height: 2 cm, at: 1 m}}]\n"

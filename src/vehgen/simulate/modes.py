@@ -19,6 +19,7 @@ from vehgen.simulate.assignment import assign
 from vehgen.simulate.mode_groups import scaled_to_peak, settled_shapes
 from vehgen.simulate.remembered_equations import equations_as_data
 from vehgen.vehicle import Vehicle, as_vehicle
+from vehgen.vehicle.checks import check_given
 from vehgen.vehicle.model import finite
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ def natural_modes(model: ModelLike, values: Mapping[str, float] | None = None, *
     Raises
     ------
     InputError
-        When M is not positive definite at these values.
+        When M is not positive definite at these values, and as :func:`vehgen.mechanics.all_values`.
     """
     coordinates, numeric = _evaluated(model, values, parameter_set)
     try:
@@ -122,8 +123,11 @@ def _evaluated(
         model = as_vehicle(model)
         plain = equations_as_data(model)
         if plain is not None:
-            given = values is not None and parameter_set is None and all(name in values for name in plain.parameters)
-            return plain.coordinates, plain.numeric(finite(values if given and values is not None else model.values(parameter_set, values)))
+            if values is not None and parameter_set is None and all(name in values for name in plain.parameters):
+                return plain.coordinates, plain.numeric(finite(values))
+            found = finite(model.values(parameter_set, values))
+            check_given(model, found, values)
+            return plain.coordinates, plain.numeric(found)
     from vehgen.mechanics import all_values, as_model
 
     equations = as_model(model)

@@ -73,6 +73,12 @@ def check_values(vehicle: Vehicle, free: Mapping[str, float], where: str = "") -
             _check_pitch_inertia(vehicle, name, numbers, where)
 
 
+def check_given(vehicle: Vehicle, values: Mapping[str, float], given: Mapping[str, float] | None) -> None:
+    """Check values [SI] of all parameters as :func:`check_values` does, where some of them were given by a caller."""
+    if given:
+        check_values(vehicle, {name: values[name] for name in vehicle.free_parameters}, " with the given values")
+
+
 def _refusal(path: tuple[str, ...], number: float, dimension: Dimension, where: str) -> str | None:
     """Say what is not physical about one quantity; None where nothing is."""
     what = ".".join(path)
