@@ -92,6 +92,34 @@ def test_failed_individuals_warn(tmp_path):
     assert np.isfinite(result.responses[0]).all()
 
 
+SHARP = (
+    "vehicle: sedan2\nspeed: 50 km/h\nroad: [{hump: {shape: half_sine, length: 0.3 m, height: 3 cm, at: 2 m}}]\n"
+    "outputs: {force: {axle: front, quantity: tyre_force}}\n"
+)
+
+
+def test_a_peak_between_samples_is_told_and_lifts_a_tyre_off(tmp_path):
+    every = simulate(run_of(tmp_path, SHARP + "sample: 1 ms\n"))
+    assert not any("between samples" in text for text in every.warnings)
+    peak = np.abs(every.values).max()
+    sparse = simulate(run_of(tmp_path, SHARP + "sample: 25 ms\n"))
+    share = peak / np.abs(sparse.values).max() - 1
+    assert share > 0.1
+    (told,) = [text for text in sparse.warnings if "between samples" in text]
+    assert told.startswith(f"between samples every 25 ms force reaches {peak:.5g} N, {share:.0%} more than")
+    assert [text for text in sparse.warnings if "leave the road" in text] == [text for text in every.warnings if "leave the road" in text]
+
+
+def test_a_tyre_that_may_lift_off_is_not_warned_of(tmp_path):
+    run = "speed: 50 km/h\nroad: [{hump: {shape: half_sine, length: 0.3 m, height: 6 cm, at: 2 m}}]\n"
+    linear = simulate(run_of(tmp_path, f"vehicle: sedan2\n{run}"))
+    assert any("tyre of front would leave the road" in text for text in linear.warnings)
+    laws = "axles: {front: {tyre: {laws: [{tyre_liftoff: {}}]}}, rear: {tyre: {laws: [{tyre_liftoff: {}}]}}}\n"
+    (tmp_path / "lifting.yaml").write_text(f"extends: sedan2\nname: lifting\n{laws}", encoding="utf-8")
+    lifting = simulate(run_of(tmp_path, f"vehicle: lifting.yaml\n{run}"))
+    assert not any("leave the road" in text for text in lifting.warnings)
+
+
 def test_doubts_are_voiced(tmp_path):
     hump = "road: [{hump: {shape: half_sine, length: 0.4 m, height: 4 cm, at: 1 m}}]\n"
     warnings = simulate(run_of(tmp_path, "vehicle: tractor5\nspeed: 2 m/s\n" + hump)).warnings

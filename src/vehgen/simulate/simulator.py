@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -21,7 +22,7 @@ from vehgen.simulate.response import Response, ResponseChannel
 from vehgen.simulate.run_file.loading import RunLike, as_run
 from vehgen.simulate.run_scenario import make_scenario
 from vehgen.simulate.scenario import Scenario
-from vehgen.simulate.warnings import lift_off, spectral_nulls, step_too_coarse
+from vehgen.simulate.warnings import lift_off, missed_peaks, spectral_nulls, step_too_coarse
 from vehgen.vehicle import Vehicle, VehicleLike
 
 Array = NDArray[np.float64]
@@ -243,18 +244,20 @@ def simulate(run: RunLike, *, vehicle: VehicleLike | None = None) -> Response:
     responses = result.responses
     if result.failures:
         raise InputError(f"the vehicle has no finite response: {result.failures[0]}", run.document.find(("vehicle",)))
-    n = len(wanted)
+    n, readings = len(wanted), run.readings()
+    items, factors = simulator.model.channels[:n], np.array([factor for _, factor in readings])
+    channels = tuple(ResponseChannel(item.name, item.quantity, unit) for item, (unit, _) in zip(items, readings, strict=True))
+    read = responses[:, :, :n] / factors
+    every = replace(scenario, decimation=1, skipped=scenario.skipped * scenario.decimation, chains={})
+    steps = simulator.run(parameters, every).responses[0]
     messages = [
-        *lift_off(simulator.model, values, responses[0, :, n:]),
+        *lift_off(simulator.model, values, steps[:, n:]),
+        *missed_peaks(channels, scenario, read[0], steps[:, :n] / factors),
         *spectral_nulls(simulator.model, values, scenario),
         *step_too_coarse(simulator.model, values, scenario),
         *doubtful_profiles(simulator.model, values, scenario),
     ]
-    readings = run.readings()
-    items = simulator.model.channels[:n]
-    channels = tuple(ResponseChannel(item.name, item.quantity, unit) for item, (unit, _) in zip(items, readings, strict=True))
     time = np.arange(responses.shape[1], dtype=np.float64) * scenario.dt * scenario.decimation
-    read = responses[:, :, :n] / np.array([factor for _, factor in readings])
     return Response(time, read, channels, tuple(messages))
 
 

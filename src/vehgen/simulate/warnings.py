@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,10 +10,13 @@ from numpy.typing import NDArray
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.static_loads import static_loads
 from vehgen.simulate.modes import natural_modes
+from vehgen.simulate.response import ResponseChannel
 from vehgen.simulate.scenario import Scenario
 
 MAX_PERIOD_ERROR = 0.02
 """Newmark's relative period error (w dt/2)/atan(w dt/2) - 1 above which a mode is worth a warning."""
+MISSED_PEAK = 0.1
+"""A peak between samples that exceeds the largest of them by this share is worth a warning."""
 NULL_WIDTH = 0.05
 """A spectral null this near (relative) to a hop frequency leaves the mode unexcited."""
 
@@ -23,9 +26,31 @@ def lift_off(model: EquationsOfMotion, values: Mapping[str, float], tyre_forces:
     if not model.vehicle.axles:
         return
     loads = static_loads(model, values).axles
+    lifting = {element.name for element in model.elements if any(term.law.name == "tyre_liftoff" for term in element.laws)}
     for (name, load), force in zip(loads.items(), tyre_forces.T, strict=True):
-        if load > 0 and force.min() < -load:
+        if load > 0 and force.min() < -load and name not in lifting:
             yield f"the tyre of {name} would leave the road: its dynamic force falls to {force.min() / load:.2f} of its static load"
+
+
+def missed_peaks(
+    channels: Sequence[ResponseChannel], scenario: Scenario, kept: NDArray[np.float64], steps: NDArray[np.float64]
+) -> Iterator[str]:
+    """Warn where samples of a channel pass over its peak; responses `shape (n, n_channels)` as kept and at every step, in its unit."""
+    largest, peaks = np.abs(kept).max(axis=0), np.abs(steps).max(axis=0)
+    passed = [
+        peak / most - 1 if most > 0 and scenario.chain(item.name).is_point_sample else 0.0
+        for item, most, peak in zip(channels, largest, peaks, strict=True)
+    ]
+    beyond = [i for i, share in enumerate(passed) if share > MISSED_PEAK]
+    if not beyond:
+        return
+    worst = max(beyond, key=lambda i: passed[i])
+    others = f" (so do {len(beyond) - 1} other channels by more than {MISSED_PEAK:.0%})" if len(beyond) > 1 else ""
+    yield (
+        f"between samples every {scenario.dt * scenario.decimation * 1e3:g} ms {channels[worst].name} reaches {peaks[worst]:.5g} "
+        f"{channels[worst].unit}, {passed[worst]:.0%} more than the largest of them{others}; "
+        f"`sample: {scenario.dt * 1e3:g} ms` in the run file keeps every step"
+    )
 
 
 def spectral_nulls(model: EquationsOfMotion, values: Mapping[str, float], scenario: Scenario) -> Iterator[str]:
