@@ -1,5 +1,6 @@
 """Values and names given in Python that cannot be are refused as those of files are: in one line that says what was expected."""
 
+import numpy as np
 import pytest
 
 import vehgen
@@ -57,3 +58,112 @@ def test_a_channel_that_there_is_not_is_told_with_the_nearest(tmp_path):
 def test_an_argument_of_another_kind_is_refused(call, message):
     with pytest.raises(InputError, match=message):
         call()
+
+
+FORCE = [vehgen.ElementOutput("f", "axle1", "tyre_force")]
+ROAD = np.zeros((101, 1))
+NO_FORCES = np.zeros((101, 0))
+
+
+@pytest.fixture(scope="module")
+def simulator():
+    return vehgen.Simulator("quarter_car", FORCE)
+
+
+@pytest.fixture(scope="module")
+def scenario(simulator, tmp_path_factory):
+    path = tmp_path_factory.mktemp("runs") / "run.yaml"
+    hump = "{hump: {shape: versine, length: 0.5 m, height: 2 cm, at: 1 m}}"
+    path.write_text(f"vehicle: quarter_car\nspeed: 2 m/s\nroad: [{hump}]\noutputs: {{f: {{axle: axle1, quantity: tyre_force}}}}\n")
+    return vehgen.make_scenario(vehgen.load_run(path), simulator.model, simulator.model.values())
+
+
+@pytest.mark.parametrize(
+    ("parameters", "found"),
+    [
+        (lambda six: six[0], r"shape \(6,\)"),
+        (lambda six: six.T, r"shape \(6, 2\)"),
+        (lambda six: six[:0], r"shape \(0, 6\)"),
+        (lambda _: [{"kS": 1e6}], "list"),
+    ],
+)
+def test_a_population_of_another_shape_is_refused(simulator, scenario, parameters, found):
+    six = simulator.parameters([{}, {"kS": 1e6}])
+    assert simulator.run(six.tolist(), scenario).responses.shape[0] == 2
+    with pytest.raises(InputError, match=rf"`parameters`: an array of shape \(n_individuals, 6\) was expected.*found {found}"):
+        simulator.run(parameters(six), scenario)
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ([], r"found shape \(0, 6\)"),
+        (["kS", "cS"], r"of a table: `to_dict\('records'\)`.* found list of str"),
+        ([{}, {"mG": -5.0}], "negative mass: axles.axle1.mass is -5 in individual 1"),
+        ({"kT": -5.0}, "negative k: axles.axle1.tyre.k is -5 with the given values"),
+    ],
+)
+def test_values_that_make_no_population_are_refused(simulator, values, message):
+    with pytest.raises(InputError, match=message):
+        simulator.parameters(values)
+
+
+def test_a_run_is_no_scenario(simulator):
+    with pytest.raises(InputError, match="what `make_scenario` makes of a run was expected, found str"):
+        simulator.run(simulator.parameters(), "run.yaml")
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"dt": "1 ms"}, "`dt`: a step in seconds above 0 was expected, found '1 ms'"),
+        ({"dt": 0}, "found 0"),
+        ({"inputs": ROAD[:, 0]}, r"`inputs`: an array of shape \(n_steps \+ 1, n\) was expected, found shape \(101,\)"),
+        ({"forces": None}, "`forces`: .* found NoneType"),
+        ({"rates": [["x"]]}, "`rates`: .* found list"),
+    ],
+    ids=range(5),
+)
+def test_what_cannot_drive_a_vehicle_is_refused(changed, message):
+    with pytest.raises(InputError, match=message):
+        vehgen.Excitation(**{"dt": 1e-3, "inputs": ROAD, "rates": ROAD, "forces": NO_FORCES, **changed})
+
+
+def test_a_kernel_takes_lists_and_tells_of_a_road_and_a_beginning_that_cannot_be(simulator):
+    kernel, two = simulator.kernel, simulator.parameters([{}, {}])
+    drive = vehgen.Excitation(1e-3, ROAD.tolist(), ROAD, NO_FORCES)
+    assert kernel.run(two, drive, initial=np.zeros((2, 4))).responses.shape == (2, 11, 1)
+    for wrong in (np.zeros(4), np.zeros((1, 4)), np.zeros((2, 3))):
+        with pytest.raises(InputError, match=r"`initial` has shape .*; \(n_individuals, 2 n_dof\) = \(2, 4\) was expected"):
+            kernel.run(two, drive, initial=wrong)
+    gap = np.where(np.arange(101)[:, None] == 50, np.nan, ROAD)
+    failures = kernel.run(two, vehgen.Excitation(1e-3, gap, ROAD, NO_FORCES)).failures
+    assert failures == dict.fromkeys((0, 1), "what drives it, road or forces, is not finite")
+
+
+def test_outputs_are_a_list_and_have_names_of_their_own():
+    with pytest.raises(InputError, match="`outputs`: a list of PointOutput or ElementOutput was expected, found ElementOutput"):
+        vehgen.derive("quarter_car", FORCE[0])
+    with pytest.raises(InputError, match="`outputs`: two are named 'f'"):
+        vehgen.derive("quarter_car", FORCE * 2)
+
+
+def test_a_place_is_where_its_text_says():
+    rows = [
+        vehgen.derive("sedan2", [vehgen.PointOutput("a", vehgen.Place("p", "body", x=x), "acceleration")]) for x in ("Lf - 20 cm", None)
+    ]
+    pitch = [model.numeric().outputs["acceleration"][0, 1] for model in rows]
+    assert pitch == pytest.approx([-(1.18 - 0.2), 0.0])
+    with pytest.raises(InputError, match="`x`: "):
+        vehgen.Place("p", "body", x="1 m +")
+
+
+@pytest.mark.parametrize(("values", "found"), [({"kS": 1e6}, "no 'mB'"), (np.ones(6), "ndarray")], ids=["some", "an array"])
+def test_matrices_need_all_values_by_name(simulator, values, found):
+    with pytest.raises(InputError, match=f"the value of every parameter by name was expected, .*; found {found}"):
+        simulator.model.numeric(values)
+
+
+def test_modes_take_values_by_name_only():
+    with pytest.raises(InputError, match="`values`: numbers in SI units by name were expected, found ndarray"):
+        vehgen.natural_modes("quarter_car", np.ones(6))

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from vehgen.codegen.cache import cache_folder, import_kernel, is_compiled, kernel_name
 from vehgen.codegen.kernel_source import KernelSource, Precision, write_kernel
 from vehgen.codegen.population_run import Excitation, PopulationRun, compile_time_loop, own_drives
-from vehgen.errors import InputError, did_you_mean, shown
+from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
 from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
 
@@ -151,7 +151,7 @@ class Kernel:
 
         def consume(own: slice, responses: NDArray[Any], residuals: Array) -> None:
             parts[own.start] = np.asarray(reduction(responses))
-            found = self._failures(columns[own], responses, residuals)
+            found = self._failures(columns[own], responses, residuals, excitation)
             failures.update({own.start + i: reason for i, reason in found.items()})
 
         self._population(columns, excitation, decimation).advance(consume, threads)
@@ -177,12 +177,15 @@ class Kernel:
 
         Returns
         -------
-        The responses, and which individuals failed and why; a failed individual leaves the others as they are.
+        The responses, and which individuals failed and why; a failed individual leaves the others as they are. Loads of tyres and hinges
+        are without their static part, which `Simulator` adds.
 
         Where laws count their travel from the unloaded position, static equilibrium is solved first, and an individual that has none
         fails.
         """
         columns, unheld = self._columns(parameters, excitation, decimation)
+        if initial is not None and np.shape(initial) != (begins := (len(columns), 2 * self.model.n_dof)):
+            raise ArgumentError(f"`initial` has shape {np.shape(initial)}; (n_individuals, 2 n_dof) = {begins} was expected", "initial")
         shape = (len(columns), excitation.n_steps // decimation + 1, len(self.model.channels))
         found, left = np.empty(shape, dtype=self.source.number), np.zeros(len(columns))
 
@@ -193,7 +196,7 @@ class Kernel:
 
         self._population(columns, excitation, decimation, initial).advance(consume, threads, found)
         responses = found.astype(np.float64, copy=False)
-        return KernelResult(responses, {**self._failures(columns, responses, left), **unheld}, left)
+        return KernelResult(responses, {**self._failures(columns, responses, left, excitation), **unheld}, left)
 
     def _columns(self, parameters: Array, excitation: Excitation, decimation: int) -> tuple[Array, dict[int, str]]:
         """Return a checked population with the travels at rest that the kernel asks for as further columns, and who cannot rest."""
@@ -208,8 +211,10 @@ class Kernel:
         source, module = self._variant(initial is not None, own_drives(excitation))
         return PopulationRun(source, module, columns, excitation, decimation, initial)
 
-    def _failures(self, columns: Array, responses: NDArray[Any], residuals: Array) -> dict[int, str]:
+    def _failures(self, columns: Array, responses: NDArray[Any], residuals: Array, excitation: Excitation) -> dict[int, str]:
         failures = find_failures(self.model.parameters, columns, responses)
+        if failures and not excitation.is_finite:
+            failures = dict.fromkeys(failures, "what drives it, road or forces, is not finite")
         if self.source.nonlinear:
             limit = UNCONVERGED * self._force_scale
             for individual in np.flatnonzero(residuals > limit):

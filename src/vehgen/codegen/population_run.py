@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from numbers import Real
 from types import ModuleType
 from typing import Any
 
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from vehgen.codegen.cache import compile_loops
 from vehgen.codegen.kernel_source import KernelSource
 from vehgen.codegen.time_loop import LOOP_IMPORTS, LOOP_SIGNATURE, SHARED_SIGNATURE, advance_block, read_shared
+from vehgen.errors import ArgumentError, shown
 
 Array = NDArray[np.float64]
 Consume = Callable[[slice, NDArray[Any], Array], None]
@@ -32,7 +34,8 @@ class Excitation:
     """What moves a vehicle, at the ends of every step of `dt` [s].
 
     `inputs`, `rates` `shape (n_steps + 1, n_inputs)`: displacement inputs [m] and their rates [m/s]; `forces` `shape (n_steps + 1,
-    n_forces)` [N]. All three may have an axis more ahead, of individuals each with inputs of its own.
+    n_forces)` [N]. All three may have an axis more ahead, of individuals each with inputs of its own. Another shape, or a step that is no
+    number above 0, is an InputError.
     """
 
     dt: float
@@ -40,10 +43,29 @@ class Excitation:
     rates: Array
     forces: Array
 
+    def __post_init__(self) -> None:
+        if not (isinstance(self.dt, Real) and 0 < self.dt < float("inf")):
+            raise ArgumentError(f"`dt`: a step in seconds above 0 was expected, found {shown(self.dt)}", "dt")
+        for key in ("inputs", "rates", "forces"):
+            given = getattr(self, key)
+            try:
+                array = given if isinstance(given, np.ndarray) and given.dtype.kind == "f" else np.asarray(given, dtype=np.float64)
+            except (TypeError, ValueError):
+                array = np.empty(0)
+            if array.ndim not in (2, 3):
+                found = f"shape {array.shape}" if isinstance(given, np.ndarray) else type(given).__name__
+                raise ArgumentError(f"`{key}`: an array of shape (n_steps + 1, n) was expected, found {found}", key)
+            object.__setattr__(self, key, array)
+
     @property
     def n_steps(self) -> int:
         """Number of time steps."""
         return int(self.inputs.shape[-2]) - 1
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether all of it are finite numbers."""
+        return all(bool(np.isfinite(item).all()) for item in (self.inputs, self.rates, self.forces))
 
     @property
     def time(self) -> Array:

@@ -10,10 +10,11 @@ where h is a body's fore-aft row relative to its group.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import TypeVar
 
 import sympy as sp
 
-from vehgen.errors import ArgumentError
+from vehgen.errors import ArgumentError, shown
 from vehgen.mechanics.energies import Energies, Inertia, write_energies
 from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.kinematics import derive_kinematics
@@ -24,6 +25,8 @@ from vehgen.mechanics.symbols import number, parameter, to_sympy
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 from vehgen.vehicle.checks import check_given
 from vehgen.vehicle.model import finite
+
+Item = TypeVar("Item", PointOutput | ElementOutput, Place)
 
 
 def derive(vehicle: VehicleLike, outputs: Iterable[Output] = (), forces: Iterable[Place] = ()) -> EquationsOfMotion:
@@ -43,9 +46,9 @@ def derive(vehicle: VehicleLike, outputs: Iterable[Output] = (), forces: Iterabl
     InputError
         For an output or force at a place that the vehicle lacks, or a vehicle whose parts are nowhere.
     """
-    vehicle, outputs, forces = as_vehicle(vehicle), tuple(outputs), tuple(forces)
-    _check_kinds("outputs", outputs, (PointOutput, ElementOutput))
-    _check_kinds("forces", forces, (Place,))
+    vehicle = as_vehicle(vehicle)
+    outputs = _listed("outputs", outputs, (PointOutput, ElementOutput))
+    forces = _listed("forces", forces, (Place,))
     layout = lay_out(vehicle)
     motion = derive_kinematics(vehicle)
     energies, inputs = write_energies(vehicle, motion)
@@ -91,12 +94,19 @@ def derive(vehicle: VehicleLike, outputs: Iterable[Output] = (), forces: Iterabl
     )
 
 
-def _check_kinds(argument: str, items: tuple[object, ...], kinds: tuple[type, ...]) -> None:
-    """Raise ArgumentError for an item of an argument that is of none of some kinds."""
-    for item in items:
+def _listed(argument: str, items: Iterable[Item], kinds: tuple[type, ...]) -> tuple[Item, ...]:
+    """Return the items of an argument; raises ArgumentError where it is no list, has an item of none of some kinds, or two of one name."""
+    expected = f"a list of {' or '.join(kind.__name__ for kind in kinds)} was expected"
+    if not isinstance(items, Iterable):
+        raise ArgumentError(f"`{argument}`: {expected}, found {type(items).__name__}", argument)
+    found = tuple(items)
+    for item in found:
         if not isinstance(item, kinds):
-            expected = " or ".join(kind.__name__ for kind in kinds)
-            raise ArgumentError(f"`{argument}`: a list of {expected} was expected, found {type(item).__name__}", argument)
+            raise ArgumentError(f"`{argument}`: {expected}, found {type(item).__name__}", argument)
+    names = [item.name for item in found]
+    if double := next((name for name in names if names.count(name) > 1), None):
+        raise ArgumentError(f"`{argument}`: two are named {shown(double)}; each needs a name of its own", argument)
+    return found
 
 
 def mass_matrix(energies: Energies) -> SparseMatrix:

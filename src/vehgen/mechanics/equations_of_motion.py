@@ -10,6 +10,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from vehgen.errors import ArgumentError, shown
 from vehgen.mechanics.coordinates import Coordinate
 from vehgen.mechanics.energies import Element, Energies
 from vehgen.mechanics.evaluation import ExpressionSteps
@@ -168,8 +169,13 @@ class EquationsOfMotion:
         ----------
         values
             SI values by parameter name, as :meth:`values` gives them.
+
+        Raises
+        ------
+        InputError
+            For values that are not by name, or not of all parameters.
         """
-        found = iter(self._entry_steps(self._ordered(values or self.values())))
+        found = iter(self._entry_steps(self._ordered(values if values is not None and len(values) else self.values())))
         own, read = ({key: _filled(entries, shape, found) for key, (entries, shape) in item.items()} for item in self._matrices)
         return NumericModel(**own, weight=np.fromiter(found, dtype=np.float64, count=self.n_dof), outputs=read)
 
@@ -196,6 +202,11 @@ class EquationsOfMotion:
         return self._known_steps[expressions]
 
     def _ordered(self, values: Mapping[str, float]) -> list[float]:
+        lacking = next((name for name in self.parameters if name not in values), None) if isinstance(values, Mapping) else None
+        if lacking is not None or not isinstance(values, Mapping):
+            found = type(values).__name__ if lacking is None else f"no {shown(lacking)}"
+            wanted = "the value of every parameter by name was expected, as `values(overrides=...)` gives it"
+            raise ArgumentError(f"`values`: {wanted}; found {found}", "values")
         return [float(values[name]) for name in self.parameters]
 
     def evaluate_list(self, expressions: Iterable[sp.Expr], values: Mapping[str, float]) -> list[float]:

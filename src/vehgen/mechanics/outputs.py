@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from vehgen.errors import InputError, did_you_mean, shown
-from vehgen.files.expressions import Expression
+from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
+from vehgen.files.expressions import Expression, ExpressionError, parse
 from vehgen.mechanics.energies import Energies
 from vehgen.mechanics.equations_of_motion import Channel
 from vehgen.mechanics.hinge_forces import hinge_force_channel
@@ -23,6 +23,7 @@ from vehgen.vehicle.model import Vehicle
 class Place:
     """A place on a body: `x` ahead of its COG, or `distance` [m] behind an axle, hinge or body named `behind`, `height` [m] above the COG.
 
+    `x` may be given as a text, such as `1.2 m` or `wheelbase - 1 m`; one that cannot be read is an InputError.
     Each place has a parameter `NAME.shift` [m], which moves it forward; it is 0 unless a population or a fit says otherwise.
     """
 
@@ -32,6 +33,13 @@ class Place:
     behind: str | None = None
     distance: float = 0.0
     height: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.x is not None and not isinstance(self.x, Expression):
+            try:
+                object.__setattr__(self, "x", parse(str(self.x)))
+            except ExpressionError as error:
+                raise ArgumentError(f"`x`: {error}", "x") from error
 
     @property
     def shift(self) -> str:

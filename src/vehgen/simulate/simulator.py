@@ -12,11 +12,12 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from vehgen.codegen import Kernel, KernelResult
-from vehgen.errors import InputError, ModelWarning, did_you_mean, shown
+from vehgen.errors import ArgumentError, InputError, ModelWarning, did_you_mean, shown
 from vehgen.mechanics import ElementOutput, EquationsOfMotion, Output, Place, derive, static_loads
 from vehgen.mechanics.quantities import WITH_STATIC
 from vehgen.simulate.acquired import acquire, kept_samples
 from vehgen.simulate.budgets import check_population
+from vehgen.simulate.population import as_population, population_of
 from vehgen.simulate.profile_warnings import doubtful_profiles
 from vehgen.simulate.response import Response, ResponseChannel
 from vehgen.simulate.run_file.loading import RunLike, as_run
@@ -49,15 +50,8 @@ class Simulator:
         self._known_offsets: dict[tuple[float, ...], Array] = {}
 
     def parameters(self, values: Mapping[str, float] | Sequence[Mapping[str, float]] | None = None) -> Array:
-        """Return the array of a population from values by name [SI]; what is not named keeps the file's value.
-
-        Returns
-        -------
-        `shape (n_individuals, n_parameters)` in the order of `model.parameters`.
-        """
-        individuals = [values or {}] if values is None or isinstance(values, Mapping) else list(values)
-        rows = [list(self.model.values(overrides=individual).values()) for individual in individuals]
-        return np.array(rows, dtype=np.float64)
+        """Return the array of a population from values by name [SI]; see :func:`vehgen.simulate.population.population_of`."""
+        return population_of(self.model, values)
 
     def run(self, parameters: Array, scenario: Scenario, threads: int | None = None) -> KernelResult:
         """Simulate a population over a scenario.
@@ -77,6 +71,10 @@ class Simulator:
         -------
         Responses and failures; a failed individual raises a ModelWarning and leaves the others unharmed.
         """
+        parameters = as_population(self.model, parameters)
+        if not isinstance(scenario, Scenario):
+            what = type(scenario).__name__
+            raise ArgumentError(f"`scenario`: what `make_scenario` makes of a run was expected, found {what}", "scenario")
         names = [channel.name for channel in self.model.channels]
         check_population(len(parameters), kept_samples(scenario, names, self.kernel.source.nonlinear), len(names))
         distinct, group = self.layouts(parameters)
