@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.integrate
+import scipy.io
 
 from tests.bundled import few
 from vehgen.commands import main
@@ -195,6 +196,26 @@ def test_simulate_draws_and_writes_where_it_is_told(work: Path, capsys: pytest.C
     assert "wrote out/r.png" in text
     assert written(work) == {"runs/run.yaml", "out/r.csv", "out/r.png"}
     assert (work / "out" / "r.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_simulate_writes_for_matlab_what_it_writes_as_text(work: Path, capsys: pytest.CaptureFixture[str]):
+    (work / "run.yaml").write_text(RUN)
+    assert main(["simulate", "run.yaml", "--out", "r.csv"]) == 0
+    assert main(["simulate", "run.yaml", "--out", "r.mat"]) == 0
+    capsys.readouterr()
+    columns = np.genfromtxt("r.csv", delimiter=",", names=True)
+    found = scipy.io.loadmat("r.mat", squeeze_me=True, chars_as_strings=True)
+    np.testing.assert_allclose(found["t"], columns["t"], rtol=1e-8)
+    for name, values in zip(found["channels"], found["values"].T, strict=True):
+        np.testing.assert_allclose(values, columns[name], rtol=1e-8, atol=1e-12)
+    assert len(found["units"]) == len(found["channels"]) == len(columns.dtype.names) - 1
+
+
+def test_simulate_writes_nothing_that_it_does_not_know(work: Path, capsys: pytest.CaptureFixture[str]):
+    (work / "run.yaml").write_text(RUN)
+    assert main(["simulate", "run.yaml", "--out", "r.npz"]) == 2
+    assert "--out: a response is written as .csv or .mat or .txt; found 'r.npz'" in capsys.readouterr().err
+    assert not Path("r.npz").exists()
 
 
 def test_simulate_says_when_a_wheel_leaves_the_road(work: Path, capsys: pytest.CaptureFixture[str]):

@@ -118,8 +118,8 @@ def test_a_fault_in_a_process_of_its_own(command: str, work: Path):
     ("arguments", "message"),
     [
         (["modes"], "the following arguments are required: FILE; `vehgen modes --help` lists what is known"),
-        (["mods", "tractor5"], "argument COMMAND: invalid choice: 'mods' (choose from "),
-        (["modes", "tractor5", "--sett", "a"], "unrecognized arguments: --sett a; "),
+        (["mods", "tractor5"], "argument COMMAND: invalid choice: 'mods'; did you mean 'modes'"),
+        (["modes", "tractor5", "--sett", "a"], "unrecognized arguments: --sett a; did you mean '--set'?; `vehgen modes --help` lists"),
         (["models", "\x1b[2J\u202e\n" + "x" * 1000], "unrecognized arguments: \\x1b[2J\\u202e\\nxxx"),
         (["sensors", "sedan2", "run.yaml", "--count", "\u202e"], "argument --count: invalid int value: '\\u202e'; "),
     ],

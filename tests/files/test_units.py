@@ -100,7 +100,7 @@ def test_products_of_units(parts: list[tuple[str, int]], separators: list[str], 
         ("kNs/m", r"did you mean 'kN s/m'\?$"),
         ("m/s2", r"did you mean 'm/s\^2'\?$"),
         ("N/mm2", r"did you mean 'N/mm\^2'\?$"),
-        ("kmh", "did you mean 'km' or 'mph'"),
+        ("kmh", "did you mean 'km/h'"),
         ("mN/m", r"did you mean 'MN'\?$"),
         ("kNm" * 10_000, r"did you mean 'kN m kN m .*\.\.\.'\?$"),
         ("mPa", r"unknown unit 'mPa'; did you mean 'MPa'\?"),
@@ -125,6 +125,17 @@ def test_an_exponent_out_of_reason_is_an_error_of_the_expression_at_its_place():
     with pytest.raises(ExpressionError, match="the exponent of a unit") as caught:
         parse("b1 + 3 km^400")
     assert caught.value.offset == 7
+
+
+def test_small_raised_digits_are_exponents():
+    assert parse_unit("t·m²") == parse_unit("t m^2")
+    assert parse_unit("m/s²") == (1.0, ACCELERATION)
+    assert parse("2 cm³ / 1 m²").evaluate({}) == pytest.approx(2e-6)
+
+
+def test_a_quantity_without_a_unit_is_told_one_that_can_be_written():
+    with pytest.raises(ValidationError, match=r"write e\.g\. '2 Hz' \('\.\.\. rad/s' of an angular rate\)"):
+        TypeAdapter(Frequency).validate_python(2)
 
 
 def test_reading_stops_where_a_parameter_begins():

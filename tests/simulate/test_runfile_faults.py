@@ -49,6 +49,18 @@ CASES = [
         "a degree of freedom without inertia: body 'frame' heaves with no mass in this run ({folder}/rig.yaml:7:17)",
     ),
     ("no speed", "speed: 7.2 km/h\n", "", None),
+    (
+        "force of a suspension that there is not",
+        "load1: {axle: rear, quantity: tyre_load}",
+        "load1: {axle: rear, quantity: @suspension_force}",
+        "rear has no suspension of its own: it is fixed to 'frame'",
+    ),
+    (
+        "motion of a mass that there is not",
+        "L3: {body: frame}",
+        "L3: {axle: rear, channels: {acceleration: @a}}",
+        "rear has no mass of its own, and moves with 'frame'",
+    ),
     ("speed without a unit", "speed: 7.2 km/h", "speed: @7.2", "expected m/s, found no unit in 7.2; write e.g. '7.2 m/s'"),
     ("speed in kilograms", "speed: 7.2 km/h", "speed: @7.2 kg", "expected m/s, found kg in '7.2 kg'"),
     ("speed of nothing", "speed: 7.2 km/h", "speed: @0 m/s", "expected a finite number above 0, found 0"),

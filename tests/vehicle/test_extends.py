@@ -34,9 +34,9 @@ def child(folder: Path, text: str, name: str = "child.yaml") -> Path:
     return folder / name
 
 
-def test_an_empty_child_is_its_base(tmp_path: Path):
+def test_an_empty_child_is_its_base_by_another_name(tmp_path: Path):
     vehicle = load_vehicle(child(tmp_path, "extends: base.yaml\n"))
-    assert vehicle.model_dump() == load_vehicle(tmp_path / "base.yaml").model_dump()
+    assert vehicle.model_dump() == load_vehicle(tmp_path / "base.yaml").model_dump() | {"name": "child"}
     assert vehicle.files == (tmp_path / "child.yaml", tmp_path / "base.yaml")
 
 
@@ -49,7 +49,7 @@ def test_mappings_merge_and_scalars_and_lists_replace(tmp_path: Path):
             "sets:\n  empty: {mB: 850 kg}\n",
         )
     )
-    assert (vehicle.name, vehicle.title) == ("base", "the child")
+    assert (vehicle.name, vehicle.title) == ("child", "the child")
     assert list(vehicle.parameters) == ["mB", "b1", "b2", "kR"]
     assert vehicle.ranges() == {"mB": (800.0, 1000.0)}
     assert vehicle.parameters["mB"].meaning == "body mass"
@@ -190,7 +190,7 @@ def test_a_very_long_chain_of_files_is_refused(tmp_path: Path):
     (tmp_path / "f0.yaml").write_text(BASE)
     for i in range(1, 25):
         (tmp_path / f"f{i}.yaml").write_text(f"extends: f{i - 1}.yaml\n")
-    assert load_vehicle(tmp_path / "f19.yaml").name == "base"
+    assert load_vehicle(tmp_path / "f19.yaml").title == "the base"
     with pytest.raises(InputError, match=r"f1\.yaml:1:10: more than 20 files extend one another"):
         load_vehicle(tmp_path / "f20.yaml")
 

@@ -29,6 +29,12 @@ FAULTS: list[Fault] = [
     ),
     ("no unit in a sum", "3.46 m - b1", "@3.46 - b1", "cannot subtract no unit and m"),
     (
+        "no unit in a sum's parameter",
+        "b1: {value: 1.32 m, range: [0.8 m, 2.2 m]",
+        "b1: {value: 1.32",
+        "5:16: cannot subtract m and no unit; 'b1' has no unit",
+    ),
+    (
         "no unit in a stiffness",
         "200 kN/m, m",
         "200, m",

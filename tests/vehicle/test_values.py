@@ -79,7 +79,7 @@ FAULTS: list[Fault] = [
     ),
     ("too long for any vehicle", "x: -b2", "x: @-3000 m", "axles.rear.x is out of any scale: a length on a vehicle is at most 1000 m"),
     ("infinite", "8000 kg, m", "@.inf, m", "`value` is a plain quantity"),
-    ("set of what follows", "kF: 150 kN/m", "@b2: 1 m", "a set changes parameters that have a `value`; 'b2' is none; known: b1, kF, mB"),
+    ("set of what follows", "kF: 150 kN/m", "@b2: 1 m", "a set changes parameters that have a `value`; 'b2' has `equals`, and"),
     ("set with symbols", "kF: 150 kN/m", "kF: @0.5*kF", "a set lists plain quantities, not expressions of parameters"),
     (
         "set of a wrong value",

@@ -68,7 +68,7 @@ COMMANDS = (
 )
 
 
-def make_parser() -> argparse.ArgumentParser:
+def make_parser() -> OneLineParser:
     """Return the parser of `vehgen`."""
     parser = OneLineParser(
         prog="vehgen",
@@ -90,7 +90,7 @@ def make_parser() -> argparse.ArgumentParser:
         )
         command.add_arguments(sub)
         _add_debug(sub)
-        sub.set_defaults(run=command.run, argument_options=getattr(command, "ARGUMENT_OPTIONS", {}))
+        sub.set_defaults(run=command.run, parser=sub, argument_options=getattr(command, "ARGUMENT_OPTIONS", {}))
     return parser
 
 
@@ -111,7 +111,7 @@ def _run(words: list[str]) -> int | None:
         if word.startswith("--") and word.endswith("=--"):  # argparse of Python 3.11 would take the value for the end of the options
             raise InputError(f"{shortened(word.removesuffix('=--'))} wants a value; found '--'")
     parser = make_parser()
-    options = parser.parse_args(words)
+    options = parser.parse(words)
     options.command_line = shlex.join(["vehgen", *words])
     if options.version:
         from vehgen import __version__

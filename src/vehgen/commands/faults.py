@@ -10,13 +10,13 @@ import sys
 import threading
 import traceback
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from types import FrameType
-from typing import NoReturn, TextIO
+from typing import Any, NoReturn, TextIO
 
 from vehgen.commands.terminal import one_line, say_on_stderr, silence
-from vehgen.errors import CacheWarning, InputError, ModelWarning, shortened
+from vehgen.errors import CacheWarning, InputError, ModelWarning, did_you_mean, shortened, shown
 
 UNUSABLE, STOPPED, TERMINATED = 2, 130, 143
 """Exit codes; the last two are those of shells, 128 and the number of the signal."""
@@ -28,6 +28,27 @@ class OneLineParser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Refuse the arguments."""
         raise InputError(f"{shortened(message, 300)}; `{self.prog} --help` lists what is known")
+
+    def parse(self, words: Sequence[str]) -> argparse.Namespace:
+        """Return the options; what is none is refused by the parser of its command, with the nearest name."""
+        options, left = self.parse_known_args(words)
+        if left:
+            parser = getattr(options, "parser", self)
+            unknown = [word.partition("=")[0] for word in left if word.startswith("-")]
+            hint = did_you_mean(unknown[0], parser.option_names) if unknown else ""
+            parser.error(f"unrecognized arguments: {' '.join(left)}{f'; {hint}' if hint.startswith('did you mean') else ''}")
+        return options
+
+    @property
+    def option_names(self) -> list[str]:
+        """The options that it knows."""
+        return [name for name in self._option_string_actions if name.startswith("--")]
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Refuse a value that is none of its choices, with the nearest ones."""
+        if action.choices is not None and value not in action.choices:
+            known = did_you_mean(str(value), map(str, action.choices))
+            raise argparse.ArgumentError(action, f"invalid choice: {shown(value)}; {known}")
 
 
 def end_of(work: Callable[[], int | None], debug: bool = False) -> int:

@@ -4,33 +4,42 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from vehgen.commands.results import add_out, file_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table, warn
-from vehgen.files import check_results
+from vehgen.errors import InputError, shown
+from vehgen.files import check_results, write_bytes
 
+if TYPE_CHECKING:
+    from vehgen.simulate import Response
+
+WRITTEN = (".csv", ".mat", ".txt", "")
+"""Endings of what it writes: a MAT-file for MATLAB and Octave, else columns of text."""
 EXAMPLE = "vehgen simulate run.yaml --out response.csv --plot"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.add_argument("run_file", metavar="RUN", help="a run file")
-    add_out(parser, "CSV", "where to write the response (default: RUN_response.csv beside it)")
+    add_out(parser, "FILE", "where to write the response, .csv or .mat for MATLAB (default: RUN_response.csv beside it)")
     parser.add_argument("--plot", action="store_true", help="draw the response too, beside the CSV file")
     add_json(parser)
 
 
 def run(options: argparse.Namespace) -> None:
     """Simulate a run and write its response."""
-    from vehgen.simulate import load_run, simulate, write_csv
+    from vehgen.simulate import load_run, simulate
 
     run_ = load_run(options.run_file)
     run_file = Path(options.run_file)
     path = run_file.with_name(f"{run_file.stem}_response.csv") if options.out is None else file_named(options.out)
     written = [path, path.with_suffix(".png")] if options.plot else [path]
+    if path.suffix.lower() not in WRITTEN:
+        raise InputError(f"--out: a response is written as {' or '.join(name for name in WRITTEN if name)}; found {shown(path.name)}")
     check_results(written)
     response = simulate(run_)
-    write_csv(path, response)
+    _write(path, response)
     if options.plot:
         from vehgen.report import save_figure
         from vehgen.report.plots.response_plot import plot_response
@@ -52,3 +61,18 @@ def run(options: argparse.Namespace) -> None:
     )
     warn(response.warnings)
     tell_written(written)
+
+
+def _write(path: Path, response: Response) -> None:
+    """Write the first individual's response as its file's ending says."""
+    if path.suffix.lower() != ".mat":
+        from vehgen.simulate import write_csv
+
+        write_csv(path, response)
+        return
+    import numpy as np
+
+    from vehgen.export.matlab import mat_bytes
+
+    names, units = (np.array([getattr(item, key) for item in response.channels]) for key in ("name", "unit"))
+    write_bytes(path, mat_bytes({"t": response.time, "values": response.values[0], "channels": names, "units": units}))

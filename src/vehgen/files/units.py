@@ -113,7 +113,10 @@ UNITS: dict[str, tuple[float, Dimension]] = {
 GRAVITIES = {"g": STANDARD_GRAVITY, "mg": STANDARD_GRAVITY / 1000}
 """What accelerometers are read in [m/s^2]; of a mass, g is the gram."""
 MAX_EXPONENT = 9
-_UNIT_FACTOR = re.compile(r"([A-Za-z]+)(?:(?:\^|\*\*)(-?[0-9]+))?")
+SPELT = {"kmh": "km/h", "kph": "km/h", "kmph": "km/h", "mps": "m/s", "fps": "ft/s"}
+"""Units as people write them, and as they are read."""
+SUPERSCRIPTS = {"²": "2", "³": "3"}
+_UNIT_FACTOR = re.compile(r"([A-Za-z]+)(?:(?:\^|\*\*)(-?[0-9]+)|([²³]))?")
 _TURNS = re.compile(r"(?<![A-Za-z_])(Hz|rpm)(?![A-Za-z0-9_])")
 _IN_GRAVITIES = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(m?g)\s*", re.ASCII)
 _RUN_TOGETHER = re.compile(rf"\s*({'|'.join(sorted(UNITS.keys() - {'ms'}, key=len, reverse=True))})")
@@ -146,7 +149,7 @@ def read_unit(text: str, start: int = 0) -> tuple[float, Dimension, int] | None:
         if len((atom.group(2) or "").lstrip("-0")) > 1:
             raise InputError(f"the exponent of a unit must be between -{MAX_EXPONENT} and {MAX_EXPONENT}, found {atom.group(2)[:40]}")
         size, unit = UNITS[atom.group(1)]
-        exponent = int(atom.group(2) or 1) * (-1 if divide else 1)
+        exponent = int(atom.group(2) or SUPERSCRIPTS.get(atom.group(3), "1")) * (-1 if divide else 1)
         factor *= size**exponent
         dimension = dimension * unit.power(Fraction(exponent))
         end = atom.end()
@@ -164,6 +167,8 @@ def _continues_name(text: str, position: int) -> bool:
 
 def nearest_unit(word: str) -> str:
     """Say which units differ from `word` in capitals only, else which is it with spaces and `^`, else which are spelt alike."""
+    if word.strip() in SPELT:
+        return f"did you mean {shown(SPELT[word.strip()])}?"
     first = word.strip().split("/")[0].split(" ")[0]
     near = [unit for unit in UNITS if unit.lower() == first.lower() and unit != first]
     apart = _RUN_TOGETHER.sub(r" \1", word).replace("/ ", "/").strip()
@@ -188,6 +193,11 @@ def factor_to_si(unit: str, dimension: Dimension) -> float | None:
         return GRAVITIES[unit]
     found = read_unit(unit)
     return found[0] if found is not None and found[2] == len(unit) and found[1] == dimension else None
+
+
+def example_unit(dimension: Dimension) -> str:
+    """Return what to write behind a number of a dimension."""
+    return "Hz' ('... rad/s' of an angular rate)" if dimension == FREQUENCY else f"{dimension}'"
 
 
 def units_of(dimension: Dimension) -> list[str]:

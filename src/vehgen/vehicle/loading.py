@@ -18,7 +18,7 @@ from vehgen.vehicle.model import Vehicle
 MAX_EXTENDS = 20
 VehicleLike = Vehicle | str | os.PathLike[str]
 """A vehicle, its file, or the name of a bundled model."""
-NOT_INHERITED = ("description", "source")
+NOT_INHERITED = ("name", "description", "source")
 """Said of one file: what extends it is another vehicle, from elsewhere."""
 
 

@@ -38,8 +38,9 @@ def _check_plain(vehicle: Vehicle, name: str) -> None:
 def _check_set(vehicle: Vehicle, set_name: str, dimensions: dict[str, Dimension]) -> None:
     for name, expression in vehicle.sets[set_name].items():
         if name not in vehicle.free_parameters:
-            known = did_you_mean(name, vehicle.free_parameters)
-            message = f"a set changes parameters that have a `value`; {shown(name)} is none; {known}"
+            message = f"a set changes parameters that have a `value`; {shown(name)} is none; {did_you_mean(name, vehicle.free_parameters)}"
+            if name in vehicle.parameters:
+                message = f"a set changes parameters that have a `value`; {shown(name)} has `equals`, and follows others"
             raise InputError(message, vehicle.position("sets", set_name, name, key=True))
         if expression.names:
             raise InputError("a set lists plain quantities, not expressions of parameters", vehicle.position("sets", set_name, name))
