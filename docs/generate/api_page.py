@@ -99,12 +99,14 @@ simulator = vehgen.Simulator(run.vehicle, run.outputs())
 scenario = vehgen.make_scenario(run, simulator.model, simulator.model.values())
 population = simulator.parameters([{"k_trailer": 1.3e6}, {"k_trailer": 1.5e6}])
 print(simulator.run(population, scenario).responses.shape)  # (individuals, samples, channels)
+faster = scenario.adjusted(speed=1.2)  # the same run, 1.2 times as fast
+print(abs(simulator.run(population, faster).responses).max(axis=1))
 
 kernel = vehgen.Kernel(model)
 road = np.zeros((1001, 2))
 road[100:, 0] = 0.01
 drive = vehgen.Excitation(1e-3, road, np.zeros_like(road), np.zeros((1001, 0)))
-print(kernel.run(np.array([list(model.values().values())]), drive).responses.shape)
+print(kernel.run(np.array([list(model.values().values())]), drive).responses.shape)  # loads without their static part
 """,
     ),
     Section(
