@@ -58,3 +58,19 @@ def test_bending_is_no_body_mode():
     bent = SHORT_AXLES % ", bending: {frequency: 12 Hz, length: 6 m}"
     assert [item for item in warnings(bent) if "bending" in item] == []
     assert len(warnings(bent)) <= len(warnings(rigid))
+
+
+CAB = """
+extends: sedan2
+bodies: {cab: {mass: 200 kg, pitch_inertia: 50 kg m^2}}
+links:
+  fore: {body: {x: 1 m}, cab: {x: 0.5 m}, k: 100 kN/m}
+  aft: {body: {x: 0 m}, cab: {x: %s}, k: 100 kN/m}
+"""
+
+
+def test_a_link_whose_ends_do_not_stand_over_one_another_is_warned_of():
+    assert warnings(CAB % "-0.5 m") == []
+    (found,) = [item for item in warnings(CAB % "0.5 m") if "ends of the link" in item]
+    assert found.startswith("the ends of the link aft stand 1.00 m apart along the vehicle; a link acts vertically")
+    assert not [item for item in warnings(CAB % "0.5 m" + "silence: [link_gap aft]\n") if "ends of the link" in item]

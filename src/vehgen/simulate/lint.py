@@ -23,6 +23,8 @@ BODY_BAND = (0.5, 5.0)
 """Where body modes of road vehicles lie, Hz."""
 AXLE_GAP = 0.6
 """Two axles closer than this [m] would share a wheel's space."""
+LINK_GAP = 0.1
+"""Ends of a link that stand farther apart along the vehicle than this [m] are a mistake, as a link acts vertically."""
 MOUNT_BAND = (0.5, 30.0)
 """Where modes of what is mounted on a body lie, Hz: seats and cabs low, engines high."""
 Finding = tuple[str, str, str]
@@ -37,7 +39,7 @@ def lint(model: EquationsOfMotion, values: Mapping[str, float] | None = None) ->
         found: list[str] = []
     except InputError as error:
         loads, found = {}, [error.message]
-    findings = (*_loads(loads), *_gyration(model, values), *_gaps(model, values), *_modes(model, values))
+    findings = (*_loads(loads), *_gyration(model, values), *_gaps(model, values), *_links(model, values), *_modes(model, values))
     return [*found, *(text for kind, part, text in findings if not is_silenced(model.vehicle, kind, part))]
 
 
@@ -78,6 +80,18 @@ def _gaps(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[Fin
         if gap < AXLE_GAP:
             text = f"overlapping axles: {names[first]} and {names[second]} are {gap:.2f} m apart"
             yield "axle_gap", names[second], text
+
+
+def _links(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[Finding]:
+    vehicle, bodies = model.vehicle, model.layout.bodies
+    linked = {name: link.ends for name, link in vehicle.links.items() if GROUND not in link.points}
+    apart = [
+        bodies[one][0] + to_sympy(first.x) - bodies[other][0] - to_sympy(second.x) for (one, first), (other, second) in linked.values()
+    ]
+    for name, gap in zip(linked, model.evaluate_list(apart, values), strict=True):
+        if abs(gap) > LINK_GAP:
+            text = f"the ends of the link {name} stand {abs(gap):.2f} m apart along the vehicle; a link acts vertically: put its `x` right"
+            yield "link_gap", name, text
 
 
 def _modes(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[Finding]:
