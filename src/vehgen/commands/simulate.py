@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> None:
     print_table(
         title,
         ("channel", "unit", "largest magnitude"),
-        [(name, unit, f"{peak:.5g}") for name, unit, peak in peaks],
+        [(name, unit, f"{float(f'{peak:.5g}'):.9g}") for name, unit, peak in peaks],
         right=(2,),
     )
     warn(response.warnings)
