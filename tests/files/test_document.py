@@ -176,6 +176,8 @@ def test_an_alias_stands_for_its_anchor():
         ("a: !!python/object/apply:os.system ['true']\n", (1, 4), "the tag tag:yaml.org,2002:python/object/apply:os.system is not allowed"),
         ("a: !!python/name:os.system\n", (1, 4), "the tag tag:yaml.org,2002:python/name:os.system is not allowed"),
         ("b:\n - !vehicle {a: 1}\n", (2, 4), "the tag !vehicle is not allowed"),
+        ("a: !!bool yes\n", (1, 4), "true or false was expected, found 'yes'"),
+        ("%YAML 1.1\n---\na: yes\n", (1, 1), "YAML 1.2 was expected, found '1.1'"),
         ("a: !!set {b, c}\n", (1, 4), "the tag tag:yaml.org,2002:set is not allowed"),
         ("a: !!binary aGVsbG8=\n", (1, 4), "the tag tag:yaml.org,2002:binary is not allowed"),
         ("!!python/name:os.system a: 1\n", (1, 1), "the tag tag:yaml.org,2002:python/name:os.system is not allowed"),

@@ -37,6 +37,9 @@ def test_facts_enter_the_fit(problem, tmp_path):
         ("kerb_mass: {value: 9 kN, uncertainty: 1 kg}", "expected kg"),
         ("kerb_mass: {value: 2 t, uncertainty: 0 kg}", "above 0"),
         ("{}", "no fact"),
+        ("axle_weights: {front: {value: -9 kN, uncertainty: 1 kN}}", "above 0, found -9"),
+        ("uncoupled: {body: {front: {value: 9 kN, uncertainty: 0.001 N}}}", "at least 1e-06 of the value was expected, found 0.001"),
+        ("parameters: {Lf: {value: 96 m, uncertainty: 1 cm}}", r"Lf is searched from 0\.9 to 1\.9 \(SI units\), found 96"),
     ],
 )
 def test_facts_that_do_not_fit_are_refused(problem, tmp_path, text, said):
@@ -44,6 +47,17 @@ def test_facts_that_do_not_fit_are_refused(problem, tmp_path, text, said):
     path.write_text(text, encoding="utf-8")
     with pytest.raises(InputError, match=said):
         load_prior_data(path, problem)
+
+
+def test_a_fact_that_is_missed_by_far_is_told(problem, tmp_path):
+    path = tmp_path / "facts.yaml"
+    path.write_text(
+        "axle_weights: {front: {value: 9.4 N, uncertainty: 0.1 kN}}\nkerb_mass: {value: 1.7 t, uncertainty: 1 t}", encoding="utf-8"
+    )
+    (told,) = load_prior_data(path, problem).missed(problem.space.start)
+    start = dict(zip(problem.space.names, problem.space.start, strict=True))
+    load = 9.81 * (1500.0 * (2.8 - start["Lf"]) / 2.8 + start["mf"])
+    assert told.startswith(f"the fact 'load of front' is missed by {(load - 9.4) / 100:.0f} standard deviations; check its value")
 
 
 def test_axle_weights_are_those_of_a_lever(problem, tmp_path):

@@ -81,6 +81,13 @@ def test_a_clock_that_runs_backwards_is_refused():
         clean(Stream(t, t[:, None], ("x",), "m/s^2"), "phone")
 
 
+def test_two_recordings_in_one_file_are_refused():
+    first, second = np.arange(700) * 0.01, np.arange(500) * 0.01 + 0.0037
+    t = np.concatenate([first, second])
+    with pytest.raises(InputError, match="500 samples from the 701th on are of times that were recorded before, as where two recordings"):
+        clean(Stream(t, t[:, None], ("x",), "m/s^2"), "phone")
+
+
 def test_slow_logs_are_refused_with_the_rate_needed():
     with pytest.raises(InputError, match=r"logged at 2.5 Hz; at least 50 Hz is needed to see up to 25 Hz"):
         check_rate(np.arange(100) / 2.5, 25.0, "phone")

@@ -27,13 +27,12 @@ RUN = (
     .replace("road.csv", "roads/h.csv")
     .replace("force.csv", "forces/h.csv")
     .replace("post: {harmonic: {amplitude: 5 mm, frequency: 3 Hz}}", "post: {file: ./post.csv, unit: m}")
-    .replace("height: 30 mm, at: 6 m", "height: 30 mm, at: 6 m, file: not_read.csv")
 )
 
 
 @pytest.fixture
 def run_path(tmp_path):
-    for name, text in {**TABLES, "not_read.csv": ""}.items():
+    for name, text in TABLES.items():
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
     return write(tmp_path, RUN)

@@ -50,6 +50,25 @@ CASES = [
     ),
     ("no speed", "speed: 7.2 km/h\n", "", None),
     (
+        "harmonic too fast for the step",
+        "harmonic: {amplitude: 2 kN, frequency: 5 Hz",
+        "harmonic: {amplitude: 2 kN, frequency: @1000 Hz",
+        "a cycle takes 0.5 steps of 0.002 s; at least 10 were expected: a lower frequency",
+    ),
+    (
+        "key of another hump",
+        "{shape: half_sine, length: 50 cm",
+        "@{shape: half_sine, ramp: 0.2, length: 50 cm",
+        "the key ramp belongs to a hump of the shape trapezoid, not to half_sine",
+    ),
+    (
+        "key of a hump of points",
+        "{shape: points,",
+        "@{shape: points, height: 2 cm,",
+        "the key height belongs to a hump of the shape half_sine or",
+    ),
+    ("seed of a word", "seed: 1}", "seed: @true}", "input should be a valid integer (found 'True')"),
+    (
         "force of a suspension that there is not",
         "load1: {axle: rear, quantity: tyre_load}",
         "load1: {axle: rear, quantity: @suspension_force}",

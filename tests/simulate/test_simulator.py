@@ -1,6 +1,7 @@
 """Runs, populations, inputs of every kind, and what is warned of."""
 
 import csv
+import re
 
 import numpy as np
 import pytest
@@ -108,6 +109,34 @@ def test_a_peak_between_samples_is_told_and_lifts_a_tyre_off(tmp_path):
     (told,) = [text for text in sparse.warnings if "between samples" in text]
     assert told.startswith(f"between samples every 25 ms force reaches {peak:.5g} N, {share:.0%} more than")
     assert [text for text in sparse.warnings if "leave the road" in text] == [text for text in every.warnings if "leave the road" in text]
+
+
+@pytest.mark.parametrize(
+    ("line", "table", "message"),
+    [
+        ("forces: {f: {body: body, file: x.csv, time: t, force: v}}\n", "t,v\n1.7e9,0\n1.70001e9,5\n", "lie outside of the run, 0 to 2 s"),
+        ("speed: {file: x.csv, speed: v}\n", "t,v\n1.7e9,3\n1.70001e9,3\n", "lie outside of the run, 0 to 2 s"),
+        ("forces: {f: {body: body, file: x.csv, time: t, force: v}}\n", "t,v\n0,0\n1,1e12\n", "a force is at most 1e+09 N"),
+        ("road: [{profile: {file: x.csv, distance: t, height: v}}]\n", "t,v\n0,0\n5,1e4\n", "the height of a profile is at most"),
+    ],
+    ids=["epoch times", "speeds of another day", "a force of no machine", "a mountain"],
+)
+def test_tables_that_cannot_belong_to_a_run_are_refused(tmp_path, line, table, message):
+    (tmp_path / "x.csv").write_text(table, encoding="utf-8")
+    speed = "" if line.startswith("speed") else "speed: 3 m/s\n"
+    with pytest.raises(InputError, match=re.escape(message)):
+        simulate(run_of(tmp_path, f"vehicle: sedan2\n{speed}duration: 2 s\n{line}"))
+
+
+def test_a_road_that_is_not_met_is_warned_of(tmp_path):
+    (tmp_path / "x.csv").write_text("t,v\n100,0\n120,0.02\n", encoding="utf-8")
+    road = "road: [{hump: {shape: versine, length: 0.5 m, height: 2 cm, at: 40 m}}, {profile: {file: x.csv, distance: t, height: v}}]\n"
+    told = [
+        text for text in simulate(run_of(tmp_path, f"vehicle: sedan2\nspeed: 5 m/s\nduration: 3 s\n{road}")).warnings if "not met" in text
+    ]
+    assert [text.partition(":")[0] for text in told] == ["the hump at 40 m is not met", "the profile at 100 m is not met"]
+    far = simulate(run_of(tmp_path, f"vehicle: sedan2\nspeed: 5 m/s\nduration: 30 s\n{road}")).warnings
+    assert not [text for text in far if "not met" in text]
 
 
 def test_a_tyre_that_may_lift_off_is_not_warned_of(tmp_path):

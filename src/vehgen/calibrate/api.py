@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import os
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from vehgen.calibrate.genetic import GeneticSearch
 from vehgen.calibrate.intervals import check_combination
 from vehgen.calibrate.result import CalibrationSummary
 from vehgen.calibrate.summary import summarise
-from vehgen.errors import ArgumentError, did_you_mean
+from vehgen.errors import ArgumentError, ModelWarning, did_you_mean
 from vehgen.files.limits import check_count, check_seed, check_share
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.nuisances import asked_nuisances
@@ -125,6 +126,8 @@ def calibrate(
         check_combination(problem, text)
     with runner_at(scheduler, workers) as runner, one_blas_thread():  # small matrices: more threads only wait
         found = calibrate_problem(problem, settings, prior_data, progress, path, resume, runner)
+        for text in () if prior_data is None or not polish else prior_data.missed(found.array):
+            warnings.warn(ModelWarning(text), stacklevel=2)
         return summarise(found, prior_data, asked, 0 if found.stopped else bootstrap, runner)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -161,6 +162,9 @@ def read_text(text: str, path: Path | str) -> Located:
         raise InputError(f"not valid YAML: {shortened(str(error).splitlines()[0], MAX_PROBLEM)}", Position(path, 1, 1)) from error
     except RecursionError as error:
         raise InputError("nested too deeply", Position(path, 1, 1)) from error
+    if (found := re.match(r"\s*%YAML\s+(\S+)", text)) and found.group(1) != "1.2":
+        said = f"YAML 1.2 was expected, found {shown(found.group(1))}: older ones read words and numbers otherwise; leave `%YAML` out"
+        raise InputError(said, Position(path, 1, 1))
     if root is None:
         raise InputError("the file is empty", Position(path, 1, 1))
     return _Converter(path, lines).convert(root, 0)
@@ -222,6 +226,8 @@ def _scalar(node: ScalarNode, kind: str, position: Position) -> Any:
             case "null":
                 return None
             case "bool":
+                if text.lower() not in ("true", "false"):
+                    raise InputError(f"true or false was expected, found {shown(text)}", position)
                 return text.lower() == "true"
             case "int":
                 return int(text.replace("_", ""), 0) if len(text) <= MAX_DIGITS else text

@@ -61,6 +61,7 @@ class Limit:
 SPEED_LIMIT = Limit("a speed", 0.01, 150.0, SPEED)
 HUMP_LENGTH = Limit("the length of a hump", 1e-3, 50.0, LENGTH)
 HUMP_HEIGHT = Limit("the height of a hump", 0.0, 2.0, LENGTH)
+PROFILE_HEIGHT = Limit("the height of a profile", 0.0, 9e3, LENGTH)
 EDGE_RADIUS = Limit("the radius of an edge", 1e-6, 50.0, LENGTH)
 FOOTPRINT = Limit("a tyre's footprint", 1e-3, 2.0, LENGTH)
 ROAD_POSITION = Limit("a place along the road", 0.0, 1e6, LENGTH)

@@ -22,13 +22,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from vehgen.errors import InputError
+from vehgen.errors import InputError, shown
 from vehgen.files.checks import check_known, plain_quantity
 from vehgen.files.document import Located
 from vehgen.files.entry import FileModel, read_entries
 from vehgen.files.expressions import Expression
 from vehgen.files.names import Name
-from vehgen.files.quantities import Force, Mass
+from vehgen.files.quantities import Force, Mass, PositiveForce
 from vehgen.fit.problem import Problem
 from vehgen.mechanics import GRAVITY, EquationsOfMotion, derive
 from vehgen.mechanics.static_loads import axle_loads
@@ -37,6 +37,10 @@ from vehgen.vehicle.parts import GROUND
 
 Array = NDArray[np.float64]
 _JACOBIAN_STEP = 1e-6
+LEAST_UNCERTAINTY = 1e-6
+"""No fact is known better than to this share of its value: beyond it rounding decides."""
+MISSED_SIGMAS, RANGE_SIGMAS = 4.0, 3.0
+"""A fact that a fit misses by so many standard deviations is told; one of a parameter must lie in its range, so many of them added."""
 KERB_MASS = "kerb mass"
 """What the fact of the whole vehicle's mass is called."""
 FactModel = Callable[[Mapping[str, Array]], Array]
@@ -46,7 +50,7 @@ FactModel = Callable[[Mapping[str, Array]], Array]
 class Weight(FileModel):
     """What an axle presses on the road, and how well that is known."""
 
-    value: Force
+    value: PositiveForce
     uncertainty: Annotated[Force, Field(gt=0)]
 
 
@@ -108,6 +112,14 @@ class PriorData:
         facts = (replace(item, value=item.value + item.uncertainty * off) for item, off in zip(self.facts, strayed.tolist(), strict=True))
         return replace(self, facts=tuple(facts))
 
+    def missed(self, values: Array) -> list[str]:
+        """Return a sentence for each fact that searched values `shape (n_parameters,)` [SI] miss by far."""
+        return [
+            f"the fact {shown(fact.name)} is missed by {abs(off):.0f} standard deviations; check its value, its unit and its uncertainty"
+            for fact, off in zip(self.facts, self.residuals(values).tolist(), strict=True)
+            if abs(off) > MISSED_SIGMAS
+        ]
+
     def _residuals(self, points: Array) -> Array:
         """Return the residuals at searched values `shape (n, n_parameters)`: `shape (n, n_facts)`."""
         fixed = {name: np.full(len(points), value) for name, value in self.problem.trials[0].values.items()}
@@ -125,6 +137,7 @@ def load_prior_data(path: str | Path, problem: Problem) -> PriorData:
     """
     file, document = read_entries(PriorDataFile, path)
     vehicle = problem.trials[0].run.vehicle
+    _check_uncertainties(file, document)
     facts = [_parameter_fact(vehicle, name, known, document) for name, known in file.parameters.items()]
     if (whole := file.kerb_mass) is not None:
         facts.append(Fact(KERB_MASS, kerb_mass(derive(vehicle)), whole.value, whole.uncertainty))
@@ -149,9 +162,30 @@ def _parameter_fact(vehicle: Vehicle, name: str, known: Known, document: Located
     dimension, path = vehicle.dimensions[name], ("parameters", name)
     value = plain_quantity(known.value, dimension, document, *path, "value", what=name)
     uncertainty = plain_quantity(known.uncertainty, dimension, document, *path, "uncertainty", what=f"the uncertainty of {name}")
-    if not uncertainty > 0:
-        raise InputError("an uncertainty above 0 was expected", document.find((*path, "uncertainty")))
+    _check_known_to(value, uncertainty, document, *path)
+    low, high = vehicle.ranges().get(name, (-np.inf, np.inf))
+    if not low - RANGE_SIGMAS * uncertainty <= value <= high + RANGE_SIGMAS * uncertainty:
+        raise InputError(f"{name} is searched from {low:g} to {high:g} (SI units), found {value:g}", document.find((*path, "value")))
     return Fact(name, parameter_value(vehicle, name), value, uncertainty)
+
+
+def _check_uncertainties(file: PriorDataFile, document: Located) -> None:
+    """Check how well weights are known."""
+    given: dict[tuple[str, ...], Weight] = {("axle_weights", name): item for name, item in file.axle_weights.items()}
+    given |= {("uncoupled", body, name): item for body, items in file.uncoupled.items() for name, item in items.items()}
+    for path, item in given.items():
+        _check_known_to(item.value, item.uncertainty, document, *path)
+    if file.kerb_mass is not None:
+        _check_known_to(file.kerb_mass.value, file.kerb_mass.uncertainty, document, "kerb_mass")
+
+
+def _check_known_to(value: float, uncertainty: float, document: Located, *path: str) -> None:
+    """Refuse an uncertainty that is not above 0, or that rounding exceeds."""
+    place = document.find((*path, "uncertainty"))
+    if not uncertainty > 0:
+        raise InputError("an uncertainty above 0 was expected", place)
+    if uncertainty < LEAST_UNCERTAINTY * abs(value):
+        raise InputError(f"an uncertainty of at least {LEAST_UNCERTAINTY:g} of the value was expected, found {uncertainty:g}", place)
 
 
 def uncouple(vehicle: Vehicle, body: str) -> Vehicle:

@@ -9,7 +9,7 @@ from typing import Literal, get_args
 import sympy as sp
 
 from vehgen.errors import InputError, did_you_mean, shortened, shown
-from vehgen.files.checks import check_dimension, dimension_of
+from vehgen.files.checks import check_dimension, dimension_of, value_of
 from vehgen.files.expressions import Expression
 from vehgen.files.units import FORCE, LENGTH, MOMENT, NONE, TIME
 from vehgen.mechanics.laws import LAWS, Kind, Law, LawState, LawStep, custom_law
@@ -113,6 +113,9 @@ def _read(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], name: str, 
         if not isinstance(expression, Expression):
             raise InputError(f"{key} is a quantity, not a mapping", vehicle.position(*path, key))
         check_dimension(expression, parameter.dimension(kind), vehicle.dimensions, vehicle.document, *path, key)
+        value = value_of(expression, vehicle.all_values(vehicle.values()), vehicle.document, *path, key)
+        if value < 0 and not parameter.signed:
+            raise InputError(f"{key} of {name} must not be below 0, found {value:g}", vehicle.position(*path, key))
         values[key] = to_sympy(expression)
     return _with_origin(vehicle, path, given, LawTerm(law, values))
 

@@ -36,6 +36,8 @@ MAX_SENSOR_RATE_HZ = 20_000.0
 """No phone records faster [Hz]."""
 MAX_DISORDER = 0.01
 """Share of samples that may be out of order or repeated."""
+LATE_S = 1.0
+"""A sample may come so much later than one that follows it [s]."""
 TRANSITION = 4.0
 """Width of the low-pass's transition [Hz] per 100 Hz of the grid, centred on the grid's Nyquist frequency."""
 STOP_BAND = 60.0
@@ -61,6 +63,7 @@ def clean(stream: Stream, name: str) -> tuple[Stream, tuple[str, ...]]:
         raise InputError(f"{name} holds {len(time)} samples; a recording has thousands")
     if np.abs(values).max() > 1e6 or np.abs(time).max() > 1e12:
         raise InputError(f"{name} holds values up to {np.abs(values).max():.3g} at times up to {np.abs(time).max():.3g} s: not a recording")
+    late = np.flatnonzero(np.maximum.accumulate(time) - time > LATE_S)
     order = np.argsort(time, kind="stable")
     disorder = int((np.diff(time) < 0).sum())
     time, values = time[order], values[order]
@@ -69,6 +72,11 @@ def clean(stream: Stream, name: str) -> tuple[Stream, tuple[str, ...]]:
     if disorder + repeated:
         if disorder + repeated > max(2, MAX_DISORDER * len(time)):
             raise InputError(f"{name}: {disorder} times run backwards and {repeated} are repeated, of {len(time)}: is it the time column?")
+        if len(late) > MAX_DISORDER * len(time):
+            raise InputError(
+                f"{name}: {len(late)} samples from the {late[0] + 1}th on are of times that were recorded before, as where two recordings "
+                "stand in one file; give each a file of its own"
+            )
         notes.append(f"{name}: {disorder} samples were out of order and {repeated} repeated; sorted, the first of each kept")
     if fresh.sum() < 2:
         raise InputError(f"{name}: all samples have one time")

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from vehgen.errors import InputError, Position
-from vehgen.files.limits import HUMP_HEIGHT, HUMP_LENGTH, SPEED_LIMIT
+from vehgen.files.limits import DISPLACEMENT, FORCE_LIMIT, HUMP_HEIGHT, HUMP_LENGTH, PROFILE_HEIGHT, SPEED_LIMIT
 from vehgen.files.tables import TableColumns, read_columns
 from vehgen.simulate.run_file.entries import DisplacementEntry, ForceEntry, HumpEntry, ProfileEntry, SpeedFile
 
@@ -58,6 +58,7 @@ def profile_table(path: Path, entry: ProfileEntry, find: Finder = nowhere) -> Ta
     """Return distances and heights of a measured profile [m]."""
     found = _pair(path, *_road_columns(entry.distance, entry.distance_unit, entry.height, entry.unit), find)
     found.check_ascending()
+    found.check_limit(1, PROFILE_HEIGHT)
     return found
 
 
@@ -81,6 +82,7 @@ def input_table(path: Path, entry: ForceEntry | DisplacementEntry, find: Finder 
     time = _Column(entry.time, "time", "s", "time_unit", entry.time_unit)
     found = _pair(path, time, value, find)
     found.check_ascending(least=1)
+    found.check_limit(1, FORCE_LIMIT if isinstance(entry, ForceEntry) else DISPLACEMENT)
     return found
 
 

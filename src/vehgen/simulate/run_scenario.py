@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -66,6 +67,7 @@ def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) 
     forces = tuple(
         Signal(harmonic=entry.harmonic) if entry.harmonic else _measured(run, entry, "forces", name) for name, entry in file.forces.items()
     )
+    _check_overlap(run, duration, speed, dict(zip(ground_links(model), ground, strict=True)), dict(zip(file.forces, forces, strict=True)))
     chains = channel_chains(run, 1 / (file.step * run.decimation))
     return Scenario(track, speed, duration, file.step, run.decimation, ground, forces, chains=chains, initial=initial_state(run, model))
 
@@ -151,6 +153,20 @@ def _measured(run: Run, entry: ForceEntry | DisplacementEntry, *place: str) -> S
     with placed(run, *place, "file"):
         found = input_table(Path(run.folder) / (entry.file or ""), entry, _finder(run, *place))
     return Signal(time=found.values[0], values=found.values[1])
+
+
+def _check_overlap(run: Run, duration: float, speed: SpeedLaw, ground: Mapping[str, Signal | None], forces: Mapping[str, Signal]) -> None:
+    """Refuse tables of speeds, displacements and forces whose times all lie outside of the run."""
+    tables: dict[tuple[str, ...], Array | None] = {("speed",): speed.time if isinstance(speed, SpeedHistory) else None}
+    for kind, signals in (("displacements", ground), ("forces", forces)):
+        tables |= {(kind, name): None if item is None else item.time for name, item in signals.items()}
+    for place, times in tables.items():
+        if times is not None and (times[0] > duration or times[-1] < 0):
+            raise InputError(
+                f"the times of this table, {times[0]:.6g} to {times[-1]:.6g} s, lie outside of the run, 0 to {duration:.4g} s: "
+                "let them begin with the run",
+                run.document.find((*place, "file")),
+            )
 
 
 def _finder(run: Run, *place: str | int) -> Finder:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.static_loads import static_loads
+from vehgen.road import Hump, MeasuredProfile
 from vehgen.simulate.modes import natural_modes
 from vehgen.simulate.response import ResponseChannel
 from vehgen.simulate.scenario import Scenario
@@ -51,6 +52,16 @@ def missed_peaks(
         f"{channels[worst].unit}, {passed[worst]:.0%} more than the largest of them{others}; "
         f"`sample: {scenario.dt * 1e3:g} ms` in the run file keeps every step"
     )
+
+
+def roads_not_met(scenario: Scenario) -> Iterator[str]:
+    """Warn of humps and profiles that lie beyond where the run ends."""
+    end = float(scenario.speed.distance(scenario.time)[-1])
+    for part in scenario.track.parts:
+        begin = part.at if isinstance(part, Hump) else part.distance[0] if isinstance(part, MeasuredProfile) else 0.0
+        if begin > end:
+            what = "hump" if isinstance(part, Hump) else "profile"
+            yield f"the {what} at {begin:.4g} m is not met: the run ends at {end:.4g} m; a longer `duration`, or a road that begins earlier"
 
 
 def spectral_nulls(model: EquationsOfMotion, values: Mapping[str, float], scenario: Scenario) -> Iterator[str]:

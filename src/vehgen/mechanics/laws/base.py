@@ -23,7 +23,7 @@ EVERYWHERE: tuple[Kind, ...] = ("suspension", "tyre", "link", "hinge")
 class LawParameter:
     """A parameter of a law; its dimension is force^a travel^b time^c, so that it fits vertical springs and hinges alike.
 
-    `low` and `high` bound what is physically usual for a heavy vehicle's suspension, in SI units.
+    `low` and `high` bound what is physically usual for a heavy vehicle's suspension, in SI units; negative may be only what is `signed`.
     """
 
     name: str
@@ -32,6 +32,7 @@ class LawParameter:
     low: float
     high: float
     default: float | None = None
+    signed: bool = False
 
     def dimension(self, kind: Kind) -> Dimension:
         """Return its dimension on a suspension, tyre, link (force and length) or hinge (moment and angle)."""

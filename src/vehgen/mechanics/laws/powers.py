@@ -31,7 +31,7 @@ CUBIC_STIFFNESS = Law(
     meaning="a spring that hardens (k3 > 0) alike in bump and rebound",
     source="I. Kovacic, M. J. Brennan, The Duffing Equation, 2011, doi:10.1002/9780470977859",
     strength="k3",
-    parameters=(LawParameter("k3", (1, -3, 0), "cubic stiffness", 0.0, 5.0e9),),
+    parameters=(LawParameter("k3", (1, -3, 0), "cubic stiffness", 0.0, 5.0e9, signed=True),),
     write=_write_cubic_stiffness,
 )
 QUADRATIC_STIFFNESS = Law(
@@ -41,7 +41,7 @@ QUADRATIC_STIFFNESS = Law(
     meaning="a spring that hardens in bump and softens in rebound, such as an air spring about its ride height; for small travels only",
     source="J. C. Dixon, The Shock Absorber Handbook, 2nd ed., 2007, doi:10.1002/9780470516430",
     strength="k2",
-    parameters=(LawParameter("k2", (1, -2, 0), "quadratic stiffness", 0.0, 5.0e7),),
+    parameters=(LawParameter("k2", (1, -2, 0), "quadratic stiffness", 0.0, 5.0e7, signed=True),),
     write=_write_quadratic_stiffness,
 )
 QUADRATIC_DAMPING = Law(

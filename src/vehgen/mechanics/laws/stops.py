@@ -22,7 +22,7 @@ PROGRESSIVE_STIFFNESS = Law(
     source="T. D. Gillespie, Fundamentals of Vehicle Dynamics, SAE, 1992, doi:10.4271/R-114",
     strength="k",
     parameters=(
-        LawParameter("k", (1, -1, 0), "stiffness added beyond `start`", 0.0, 2.0e6),
+        LawParameter("k", (1, -1, 0), "stiffness added beyond `start`", 0.0, 2.0e6, signed=True),
         LawParameter("start", (0, 1, 0), "travel in bump at which it joins in", 0.0, 0.05),
     ),
     write=_progressive_stiffness,

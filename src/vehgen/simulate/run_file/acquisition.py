@@ -29,7 +29,7 @@ class AcquisitionEntry(FileModel):
     """A recorder: its low-pass, how late it is besides, the largest value and the smallest step that it records."""
 
     filter: str
-    order: int = Field(4, ge=1, le=MAX_ORDER)
+    order: int = Field(4, strict=True, ge=1, le=MAX_ORDER)
     cut_off: Frequency | None = None
     delay: RecorderDelay = 0.0
     range: str | float | None = None

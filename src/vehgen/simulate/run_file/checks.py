@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from vehgen.simulate.run_file.loading import Run
 
 MAX_STEPS = 10_000_000
+STEPS_OF_A_CYCLE = 10
+"""A harmonic of fewer steps a cycle is bent, and one of less than two is another one."""
 TIME_COLUMN = "t"
 """The heading of the time in recordings and responses."""
 
@@ -98,6 +100,12 @@ def _check_displacements(run: Run) -> None:
 def _check_unit(run: Run, entry: ForceEntry | DisplacementEntry, quantity: str, usual: str, *path: str) -> None:
     """Check the unit of a measured column; beside a recording, where a wrong one would be fitted, it must be stated."""
     document = run.document
+    if entry.harmonic is not None and (steps := 1 / (entry.harmonic.frequency * run.file.step)) < STEPS_OF_A_CYCLE:
+        raise InputError(
+            f"a cycle takes {steps:.3g} steps of {run.file.step:g} s; at least {STEPS_OF_A_CYCLE} were expected: a lower frequency "
+            "(is it in Hz?) or a shorter `step`",
+            document.find((*path, "harmonic", "frequency")),
+        )
     if entry.unit is not None:
         if entry.file is None:
             raise InputError("a harmonic is written with its unit; `unit` belongs to a `file`", document.find((*path, "unit"), key=True))

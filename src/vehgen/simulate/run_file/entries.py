@@ -38,6 +38,16 @@ DEFAULT_SPEED = 1.0
 """What stands for the speed [m/s] of a rig without wheels; nothing depends on it."""
 
 
+_FORMULAS, _POINTS = ("half_sine", "versine", "trapezoid", "rectangle"), ("points",)
+_SHAPES_OF = {
+    **dict.fromkeys(("length", "height"), _FORMULAS),
+    **dict.fromkeys(("file", "distance", "height_column", "distance_unit", "unit"), _POINTS),
+    "ramp": ("trapezoid",),
+    "radius": ("rectangle",),
+}
+"""The shapes of humps that have a key."""
+
+
 class HumpEntry(FileModel):
     """A hump on the road."""
 
@@ -59,6 +69,10 @@ class HumpEntry(FileModel):
         for key in needed:
             if getattr(self, key) is None:
                 raise PydanticCustomError("joint", "a {shape} hump lacks the key {key}", {"shape": self.shape, "key": key})
+        for key in self.model_fields_set & _SHAPES_OF.keys():
+            if self.shape not in _SHAPES_OF[key]:
+                shapes = {"key": key, "shape": self.shape, "shapes": " or ".join(_SHAPES_OF[key])}
+                raise PydanticCustomError("joint", "the key {key} belongs to a hump of the shape {shapes}, not to {shape}", shapes)
         return self
 
 
@@ -66,7 +80,7 @@ class IsoEntry(FileModel):
     """A random road of an ISO 8608 class."""
 
     class_: Literal["A", "B", "C", "D", "E", "F", "G", "H"] = Field(alias="class")
-    seed: int = Field(0, ge=0, le=LARGEST_SEED)
+    seed: int = Field(0, strict=True, ge=0, le=LARGEST_SEED)
 
 
 class ProfileEntry(FileModel):
