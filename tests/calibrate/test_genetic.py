@@ -144,6 +144,25 @@ def test_a_damaged_state_is_refused(text):
         SearchState.from_data(json.loads(text))
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"elite": [0.5, 0.5]},
+        {"elite": [7.0, 0.5, 0.5]},
+        {"elite": [float("nan"), 0.5, 0.5]},
+        {"generation": -1},
+        {"objective": [[1.0]]},
+        {"rates": [0.5, 0.5]},
+    ],
+    ids=lambda item: f"{item}",
+)
+def test_a_state_that_was_edited_is_refused(change):
+    state = GeneticSearch(1, 4, 2).start(lambda unit: unit.sum(axis=1), 3, seed=1).to_data()
+    assert SearchState.from_data(json.loads(json.dumps(state))).generation == 0
+    with pytest.raises(InputError, match="not the state of a search"):
+        SearchState.from_data(json.loads(json.dumps({**state, **change})))
+
+
 def test_a_search_without_individuals_is_refused():
     with pytest.raises(InputError, match="at least 4 individuals"):
         GeneticSearch(1, 3, 10)

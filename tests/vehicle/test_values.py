@@ -79,6 +79,13 @@ FAULTS: list[Fault] = [
     ),
     ("too long for any vehicle", "x: -b2", "x: @-3000 m", "axles.rear.x is out of any scale: a length on a vehicle is at most 1000 m"),
     ("infinite", "8000 kg, m", "@.inf, m", "`value` is a plain quantity"),
+    ("size backwards", "size: {length: 2 m", "size: {length: @-2 m", "bodies.cab.size.length must not be below 0, found -2"),
+    (
+        "range of a stiffness below 0",
+        "kF: {value: 200 kN/m, meaning: front stiffness}",
+        "kF: {value: 200 kN/m, range: @[-20 kN/m, 300 kN/m]}",
+        "the range of kF reaches what cannot be: negative k: axles.front.suspension.k is -20000 at the end of a range",
+    ),
     ("set of what follows", "kF: 150 kN/m", "@b2: 1 m", "a set changes parameters that have a `value`; 'b2' has `equals`, and"),
     ("set with symbols", "kF: 150 kN/m", "kF: @0.5*kF", "a set lists plain quantities, not expressions of parameters"),
     (

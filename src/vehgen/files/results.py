@@ -16,7 +16,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self, get_type_hints
 
-from vehgen.errors import InputError, Position, did_you_mean
+from vehgen.errors import InputError, Position, did_you_mean, printable
 from vehgen.files.reading import read_text
 from vehgen.files.result_fields import IN_MEMORY
 
@@ -179,7 +179,8 @@ def json_text(result: Result) -> str:
 def csv_text(table: Table, names: Sequence[str] = ()) -> str:
     """Return a table as the text of a CSV file, numbers with nine digits.
 
-    What stands in the columns `names` is a stranger's text: an apostrophe goes before what a spreadsheet would run as a formula.
+    What stands in the columns `names` is a stranger's text: an apostrophe goes before what a spreadsheet would run as a formula, and what
+    could steer a terminal is escaped.
     """
     columns, rows = table
     harmless = [column in names for column in columns]
@@ -193,7 +194,9 @@ def csv_text(table: Table, names: Sequence[str] = ()) -> str:
 def _csv_cell(cell: Cell, harmless: bool) -> Cell:
     if isinstance(cell, float):
         return f"{cell:.9g}"
-    return f"'{cell}" if harmless and isinstance(cell, str) and cell.startswith(FORMULA_SIGNS) else cell
+    if not (harmless and isinstance(cell, str)):
+        return cell
+    return f"'{printable(cell)}" if cell.startswith(FORMULA_SIGNS) else printable(cell)
 
 
 def _pretty(data: Any, indent: str) -> str:

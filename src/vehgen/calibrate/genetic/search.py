@@ -61,9 +61,21 @@ class SearchState:
                 **arrays,
             )
             _generator(state.random)
-        except (ValueError, KeyError, TypeError) as error:
+        except (ValueError, KeyError, TypeError, OverflowError) as error:
             raise InputError(f"this is not the state of a search: {error}") from error
+        if not state._is_whole:
+            raise InputError("this is not the state of a search: its arrays do not fit together, or hold genes outside of 0 to 1")
         return state
+
+    @property
+    def _is_whole(self) -> bool:
+        """Whether the arrays fit together, and all genes lie in the unit cube."""
+        if self.genes.ndim != 3 or self.generation < 0:
+            return False
+        populations, size, n_genes = self.genes.shape
+        shapes = self.objective.shape, self.elite.shape, self.rates.shape
+        inside = all(bool(((item >= 0) & (item <= 1)).all()) for item in (self.genes, self.elite))
+        return shapes == ((populations, size), (n_genes,), (populations, 2)) and inside and bool(np.isfinite(self.rates).all())
 
 
 @dataclass(frozen=True)

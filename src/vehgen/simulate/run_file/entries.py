@@ -38,10 +38,9 @@ DEFAULT_SPEED = 1.0
 """What stands for the speed [m/s] of a rig without wheels; nothing depends on it."""
 
 
-_FORMULAS, _POINTS = ("half_sine", "versine", "trapezoid", "rectangle"), ("points",)
-_SHAPES_OF = {
-    **dict.fromkeys(("length", "height"), _FORMULAS),
-    **dict.fromkeys(("file", "distance", "height_column", "distance_unit", "unit"), _POINTS),
+_SHAPES_OF: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("length", "height"), ("half_sine", "versine", "trapezoid", "rectangle")),
+    **dict.fromkeys(("file", "distance", "height_column", "distance_unit", "unit"), ("points",)),
     "ramp": ("trapezoid",),
     "radius": ("rectangle",),
 }

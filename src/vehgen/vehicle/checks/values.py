@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from vehgen.errors import InputError, shown
+from vehgen.errors import InputError, Position, shown
 from vehgen.files.checks import value_of
 from vehgen.files.expressions import Expression, ExpressionError
 from vehgen.files.limits import VEHICLE_LIMITS
@@ -45,6 +45,16 @@ def _check_ranges(vehicle: Vehicle) -> None:
             raise InputError(f"the range of {name} is empty: {low:g} is not below {high:g}", place)
         if not low <= value <= high:
             raise InputError(f"the value of {name}, {value:g}, lies outside its range [{low:g}, {high:g}] (SI units)", place)
+        if low < 0 < value:
+            _check_range_end(vehicle, {**values, name: low}, name, place)
+
+
+def _check_range_end(vehicle: Vehicle, values: Mapping[str, float], name: str, place: Position) -> None:
+    """Refuse a range that reaches values that are not physical."""
+    try:
+        check_values(vehicle, values, " at the end of a range")
+    except InputError as error:
+        raise InputError(f"the range of {name} reaches what cannot be: {error.message}", place) from error
 
 
 def check_values(vehicle: Vehicle, free: Mapping[str, float], where: str = "") -> None:
@@ -88,6 +98,8 @@ def _refusal(path: tuple[str, ...], number: float, dimension: Dimension, where: 
         return f"{what} is out of any scale{where}: {reason}"
     if path[-1] in ("mass", "pitch_inertia", "k", "c") and number < 0:
         return f"negative {path[-1]}: {what} is {number:g}{where}; it must not be below 0"
+    if "size" in path and number < 0:
+        return f"{what} must not be below 0, found {number:g}{where}"
     if "bending" in path and path[-1] != "damping_ratio" and number <= 0:
         return f"{what} must be above 0, found {number:g}{where}"
     return None
