@@ -35,9 +35,9 @@ def run(options: argparse.Namespace) -> None:
     run_file = Path(options.run_file)
     path = run_file.with_name(f"{run_file.stem}_response.csv") if options.out is None else file_named(options.out)
     written = [path, path.with_suffix(".png")] if options.plot else [path]
+    check_results(written)
     if path.suffix.lower() not in WRITTEN:
         raise InputError(f"--out: a response is written as {' or '.join(name for name in WRITTEN if name)}; found {shown(path.name)}")
-    check_results(written)
     response = simulate(run_)
     _write(path, response)
     if options.plot:
