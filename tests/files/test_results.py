@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from vehgen.errors import InputError
 from vehgen.files.result_fields import IN_MEMORY, Array1D, Array2D, Flags, Number, rounded
-from vehgen.files.results import Result, json_text, kind_of, read_json
+from vehgen.files.results import Result, csv_text, json_text, kind_of, read_json
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,3 +186,8 @@ def _results():
 def test_rounding_keeps_shape_and_what_counts():
     values = rounded(np.array([[123456.0, 1.23456e-9], [0.0, -2.0]]))
     assert values.tolist() == [[123460.0, 1.2346e-9], [0.0, -2.0]]
+
+
+def test_a_strangers_name_in_a_table_steers_neither_terminal_nor_spreadsheet():
+    text = csv_text((("vehicle", "chi"), [("a\x1b[2Jb", 1.0), ("=1+1", 2.0), ("plain", 3.0)]), ("vehicle",))
+    assert text == "vehicle,chi\na\\x1b[2Jb,1\n'=1+1,2\nplain,3\n"
