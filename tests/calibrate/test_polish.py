@@ -15,7 +15,7 @@ from vehgen.fit.misfit import Misfit
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.parallel import Runner
 from vehgen.fit.problem import make_problem
-from vehgen.fit.resolution import resolve
+from vehgen.fit.resolution import halved, resolve
 from vehgen.fit.trial import load_trials
 
 OPTIONS = PolishOptions(Nuisances(), CALIBRATION_BAND_HZ, Runner())
@@ -68,6 +68,28 @@ def test_steps_of_the_simulation_bend_no_natural_frequency(tmp_path):
     found = hop_frequencies({**truth, **dict(zip(problem.space.names, fit.values, strict=True))})
     assert found == pytest.approx(hop_frequencies(truth), rel=1.5e-4)
     assert all(trial.scenario.dt < 1e-3 for trial in fit.misfit.problem.trials)
+
+
+def test_steps_of_all_runs_together_bend_by_no_more_than_was_allowed(tmp_path):
+    """A step's error is four thirds of what half of it moves; each run has its share, and one step more would be needless."""
+    names = [("slow", 1.5), ("fast", 3.0)]
+    problem = make_problem(load_trials([write_run(tmp_path, name, sedan_truth(), speed, noise=0.002) for name, speed in names]))
+    start = problem.space.start
+    misfit = Misfit(problem, first_noises(problem), start)
+    x = np.concatenate([problem.space.unit(start), np.zeros(misfit.n_errors)])
+
+    def error_of(number, trial):
+        fine, coarse = (
+            misfit.respond(number, start[None], misfit.adjusted(x), misfit.errors_of(x, number), item)[0] for item in (halved(trial), trial)
+        )
+        return 2 * (4 / 3) ** 2 * float(np.sum(np.abs(misfit.whitened_signal(number, fine - coarse)) ** 2))
+
+    as_filed = [error_of(number, trial) for number, trial in enumerate(problem.trials)]
+    allowed = 2 * max(as_filed) / 10
+    resolved = resolve(misfit, x, most_bias=allowed).trials
+    assert [trial.scenario.dt < 1e-3 for trial in resolved] == [error > allowed / 2 for error in as_filed]
+    assert max(trial.scenario.dt for trial in resolved) > 1e-3 / 8
+    assert sum(error_of(number, trial) for number, trial in enumerate(resolved)) <= allowed
 
 
 def test_no_step_is_halved_beyond_a_run_s_memory(problem, monkeypatch):

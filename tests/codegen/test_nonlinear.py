@@ -166,6 +166,7 @@ def test_unknown_laws_and_wrong_units_have_their_place():
         ("{dry_frction: {force: 1 N}}", "unknown force law 'dry_frction'; did you mean 'dry_friction'"),
         ("{dry_friction: {forc: 1 N}}", "dry_friction has no parameter 'forc'; did you mean 'force'"),
         ("{dry_friction: {}}", "lacks its parameter 'force'"),
+        ("{dry_friction: {force: 2 * (mH - 2500 kg) * 1 m/s^2}}", "force of dry_friction must not be below 0, found -2000"),
         ("{dry_friction: {force: -500 N}}", "force of dry_friction must not be below 0, found -500"),
         ("{bump_stop: {k: 1 MN/m, clearance: -60 mm}}", "clearance of bump_stop must not be below 0, found -0.06"),
         ("{cubic_stiffness: {k3: 1 N/m}}", "k3 must be in"),

@@ -84,8 +84,18 @@ def test_a_clock_that_runs_backwards_is_refused():
 def test_two_recordings_in_one_file_are_refused():
     first, second = np.arange(700) * 0.01, np.arange(500) * 0.01 + 0.0037
     t = np.concatenate([first, second])
-    with pytest.raises(InputError, match="500 samples from the 701th on are of times that were recorded before, as where two recordings"):
+    with pytest.raises(InputError, match="phone: at its sample 701 the clock goes back, and on from there: two recordings in one file"):
         clean(Stream(t, t[:, None], ("x",), "m/s^2"), "phone")
+
+
+def test_one_wrong_time_or_batches_that_change_places_are_no_second_recording():
+    t = np.arange(6000) * 0.01
+    wrong = t.copy()
+    wrong[2000] += 5.003
+    swapped = np.concatenate([t[:1000], t[1200:1400], t[1000:1200], t[1400:]])
+    for times in (wrong, swapped):
+        found, _ = clean(Stream(times, times[:, None], ("x",), "m/s^2"), "phone")
+        np.testing.assert_array_equal(found.time, np.sort(times))
 
 
 def test_slow_logs_are_refused_with_the_rate_needed():

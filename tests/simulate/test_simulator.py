@@ -128,6 +128,13 @@ def test_tables_that_cannot_belong_to_a_run_are_refused(tmp_path, line, table, m
         simulate(run_of(tmp_path, f"vehicle: sedan2\n{speed}duration: 2 s\n{line}"))
 
 
+def test_a_harmonic_of_few_steps_is_warned_of(tmp_path):
+    force = "forces: {f: {body: body, harmonic: {amplitude: 1 kN, frequency: %d Hz}}}\n"
+    few = simulate(run_of(tmp_path, QUIET.replace("tractor5", "sedan2") + force % 150)).warnings
+    assert any(text == "a cycle of 150 Hz takes 6.67 steps of 1 ms; take at least 10" for text in few)
+    assert not any("a cycle of" in text for text in simulate(run_of(tmp_path, QUIET.replace("tractor5", "sedan2") + force % 50)).warnings)
+
+
 def test_a_road_that_is_not_met_is_warned_of(tmp_path):
     (tmp_path / "x.csv").write_text("t,v\n100,0\n120,0.02\n", encoding="utf-8")
     road = "road: [{hump: {shape: versine, length: 0.5 m, height: 2 cm, at: 40 m}}, {profile: {file: x.csv, distance: t, height: v}}]\n"

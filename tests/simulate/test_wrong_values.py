@@ -132,7 +132,9 @@ def test_what_cannot_drive_a_vehicle_is_refused(changed, message):
 def test_a_kernel_takes_lists_and_tells_of_a_road_and_a_beginning_that_cannot_be(simulator):
     kernel, two = simulator.kernel, simulator.parameters([{}, {}])
     drive = vehgen.Excitation(1e-3, ROAD.tolist(), ROAD, NO_FORCES)
-    assert kernel.run(two, drive, initial=np.zeros((2, 4))).responses.shape == (2, 11, 1)
+    assert kernel.run(two, drive, initial=[[0.0] * 4] * 2).responses.shape == (2, 11, 1)
+    with pytest.raises(InputError, match="displacements, then velocities, of every individual were expected"):
+        kernel.run(two, drive, initial=[["x"] * 4] * 2)
     for wrong in (np.zeros(4), np.zeros((1, 4)), np.zeros((2, 3))):
         with pytest.raises(InputError, match=r"`initial` has shape .*; \(n_individuals, 2 n_dof\) = \(2, 4\) was expected"):
             kernel.run(two, drive, initial=wrong)
@@ -156,12 +158,30 @@ def test_a_place_is_where_its_text_says():
     assert pitch == pytest.approx([-(1.18 - 0.2), 0.0])
     with pytest.raises(InputError, match="`x`: "):
         vehgen.Place("p", "body", x="1 m +")
+    for wrong, said in (("3 kg", "p: `x` must be in m, found kg in '3 kg'"), ("Lff - 1 m", "unknown symbol 'Lff'; did you mean 'Lf'")):
+        with pytest.raises(InputError, match=said):
+            vehgen.derive("sedan2", [vehgen.PointOutput("a", vehgen.Place("p", "body", x=wrong), "acceleration")])
 
 
-@pytest.mark.parametrize(("values", "found"), [({"kS": 1e6}, "no 'mB'"), (np.ones(6), "ndarray")], ids=["some", "an array"])
+@pytest.mark.parametrize(
+    ("values", "found"),
+    [({"kS": 1e6}, "every parameter by name was expected, .*; found no 'mB'"), (np.ones(6), "by name were expected, found ndarray")],
+    ids=["some", "an array"],
+)
 def test_matrices_need_all_values_by_name(simulator, values, found):
-    with pytest.raises(InputError, match=f"the value of every parameter by name was expected, .*; found {found}"):
+    with pytest.raises(InputError, match=found):
         simulator.model.numeric(values)
+
+
+class Column:
+    """As a column of a table: values by name, but no mapping."""
+
+    def items(self):
+        return iter([("kS", 2e6)])
+
+
+def test_modes_take_a_column_of_a_table():
+    assert vehgen.natural_modes("quarter_car", Column())[0].undamped_hz == vehgen.natural_modes("quarter_car", {"kS": 2e6})[0].undamped_hz
 
 
 def test_modes_take_values_by_name_only():

@@ -32,7 +32,7 @@ FAULTS: list[Fault] = [
         "no unit in a sum's parameter",
         "b1: {value: 1.32 m, range: [0.8 m, 2.2 m]",
         "b1: {value: 1.32",
-        "5:16: cannot subtract m and no unit; 'b1' has no unit",
+        "5:16: cannot subtract m and no unit (names without a unit: 'b1')",
     ),
     (
         "no unit in a stiffness",

@@ -184,8 +184,7 @@ class Kernel:
         fails.
         """
         columns, unheld = self._columns(parameters, excitation, decimation)
-        if initial is not None and np.shape(initial) != (begins := (len(columns), 2 * self.model.n_dof)):
-            raise ArgumentError(f"`initial` has shape {np.shape(initial)}; (n_individuals, 2 n_dof) = {begins} was expected", "initial")
+        initial = None if initial is None else self._initial(initial, len(columns))
         shape = (len(columns), excitation.n_steps // decimation + 1, len(self.model.channels))
         found, left = np.empty(shape, dtype=self.source.number), np.zeros(len(columns))
 
@@ -206,6 +205,17 @@ class Kernel:
             return parameters, {}
         rest = equilibria(self.model, parameters)
         return np.hstack([parameters, rest.travels[:, self.source.static_travels]]), rest.failures
+
+    def _initial(self, given: Array, count: int) -> Array:
+        """Return states to begin in as an array, one of every individual; raises ArgumentError for others."""
+        try:
+            found = np.asarray(given, dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            raise ArgumentError("`initial`: displacements, then velocities, of every individual were expected", "initial") from error
+        if found.shape != (count, 2 * self.model.n_dof):
+            expected = f"(n_individuals, 2 n_dof) = {(count, 2 * self.model.n_dof)}"
+            raise ArgumentError(f"`initial` has shape {found.shape}; {expected} was expected", "initial")
+        return found
 
     def _population(self, columns: Array, excitation: Excitation, decimation: int, initial: Array | None = None) -> PopulationRun:
         source, module = self._variant(initial is not None, own_drives(excitation))

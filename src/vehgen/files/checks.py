@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from vehgen.errors import InputError, Position, did_you_mean, shortened, shown
 from vehgen.files.document import Located
 from vehgen.files.expressions import Expression, ExpressionError
-from vehgen.files.units import NONE, Dimension, counts_turns, example_unit, factor_to_si, parse_unit, units_of
+from vehgen.files.units import NONE, Dimension, counts_turns, example_of, factor_to_si, parse_unit, units_of
 
 
 def check_known(name: str, allowed: Iterable[str], lacking: str, document: Located, *path: str | int, key: bool = False) -> None:
@@ -32,7 +32,7 @@ def dimension_of(expression: Expression, dimensions: Mapping[str, Dimension], do
         return expression.dimension(dimensions)
     except ExpressionError as error:
         unitless = sorted(name for name in expression.names if dimensions.get(name) == NONE)
-        where = f"; {', '.join(map(shown, unitless))} {'has' if len(unitless) == 1 else 'have'} no unit" if unitless else ""
+        where = f" (names without a unit: {', '.join(map(shown, unitless))})" if unitless else ""
         raise InputError(f"{error}{where if str(NONE) in str(error) else ''}", document.find(path, offset=error.offset)) from error
 
 
@@ -73,7 +73,7 @@ def check_dimension(
     message = f"{path[-1] if what is None else what} must be in {expected}, found {found} in {shown(expression.text)}"
     if found == NONE:
         unitless = [name for name in sorted(expression.names) if dimensions[name] == NONE]
-        where = f"; give {unitless[0]!r} its unit" if unitless else f"; write e.g. '{shortened(expression.text)} {example_unit(expected)}"
+        where = f"; give {unitless[0]!r} its unit" if unitless else f"; write e.g. {example_of(shortened(expression.text), expected)}"
         message = f"missing unit: {message}{where}"
     raise InputError(message, document.find(path))
 

@@ -13,7 +13,7 @@ from vehgen.errors import shortened, shown
 from vehgen.files import limits
 from vehgen.files.expressions import ExpressionError, parse
 from vehgen.files.limits import Limit
-from vehgen.files.units import MASS, NONE, Dimension, counts_turns, example_unit, without_gravities
+from vehgen.files.units import MASS, NONE, Dimension, counts_turns, example_of, without_gravities
 
 
 def read_quantity(value: Any, dimension: Dimension) -> float:
@@ -28,7 +28,7 @@ def read_quantity(value: Any, dimension: Dimension) -> float:
     except ExpressionError as error:
         raise PydanticCustomError("quantity", "{reason}", {"reason": str(error)}) from error
     if found != dimension and number != 0.0:
-        hint = f"; write e.g. '{shortened(str(value))} {example_unit(dimension)}" if found == NONE else ""
+        hint = f"; write e.g. {example_of(shortened(str(value)), dimension)}" if found == NONE else ""
         raise PydanticCustomError("quantity", "{reason}", {"reason": f"expected {dimension}, found {found} in {shown(value)}{hint}"})
     return number
 

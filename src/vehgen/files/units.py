@@ -195,9 +195,9 @@ def factor_to_si(unit: str, dimension: Dimension) -> float | None:
     return found[0] if found is not None and found[2] == len(unit) and found[1] == dimension else None
 
 
-def example_unit(dimension: Dimension) -> str:
-    """Return what to write behind a number of a dimension."""
-    return "Hz' ('... rad/s' of an angular rate)" if dimension == FREQUENCY else f"{dimension}'"
+def example_of(number: str, dimension: Dimension) -> str:
+    """Return how a number of a dimension may be written, in quotes."""
+    return f"'{number} Hz' ('{number} rad/s' of an angular rate)" if dimension == FREQUENCY else f"'{number} {dimension}'"
 
 
 def units_of(dimension: Dimension) -> list[str]:

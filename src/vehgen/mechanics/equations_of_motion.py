@@ -18,7 +18,7 @@ from vehgen.mechanics.kinematics import Kinematics
 from vehgen.mechanics.layout import Layout
 from vehgen.mechanics.numeric_model import NumericModel
 from vehgen.mechanics.rows import Row, SparseMatrix, to_matrix
-from vehgen.vehicle.model import Vehicle
+from vehgen.vehicle.model import Vehicle, by_name
 
 GRAVITY = 9.81
 """Acceleration of gravity, m/s^2."""
@@ -202,11 +202,10 @@ class EquationsOfMotion:
         return self._known_steps[expressions]
 
     def _ordered(self, values: Mapping[str, float]) -> list[float]:
-        lacking = next((name for name in self.parameters if name not in values), None) if isinstance(values, Mapping) else None
-        if lacking is not None or not isinstance(values, Mapping):
-            found = type(values).__name__ if lacking is None else f"no {shown(lacking)}"
+        values = by_name(values)
+        if (lacking := next((name for name in self.parameters if name not in values), None)) is not None:
             wanted = "the value of every parameter by name was expected, as `values(overrides=...)` gives it"
-            raise ArgumentError(f"`values`: {wanted}; found {found}", "values")
+            raise ArgumentError(f"`values`: {wanted}; found no {shown(lacking)}", "values")
         return [float(values[name]) for name in self.parameters]
 
     def evaluate_list(self, expressions: Iterable[sp.Expr], values: Mapping[str, float]) -> list[float]:

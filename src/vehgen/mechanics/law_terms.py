@@ -113,11 +113,19 @@ def _read(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], name: str, 
         if not isinstance(expression, Expression):
             raise InputError(f"{key} is a quantity, not a mapping", vehicle.position(*path, key))
         check_dimension(expression, parameter.dimension(kind), vehicle.dimensions, vehicle.document, *path, key)
-        value = value_of(expression, vehicle.all_values(vehicle.values()), vehicle.document, *path, key)
-        if value < 0 and not parameter.signed:
-            raise InputError(f"{key} of {name} must not be below 0, found {value:g}", vehicle.position(*path, key))
+        if not parameter.signed:
+            _check_sign(vehicle, expression, f"{key} of {name}", (*path, key))
         values[key] = to_sympy(expression)
     return _with_origin(vehicle, path, given, LawTerm(law, values))
+
+
+def _check_sign(vehicle: Vehicle, expression: Expression, what: str, path: tuple[str | int, ...]) -> None:
+    """Refuse a quantity that is negative by the file's values or a set's; one without symbols has one value."""
+    for parameter_set in (None, *vehicle.sets) if expression.names else (None,):
+        known = vehicle.all_values(vehicle.values(parameter_set)) if expression.names else {}
+        if (value := value_of(expression, known, vehicle.document, *path)) < 0:
+            where = f" in the set {shown(parameter_set)}" if parameter_set else ""
+            raise InputError(f"{what} must not be below 0, found {value:g}{where}", vehicle.position(*path))
 
 
 def _with_origin(vehicle: Vehicle, path: tuple[str | int, ...], given: LawEntry, term: LawTerm) -> LawTerm:

@@ -8,6 +8,7 @@ import sympy as sp
 
 from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
 from vehgen.files.expressions import Expression, ExpressionError, parse
+from vehgen.files.units import LENGTH, NONE
 from vehgen.mechanics.energies import Energies
 from vehgen.mechanics.equations_of_motion import Channel
 from vehgen.mechanics.hinge_forces import hinge_force_channel
@@ -52,11 +53,23 @@ class Place:
             raise InputError(f"{self.name}: no body {shown(self.body)}; {did_you_mean(self.body, vehicle.bodies)}")
         shift = parameter(self.shift)
         if self.behind is None:
+            self._check_x(vehicle)
             return (to_sympy(self.x) if self.x is not None else sp.S.Zero) + shift
         known = {**vehicle.axles, **vehicle.hinges, **vehicle.bodies}
         if self.behind not in known:
             raise InputError(f"{self.name}: nothing named {shown(self.behind)} to be behind of; {did_you_mean(self.behind, known)}")
         return layout.place(vehicle, self.behind) - layout.bodies[self.body][0] - number(self.distance) + shift
+
+    def _check_x(self, vehicle: Vehicle) -> None:
+        """Refuse an `x` that is no length of the vehicle's parameters."""
+        if self.x is None:
+            return
+        try:
+            found = self.x.dimension(vehicle.dimensions)
+        except ExpressionError as error:
+            raise InputError(f"{self.name}: `x`: {error}") from error
+        if found != LENGTH and not (found == NONE and str(self.x) in ("0", "0.0")):
+            raise InputError(f"{self.name}: `x` must be in {LENGTH}, found {found} in {shown(str(self.x))}")
 
 
 @dataclass(frozen=True)

@@ -36,8 +36,8 @@ MAX_SENSOR_RATE_HZ = 20_000.0
 """No phone records faster [Hz]."""
 MAX_DISORDER = 0.01
 """Share of samples that may be out of order or repeated."""
-LATE_S = 1.0
-"""A sample may come so much later than one that follows it [s]."""
+LATE_S, BEGUN_AGAIN = 1.0, 0.1
+"""Where a clock goes back by more than this [s], over more than this share of all samples, another recording begins."""
 TRANSITION = 4.0
 """Width of the low-pass's transition [Hz] per 100 Hz of the grid, centred on the grid's Nyquist frequency."""
 STOP_BAND = 60.0
@@ -63,7 +63,7 @@ def clean(stream: Stream, name: str) -> tuple[Stream, tuple[str, ...]]:
         raise InputError(f"{name} holds {len(time)} samples; a recording has thousands")
     if np.abs(values).max() > 1e6 or np.abs(time).max() > 1e12:
         raise InputError(f"{name} holds values up to {np.abs(values).max():.3g} at times up to {np.abs(time).max():.3g} s: not a recording")
-    late = np.flatnonzero(np.maximum.accumulate(time) - time > LATE_S)
+    begins_again = _begins_again(time)
     order = np.argsort(time, kind="stable")
     disorder = int((np.diff(time) < 0).sum())
     time, values = time[order], values[order]
@@ -72,10 +72,10 @@ def clean(stream: Stream, name: str) -> tuple[Stream, tuple[str, ...]]:
     if disorder + repeated:
         if disorder + repeated > max(2, MAX_DISORDER * len(time)):
             raise InputError(f"{name}: {disorder} times run backwards and {repeated} are repeated, of {len(time)}: is it the time column?")
-        if len(late) > MAX_DISORDER * len(time):
+        if begins_again is not None:
             raise InputError(
-                f"{name}: {len(late)} samples from the {late[0] + 1}th on are of times that were recorded before, as where two recordings "
-                "stand in one file; give each a file of its own"
+                f"{name}: at its sample {begins_again + 1} the clock goes back, and on from there: two recordings in one file? "
+                "Give each a file of its own"
             )
         notes.append(f"{name}: {disorder} samples were out of order and {repeated} repeated; sorted, the first of each kept")
     if fresh.sum() < 2:
@@ -87,6 +87,15 @@ def clean(stream: Stream, name: str) -> tuple[Stream, tuple[str, ...]]:
             "is time in s?"
         )
     return replace(stream, time=time[fresh], values=values[fresh]), tuple(notes)
+
+
+def _begins_again(time: Array) -> int | None:
+    """Return the sample at which the clock goes back over a good part of a recording, and on from there; None where it does not."""
+    for place in np.flatnonzero(np.diff(time) < -LATE_S) + 1:
+        before, after = time[:place] > time[place], time[place:] < time[:place].max()
+        if min(before.sum(), after.sum()) > BEGUN_AGAIN * len(time):
+            return int(place)
+    return None
 
 
 SLOWEST_LOGGER = 1.0

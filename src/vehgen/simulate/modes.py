@@ -20,7 +20,7 @@ from vehgen.simulate.mode_groups import scaled_to_peak, settled_shapes
 from vehgen.simulate.remembered_equations import equations_as_data
 from vehgen.vehicle import Vehicle, as_vehicle
 from vehgen.vehicle.checks import check_given
-from vehgen.vehicle.model import finite
+from vehgen.vehicle.model import by_name, finite
 
 if TYPE_CHECKING:
     from vehgen.mechanics import ModelLike
@@ -119,6 +119,7 @@ def _evaluated(
     model: ModelLike, values: Mapping[str, float] | None, parameter_set: str | None
 ) -> tuple[tuple[Coordinate, ...], NumericModel]:
     """Return a model's coordinates and its matrices at values of its parameters; those of a vehicle need not be derived again."""
+    values = None if values is None else by_name(values)
     if isinstance(model, Vehicle | str | os.PathLike):
         model = as_vehicle(model)
         plain = equations_as_data(model)

@@ -37,7 +37,7 @@ def population_of(model: EquationsOfMotion, values: Values | Sequence[Values] | 
     rows = []
     for number, item in enumerate(individuals):
         row = model.values(overrides=item)
-        if any(row[name] < 0 < usual[name] for name in row):
+        if any(row[name] <= 0 and row[name] != usual[name] for name in row):
             _check_individual(model, row, f" in individual {number}" if len(individuals) > 1 else " with the given values")
         rows.append(list(row.values()))
     return as_population(model, np.array(rows, dtype=np.float64).reshape(len(rows), len(model.parameters)))

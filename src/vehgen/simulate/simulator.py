@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -23,7 +22,7 @@ from vehgen.simulate.response import Response, ResponseChannel
 from vehgen.simulate.run_file.loading import RunLike, as_run
 from vehgen.simulate.run_scenario import make_scenario
 from vehgen.simulate.scenario import Scenario
-from vehgen.simulate.warnings import lift_off, missed_peaks, roads_not_met, spectral_nulls, step_too_coarse
+from vehgen.simulate.warnings import at_every_step, lift_off, missed_peaks, roads_not_met, spectral_nulls, step_too_coarse
 from vehgen.vehicle import Vehicle, VehicleLike
 
 Array = NDArray[np.float64]
@@ -246,8 +245,7 @@ def simulate(run: RunLike, *, vehicle: VehicleLike | None = None) -> Response:
     items, factors = simulator.model.channels[:n], np.array([factor for _, factor in readings])
     channels = tuple(ResponseChannel(item.name, item.quantity, unit) for item, (unit, _) in zip(items, readings, strict=True))
     read = responses[:, :, :n] / factors
-    every = replace(scenario, decimation=1, skipped=scenario.skipped * scenario.decimation, chains={})
-    steps = simulator.run(parameters, every).responses[0]
+    steps = at_every_step(simulator, parameters, scenario, responses[0])
     messages = [
         *lift_off(simulator.model, values, steps[:, n:]),
         *missed_peaks(channels, scenario, read[0], steps[:, :n] / factors),

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,16 +12,32 @@ from numpy.typing import NDArray
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.static_loads import static_loads
 from vehgen.road import Hump, MeasuredProfile
+from vehgen.simulate.budgets import MAX_RESPONSE_NUMBERS
 from vehgen.simulate.modes import natural_modes
 from vehgen.simulate.response import ResponseChannel
 from vehgen.simulate.scenario import Scenario
 
+if TYPE_CHECKING:
+    from vehgen.simulate.simulator import Simulator
+
+Array = NDArray[np.float64]
 MAX_PERIOD_ERROR = 0.02
 """Newmark's relative period error (w dt/2)/atan(w dt/2) - 1 above which a mode is worth a warning."""
 MISSED_PEAK = 0.1
 """A peak between samples that exceeds the largest of them by this share is worth a warning."""
+STEPS_OF_A_CYCLE = 10
+"""A harmonic of fewer steps a cycle is bent."""
 NULL_WIDTH = 0.05
 """A spectral null this near (relative) to a hop frequency leaves the mode unexcited."""
+
+
+def at_every_step(simulator: Simulator, parameters: Array, scenario: Scenario, kept: Array) -> Array:
+    """Return one individual's response at every step of a run, or what was kept where that is all, or more would fill the memory."""
+    too_many = len(scenario.time) * kept.shape[1] > MAX_RESPONSE_NUMBERS
+    if too_many or (scenario.decimation == 1 and not scenario.chains):
+        return kept
+    every = replace(scenario, decimation=1, skipped=scenario.skipped * scenario.decimation, chains={})
+    return np.asarray(simulator.run(parameters, every).responses[0])
 
 
 def lift_off(model: EquationsOfMotion, values: Mapping[str, float], tyre_forces: NDArray[np.float64]) -> Iterator[str]:
@@ -88,6 +106,9 @@ def step_too_coarse(model: EquationsOfMotion, values: Mapping[str, float], scena
             f"the step of {scenario.dt * 1e3:g} ms is too coarse: it stretches the period of {fastest.name} "
             f"({fastest.undamped_hz:.1f} Hz) by {error:.1%}; 1 ms or less is usual"
         )
+    for frequency in sorted({item.harmonic.frequency for item in (*scenario.forces, *scenario.ground) if item and item.harmonic}):
+        if (steps := 1 / (frequency * scenario.dt)) < STEPS_OF_A_CYCLE:
+            yield f"a cycle of {frequency:g} Hz takes {steps:.3g} steps of {scenario.dt * 1e3:g} ms; take at least {STEPS_OF_A_CYCLE}"
     for hump in scenario.humps:
         length = hump.length
         steps = length / (scenario.top_speed * scenario.dt)

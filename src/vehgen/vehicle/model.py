@@ -148,8 +148,7 @@ class Vehicle(FileModel):
         InputError
             For a set or parameter that the vehicle does not have.
         """
-        if overrides is not None and not isinstance(overrides, Mapping):
-            raise ArgumentError(f"`values`: numbers in SI units by name were expected, found {type(overrides).__name__}", "values")
+        overrides = None if overrides is None else by_name(overrides)
         values = {name: self.parameters[name].definition.evaluate({}) for name in self.free_parameters}
         if parameter_set is not None:
             if parameter_set not in self.sets:
@@ -234,10 +233,18 @@ class Vehicle(FileModel):
                     yield (*path, part, "c"), spring.c, DAMPING
 
 
+def by_name(values: Any) -> Mapping[str, float]:
+    """Return values by name, of a column of a table, too; raises ArgumentError for anything else."""
+    if isinstance(values, Mapping):
+        return values
+    if not hasattr(values, "items"):
+        raise ArgumentError(f"`values`: numbers in SI units by name were expected, found {type(values).__name__}", "values")
+    return dict(values.items())
+
+
 def finite(values: Mapping[str, float]) -> Mapping[str, float]:
     """Return values by name as they are; raises InputError at one that is no finite number, and for what are no values by name."""
-    if not isinstance(values, Mapping):
-        raise ArgumentError(f"`values`: numbers in SI units by name were expected, found {type(values).__name__}", "values")
+    values = by_name(values)
     for name, value in values.items():
         if not isfinite(value):
             raise ArgumentError(f"`values`: {name} must be a finite number, found {value}", "values")

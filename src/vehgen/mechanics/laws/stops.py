@@ -23,7 +23,7 @@ PROGRESSIVE_STIFFNESS = Law(
     strength="k",
     parameters=(
         LawParameter("k", (1, -1, 0), "stiffness added beyond `start`", 0.0, 2.0e6, signed=True),
-        LawParameter("start", (0, 1, 0), "travel in bump at which it joins in", 0.0, 0.05),
+        LawParameter("start", (0, 1, 0), "travel in bump at which it joins in", 0.0, 0.05, signed=True),
     ),
     write=_progressive_stiffness,
 )

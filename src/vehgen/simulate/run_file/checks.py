@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from vehgen.simulate.run_file.loading import Run
 
 MAX_STEPS = 10_000_000
-STEPS_OF_A_CYCLE = 10
-"""A harmonic of fewer steps a cycle is bent, and one of less than two is another one."""
+FEWEST_STEPS_OF_A_CYCLE = 2
+"""A harmonic of fewer steps a cycle is another one."""
 TIME_COLUMN = "t"
 """The heading of the time in recordings and responses."""
 
@@ -34,6 +34,7 @@ def check_run(run: Run) -> None:
     for name, entry in run.file.forces.items():
         _check_place(run, entry, "forces", name)
         _check_unit(run, entry, "force", "N", "forces", name)
+        _check_harmonic(run, entry, "forces", name)
     _check_displacements(run)
     _check_sensors(run)
     check_acquisition(run)
@@ -95,17 +96,12 @@ def _check_displacements(run: Run) -> None:
     for name in run.file.displacements:
         check_known(name, grounded, f"{vehicle.name} has no link to the ground", run.document, "displacements", name, key=True)
         _check_unit(run, run.file.displacements[name], "displacement", "m", "displacements", name)
+        _check_harmonic(run, run.file.displacements[name], "displacements", name)
 
 
 def _check_unit(run: Run, entry: ForceEntry | DisplacementEntry, quantity: str, usual: str, *path: str) -> None:
     """Check the unit of a measured column; beside a recording, where a wrong one would be fitted, it must be stated."""
     document = run.document
-    if entry.harmonic is not None and (steps := 1 / (entry.harmonic.frequency * run.file.step)) < STEPS_OF_A_CYCLE:
-        raise InputError(
-            f"a cycle takes {steps:.3g} steps of {run.file.step:g} s; at least {STEPS_OF_A_CYCLE} were expected: a lower frequency "
-            "(is it in Hz?) or a shorter `step`",
-            document.find((*path, "harmonic", "frequency")),
-        )
     if entry.unit is not None:
         if entry.file is None:
             raise InputError("a harmonic is written with its unit; `unit` belongs to a `file`", document.find((*path, "unit"), key=True))
@@ -115,6 +111,16 @@ def _check_unit(run: Run, entry: ForceEntry | DisplacementEntry, quantity: str, 
         raise InputError(
             f"the {quantity} in the column {shown(column)} has no unit; write the one it was recorded in, e.g. `unit: {usual}`",
             document.find((*path, "file"), key=True),
+        )
+
+
+def _check_harmonic(run: Run, entry: ForceEntry | DisplacementEntry, *path: str) -> None:
+    """Check that the step can tell a harmonic from a slower one."""
+    if entry.harmonic is not None and (steps := 1 / (entry.harmonic.frequency * run.file.step)) < FEWEST_STEPS_OF_A_CYCLE:
+        raise InputError(
+            f"a cycle takes {steps:.3g} steps of {run.file.step:g} s; at least {FEWEST_STEPS_OF_A_CYCLE} were expected: a lower frequency "
+            "(is it in Hz?) or a shorter `step`",
+            run.document.find((*path, "harmonic", "frequency")),
         )
 
 

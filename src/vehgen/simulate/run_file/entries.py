@@ -68,9 +68,9 @@ class HumpEntry(FileModel):
         for key in needed:
             if getattr(self, key) is None:
                 raise PydanticCustomError("joint", "a {shape} hump lacks the key {key}", {"shape": self.shape, "key": key})
-        for key in self.model_fields_set & _SHAPES_OF.keys():
-            if self.shape not in _SHAPES_OF[key]:
-                shapes = {"key": key, "shape": self.shape, "shapes": " or ".join(_SHAPES_OF[key])}
+        for key, shapes_of in _SHAPES_OF.items():
+            if key in self.model_fields_set and self.shape not in shapes_of:
+                shapes = {"key": key, "shape": self.shape, "shapes": " or ".join(shapes_of)}
                 raise PydanticCustomError("joint", "the key {key} belongs to a hump of the shape {shapes}, not to {shape}", shapes)
         return self
 

@@ -45,7 +45,7 @@ def _check_ranges(vehicle: Vehicle) -> None:
             raise InputError(f"the range of {name} is empty: {low:g} is not below {high:g}", place)
         if not low <= value <= high:
             raise InputError(f"the value of {name}, {value:g}, lies outside its range [{low:g}, {high:g}] (SI units)", place)
-        if low < 0 < value:
+        if low < 0 <= value:
             _check_range_end(vehicle, {**values, name: low}, name, place)
 
 
