@@ -43,8 +43,8 @@ BUMP_STOP = Law(
     strength="k",
     parameters=(
         LawParameter("k", (1, -1, 0), "stiffness of the stops", 0.0, 1.0e7),
-        LawParameter("clearance", (0, 1, 0), "travel in bump before the stop is met", 0.005, 0.1),
-        LawParameter("rebound", (0, 1, 0), "travel in rebound before the stop is met (default: far away)", 0.005, 0.2, 1.0e3),
+        LawParameter("clearance", (0, 1, 0), "travel in bump before the stop is met", 0.005, 0.1, signed=True),
+        LawParameter("rebound", (0, 1, 0), "travel in rebound before the stop is met (default: far away)", 0.005, 0.2, 1.0e3, signed=True),
     ),
     write=_bump_stop,
 )
