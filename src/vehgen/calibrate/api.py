@@ -126,8 +126,9 @@ def calibrate(
         check_combination(problem, text)
     with runner_at(scheduler, workers) as runner, one_blas_thread():  # small matrices: more threads only wait
         found = calibrate_problem(problem, settings, prior_data, progress, path, resume, runner)
-        for text in () if prior_data is None or not polish or found.stopped else prior_data.missed(found.array):
-            warnings.warn(ModelWarning(text), stacklevel=2)
+        if prior_data is not None and polish and not found.stopped:
+            for text in prior_data.missed(found.array):
+                warnings.warn(ModelWarning(text), stacklevel=2)
         return summarise(found, prior_data, asked, 0 if found.stopped else bootstrap, runner)
 
 

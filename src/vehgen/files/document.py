@@ -162,7 +162,7 @@ def read_text(text: str, path: Path | str) -> Located:
         raise InputError(f"not valid YAML: {shortened(str(error).splitlines()[0], MAX_PROBLEM)}", Position(path, 1, 1)) from error
     except RecursionError as error:
         raise InputError("nested too deeply", Position(path, 1, 1)) from error
-    if (found := re.match(r"\s*%YAML\s+(\S+)", text)) and found.group(1) != "1.2":
+    if (found := re.search(r"^%YAML\s+(\S+)", text, re.MULTILINE)) and found.group(1) != "1.2":
         said = f"YAML 1.2 was expected, found {shown(found.group(1))}: older ones read words and numbers otherwise; leave `%YAML` out"
         raise InputError(said, Position(path, 1, 1))
     if root is None:

@@ -38,6 +38,8 @@ MAX_DISORDER = 0.01
 """Share of samples that may be out of order or repeated."""
 LATE_S, BEGUN_AGAIN = 1.0, 0.1
 """Where a clock goes back by more than this [s], over more than this share of all samples, another recording begins."""
+MOST_BEGINNINGS = 10
+"""So often may a clock go back that each time is looked at."""
 TRANSITION = 4.0
 """Width of the low-pass's transition [Hz] per 100 Hz of the grid, centred on the grid's Nyquist frequency."""
 STOP_BAND = 60.0
@@ -91,7 +93,7 @@ def clean(stream: Stream, name: str) -> tuple[Stream, tuple[str, ...]]:
 
 def _begins_again(time: Array) -> int | None:
     """Return the sample at which the clock goes back over a good part of a recording, and on from there; None where it does not."""
-    for place in np.flatnonzero(np.diff(time) < -LATE_S) + 1:
+    for place in np.flatnonzero(np.diff(time) < -LATE_S)[:MOST_BEGINNINGS] + 1:
         before, after = time[:place] > time[place], time[place:] < time[:place].max()
         if min(before.sum(), after.sum()) > BEGUN_AGAIN * len(time):
             return int(place)
