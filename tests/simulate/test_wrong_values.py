@@ -158,7 +158,10 @@ def test_a_place_is_where_its_text_says():
     assert pitch == pytest.approx([-(1.18 - 0.2), 0.0])
     with pytest.raises(InputError, match="`x`: "):
         vehgen.Place("p", "body", x="1 m +")
-    for wrong, said in (("3 kg", "p: `x` must be in m, found kg in '3 kg'"), ("Lff - 1 m", "unknown symbol 'Lff'; did you mean 'Lf'")):
+    for wrong, said in (
+        ("3 kg", "Place p.x: x must be in m, found kg in '3 kg'"),
+        ("Lff - 1 m", "Place p.x: unknown symbol 'Lff'; did you mean 'Lf'"),
+    ):
         with pytest.raises(InputError, match=said):
             vehgen.derive("sedan2", [vehgen.PointOutput("a", vehgen.Place("p", "body", x=wrong), "acceleration")])
 

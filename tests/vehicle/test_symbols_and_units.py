@@ -27,12 +27,13 @@ FAULTS: list[Fault] = [
         "mass: @8000",
         "missing unit: bodies.frame.mass must be in kg, found no unit in '8000'; write e.g. '8000 kg'",
     ),
+    ("no unit in a number beside a share", "3.46 m - b1", "@2 * b1 / b1 * b1 - 3", "cannot subtract m and no unit"),
     ("no unit in a sum", "3.46 m - b1", "@3.46 - b1", "cannot subtract no unit and m"),
     (
         "no unit in a sum's parameter",
         "b1: {value: 1.32 m, range: [0.8 m, 2.2 m]",
         "b1: {value: 1.32",
-        "5:16: cannot subtract m and no unit (names without a unit: 'b1')",
+        "5:16: cannot subtract m and no unit; 'b1' has no unit",
     ),
     (
         "no unit in a stiffness",

@@ -14,8 +14,8 @@ from vehgen.files import check_results, write_bytes
 if TYPE_CHECKING:
     from vehgen.simulate import Response
 
-WRITTEN = (".csv", ".mat", ".txt", "")
-"""Endings of what it writes: a MAT-file for MATLAB and Octave, else columns of text."""
+RESPONSE_ENDINGS = (".csv", ".mat", ".txt", "")
+"""A MAT-file for MATLAB and Octave, else columns of text."""
 EXAMPLE = "vehgen simulate run.yaml --out response.csv --plot"
 
 
@@ -36,8 +36,10 @@ def run(options: argparse.Namespace) -> None:
     path = run_file.with_name(f"{run_file.stem}_response.csv") if options.out is None else file_named(options.out)
     written = [path, path.with_suffix(".png")] if options.plot else [path]
     check_results(written)
-    if path.suffix.lower() not in WRITTEN:
-        raise InputError(f"--out: a response is written as {' or '.join(name for name in WRITTEN if name)}; found {shown(path.name)}")
+    if path.suffix.lower() not in RESPONSE_ENDINGS:
+        raise InputError(
+            f"--out: a response is written as {' or '.join(name for name in RESPONSE_ENDINGS if name)}; found {shown(path.name)}"
+        )
     response = simulate(run_)
     _write(path, response)
     if options.plot:

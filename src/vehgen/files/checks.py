@@ -31,9 +31,7 @@ def dimension_of(expression: Expression, dimensions: Mapping[str, Dimension], do
     try:
         return expression.dimension(dimensions)
     except ExpressionError as error:
-        unitless = sorted(name for name in expression.names if dimensions.get(name) == NONE)
-        where = f" (names without a unit: {', '.join(map(shown, unitless))})" if unitless else ""
-        raise InputError(f"{error}{where if str(NONE) in str(error) else ''}", document.find(path, offset=error.offset)) from error
+        raise InputError(str(error), document.find(path, offset=error.offset)) from error
 
 
 def value_of(expression: Expression, values: Mapping[str, float], document: Located, *path: str | int) -> float:

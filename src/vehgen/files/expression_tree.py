@@ -131,5 +131,7 @@ def dimension_of_node(node: SyntaxNode, dimensions: Mapping[str, Dimension]) -> 
                     return other
             if left != right:
                 word = {"+": "add", "-": "subtract"}.get(node.operator, "compare")
-                raise ExpressionError(f"cannot {word} {left} and {right}", node.offset)
+                bare = [item.name for item, found in zip(node.arguments, parts, strict=True) if isinstance(item, Symbol) and found == NONE]
+                hint = f"; {shown(bare[0])} has no unit" if bare else ""
+                raise ExpressionError(f"cannot {word} {left} and {right}{hint}", node.offset)
             return left

@@ -115,7 +115,7 @@ GRAVITIES = {"g": STANDARD_GRAVITY, "mg": STANDARD_GRAVITY / 1000}
 MAX_EXPONENT = 9
 SPELT = {"kmh": "km/h", "kph": "km/h", "kmph": "km/h", "mps": "m/s", "fps": "ft/s"}
 """Units as people write them, and as they are read."""
-RAISED = {"²": "2", "³": "3"}
+RAISED_DIGITS = {"²": "2", "³": "3"}
 _UNIT_FACTOR = re.compile(r"([A-Za-z]+)(?:(?:\^|\*\*)(-?[0-9]+)|([²³]))?")
 _TURNS = re.compile(r"(?<![A-Za-z_])(Hz|rpm)(?![A-Za-z0-9_])")
 _IN_GRAVITIES = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(m?g)\s*", re.ASCII)
@@ -149,7 +149,7 @@ def read_unit(text: str, start: int = 0) -> tuple[float, Dimension, int] | None:
         if len((atom.group(2) or "").lstrip("-0")) > 1:
             raise InputError(f"the exponent of a unit must be between -{MAX_EXPONENT} and {MAX_EXPONENT}, found {atom.group(2)[:40]}")
         size, unit = UNITS[atom.group(1)]
-        exponent = int(atom.group(2) or RAISED.get(atom.group(3), "1")) * (-1 if divide else 1)
+        exponent = int(atom.group(2) or RAISED_DIGITS.get(atom.group(3), "1")) * (-1 if divide else 1)
         factor *= size**exponent
         dimension = dimension * unit.power(Fraction(exponent))
         end = atom.end()

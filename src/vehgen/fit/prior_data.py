@@ -16,7 +16,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +27,7 @@ from vehgen.files.document import Located
 from vehgen.files.entry import FileModel, read_entries
 from vehgen.files.expressions import Expression
 from vehgen.files.names import Name
-from vehgen.files.quantities import Force, Mass, PositiveForce
+from vehgen.files.quantities import Mass, PositiveForce
 from vehgen.fit.problem import Problem
 from vehgen.mechanics import GRAVITY, EquationsOfMotion, derive
 from vehgen.mechanics.static_loads import axle_loads
@@ -51,7 +50,7 @@ class Weight(FileModel):
     """What an axle presses on the road, and how well that is known."""
 
     value: PositiveForce
-    uncertainty: Annotated[Force, Field(gt=0)]
+    uncertainty: PositiveForce
 
 
 class WholeMass(FileModel):

@@ -23,8 +23,7 @@ from vehgen.mechanics.outputs import ElementOutput, Output, Place, PointOutput, 
 from vehgen.mechanics.rows import Row, SparseMatrix, add_outer, combine
 from vehgen.mechanics.symbols import number, parameter, to_sympy
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
-from vehgen.vehicle.checks import check_given
-from vehgen.vehicle.model import by_name, finite
+from vehgen.vehicle.checks import complete_values
 
 Item = TypeVar("Item", PointOutput | ElementOutput, Place)
 
@@ -170,9 +169,4 @@ def all_values(
         For a parameter or a set that the vehicle does not have, a value that is no finite number, and values of some of the parameters
         that make a mass, a stiffness or a damping negative. Values of all of them are not looked at again: fits ask for many.
     """
-    values = None if values is None else by_name(values)
-    if values is not None and parameter_set is None and all(name in values for name in model.parameters):
-        return finite(values)
-    found = finite(model.values(parameter_set, values))
-    check_given(model.vehicle, found, values)
-    return found
+    return complete_values(model.vehicle, model.parameters, values, parameter_set, model.values)

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 import sympy as sp
 
 from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
+from vehgen.files.checks import check_dimension
+from vehgen.files.document import locate_arguments
 from vehgen.files.expressions import Expression, ExpressionError, parse
-from vehgen.files.units import LENGTH, NONE
+from vehgen.files.units import LENGTH
 from vehgen.mechanics.energies import Energies
 from vehgen.mechanics.equations_of_motion import Channel
 from vehgen.mechanics.hinge_forces import hinge_force_channel
@@ -62,14 +64,8 @@ class Place:
 
     def _check_x(self, vehicle: Vehicle) -> None:
         """Refuse an `x` that is no length of the vehicle's parameters."""
-        if self.x is None:
-            return
-        try:
-            found = self.x.dimension(vehicle.dimensions)
-        except ExpressionError as error:
-            raise InputError(f"{self.name}: `x`: {error}") from error
-        if found != LENGTH and not (found == NONE and str(self.x) in ("0", "0.0")):
-            raise InputError(f"{self.name}: `x` must be in {LENGTH}, found {found} in {shown(str(self.x))}")
+        if self.x is not None:
+            check_dimension(self.x, LENGTH, vehicle.dimensions, locate_arguments({"x": self.x}, f"Place {self.name}"), "x")
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,7 @@ from vehgen.simulate.assignment import assign
 from vehgen.simulate.mode_groups import scaled_to_peak, settled_shapes
 from vehgen.simulate.remembered_equations import equations_as_data
 from vehgen.vehicle import Vehicle, as_vehicle
-from vehgen.vehicle.checks import check_given
-from vehgen.vehicle.model import by_name, finite
+from vehgen.vehicle.checks import complete_values
 
 if TYPE_CHECKING:
     from vehgen.mechanics import ModelLike
@@ -119,16 +118,12 @@ def _evaluated(
     model: ModelLike, values: Mapping[str, float] | None, parameter_set: str | None
 ) -> tuple[tuple[Coordinate, ...], NumericModel]:
     """Return a model's coordinates and its matrices at values of its parameters; those of a vehicle need not be derived again."""
-    values = None if values is None else by_name(values)
     if isinstance(model, Vehicle | str | os.PathLike):
         model = as_vehicle(model)
         plain = equations_as_data(model)
         if plain is not None:
-            if values is not None and parameter_set is None and all(name in values for name in plain.parameters):
-                return plain.coordinates, plain.numeric(finite(values))
-            found = finite(model.values(parameter_set, values))
-            check_given(model, found, values)
-            return plain.coordinates, plain.numeric(found)
+            known = complete_values(model, plain.parameters, values, parameter_set, model.values)
+            return plain.coordinates, plain.numeric(known)
     from vehgen.mechanics import all_values, as_model
 
     equations = as_model(model)

@@ -8,10 +8,10 @@ from vehgen.vehicle.checks.graph import check_carriers, check_circles, check_con
 from vehgen.vehicle.checks.names import check_names
 from vehgen.vehicle.checks.silenced import check_silenced
 from vehgen.vehicle.checks.units import check_units
-from vehgen.vehicle.checks.values import check_all_values, check_given, check_values
+from vehgen.vehicle.checks.values import check_all_values, check_values, complete_values
 from vehgen.vehicle.model import Vehicle
 
-__all__ = ["check_given", "check_values", "check_vehicle"]
+__all__ = ["check_values", "check_vehicle", "complete_values"]
 
 
 def check_vehicle(vehicle: Vehicle) -> None:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from vehgen.errors import InputError, Position, shown
 from vehgen.files.checks import value_of
 from vehgen.files.expressions import Expression, ExpressionError
 from vehgen.files.limits import VEHICLE_LIMITS
 from vehgen.files.units import Dimension
-from vehgen.vehicle.model import Vehicle
+from vehgen.vehicle.model import Vehicle, by_name, finite
 
 Numbers = Mapping[tuple[str, ...], float]
 """Values of a vehicle's quantities [SI] by their path."""
@@ -83,10 +83,27 @@ def check_values(vehicle: Vehicle, free: Mapping[str, float], where: str = "") -
             _check_pitch_inertia(vehicle, name, numbers, where)
 
 
-def check_given(vehicle: Vehicle, values: Mapping[str, float], given: Mapping[str, float] | None) -> None:
-    """Check values [SI] of all parameters as :func:`check_values` does, where some of them were given by a caller."""
-    if given:
-        check_values(vehicle, {name: values[name] for name in vehicle.free_parameters}, " with the given values")
+def complete_values(
+    vehicle: Vehicle,
+    names: Sequence[str],
+    given: Mapping[str, float] | None,
+    parameter_set: str | None,
+    complete: Callable[[str | None, Mapping[str, float] | None], Mapping[str, float]],
+) -> Mapping[str, float]:
+    """Return the values [SI] of all `names`: as given where all are, else what `complete` makes of a set and them, checked.
+
+    Raises
+    ------
+    InputError
+        For a value that is no finite number; where not all are given, as :func:`check_values`. Fits give all, many times.
+    """
+    known = None if given is None else by_name(given)
+    if known is not None and parameter_set is None and all(name in known for name in names):
+        return finite(known)
+    found = finite(complete(parameter_set, known))
+    if known:
+        check_values(vehicle, {name: found[name] for name in vehicle.free_parameters}, " with the given values")
+    return found
 
 
 def _refusal(path: tuple[str, ...], number: float, dimension: Dimension, where: str) -> str | None:
