@@ -10,6 +10,7 @@ from vehgen.commands.results import add_out, file_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table, warn
 from vehgen.errors import InputError, shown
 from vehgen.files import check_results, write_bytes
+from vehgen.files.number_text import five_digits
 
 if TYPE_CHECKING:
     from vehgen.simulate import Response
@@ -58,7 +59,7 @@ def run(options: argparse.Namespace) -> None:
     print_table(
         title,
         ("channel", "unit", "largest magnitude"),
-        [(name, unit, f"{float(f'{peak:.5g}'):.9g}") for name, unit, peak in peaks],
+        [(name, unit, five_digits(peak)) for name, unit, peak in peaks],
         right=(2,),
     )
     warn(response.warnings)

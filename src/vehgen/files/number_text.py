@@ -13,6 +13,11 @@ def grouped(value: float) -> str:
     return _typeset(f"{short:,.0f}" if short.is_integer() else f"{short:,.10f}".rstrip("0"))
 
 
+def five_digits(value: float) -> str:
+    """Return a number with five digits that count, without an exponent below a thousand million."""
+    return f"{float(f'{value:.5g}'):.9g}"
+
+
 def kilonewtons(force: float) -> str:
     """Return a force [N] in kN, to the newton."""
     text = f"{force / 1e3:,.3f}"

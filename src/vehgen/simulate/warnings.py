@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from vehgen.files.number_text import five_digits
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.static_loads import static_loads
 from vehgen.road import Hump, MeasuredProfile
@@ -64,9 +65,9 @@ def missed_peaks(
     if not beyond:
         return
     worst = max(beyond, key=lambda i: passed[i])
-    others = f" (so do {len(beyond) - 1} other channels by more than {MISSED_PEAK:.0%})" if len(beyond) > 1 else ""
+    others = f" (in all {len(beyond)} channels do by more than {MISSED_PEAK:.0%})" if len(beyond) > 1 else ""
     yield (
-        f"between samples every {scenario.dt * scenario.decimation * 1e3:g} ms {channels[worst].name} reaches {peaks[worst]:.5g} "
+        f"between samples every {scenario.dt * scenario.decimation * 1e3:g} ms {channels[worst].name} reaches {five_digits(peaks[worst])} "
         f"{channels[worst].unit}, {passed[worst]:.0%} more than the largest of them{others}; "
         f"`sample: {scenario.dt * 1e3:g} ms` in the run file keeps every step"
     )
