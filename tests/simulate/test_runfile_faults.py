@@ -216,6 +216,15 @@ CASES = [
     ),
     ("force in metres", "amplitude: 2 kN", "amplitude: @2 mm", "expected N, found m in '2 mm'"),
     ("force of no frequency", "frequency: 5 Hz", "frequency: @0 Hz", "expected a finite number above 0"),
+    (
+        "noise that is a word",
+        "unit: mm/s, sign: -1",
+        "unit: mm/s, noise: @banana",
+        "expected a plain quantity in m/s, found a symbol in 'banana'",
+    ),
+    ("noise of a length", "unit: mm/s, sign: -1", "unit: mm/s, noise: @1 mm", "expected m/s, found m in '1 mm'"),
+    ("no noise", "unit: mm/s, sign: -1", "unit: mm/s, noise: @0 mm/s", "a noise above 0 was expected, found '0 mm/s'"),
+    ("phase in degrees, as it seems", "phase: 90 deg", "phase: @90", "a phase in rad is at most 6.3 in magnitude, found 90"),
     ("force's phase", "phase: 90 deg", "phase: @90 s", "expected no unit, found s in '90 s'"),
     (
         "force of two kinds",

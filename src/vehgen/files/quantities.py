@@ -89,6 +89,7 @@ RecorderDelay = Annotated[float, *_any(limits.RECORDER_DELAY)]
 Velocity = Annotated[float, *_any(limits.VELOCITY_LIMIT)]
 PitchRate = Annotated[float, *_any(limits.PITCH_RATE)]
 Angle = Annotated[float, *_any(limits.ANGLE)]
+Phase = Annotated[float, *_any(limits.PHASE)]
 FileName = Annotated[str, Field(max_length=limits.LONGEST_PATH)]
 
 

@@ -9,13 +9,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic_core import PydanticCustomError
 
 from vehgen.errors import InputError, shown
-from vehgen.files.quantities import read_quantity
 from vehgen.files.tables import TableColumns, read_columns
 from vehgen.files.tables.headings import MissingColumnError
-from vehgen.files.units import read_unit
 from vehgen.measure.acquisition import AcquisitionChain
 from vehgen.measure.quality import find_clipping, has_cut
 from vehgen.mechanics import GRAVITY
@@ -24,7 +21,7 @@ from vehgen.simulate import Run
 from vehgen.simulate.budgets import placed
 from vehgen.simulate.run_file.acquisition import channel_chains, check_nyquist
 from vehgen.simulate.run_file.checks import TIME_COLUMN
-from vehgen.simulate.run_file.sensors import ChannelEntry, SensorEntry
+from vehgen.simulate.run_file.sensors import SensorEntry
 
 Array = NDArray[np.float64]
 FEWEST_SAMPLES = 16
@@ -90,7 +87,7 @@ def read_recording(run: Run) -> Recording:
     channels, units, signs, columns = [], [], [], []
     for sensor_name, sensor in file.sensors.items():
         for quantity, entry in sensor.channels.items():
-            channel = replace(_channel(sensor_name, sensor, quantity), noise=_noise(run, sensor_name, quantity, entry))
+            channel = replace(_channel(sensor_name, sensor, quantity), noise=sensor.noise(quantity))
             channels.append(channel)
             columns.append(sensor.column(sensor_name, quantity))
             stated = None if isinstance(entry, str) else entry.unit
@@ -127,22 +124,6 @@ def _other_headings() -> Iterator[None]:
 
 def _channel(sensor_name: str, sensor: SensorEntry, quantity: str) -> RecordedChannel:
     return RecordedChannel(sensor.channel(sensor_name, quantity), sensor_name, quantity, sensor.output(sensor_name, quantity))
-
-
-def _noise(run: Run, sensor: str, quantity: str, entry: str | ChannelEntry) -> float | None:
-    """Return the noise that a run file gives with its unit."""
-    if isinstance(entry, str) or entry.noise is None:
-        return None
-    expected = read_unit(run.file.sensors[sensor].quantities[quantity])
-    assert expected is not None
-    place = run.document.find(("sensors", sensor, "channels", quantity, "noise"))
-    try:
-        number = read_quantity(entry.noise, expected[1])
-    except PydanticCustomError as error:
-        raise InputError(error.message(), place) from error
-    if not 0 < number < float("inf"):
-        raise InputError(f"a noise above 0 was expected, found {shown(entry.noise)}", place)
-    return number
 
 
 def _check_clock(table: TableColumns) -> None:

@@ -141,6 +141,7 @@ def _check_sensors(run: Run) -> None:
                 _check_axle_has(run, sensor, quantity, "sensors", name, "channels", quantity)
             place = run.document.find(("sensors", name, "channels", quantity, "unit"))
             unit_factor(sensor.unit(quantity), sensor.quantities[quantity], quantity, place)
+            sensor.noise(quantity, run.document.find(("sensors", name, "channels", quantity, "noise")))
 
 
 def _check_element(run: Run, entry: OfElement, *path: str) -> None:

@@ -12,7 +12,6 @@ from vehgen.files.expressions import Expression
 from vehgen.files.limits import LARGEST_SEED, MOST_ROADS
 from vehgen.files.names import Column, FreeText, Name
 from vehgen.files.quantities import (
-    Angle,
     Displacement,
     Duration,
     EdgeRadius,
@@ -22,6 +21,7 @@ from vehgen.files.quantities import (
     Frequency,
     HumpHeight,
     HumpLength,
+    Phase,
     PositiveForce,
     RoadPosition,
     Sample,
@@ -126,7 +126,7 @@ class ForceHarmonic(FileModel):
 
     amplitude: Force
     frequency: Frequency
-    phase: Angle = 0.0
+    phase: Phase = 0.0
 
 
 class DisplacementHarmonic(FileModel):
@@ -134,7 +134,7 @@ class DisplacementHarmonic(FileModel):
 
     amplitude: Displacement
     frequency: Frequency
-    phase: Angle = 0.0
+    phase: Phase = 0.0
 
 
 class ForceEntry(PlaceEntry):

@@ -8,11 +8,13 @@ from typing import Literal
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from vehgen.errors import InputError, Position, shown
 from vehgen.files.checks import unit_factor
 from vehgen.files.entry import FileModel
 from vehgen.files.expressions import Expression
 from vehgen.files.names import Column, Name, is_name
-from vehgen.files.quantities import PlaceLength
+from vehgen.files.quantities import PlaceLength, read_quantity
+from vehgen.files.units import read_unit
 from vehgen.mechanics.outputs import ElementOutput, Output, Place, PointOutput
 from vehgen.mechanics.quantities import AXLE_MOTIONS, AXLE_QUANTITIES, HINGE_QUANTITIES, LINK_QUANTITIES, POINT_QUANTITIES
 from vehgen.simulate.run_file.acquisition import AcquisitionEntry
@@ -127,6 +129,21 @@ class SensorEntry(PlaceEntry, OfElement):
         entry = self.channels[quantity]
         sign = 1 if isinstance(entry, str) else entry.sign
         return sign * unit_factor(self.unit(quantity), self.quantities[quantity], quantity, None)
+
+    def noise(self, quantity: str, place: Position | None = None) -> float | None:
+        """Return the noise that is stated of a quantity [SI]; raises InputError at `place` for what is no number above 0 in its unit."""
+        entry = self.channels[quantity]
+        if isinstance(entry, str) or entry.noise is None:
+            return None
+        unit = read_unit(self.quantities[quantity])
+        assert unit is not None
+        try:
+            number = read_quantity(entry.noise, unit[1])
+        except PydanticCustomError as error:
+            raise InputError(error.message(), place) from error
+        if not 0 < number < float("inf"):
+            raise InputError(f"a noise above 0 was expected, found {shown(entry.noise)}", place)
+        return number
 
     def channel(self, name: str, quantity: str) -> str:
         """Return what the channel of a quantity is called: as its column where that is a name, else SENSOR_QUANTITY."""
