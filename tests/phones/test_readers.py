@@ -64,6 +64,23 @@ def test_sensor_logger_metadata_tells_the_sign(tmp_path, metadata, sign):
     assert export.acceleration_sign == sign
 
 
+def test_two_exports_in_one_folder_are_refused(tmp_path):
+    t, force, rotation = still()
+    files = sensor_logger(t, force, rotation)
+    folder = write_folder(tmp_path / "day", {f"{run}/{name}": text for run in ("first", "second") for name, text in files.items()})
+    with pytest.raises(InputError, match=r"holds 'first/.*' and 'second/.*': the export of one recording was expected"):
+        read_export(folder)
+    assert "acceleration" in read_export(folder / "first").streams
+
+
+@pytest.mark.parametrize("text", ["", "time,seconds_elapsed,z,y,x\n"])
+def test_a_file_that_holds_nothing_is_told(tmp_path, text):
+    files = sensor_logger(*still())
+    export = read_export(write_zip(tmp_path / "a.zip", {**files, "Gyroscope.csv": text}))
+    assert "rotation" not in export.streams
+    assert [note for note in export.notes if ("Gyroscope.csv is empty" if not text else "no sample of rotation") in note]
+
+
 def test_sensor_logger_without_gravity(tmp_path):
     t, force, rotation = still()
     files = sensor_logger(t, force - [0, 0, 9.81], rotation, names=("Accelerometer", "Gyroscope"))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path, PurePosixPath
 
-from vehgen.errors import ArgumentError, InputError
+from vehgen.errors import ArgumentError, InputError, shown
 from vehgen.phones.archive import read_members
 from vehgen.phones.csv_table import ColumnMap, Table, read_plain, read_table
 from vehgen.phones.export import PhoneExport
@@ -33,7 +35,9 @@ def read_export(path: str | Path, columns: ColumnMap | None = None) -> PhoneExpo
         return read_matlab(path)
     tables: list[Table] = []
     refused: list[InputError] = []
-    for name, data in read_members(path).items():
+    members = read_members(path)
+    _check_one_recording(path, members)
+    for name, data in members.items():
         try:
             tables.append(read_table(data, name, str(path)))
         except InputError as error:
@@ -41,9 +45,27 @@ def read_export(path: str | Path, columns: ColumnMap | None = None) -> PhoneExpo
     if not tables:
         raise refused[0]
     if any(is_sensor_logger(table) for table in tables):
-        return read_sensor_logger([table for table in tables if is_sensor_logger(table)])
+        return _with_passed_over(read_sensor_logger([table for table in tables if is_sensor_logger(table)]), refused)
     if any(is_phyphox(table) for table in tables):
-        return read_phyphox([table for table in tables if is_phyphox(table)])
+        return _with_passed_over(read_phyphox([table for table in tables if is_phyphox(table)]), refused)
     if len(tables) > 1 and columns is not None:
         raise ArgumentError(f"{path} holds {len(tables)} tables; with `columns`, give the one table", "columns")
     return read_plain(tables[0], columns)
+
+
+def _check_one_recording(path: Path, members: Iterable[str]) -> None:
+    """Refuse files of one name in two folders: exports of two recordings, whose samples would be mixed."""
+    known: dict[str, str] = {}
+    for name in members:
+        other = known.setdefault(PurePosixPath(name).name.lower(), name)
+        if other != name:
+            raise InputError(f"{path} holds {shown(other)} and {shown(name)}: the export of one recording was expected")
+
+
+def _with_passed_over(export: PhoneExport, refused: list[InputError]) -> PhoneExport:
+    """Return an export without streams that hold nothing, and with a note of these and of each file that could not be read."""
+    empty = [name for name, stream in export.streams.items() if not len(stream.time)]
+    notes = [f"no sample of {name.replace('_', ' ')} was recorded" for name in empty]
+    notes += [f"a file was passed over: {error}" for error in refused]
+    kept = {name: stream for name, stream in export.streams.items() if name not in empty}
+    return replace(export, streams=kept, notes=(*export.notes, *notes))

@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -128,9 +129,14 @@ def read_phones(
     names = [sensor.name for sensor in sensors]
     if len(set(names)) < len(names):
         raise ArgumentError(f"`sensors`: two sensors have one name ({', '.join(names)}); each needs its own", "sensors")
-    return [
+    phones = [
         make_phone(read_export(Path(path), columns), sensor, Path(path).name, top) for path, sensor in zip(exports, sensors, strict=True)
     ]
+    for one, other in combinations(phones, 2):
+        if np.array_equal(one.acceleration.values, other.acceleration.values):
+            pair = f"{one.sensor.name} ({one.name}) and {other.sensor.name} ({other.name})"
+            raise ArgumentError(f"{pair} recorded the same numbers: give each sensor the export of its own phone", "exports")
+    return phones
 
 
 def _assemble(
