@@ -92,6 +92,7 @@ assert isinstance(run, vehgen.Run)
 driven = vehgen.simulate(run)
 assert isinstance(driven, vehgen.Response)
 print(driven.channel("cab_az").shape, driven.warnings)
+slower = vehgen.simulate(run.changed(speed=5.0))  # the same run at 5 m/s
 assessed = vehgen.assess(run)
 print(assessed.ride[0].rms, assessed.tyres[0].fourth_power, assessed.to_dataframe())
 

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from tests.simulate.run_files import GOOD, SHORT, load
+from vehgen.errors import InputError
 from vehgen.mechanics import ElementOutput, Place, PointOutput
 from vehgen.simulate.run_file import load_run
 from vehgen.vehicle import bundled_models
@@ -43,6 +46,28 @@ def test_values_are_the_files_then_the_sets_then_the_runs(tmp_path: Path):
     assert load(tmp_path, GOOD.replace("set: soft\n", "")).values() == {"mB": 900.0, "kF": 1.2e6, "b1": 1.4}
     assert load(tmp_path, GOOD.replace("parameters: {kF: 1.2 MN/m}\n", "")).values()["kF"] == 40000.0
     assert load(tmp_path, SHORT).values() == {"mB": 900.0, "kF": 60000.0, "b1": 1.4}
+
+
+def test_a_run_at_another_speed_or_of_another_set_is_as_if_its_file_said_so(tmp_path: Path):
+    run = load(tmp_path, GOOD.replace("set: soft\n", ""))
+    said = load(tmp_path, GOOD.replace("7.2 km/h", "18 km/h"))
+    assert run.changed(speed=5.0, parameter_set="soft").file == said.file
+    assert run.changed().file == run.file
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"speed": 0.0}, "`speed`: a number above 0 in m/s was expected, found 0.0"),
+        ({"speed": float("nan")}, "`speed`: a number above 0 in m/s was expected, found nan"),
+        ({"speed": "18 km/h"}, "`speed`: a number above 0 in m/s was expected, found '18 km/h'"),
+        ({"speed": 400}, "`speed`: a speed is 0.01 to 150 m/s in magnitude, found 400 m/s"),
+        ({"parameter_set": "sofft"}, "`parameter_set`: rig has no parameter set 'sofft'; did you mean 'soft'?"),
+    ],
+)
+def test_changes_of_a_run_that_cannot_be(tmp_path: Path, change: dict[str, Any], message: str):
+    with pytest.raises(InputError, match=re.escape(message)):
+        load(tmp_path, GOOD).changed(**change)
 
 
 def test_outputs_and_places(tmp_path: Path):

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vehgen.commands.option_strings import read_speed
 from vehgen.commands.results import add_out, file_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table, warn
 from vehgen.errors import InputError, shown
@@ -17,12 +18,15 @@ if TYPE_CHECKING:
 
 RESPONSE_ENDINGS = (".csv", ".mat", ".txt", "")
 """A MAT-file for MATLAB and Octave, else columns of text."""
+ARGUMENT_OPTIONS = {"speed": "--speed", "parameter_set": "--set"}
 EXAMPLE = "vehgen simulate run.yaml --out response.csv --plot"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.add_argument("run_file", metavar="RUN", help="a run file")
+    parser.add_argument("--speed", type=read_speed, metavar="M/S", help="constant speed in place of the run's")
+    parser.add_argument("--set", metavar="NAME", dest="parameter_set", help="a named parameter set of the vehicle in place of the run's")
     add_out(parser, "FILE", "where to write the response, .csv or .mat for MATLAB (default: RUN_response.csv beside it)")
     parser.add_argument("--plot", action="store_true", help="draw the response too, beside the CSV file")
     add_json(parser)
@@ -32,7 +36,7 @@ def run(options: argparse.Namespace) -> None:
     """Simulate a run and write its response."""
     from vehgen.simulate import load_run, simulate
 
-    run_ = load_run(options.run_file)
+    run_ = load_run(options.run_file).changed(speed=options.speed, parameter_set=options.parameter_set)
     run_file = Path(options.run_file)
     path = run_file.with_name(f"{run_file.stem}_response.csv") if options.out is None else file_named(options.out)
     written = [path, path.with_suffix(".png")] if options.plot else [path]

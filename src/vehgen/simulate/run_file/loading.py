@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import dataclass, replace
+from numbers import Real
 from pathlib import Path
 
-from vehgen.errors import ArgumentError, InputError
+from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
 from vehgen.files import note_read
 from vehgen.files.document import Located
 from vehgen.files.entry import read_entries
+from vehgen.files.limits import SPEED_LIMIT
 from vehgen.mechanics.outputs import Output, Place, PointOutput
 from vehgen.mechanics.quantities import QUANTITIES
 from vehgen.simulate.run_file.checks import check_run
@@ -33,6 +36,31 @@ class Run:
     def decimation(self) -> int:
         """Every how many steps a sample is kept."""
         return DEFAULT_DECIMATION if self.file.sample is None else round(self.file.sample / self.file.step)
+
+    def changed(self, *, speed: float | None = None, parameter_set: str | None = None) -> Run:
+        """Return this run at another constant speed [m/s], with another of the vehicle's sets, or both.
+
+        Raises
+        ------
+        InputError
+            For a speed that cannot be, a set that the vehicle lacks, and what does not go with the rest of the run.
+        """
+        update: dict[str, float | str] = {}
+        if speed is not None:
+            if not isinstance(speed, Real) or not 0 < speed < math.inf:
+                raise ArgumentError(f"`speed`: a number above 0 in m/s was expected, found {shown(speed)}", "speed")
+            if (reason := SPEED_LIMIT.refusal(float(speed))) is not None:
+                raise ArgumentError(f"`speed`: {reason}", "speed")
+            update["speed"] = float(speed)
+        if parameter_set is not None:
+            if parameter_set not in self.vehicle.sets:
+                known = did_you_mean(parameter_set, self.vehicle.sets)
+                said = f"`parameter_set`: {self.vehicle.name} has no parameter set {shown(parameter_set)}; {known}"
+                raise ArgumentError(said, "parameter_set")
+            update["set"] = parameter_set
+        changed = replace(self, file=self.file.model_copy(update=update))
+        check_run(changed)
+        return changed
 
     def values(self) -> dict[str, float]:
         """Return the vehicle's free parameters in this run [SI]: file, then set, then the run's own."""
