@@ -243,6 +243,7 @@ def test_numbas_own_cache_folder_is_left_alone(tmp_path: Path, monkeypatch: pyte
     assert str(tmp_path / "numba") == numba.config.CACHE_DIR
 
 
+@pytest.mark.thorough
 def test_processes_and_threads_may_import_at_once(tmp_path: Path):
     program = (
         f"from pathlib import Path; from vehgen.codegen.cache import import_kernel; print(import_kernel({SMALL!r}, Path('c')).advance(3.0))"
@@ -314,6 +315,7 @@ def test_reading_renews_the_time_of_use(folder: Path):
     assert time.time() - bundle(folder).stat().st_mtime < DAY
 
 
+@pytest.mark.thorough
 def test_without_numbas_compiler_plain_python_gives_the_same(tmp_path: Path):
     """With force laws (lower, upper, sign, step) and in both precisions, against the compiled kernel."""
     program = """

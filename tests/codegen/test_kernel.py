@@ -131,6 +131,7 @@ def test_source_is_the_same_every_time_and_readable(tractor):
     assert "p_00: mT [kg]: " in again.legend
 
 
+@pytest.mark.thorough
 def test_compiled_code_is_found_again_by_another_process(tmp_path):
     program = (
         "import sys, time; from pathlib import Path; from vehgen.codegen import Kernel; from vehgen.mechanics import derive;"
@@ -255,6 +256,7 @@ def test_a_hundred_thousand_individuals_need_the_memory_of_one_block():
     np.testing.assert_array_equal(peaks[some], peak(kernel.run(parameters[some], excitation, 2).responses))
 
 
+@pytest.mark.thorough
 def test_many_kernels_are_compiled_by_several_processes(tmp_path):
     """The cache is filled by others: this process only loads."""
     names = ("acceleration", "velocity", "displacement")

@@ -70,6 +70,7 @@ def test_build_writes_its_folder_and_nothing_else(work: Path, capsys: pytest.Cap
     )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", few(("truck_walking_beam", "tractor5_module")))
 def test_report_draws_a_built_vehicle_again_from_its_file(work: Path, capsys: pytest.CaptureFixture[str], name: str):
     assert main(["build", name, "--out", "first"]) == 0

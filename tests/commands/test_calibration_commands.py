@@ -58,6 +58,7 @@ def test_calibrate_writes_vehicle_result_and_figures(run, tmp_path, capsys, monk
         same_figures_again(folder, name, tmp_path / "again", capsys)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("factor", [1.0, 1000.0])
 def test_a_channel_in_a_unit_that_nobody_stated_is_warned_of(tmp_path, capsys, factor):
     path = write_run(tmp_path, "hump", sedan_truth())
@@ -78,6 +79,7 @@ def same_figures_again(folder, name, again, capsys):
         path.unlink()
 
 
+@pytest.mark.thorough
 def test_a_calibration_survives_its_file(run, tmp_path):
     problem = make_problem(load_trials([run]))
     summary = summarise(calibrate_problem(problem, Settings(search=GeneticSearch(1, 10, 2), starts=1)), replicates=2)
@@ -170,6 +172,7 @@ def test_a_terminal_is_told_how_far_sensors_and_sensitivity_are(command, run, tm
     assert "left" in told
 
 
+@pytest.mark.thorough
 def test_the_result_is_told_before_its_figures_are_drawn(run, tmp_path, capsys, monkeypatch):
     def draw(*_):
         raise InputError("no figures")

@@ -40,6 +40,7 @@ def test_errors_at_their_bounds_are_begun_anew(fit):
     assert all(abs(item.sigmas) < 3.9 for item in found.conditions())
 
 
+@pytest.mark.thorough
 def test_a_fit_without_strain_stays_as_it_is(fit):
     plain = fit_least_squares(fit.misfit.problem, fit.misfit.split(fit.x)[0], replace(OPTIONS, max_steps=2), noises=fit.misfit.noises)
     assert without_strain(plain, ()) is plain

@@ -37,12 +37,14 @@ def test_the_noise_floor_is_that_of_the_phones(detection_of):
     assert floor.corrected == ()
 
 
+@pytest.mark.thorough
 def test_nothing_hidden_is_found_to_be_nothing(trials_of):
     found = diagnose_trials(trials_of())
     assert found.verdict.verdict == "no_missing_effect"
     assert found.detection.chi < 1.06
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("count", [1, 2])
 def test_runs_too_few_to_check_the_fit_do_not_tell_that_nothing_is_missing(trials_of, count):
     found = diagnose_trials(trials_of(runs=HUMPS)[:count]).verdict

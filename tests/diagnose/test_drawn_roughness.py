@@ -90,6 +90,7 @@ def stuck_fit(stuck):
     return as_it_is(*stuck)
 
 
+@pytest.mark.thorough
 def test_a_smooth_road_under_stuck_friction_is_not_taken_for_a_rough_one(stuck, stuck_fit):
     trials, noises = stuck
     runs = [DrawnRun(stuck_fit, number, noises[trial.name]) for number, trial in enumerate(trials)]

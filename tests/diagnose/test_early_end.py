@@ -53,6 +53,7 @@ def test_beside_what_settles_a_gap_only_what_leaves_next_to_nothing_is_refined(d
     assert [np.isfinite(fit.validation) for fit in refined] == [True]
 
 
+@pytest.mark.thorough
 def test_what_was_fitted_until_ctrl_c_is_kept(detection_of, monkeypatch):
     detection = detection_of(CUBIC, runs=HUMPS)
     candidates = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS[name] for name in NAMES])

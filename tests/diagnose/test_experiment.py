@@ -95,6 +95,7 @@ def test_predictions_are_those_of_the_generator(tied):
         assert predicted[: len(clean), column] == pytest.approx(clean, abs=0.03 * np.abs(clean).max())
 
 
+@pytest.mark.thorough
 def test_no_refit_can_exceed_the_quick_bound(tied):
     detection, fits = tied
     channels = detection.problem.trials[0].channels

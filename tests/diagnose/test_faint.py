@@ -86,6 +86,7 @@ def test_none_is_told_that_leaves_a_parameter_at_its_bound(detection_of, found_o
     assert faintly_told(replace(found_of, fits=(bent, *found_of.fits[1:])), detection) is None
 
 
+@pytest.mark.thorough
 def test_what_falls_as_far_within_its_bounds_goes_before_what_ends_at_one(found_of, monkeypatch):
     """As relaxation falls a little farther than a damper's mount, with a damper weaker than its file allows."""
     best = found_of.fits[0]

@@ -120,6 +120,7 @@ PLAIN_CASES = {
 QUICK_CASES = {"g for m/s^2 in one run", "turned in one run", "speeds exchanged"}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("case", [case if case in QUICK_CASES else pytest.param(case, marks=pytest.mark.thorough) for case in PLAIN_CASES])
 def test_a_plain_mistake_is_named_before_any_effect_is_looked_for(plain, case):
     make, expected, value = PLAIN_CASES[case]
@@ -130,6 +131,7 @@ def test_a_plain_mistake_is_named_before_any_effect_is_looked_for(plain, case):
     assert fault.cure
 
 
+@pytest.mark.thorough
 def test_a_unit_is_told_where_nothing_seems_to_be_missing(plain):
     """As where a loud lead-in makes noise of it."""
     found = detect(edited(plain, times(57.3, R_Q)))

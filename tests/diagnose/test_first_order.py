@@ -17,6 +17,7 @@ def detection(detection_of):
     return detection_of()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["cubic_stiffness", "quadratic_damping", "tyre_damping", "progressive_stiffness"])
 def test_a_weak_law_moves_the_residuals_as_a_simulation_with_it_does(detection, name):
     problem, moved, simulated = _both(detection, name, 0.02)

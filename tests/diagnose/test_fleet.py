@@ -176,6 +176,7 @@ def test_a_fault_or_a_lost_worker_is_a_row(fleet, monkeypatch):
     assert found["second"].error == "its worker is gone"
 
 
+@pytest.mark.thorough
 def test_a_fault_while_one_vehicle_is_read_is_its_row(fleet, here, monkeypatch):
     def breaking(folder):
         if folder.name == "first":
@@ -189,6 +190,7 @@ def test_a_fault_while_one_vehicle_is_read_is_its_row(fleet, here, monkeypatch):
     assert found["second"].status == "finished"
 
 
+@pytest.mark.thorough
 def test_names_that_are_not_utf_8_fail_alone(fleet, here):
     for vehicle, name in ((b"caf\xe9", b"hump.yaml"), (b"named", b"h\xfcmp.yaml")):
         folder = os.path.join(os.fsencode(fleet), vehicle)

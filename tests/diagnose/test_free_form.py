@@ -86,6 +86,7 @@ def test_the_law_is_told_in_a_sentence_and_as_plain_data(spring):
     assert len(data["travel"]["x"]) == len(data["travel"]["low"])
 
 
+@pytest.mark.thorough
 def test_places_without_a_travel_have_no_law(cubic):
     detection, results = cubic
     for label in ("channel F_az", "nowhere"):

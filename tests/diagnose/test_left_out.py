@@ -89,6 +89,7 @@ def test_of_a_stopped_diagnosis_only_that_is_told_beside_the_run_left_out(trials
     assert told.reason.startswith("No verdict" if stopped else "The measurement is at fault: high")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("whole", [True, False])
 def test_a_page_says_whether_what_it_shows_has_the_mistake_in_it(trials_of, whole):
     runs = edited(trials_of(runs=RUNS if not whole else HUMPS), clip, only="high")

@@ -116,6 +116,7 @@ def test_noise_is_told_by_the_law_of_the_place_where_nothing_is_named_by_the_bas
     assert found.gap.after < 1.05
 
 
+@pytest.mark.thorough
 def test_ctrl_c_in_the_second_search_is_told(monkeypatch, detection_of):
     detection = detection_of(CUBIC, runs=HUMPS)
     monkeypatch.setattr(decision, "noise_by_its_law", lambda detection, first: detection)

@@ -35,6 +35,7 @@ def coarse_road(trial):
     return replace(trial, scenario=replace(trial.scenario, track=replace(track, parts=tuple(thin(part) for part in track.parts))))
 
 
+@pytest.mark.thorough
 def test_a_resolved_simulation_adds_next_to_nothing_to_the_noise(detection_of, fit):
     found = numerical_floor(fit.misfit, fit.x)
     assert set(found) == {trial.name for trial in fit.misfit.problem.trials}

@@ -122,6 +122,7 @@ def test_first_order_gains_are_those_of_a_fit_with_that_number_free(louder):
     assert (together - left) * case.excess * values == pytest.approx(own.gain, rel=0.2)
 
 
+@pytest.mark.thorough
 def test_of_two_numbers_the_one_takes_what_the_other_seemed_to_need(louder):
     """Beside the gain of the channel that has one, no parameters of its own are needed in any run."""
     runs = AllRuns(louder)

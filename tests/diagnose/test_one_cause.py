@@ -71,6 +71,7 @@ def test_speeds_that_runs_may_well_have_are_no_error_of_all(trials_of, errors):
     assert verdict_of(detect(at_other_speeds(trials_of(runs=HUMPS), *errors))).verdict == "no_missing_effect"
 
 
+@pytest.mark.thorough
 def test_an_error_that_the_library_does_not_have_is_not_named(detection_of):
     found = Decision(detection_of(LATE, runs=HUMPS), CHOSEN[1:], False, lambda *_: None).decide().verdict
     assert found.verdict == "no_missing_effect"

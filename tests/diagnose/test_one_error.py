@@ -47,6 +47,7 @@ def test_the_one_error_that_explains_the_runs_is_found(detection_of, effect, lab
         assert max(abs(item.sigmas) for item in part.conditions()) <= 2.5 + 1e-9
 
 
+@pytest.mark.thorough
 def test_an_error_takes_over_what_the_base_supposes_of_each_run(detection_of):
     detection = detection_of(FAST, runs=HUMPS)
     base = detection.base

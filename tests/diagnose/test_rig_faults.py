@@ -21,6 +21,7 @@ def told(runs):
     return plain_mistakes(detect(load_trials(runs)))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("factor", "only", "kind", "words"),
     [

@@ -47,6 +47,7 @@ def test_every_law_at_a_place_that_is_kept_is_worth_a_fit(detection_of, monkeypa
     assert len(found) < len(candidates)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("nowhere", [True, False])
 def test_a_bending_frame_is_worth_a_fit_where_no_single_force_explains_the_gap(detection_of, monkeypatch, nowhere):
     """A base that bent to it tells a first order of it that any friction beats."""

@@ -126,6 +126,7 @@ def test_the_silverbox_lacks_a_cubic_spring(runs):
     assert effect.validation_gain > 0.97
 
 
+@pytest.mark.thorough
 def test_at_a_low_level_nothing_is_named(runs):
     found = diagnose_trials(load_trials(runs[3:])).verdict
     assert found.verdict in ("no_missing_effect", "too_weak")

@@ -27,6 +27,7 @@ def command_lines(page):
     return [shlex.split(line.partition(" > ")[0], comments=True)[1:] for line in lines]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "python") and page.name != OWN_TEST], ids=lambda path: path.name)
 def test_python_runs(page, tmp_path):
     folder = tmp_path / "examples"

@@ -43,6 +43,7 @@ def test_every_bundled_vehicle_gives_the_kernels_numbers(name, tmp_path):
     assert_alike(exported(model, tmp_path).run(drive), kernel_run(model, drive), tolerance)
 
 
+@pytest.mark.thorough
 def test_it_is_the_kernels_arithmetic_bit_by_bit(tmp_path):
     """Compiled kernels may contract a product and a sum; told not to compile, they do as C of the strict standard does."""
     model = derive(sedan_with("dry_friction", "hysteresis", "tyre_liftoff"), OUTPUTS)
@@ -120,6 +121,7 @@ def test_parameters_and_step_are_those_asked_for(tmp_path):
     assert library.setup(np.zeros_like(nothing), 1e-3) == 2  # no mass
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("compiler", COMPILERS)
 @pytest.mark.parametrize("options", [(), ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g")])
 def test_the_example_drives_over_the_hump(compiler, options, tmp_path):

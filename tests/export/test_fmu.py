@@ -65,6 +65,7 @@ def parse_laws(laws):
     return {"axles": YAML(typ="safe").load(f"{{{text}}}")}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("vehicle", few(name for name in bundled_models() if load_vehicle(name).axles))
 def test_every_bundled_vehicle(name, vehicle, tmp_path):
     model = model_with_channels(vehicle)
@@ -150,6 +151,7 @@ def test_states_can_be_kept_and_put_back(name, tmp_path):
     assert not found.instantiate(token="{00000000-0000-0000-0000-000000000000}")
 
 
+@pytest.mark.thorough
 def test_units_starts_and_sources_are_described(name, tmp_path):
     model = derive(truck(), OUTPUTS, [Place("engine", "body")])
     found = unit(model, name, tmp_path, parameter_set="heavy")
@@ -205,6 +207,7 @@ def test_without_a_compiler_there_are_sources_alone(name, tmp_path, monkeypatch)
         export("sedan2", name, tmp_path / "c.fmu")
 
 
+@pytest.mark.thorough
 def test_fmpy_accepts_and_simulates_it(name, tmp_path):
     fmpy = pytest.importorskip("fmpy")
     from fmpy.validation import validate_fmu

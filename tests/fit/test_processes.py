@@ -108,6 +108,7 @@ def test_work_is_taken_only_when_there_is_room():
         assert taken == [0]
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="this system has no SIGKILL")
 def test_a_killed_process_is_begun_again_and_one_that_always_dies_costs_the_others_nothing(tmp_path):
     once, always, never = (tmp_path / name for name in ("once", "always", "never"))

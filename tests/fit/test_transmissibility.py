@@ -123,6 +123,7 @@ def test_a_model_with_a_wrong_value_is_apart_where_that_matters(exports, name, f
     assert (0.5 in apart(found)) == (name == "kr")
 
 
+@pytest.mark.thorough
 def test_all_masses_and_springs_by_one_factor_change_nothing(exports, right):
     """What it cannot tell: the scale."""
     units = {"m": "kg", "I": "kg m^2", "k": "N/m", "c": "N s/m"}
@@ -237,6 +238,7 @@ def test_the_command_writes_its_result_and_draws_it_again(exports, tmp_path, cap
     assert len(data["ratios"][0]["bands"]) == 6
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(not SHARED.is_dir(), reason="the recordings are not here")
 def test_two_real_roads_give_one_ratio():
     """Roads of middling and bad quality at 12 m/s, 1 phone: the level cancels, so that pitch rate over acceleration is the same."""

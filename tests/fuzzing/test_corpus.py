@@ -9,6 +9,7 @@ from tests.fuzzing.harness import Worker
 from tests.fuzzing.judge import ACCEPTED, FAULT
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("nasty", CORPUS, ids=lambda nasty: ascii(nasty.name))
 def test_it_is_refused_where_it_is_wrong(worker: Worker, nasty: Nasty):
     verdict = worker.try_case(nasty.case)

@@ -24,6 +24,7 @@ def test_mutilated_files_are_read_or_clearly_refused(worker: Worker):
     assert all(faults.outcomes[format, "refused"] > 0 for format in FORMATS)
 
 
+@pytest.mark.thorough
 def test_healthy_files_are_accepted(worker: Worker):
     for cases in healthy().values():
         for case in cases:

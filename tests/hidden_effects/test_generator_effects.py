@@ -56,6 +56,7 @@ def one_place_each():
                 yield pytest.param(vehicle, option, id=f"{vehicle}-{option.name}")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("vehicle", "option"), list(one_place_each()))
 def test_neutral_is_absent_and_visible_is_seen(vehicle, option):
     run = option.run if option.name == "tyre_liftoff" else SHORT[vehicle]

@@ -31,6 +31,7 @@ def sedan_road(p, run=HUMP):
     return heights
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("vehicle", "matrices", "wheels"),
     [("sedan2", paper_matrices.sedan, [0.0, 2.8]), ("tractor5", paper_matrices.tractor, [0.0, 3.46, 4.8, 12.25, 13.48])],
@@ -116,6 +117,7 @@ LAWS = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", LAWS)
 def test_laws_against_scipy(name):
     p = nominal("sedan2")

@@ -158,6 +158,7 @@ hinges: {fifth_wheel: {k: 2 MN m/rad}}
 """
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("vehicle", "text", "effects", "run"),
     [

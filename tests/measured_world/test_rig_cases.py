@@ -82,6 +82,7 @@ def test_true_values_lie_within_the_ranges_that_the_file_states(family):
             assert RANGE[0] < ratio < RANGE[1] if item.uncertain else abs(ratio - 1.0) < 0.05
 
 
+@pytest.mark.thorough
 def test_a_channel_reads_late_with_its_gain_and_offset(pushed):
     rig, run, _ = pushed
     t = np.arange(round(run.duration * RATE) + 1) / RATE

@@ -99,6 +99,7 @@ def loop(kind, values, **more):
     return base, motion
 
 
+@pytest.mark.thorough
 def test_bouc_wen_begins_as_a_hyperbolic_tangent():
     base, motion = loop("hysteresis", {"force": 50.0, "travel": 0.002, "beta": 0.7})
     rising = motion.t < 0.2

@@ -49,6 +49,7 @@ def test_a_long_road_is_found_though_the_speed_wanders(wander, tolerance):
     assert found.scale == pytest.approx(1.0, abs=0.002)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", [2, 3, 4, 6])
 @pytest.mark.parametrize(("duration", "before", "after"), [(25.0, 6.0, 4.0), (6.0, 1.0, 2.0), (6.0, 6.0, 6.0)])
 def test_another_road_is_not_this_one(seed, duration, before, after):

@@ -102,6 +102,7 @@ def test_clocks_speed_tilt_and_noise_are_found(tmp_path, capsys, name, road, arr
     assert [item.name for item in measurement.channels] == ["L1_az", "L1_q", "L2_az", "L2_q"]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("name", "options", "road", "count"),
     [
@@ -125,6 +126,7 @@ def test_a_run_states_how_well_a_gps_knows_its_speed(tmp_path, capsys, name, opt
         assert stated is None or stated.speed is None
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("name", "road", "low", "high"),
     [("hump_2ms", HUMP, 0.025, 0.04), ("hump_3ms", HUMP, 0.017, 0.027), ("road_3ms", ("--profile", str(FOLDER / "road.csv")), None, None)],
@@ -167,6 +169,7 @@ def without_speeds(text):
     return "".join(",".join(line) + "\n" for line in (head, *told))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("gps", "given"), [(lambda text: text, "axles"), (lambda text: None, "2.00"), (without_speeds, "2.00")])
 def test_a_wrong_speed_is_told_with_what_to_give_instead(tmp_path, capsys, gps, given):
     """Without a GPS's speed, near which the marks would tell it, the speed by the axles is refused."""
@@ -295,6 +298,7 @@ def test_a_phone_that_writes_another_unit_is_refused_with_it(tmp_path, capsys):
     assert "it seems to be in ft/s^2; these files are read in m/s^2" in refusal(capsys, tmp_path / "run.yaml", [export], sensors=(L1,))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("change", "options", "message"),
     [
@@ -400,6 +404,7 @@ def test_a_phone_that_the_vehicle_matches_badly_is_laid_roughly_or_set_by_its_en
         assert phone["zero"] == pytest.approx(other["zero"], abs=0.15)
 
 
+@pytest.mark.thorough
 def test_a_hump_that_does_not_stand_out_is_found_where_the_vehicles_answer_is_like_the_recording(tmp_path, capsys, monkeypatch):
     """As a low one after a rough road; else it is refused as what does not stand out."""
     good = facts(capsys, tmp_path / "good.yaml", both("hump_2ms"))
@@ -427,6 +432,7 @@ def divided(factor, unit):
     return apply
 
 
+@pytest.mark.thorough
 def test_other_units_of_phyphox_are_read_as_headings_say_and_seen_where_they_do_not(tmp_path, capsys):
     source = FOLDER / "hump_2ms_phone1.zip"
     in_g, in_degrees = divided(9.80665, "g"), divided(np.pi / 180, "°/s")

@@ -47,6 +47,7 @@ def test_clocks_are_found_without_epochs(tmp_path, motion, front, shift, drift):
     assert np.unique(found.gps[1]) == pytest.approx(15.0)
 
 
+@pytest.mark.thorough
 def test_a_pitch_rate_is_read_where_forward_is_said(tmp_path, motion, front):
     time, values = motion
     found = read_drive([front], [PhoneSensor("F", "", forward="y")], 20.0, 8.0)

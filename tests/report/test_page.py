@@ -86,6 +86,7 @@ def test_plots_can_be_left_out(tmp_path):
     assert "<svg" not in (tmp_path / "index.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.thorough
 def test_the_same_vehicle_gives_the_same_bytes(tmp_path):
     one, two = (build(tmp_path / key, "tractor5_cab") for key in ("one", "two"))
     assert all(a.read_bytes() == b.read_bytes() for a, b in zip(one, two, strict=True))
@@ -182,6 +183,7 @@ def test_hostile_text_stays_text(pages):
     assert HOSTILE in Page(source).text
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["tractor5", "road_train", "with_laws", "rig"])
 def test_axle_loads_sum_to_the_weight(name, pages):
     m = model(name)

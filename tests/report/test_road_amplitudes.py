@@ -82,6 +82,7 @@ def test_peaks_and_curves_are_those_of_the_exported_matrices(name, pages, tmp_pa
             assert curve["y"] == pytest.approx(expected, rel=2e-3, abs=2e-3 * max(expected))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", few(EVERY))
 def test_every_page_has_the_section_or_says_why_not(name, pages):
     source, m = pages(name), model(name)

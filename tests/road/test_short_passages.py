@@ -61,6 +61,7 @@ def test_a_drive_nearby_comes_upon_a_hump_as_it_does_wherever_the_way_is_looked_
     assert np.linalg.norm((found.rates - here.rates) / 1e-8 - expected) < 2e-3 * np.linalg.norm(expected)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("footprint", [0.0, 0.24])
 @pytest.mark.parametrize("parts", ROADS.values(), ids=ROADS)
 def test_drives_over_tracks_nearby_are_those_drives(parts, footprint):
@@ -71,6 +72,7 @@ def test_drives_over_tracks_nearby_are_those_drives(parts, footprint):
     assert found.rates == pytest.approx(expected.rates, abs=1e-9)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("parts", ROADS.values(), ids=ROADS)
 def test_drives_nearby_are_those_drives_to_the_first_order(parts):
     """Over a road without corners."""

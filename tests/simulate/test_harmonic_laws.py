@@ -57,6 +57,7 @@ def test_a_cubic_spring_is_the_textbooks(fine):
         assert found == pytest.approx(np.full(3, 0.75 * 2e7 * travel**2 + 0j), rel=1e-9)
 
 
+@pytest.mark.thorough
 def test_stops_act_where_travel_reaches_them(fine):
     found = only(car("[{bump_stop: {k: stops, clearance: gap, rebound: gap}}]"))
     for numbers, travel in zip(found, TRAVELS, strict=True):
@@ -66,6 +67,7 @@ def test_stops_act_where_travel_reaches_them(fine):
     assert np.any(found[-1])
 
 
+@pytest.mark.thorough
 def test_relaxation_is_a_maxwell_branch(fine):
     turned = 2j * np.pi * FREQUENCY * 0.02
     for found in only(car("[{relaxation: {k: mount, time: time}}]")):
@@ -89,6 +91,7 @@ LAWS = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("laws", LAWS.values(), ids=LAWS)
 def test_derivatives_of_responses_with_laws_agree_with_differences(laws):
     model = car(*laws)

@@ -125,6 +125,7 @@ WORST = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(sys.platform != "linux", reason="needs limits of memory and time")
 @pytest.mark.parametrize("name", sorted(WORST))
 def test_the_worst_are_refused_within_little_memory_and_time(name, tmp_path):
@@ -211,6 +212,7 @@ def carried(count: int) -> str:
     )
 
 
+@pytest.mark.thorough
 def test_a_thousand_bodies_are_refused_and_a_hundred_are_derived():
     with pytest.raises(InputError, match="1:1: 1000 bodies; a vehicle has at most 100"):
         parse_vehicle(carried(1000), "")

@@ -133,6 +133,7 @@ def test_modes_load_neither_sympy_nor_numba_nor_scipy(folder):
     assert second.stderr == "[]\n"
 
 
+@pytest.mark.thorough
 def test_a_build_without_plots_loads_neither_numba_nor_matplotlib(folder, tmp_path):
     code = (
         "import sys; from vehgen.commands import main; main(['build', 'quarter_car', '--no-plots', '--out', 'out', '--json'])\n"

@@ -111,6 +111,7 @@ def read_or_refuse(text: str) -> bool:
     return refusal is None
 
 
+@pytest.mark.thorough
 @settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 @given(st.sampled_from(sorted(MODELS)), edits)
 def test_mutilated_text(name: str, changes: list[tuple[str, float, int, str]]):
@@ -180,6 +181,7 @@ def edit(data: dict[str, Any], changes: list[tuple[str, list[float], str, Any]])
     return data
 
 
+@pytest.mark.thorough
 @settings(max_examples=80, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 @given(st.sampled_from(sorted(set(DATA) - {"road_train"})), operations)
 def test_mutilated_data(name: str, changes: list[tuple[str, list[float], str, Any]]):

@@ -87,6 +87,7 @@ def test_damaged_files_are_refused_or_read_but_never_crash(tmp_path: Path, name:
             assert np.isfinite(np.array(found.values)).all()
 
 
+@pytest.mark.thorough
 def test_a_workbook_with_entities_or_of_a_bomb_is_refused(tmp_path: Path):
     pytest.importorskip("openpyxl")
     pd.DataFrame({"t": [0.0], "az": [1.0]}).to_excel(tmp_path / "good.xlsx", index=False)
