@@ -161,6 +161,32 @@ def test_a_law_may_be_the_whole_spring():
     assert equilibria(model, columns(model)).travels == pytest.approx(equilibria(derive(quarter(CUBIC)), columns(model, kS=1e6)).travels)
 
 
+CONTACT = """\
+bodies:
+  floor: {mass: 1 t, motions: [heave]}
+  box: {mass: 400 kg, motions: [heave], carried_by: {body: floor, x: 0 m}}
+  top: {mass: 100 kg, motions: [heave], carried_by: {body: box, x: 0 m}}
+axles: {w: {body: floor, x: 0 m, tyre: {k: 200 kN/m, c: 4 kN s/m}}}
+links:
+  bed: {floor: {x: 0 m}, box: {x: 0 m}, k: 0 N/m, laws: [{bump_stop: {k: 1.5 MN/m, clearance: GAP, from: unloaded}}]}
+  lid: {box: {x: 0 m}, top: {x: 0 m}, k: 0 N/m, laws: [{law: {force: "kk*(d + abs(d))/2", parameters: {kk: 1 MN/m}, from: unloaded}}]}
+"""
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.02])
+def test_cargo_that_only_contact_carries_stands_where_contact_does(gap):
+    model = derive(parse_vehicle(CONTACT.replace("GAP", f"{gap} m")))
+    travels = dict(zip((item.name for item in model.elements), equilibria(model, columns(model)).travels[0], strict=True))
+    assert travels == pytest.approx({"w": 1500 * G / 200e3, "bed": gap + 500 * G / 1.5e6, "lid": 100 * G / 1e6}, rel=1e-9)
+
+
+def test_what_bears_only_so_much_has_no_equilibrium_under_more():
+    bears = "{law: {force: 'min(d*(1 MN/m), most)', parameters: {most: 4 kN}, from: unloaded}}"  # 500 kg weigh 4.9 kN
+    text = CONTACT.replace("{bump_stop: {k: 1.5 MN/m, clearance: GAP, from: unloaded}}", bears)
+    model = derive(parse_vehicle(text))
+    assert "no stable static equilibrium" in equilibria(model, columns(model)).failures[0]
+
+
 def test_tyres_leave_the_road_at_the_load_that_the_laws_leave_them():
     law = "{cubic_stiffness: {k3: K N/m^3, from: unloaded}}"
     axle = f"{{suspension: {{laws: [{law}]}}, tyre: {{laws: [{{tyre_liftoff: {{}}}}]}}}}\n"

@@ -3,8 +3,9 @@
 With travels d = J q from the unloaded position, stiffness K, laws f and the generalised weight W,
     K q + J^T f(J q) = W.
 All individuals take Newton steps together, each halved until the residual falls; the tangent is K + J^T f' J. Who does not arrive is
-solved alone: the weight grows from nothing to its whole in steps, each solved by Powell's hybrid method from the last
-(scipy.optimize.root; M. J. D. Powell, in P. Rabinowitz (ed.), Numerical Methods for Nonlinear Algebraic Equations, 1970).
+solved alone: the weight grows from nothing to its whole in steps, or springs to the ground fade, each step solved by Powell's hybrid
+method from the last (scipy.optimize.root; M. J. D. Powell, in P. Rabinowitz (ed.), Numerical Methods for Nonlinear Algebraic Equations,
+1970).
 A solution whose tangent is not positive definite is unstable, and no equilibrium.
 """
 
@@ -28,6 +29,8 @@ CONVERGED = 1e-11
 ACCEPTED = 1e-8
 """The same, above which there is no equilibrium."""
 LOAD_STEPS = 20
+HELD_BY = 1e6, 1e-3
+"""Springs to the ground between which a search fades them, over the mass [1/s^2]."""
 NOT_FOUND = "no stable static equilibrium was found: its laws that count from the unloaded position cannot carry its weight"
 
 
@@ -155,27 +158,38 @@ class _Balance:
         return q
 
     def alone(self) -> Array:
-        """Return the displacement `shape (1, n_dof)` of the only individual, its weight growing from nothing to its whole."""
+        """Return the displacement `shape (1, n_dof)` of the only individual, NaN where none is found.
+
+        Its weight grows from nothing to its whole. Where that leads nowhere, as from a gap that no spring bridges, springs hold every
+        motion to its unloaded place, and fade.
+        """
+        scale, whole = self.scale[0], np.ones(LOAD_STEPS)
+        found = self._followed(np.zeros(len(scale)), np.linspace(0, 1, LOAD_STEPS + 1)[1:], 0 * whole)
+        if not np.isfinite(found).all():
+            found = self._followed(np.zeros(len(scale)), whole, np.append(np.geomspace(*HELD_BY, LOAD_STEPS - 1), 0.0))
+        return np.asarray(scale * found)[None]
+
+    def _followed(self, x: Array, loads: Array, springs: Array) -> Array:
+        """Return the scaled displacement that shares of the weight and springs to the ground [1/s^2], one after the other, lead to."""
         import scipy.optimize
 
         scale = self.scale[0]
 
-        def residual(x: Array, load: float) -> Array:
-            return np.asarray(scale * (self.residual((scale * x)[None]) + (1 - load) * self.weight)[0])
+        def residual(x: Array, load: float, spring: float) -> Array:
+            return np.asarray(scale * (self.residual((scale * x)[None]) + (1 - load) * self.weight)[0] + spring * x)
 
-        def tangent(x: Array, _load: float) -> Array:
-            return np.asarray(scale[:, None] * self.tangent((scale * x)[None])[0] * scale)
+        def tangent(x: Array, _load: float, spring: float) -> Array:
+            return np.asarray(scale[:, None] * self.tangent((scale * x)[None])[0] * scale + spring * np.eye(len(x)))
 
-        x = np.zeros(len(scale))
-        for load in np.linspace(0, 1, LOAD_STEPS + 1)[1:]:
+        for given in zip(loads, springs, strict=True):
             for method in ("hybr", "lm"):
-                found = scipy.optimize.root(residual, x, (load,), method=method, jac=tangent, tol=1e-13)
-                if np.isfinite(found.x).all() and np.linalg.norm(residual(found.x, load)) < ACCEPTED * self.heavy[0]:
+                found = scipy.optimize.root(residual, x, given, method=method, jac=tangent, tol=1e-13)
+                if np.isfinite(found.x).all() and np.linalg.norm(residual(found.x, *given)) < ACCEPTED * self.heavy[0]:
                     x = found.x
                     break
             else:
-                return np.full((1, len(scale)), np.nan)
-        return np.asarray(scale * x)[None]
+                return np.full(len(scale), np.nan)
+        return x
 
     def least_stiffness(self, q: Array) -> Array:
         """Return the lowest eigenvalue of the tangent in the metric of the masses [1/s^2], `shape (n,)`; -inf where q is not finite."""
