@@ -80,6 +80,18 @@ CASES = [
         "L3: {axle: rear, channels: {acceleration: @a}}",
         "rear has no mass of its own, and moves with 'frame'",
     ),
+    (
+        "sensor some way behind nothing",
+        "L3: {body: frame}",
+        "L3: @{body: frame, distance: 2 m}",
+        "`distance` counts from what `behind` names, and nothing is named: from the COG the place is `x: -2 m`",
+    ),
+    (
+        "force some way behind nothing",
+        "shaker: {body: frame, x: 0.5 m,",
+        "shaker: @{body: frame, distance: -0.5 m,",
+        "`distance` counts from what `behind` names, and nothing is named: from the COG the place is `x: 0.5 m`",
+    ),
     ("speed without a unit", "speed: 7.2 km/h", "speed: @7.2", "expected m/s, found no unit in 7.2; write e.g. '7.2 m/s'"),
     ("speed in kilograms", "speed: 7.2 km/h", "speed: @7.2 kg", "expected m/s, found kg in '7.2 kg'"),
     ("speed of nothing", "speed: 7.2 km/h", "speed: @0 m/s", "expected a finite number above 0, found 0"),

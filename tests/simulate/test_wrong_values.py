@@ -52,8 +52,9 @@ def test_a_channel_that_there_is_not_is_told_with_the_nearest(tmp_path):
         (lambda: vehgen.road_response("quarter_car", speed="20"), "`speed`: a number in m/s was expected, found '20'"),
         (lambda: vehgen.derive("quarter_car", ["x"]), "`outputs`: a list of PointOutput or ElementOutput was expected, found str"),
         (lambda: vehgen.state_space("quarter_car", forces=["x"]), "`forces`: a list of Place was expected, found str"),
+        (lambda: vehgen.frequency_response("sedan2", speed="20 m/s"), "`speed`: a number in m/s was expected, found '20 m/s'"),
     ],
-    ids=range(4),
+    ids=range(5),
 )
 def test_an_argument_of_another_kind_is_refused(call, message):
     with pytest.raises(InputError, match=message):
@@ -121,8 +122,11 @@ def test_a_run_is_no_scenario(simulator):
         ({"inputs": ROAD[:, 0]}, r"`inputs`: an array of shape \(n_steps \+ 1, n\) was expected, found shape \(101,\)"),
         ({"forces": None}, "`forces`: .* found NoneType"),
         ({"rates": [["x"]]}, "`rates`: .* found list"),
+        ({"rates": ROAD[1:]}, "`inputs`, `rates`, `forces`: a row each .* found 101 of inputs, 100 of rates, 101 of forces"),
+        ({"inputs": ROAD[:0], "rates": ROAD[:0], "forces": NO_FORCES[:0]}, "a row each .* found 0 of inputs, 0 of rates, 0 of forces"),
+        ({"dt": True}, "`dt`: a step in seconds above 0 was expected, found True"),
     ],
-    ids=range(5),
+    ids=range(8),
 )
 def test_what_cannot_drive_a_vehicle_is_refused(changed, message):
     with pytest.raises(InputError, match=message):
@@ -148,6 +152,60 @@ def test_outputs_are_a_list_and_have_names_of_their_own():
         vehgen.derive("quarter_car", FORCE[0])
     with pytest.raises(InputError, match="`outputs`: two are named 'f'"):
         vehgen.derive("quarter_car", FORCE * 2)
+
+
+@pytest.mark.parametrize("name", ["", None, 3])
+def test_an_output_has_a_name(name):
+    with pytest.raises(InputError, match="`outputs`: a name was expected"):
+        vehgen.derive("quarter_car", [vehgen.PointOutput(name, vehgen.Place("a", "body"), "acceleration")])
+
+
+@pytest.mark.parametrize(
+    ("place", "message"),
+    [
+        ({"distance": 2.0}, "`distance` counts from what `behind` names, and nothing is named: from the COG the place is `x: -2 m`"),
+        ({"x": "1 m", "behind": "axle1"}, "a place has `x`, or `behind` with `distance`, not both"),
+        ({"behind": "axle1", "distance": float("nan")}, "`distance`: a finite number in m was expected, found nan"),
+        ({"behind": "axle1", "distance": None}, "`distance`: expected a number in m"),
+        ({"behind": "axle1", "distance": 1e5}, "`distance`: a length on a vehicle is at most 1000 m in magnitude, found 100000 m"),
+        ({"height": float("inf")}, "`height`: a finite number in m was expected, found inf"),
+        ({"x": float("nan")}, "`x`: a finite number in m was expected, found nan"),
+    ],
+)
+def test_a_place_that_cannot_be_is_refused_where_it_is_made(place, message):
+    with pytest.raises(InputError, match=message):
+        vehgen.Place("a", "body", **place)
+
+
+def test_lengths_of_a_place_are_numbers_or_texts():
+    plain = vehgen.Place("a", "body", behind="axle1", distance=0.5, height=0.25)
+    assert vehgen.Place("a", "body", behind="axle1", distance=np.float64(0.5), height=np.float32(0.25)) == plain
+    assert vehgen.Place("a", "body", behind="axle1", distance="50 cm", height="0.25 m") == plain
+    assert vehgen.Place("a", "body", x=0.3) == vehgen.Place("a", "body", x="0.3 m")
+
+
+@pytest.mark.parametrize(
+    "change", [{"speed": 0.0}, {"speed": -1.0}, {"speed": float("nan")}, {"delay": float("nan")}, {"height": float("inf")}]
+)
+def test_a_scenario_is_adjusted_to_what_can_be_driven(scenario, change):
+    with pytest.raises(InputError, match="a finite `delay` and `height` and a `speed` above 0 were expected"):
+        scenario.adjusted(**change)
+
+
+@pytest.mark.parametrize(
+    ("how", "message"),
+    [
+        ({"decimation": 2.5}, "`decimation`: a whole number of at least 1 was expected, found 2.5"),
+        ({"decimation": 0}, "`decimation`: a whole number of at least 1 was expected, found 0"),
+        ({"threads": 0}, "`threads`: a whole number from 1 to 10000 was expected, found 0"),
+        ({"threads": 1.5}, "`threads`: a whole number from 1 to 10000 was expected, found 1.5"),
+    ],
+)
+def test_a_kernel_runs_in_whole_steps_and_threads(how, message):
+    model = vehgen.derive("quarter_car")
+    still = np.zeros((11, len(model.inputs)))
+    with pytest.raises(InputError, match=message):
+        vehgen.Kernel(model).run([list(model.values().values())], vehgen.Excitation(1e-3, still, still, np.zeros((11, 0))), **how)
 
 
 def test_a_place_is_where_its_text_says():

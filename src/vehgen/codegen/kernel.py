@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from numbers import Integral
 from pathlib import Path
 from types import ModuleType
 from typing import Any, get_args
@@ -247,7 +248,5 @@ class Kernel:
             found = getattr(excitation, key).shape
             if found not in ((excitation.n_steps + 1, width), (len(parameters), excitation.n_steps + 1, width)):
                 raise InputError(f"the excitation's {key} have shape {found}; ({excitation.n_steps + 1}, {width}) was expected")
-        if not (excitation.dt > 0 and decimation >= 1):
-            raise InputError(
-                f"the step must be positive and the decimation at least 1, found dt = {excitation.dt} and decimation = {decimation}"
-            )
+        if not (isinstance(decimation, Integral) and decimation >= 1):
+            raise ArgumentError(f"`decimation`: a whole number of at least 1 was expected, found {shown(decimation)}", "decimation")

@@ -17,6 +17,7 @@ from vehgen.codegen.cache import compile_loops
 from vehgen.codegen.kernel_source import KernelSource
 from vehgen.codegen.time_loop import LOOP_IMPORTS, LOOP_SIGNATURE, SHARED_SIGNATURE, advance_block, read_shared
 from vehgen.errors import ArgumentError, shown
+from vehgen.files.limits import check_count
 
 Array = NDArray[np.float64]
 Consume = Callable[[slice, NDArray[Any], Array], None]
@@ -25,6 +26,8 @@ OWN_ROWS = 64
 """Steps whose drives are read at once where each lane has its own: few enough for the first cache."""
 BLOCK_SIZE = 32
 """Individuals that a thread takes at once."""
+MOST_THREADS = 10_000
+"""More are a slip of the pen."""
 WORTH_THREADS = 250_000
 """Blocks times steps times coordinates below which one core is as quick as several."""
 
@@ -44,7 +47,7 @@ class Excitation:
     forces: Array
 
     def __post_init__(self) -> None:
-        if not (isinstance(self.dt, Real) and 0 < self.dt < float("inf")):
+        if isinstance(self.dt, bool) or not (isinstance(self.dt, Real) and 0 < self.dt < float("inf")):
             raise ArgumentError(f"`dt`: a step in seconds above 0 was expected, found {shown(self.dt)}", "dt")
         for key in ("inputs", "rates", "forces"):
             given = getattr(self, key)
@@ -56,6 +59,10 @@ class Excitation:
                 found = f"shape {array.shape}" if isinstance(given, np.ndarray) else type(given).__name__
                 raise ArgumentError(f"`{key}`: an array of shape (n_steps + 1, n) was expected, found {found}", key)
             object.__setattr__(self, key, array)
+        rows = {key: getattr(self, key).shape[-2] for key in ("inputs", "rates", "forces")}
+        if len(set(rows.values())) > 1 or not rows["inputs"]:
+            found = ", ".join(f"{count} of {key}" for key, count in rows.items())
+            raise ArgumentError(f"`inputs`, `rates`, `forces`: a row each for the ends of every step was expected, found {found}", *rows)
 
     @property
     def n_steps(self) -> int:
@@ -121,6 +128,8 @@ class PopulationRun:
         into
             `shape (n_individuals, n_samples, n_channels)`, in the kernel's precision: where whole blocks write their responses.
         """
+        if threads is not None:
+            check_count(threads, "threads", 1, MOST_THREADS)
         drives = self._drives()
         shared = [] if self.own_drives else self._shared(drives)
         starts = range(0, len(self.columns), BLOCK_SIZE)

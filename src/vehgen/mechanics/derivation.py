@@ -102,6 +102,8 @@ def _listed(argument: str, items: Iterable[Item], kinds: tuple[type, ...]) -> tu
     for item in found:
         if not isinstance(item, kinds):
             raise ArgumentError(f"`{argument}`: {expected}, found {type(item).__name__}", argument)
+        if not (isinstance(item.name, str) and item.name):
+            raise ArgumentError(f"`{argument}`: a name was expected, found {shown(item.name)}", argument)
     names = [item.name for item in found]
     if double := next((name for name in names if names.count(name) > 1), None):
         raise ArgumentError(f"`{argument}`: two are named {shown(double)}; each needs a name of its own", argument)

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from numbers import Real
 
 import sympy as sp
+from pydantic_core import PydanticCustomError
 
 from vehgen.errors import ArgumentError, InputError, did_you_mean, shown
 from vehgen.files.checks import check_dimension
 from vehgen.files.document import locate_arguments
 from vehgen.files.expressions import Expression, ExpressionError, parse
+from vehgen.files.limits import VEHICLE_LENGTH
+from vehgen.files.quantities import read_quantity
 from vehgen.files.units import LENGTH
 from vehgen.mechanics.energies import Energies
 from vehgen.mechanics.equations_of_motion import Channel
@@ -21,12 +26,15 @@ from vehgen.mechanics.rows import Row, combine
 from vehgen.mechanics.symbols import number, parameter, to_sympy
 from vehgen.vehicle.model import Vehicle
 
+DISTANCE_ALONE = "`distance` counts from what `behind` names, and nothing is named: from the COG the place is `x: {ahead} m`"
+
 
 @dataclass(frozen=True)
 class Place:
     """A place on a body: `x` ahead of its COG, or `distance` [m] behind an axle, hinge or body named `behind`, `height` [m] above the COG.
 
-    `x` may be given as a text, such as `1.2 m` or `wheelbase - 1 m`; one that cannot be read is an InputError.
+    `x` may be given as a text, such as `1.2 m` or `wheelbase - 1 m`, or as a number [m]; lengths may be texts, too. What is no length of at
+    most 1 km, `x` beside `behind`, and a `distance` behind nothing are an InputError.
     Each place has a parameter `NAME.shift` [m], which moves it forward; it is 0 unless a population or a fit says otherwise.
     """
 
@@ -38,11 +46,19 @@ class Place:
     height: float = 0.0
 
     def __post_init__(self) -> None:
+        for key in ("distance", "height"):
+            object.__setattr__(self, key, _metres(getattr(self, key), key))
         if self.x is not None and not isinstance(self.x, Expression):
+            is_number = isinstance(self.x, Real) and not isinstance(self.x, bool)
             try:
-                object.__setattr__(self, "x", parse(str(self.x)))
+                object.__setattr__(self, "x", parse(f"{_metres(self.x, 'x')!r} m" if is_number else str(self.x)))
             except ExpressionError as error:
                 raise ArgumentError(f"`x`: {error}", "x") from error
+        if self.x is not None and self.behind is not None:
+            raise ArgumentError(f"{self.name}: a place has `x`, or `behind` with `distance`, not both", "x", "behind")
+        if self.distance and self.behind is None:
+            said = DISTANCE_ALONE.format(ahead=f"{-self.distance:g}")
+            raise ArgumentError(f"{self.name}: {said}", "distance", "behind")
 
     @property
     def shift(self) -> str:
@@ -147,3 +163,16 @@ def _axle_motion(output: ElementOutput, motion: Kinematics) -> Channel:
         raise InputError(f"{output.name}: {shown(output.owner)} is no axle with a mass of its own; {hint}")
     row: Row = {motion.index(f"hop.{output.owner}"): sp.S.One}
     return Channel(output.name, output.quantity, AXLE_MOTIONS[output.quantity], output.owner, **{output.quantity: row})
+
+
+def _metres(value: object, key: str) -> float:
+    """Return a length [m] from a number, or a text with its unit; raises ArgumentError for what is none or beyond any vehicle."""
+    try:
+        number = float(value) if isinstance(value, Real) and not isinstance(value, bool) else read_quantity(value, LENGTH)
+    except PydanticCustomError as error:
+        raise ArgumentError(f"`{key}`: {error.message()}", key) from error
+    if not math.isfinite(number):
+        raise ArgumentError(f"`{key}`: a finite number in m was expected, found {number}", key)
+    if (reason := VEHICLE_LENGTH.refusal(number)) is not None:
+        raise ArgumentError(f"`{key}`: {reason}", key)
+    return number

@@ -5,12 +5,13 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from numbers import Real
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from vehgen.errors import ArgumentError, ModelWarning
+from vehgen.errors import ArgumentError, ModelWarning, shown
 from vehgen.files.limits import FREQUENCY_LIMIT, SPEED_LIMIT
 from vehgen.files.result_fields import Array1D, Array3D
 from vehgen.files.results import Cell, Result, Table
@@ -154,6 +155,8 @@ def axle_delays(model: EquationsOfMotion, values: Mapping[str, float], speed: fl
     """
     if not model.vehicle.axles:
         raise ArgumentError(f"`speed`: {model.vehicle.name} has no axles", "speed")
+    if isinstance(speed, bool) or not isinstance(speed, Real):
+        raise ArgumentError(f"`speed`: a number in m/s was expected, found {shown(speed)}", "speed")
     if not speed > 0:
         raise ArgumentError(f"`speed`: must be above 0, found {speed:g}", "speed")
     if (reason := SPEED_LIMIT.refusal(speed)) is not None:

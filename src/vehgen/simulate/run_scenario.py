@@ -31,6 +31,7 @@ from vehgen.simulate.run_file import Run
 from vehgen.simulate.run_file.acquisition import channel_chains
 from vehgen.simulate.run_file.checks import TIME_COLUMN
 from vehgen.simulate.run_file.entries import DisplacementEntry, ForceEntry, HumpEntry
+from vehgen.simulate.run_file.loading import RunLike, as_run
 from vehgen.simulate.scenario import Scenario
 from vehgen.simulate.signals import Signal
 
@@ -39,15 +40,15 @@ AFTER_LAST_HUMP = 3.0
 """Seconds simulated after the last wheel left the last hump, where a run does not say how long it is."""
 
 
-def make_scenario(run: Run, model: EquationsOfMotion, values: dict[str, float]) -> Scenario:
-    """Build the scenario of a run file.
+def make_scenario(run: RunLike, model: EquationsOfMotion, values: Mapping[str, float]) -> Scenario:
+    """Build the scenario of a run or its file.
 
     Raises
     ------
     InputError
         For files that cannot be read, dimensions that do not fit, a run with no end, and one that would cost too much.
     """
-    run = _as_recorded(run)
+    run = _as_recorded(as_run(run))
     file = run.file
     offsets = model.wheel_offsets(values)
     speed = _speed(run)

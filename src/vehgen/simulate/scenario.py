@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.codegen import Excitation
+from vehgen.errors import ArgumentError
 from vehgen.measure.acquisition import POINT_SAMPLES, AcquisitionChain
 from vehgen.road import (
     AdjustedSpeed,
@@ -120,6 +122,9 @@ class Scenario:
         (length, form, skew, rounding; default: as it is). `forces` are gains and offsets [N] of the forces, `displacements` gains of
         those of the ground; on a rig without a road both come `delay` later. `farther` is each axle's (default: as before).
         """
+        if not (0 < speed < math.inf and math.isfinite(delay) and math.isfinite(height)):
+            said = "a finite `delay` and `height` and a `speed` above 0 were expected"
+            raise ArgumentError(f"{said}, found {delay:g}, {height:g} and {speed:g}", "delay", "height", "speed")
         late = delay if not self.track.parts else 0.0
         same = (delay, speed, wander) == (0.0, 1.0, None)
         law = self.speed if same else AdjustedSpeed(self.speed, delay, speed, anchor, wander)

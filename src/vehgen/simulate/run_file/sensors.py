@@ -15,7 +15,7 @@ from vehgen.files.expressions import Expression
 from vehgen.files.names import Column, Name, is_name
 from vehgen.files.quantities import PlaceLength, read_quantity
 from vehgen.files.units import read_unit
-from vehgen.mechanics.outputs import ElementOutput, Output, Place, PointOutput
+from vehgen.mechanics.outputs import DISTANCE_ALONE, ElementOutput, Output, Place, PointOutput
 from vehgen.mechanics.quantities import AXLE_MOTIONS, AXLE_QUANTITIES, HINGE_QUANTITIES, LINK_QUANTITIES, POINT_QUANTITIES
 from vehgen.simulate.run_file.acquisition import AcquisitionEntry
 
@@ -36,6 +36,8 @@ class PlaceEntry(FileModel):
     def _one_way(self) -> PlaceEntry:
         if self.x is not None and self.behind is not None:
             raise PydanticCustomError("joint", "a place has `x`, or `behind` with `distance`, not both")
+        if self.distance and self.behind is None:
+            raise PydanticCustomError("joint", DISTANCE_ALONE, {"ahead": f"{-self.distance:g}"})
         return self
 
     def place(self, name: str) -> Place:
