@@ -6,7 +6,7 @@ import pytest
 from vehgen.errors import InputError
 from vehgen.mechanics import derive, is_held, static_loads
 from vehgen.simulate import load_run, natural_modes, simulate
-from vehgen.vehicle import load_vehicle
+from vehgen.vehicle import load_vehicle, parse_vehicle
 
 CARRIAGE = """name: carriage
 gravity: {gravity}
@@ -84,3 +84,27 @@ def test_with_gravity_something_must_hold_it(carriage):
     vehicle, _ = carriage(gravity="true")
     with pytest.raises(InputError, match="nothing holds heave"):
         static_loads(load_vehicle(vehicle))
+
+
+TWO_AXLES = """
+bodies:
+  van: {mass: 2 t, pitch_inertia: 4 t m^2}
+  pallet: {mass: 400 kg, motions: [MOTION], pitch_inertia: 50 kg m^2, carried_by: {body: van, x: -1 m}}
+axles:
+  front: {body: van, x: 1.5 m, tyre: {k: 200 kN/m}}
+  rear: {body: van, x: REAR, tyre: {k: 200 kN/m}}
+links: {floor: {van: {x: -1 m}, pallet: {x: 0 m}, k: 1.5 MN/m}}
+"""
+
+
+def test_what_falls_is_named_not_what_it_takes_along():
+    """Both axles under one place: the van turns about it, and the pallet, on a stiff floor, goes with the van."""
+    with pytest.raises(InputError, match=r"nothing holds (heave|pitch)\.van against gravity"):
+        static_loads(parse_vehicle(TWO_AXLES.replace("MOTION", "heave").replace("REAR", "1.5 m")))
+
+
+def test_a_motion_that_neither_spring_nor_weight_decides_stays_at_rest():
+    """A body that only turns, held at its COG: its mass stands on the van, whose loads are those of a rigid one."""
+    loads = static_loads(parse_vehicle(TWO_AXLES.replace("MOTION", "pitch").replace("REAR", "-1.5 m")))
+    assert loads.axles == pytest.approx({"front": 9.81 * (1000 + 400 * 0.5 / 3), "rear": 9.81 * (1000 + 400 * 2.5 / 3)}, rel=1e-9)
+    assert loads.elements["link", "floor"] == pytest.approx(0.0, abs=1e-6)

@@ -74,3 +74,12 @@ def test_a_link_whose_ends_do_not_stand_over_one_another_is_warned_of():
     (found,) = [item for item in warnings(CAB % "0.5 m") if "ends of the link" in item]
     assert found.startswith("the ends of the link aft stand 1.00 m apart along the vehicle; a link acts vertically")
     assert not [item for item in warnings(CAB % "0.5 m" + "silence: [link_gap aft]\n") if "ends of the link" in item]
+
+
+@pytest.mark.parametrize(
+    ("tyre", "said"), [("k: 1 MN/m", []), ("k: 200 kN/m", ["the tyre of one is pressed in by 0.21 m at rest: too much load or too soft"])]
+)
+def test_a_load_that_presses_a_tyre_flat_is_told(tyre, said):
+    text = SHORT_AXLES.replace("k: 1 MN/m", tyre) % ""
+    assert [item for item in warnings(text) if "pressed in" in item and " one " in item] == said
+    assert not [item for item in warnings(text + "silence: [deflection one]\n") if "of one is pressed in" in item]

@@ -16,7 +16,14 @@ from vehgen.mechanics.derivation import ModelLike, all_values, as_model
 from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
 from vehgen.mechanics.hinge_forces import far_side, lifted_travel
+from vehgen.mechanics.numeric_model import NumericModel
 from vehgen.mechanics.quantities import WITH_STATIC
+
+Array = NDArray[np.float64]
+HELD = 1e-12
+"""A motion whose stiffness is below this share of the stiffest one's, coordinates being scaled alike, is held by no spring."""
+UNWEIGHED = 1e-9
+"""A weight has no part in a motion where that is below this share of the whole."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +82,7 @@ def static_loads(model: ModelLike, values: Mapping[str, float] | None = None, *,
         displacement, forces = np.zeros(model.n_dof), np.zeros(len(model.elements))
     else:
         numeric = model.numeric(values)
-        displacement = _solve(model, numeric.K, numeric.weight)
+        displacement = _solve(model, numeric)
         rows, stiffness = element_rows(model, values)
         forces = stiffness * (rows @ displacement)
     elements: dict[tuple[str, str], float] = {
@@ -135,25 +142,41 @@ def static_deflections(model: EquationsOfMotion, values: Mapping[str, float], lo
 
 def is_held(model: EquationsOfMotion, values: Mapping[str, float]) -> bool:
     """Return whether springs hold the vehicle in every motion, at values of its parameters [SI]."""
-    return _scaled_modes(model.numeric(values).K)[2]
+    return not _Balance.of(model.numeric(values)).loose.size
 
 
-def _scaled_modes(K: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], bool]:
-    """Return what scales coordinates alike `shape (n_dof,)`, the softest direction, and whether a spring holds it."""
-    scale = np.sqrt(np.maximum(np.diag(K), np.finfo(float).tiny))
-    eigenvalues, vectors = np.linalg.eigh(K / np.outer(scale, scale))
-    return scale, vectors[:, 0], bool(eigenvalues[0] >= 1e-12 * max(eigenvalues[-1], 1.0))
+@dataclass(frozen=True)
+class _Balance:
+    """K q = weight with coordinates in units `scale shape (n_dof,)` in which they are alike stiff; no spring holds the motions `loose`."""
+
+    stiffness: Array
+    scale: Array
+    loose: Array
+
+    @classmethod
+    def of(cls, numeric: NumericModel) -> _Balance:
+        stiff = np.diag(numeric.K)
+        scale = np.sqrt(np.where(stiff > 0, stiff, stiff.max(initial=0.0) or 1.0))
+        stiffness = numeric.K / np.outer(scale, scale)
+        eigenvalues, vectors = np.linalg.eigh(stiffness)
+        return cls(stiffness, scale, vectors[:, eigenvalues < HELD * max(eigenvalues[-1], 1.0)])
 
 
-def _solve(model: EquationsOfMotion, K: NDArray[np.float64], weight: NDArray[np.float64]) -> NDArray[np.float64]:
-    scale, softest, held = _scaled_modes(K)
-    if not held:
-        free = model.coordinates[int(np.argmax(np.abs(softest)))]
-        raise InputError(
-            f"singular stiffness: nothing holds {free.name} against gravity; give it a spring, a tyre or a link",
-            model.vehicle.position("axles" if free.motion == "hop" else "bodies", free.owner, key=True),
-        )
-    return np.asarray(np.linalg.solve(K / np.outer(scale, scale), weight / scale) / scale, dtype=np.float64)
+def _solve(model: EquationsOfMotion, numeric: NumericModel) -> Array:
+    """Return the displacement at rest; of a motion that neither spring nor weight decides, that of the least travel."""
+    balance = _Balance.of(numeric)
+    weight = numeric.weight / balance.scale
+    if not balance.loose.size:
+        return np.asarray(np.linalg.solve(balance.stiffness, weight) / balance.scale, dtype=np.float64)
+    falling = balance.loose @ (balance.loose.T @ weight)
+    if np.linalg.norm(falling) <= UNWEIGHED * np.linalg.norm(weight):
+        return np.asarray(np.linalg.lstsq(balance.stiffness, weight - falling, rcond=HELD)[0] / balance.scale, dtype=np.float64)
+    motion = falling / balance.scale
+    free = model.coordinates[int(np.argmax(motion * (numeric.M @ motion)))]
+    raise InputError(
+        f"singular stiffness: nothing holds {free.name} against gravity; give it a spring, a tyre or a link",
+        model.vehicle.position("axles" if free.motion == "hop" else "bodies", free.owner, key=True),
+    )
 
 
 def _hinge_force(model: EquationsOfMotion, name: str, elements: Mapping[tuple[str, str], float], values: Mapping[str, float]) -> float:

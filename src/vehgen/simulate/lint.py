@@ -11,12 +11,14 @@ from vehgen.errors import InputError
 from vehgen.files.number_text import kilonewtons, on_terminal
 from vehgen.mechanics.energies import pitch_inertia
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
-from vehgen.mechanics.static_loads import static_loads
+from vehgen.mechanics.static_loads import static_deflections, static_loads
 from vehgen.mechanics.symbols import to_sympy
 from vehgen.simulate.modes import natural_modes
 from vehgen.vehicle.checks.silenced import is_silenced
 from vehgen.vehicle.parts import GROUND
 
+DEFLECTION = {"suspension": 0.35, "tyre": 0.15}
+"""Suspensions and tyres that weight presses in by more [m] would long stand on their stops and rims."""
 GYRATION = (0.12, 0.75)
 """Radius of gyration over the span of what is attached to a body: a uniform rod has 0.29, two masses at its ends 0.5."""
 BODY_BAND = (0.5, 5.0)
@@ -35,11 +37,11 @@ def lint(model: EquationsOfMotion, values: Mapping[str, float] | None = None) ->
     """Return one sentence for each thing that deserves a second look, at these parameter values, but for what the file silences."""
     values = values or model.values()
     try:
-        loads = static_loads(model, values).axles
-        found: list[str] = []
+        rest = static_loads(model, values)
+        findings, found = [*_loads(rest.axles), *_deflections(static_deflections(model, values, rest))], list[str]()
     except InputError as error:
-        loads, found = {}, [error.message]
-    findings = (*_loads(loads), *_gyration(model, values), *_gaps(model, values), *_links(model, values), *_modes(model, values))
+        findings, found = [], [error.message]
+    findings += (*_gyration(model, values), *_gaps(model, values), *_links(model, values), *_modes(model, values))
     return [*found, *(text for kind, part, text in findings if not is_silenced(model.vehicle, kind, part))]
 
 
@@ -48,6 +50,16 @@ def _loads(loads: Mapping[str, float]) -> Iterator[Finding]:
         if force < 0:
             text = f"negative load on {name}: {on_terminal(kilonewtons(force))} kN; its tyre would have to pull the vehicle down"
             yield "negative_load", name, text
+
+
+def _deflections(deflections: Mapping[tuple[str, str], float]) -> Iterator[Finding]:
+    for (kind, name), travel in deflections.items():
+        if abs(travel) > DEFLECTION.get(kind, np.inf):
+            yield (
+                "deflection",
+                name,
+                f"the {kind} of {name} is pressed in by {travel:.2f} m at rest: too much load or too soft",
+            )
 
 
 def _gyration(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[Finding]:

@@ -5,7 +5,14 @@ from __future__ import annotations
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.vehicle.model import Vehicle
 
-WARNINGS = {"negative_load": "axles", "gyration": "bodies", "axle_gap": "axles", "link_gap": "links", "body_mode": "bodies"}
+WARNINGS = {
+    "negative_load": "axles",
+    "deflection": "axles",
+    "gyration": "bodies",
+    "axle_gap": "axles",
+    "link_gap": "links",
+    "body_mode": "bodies",
+}
 """Kinds of warnings -> the parts that they speak of."""
 
 
