@@ -239,3 +239,19 @@ def test_lint_finds_what_is_odd():
     assert any(
         "negative load" in text for text in lint(derive(load_vehicle("sedan2")), {**derive(load_vehicle("sedan2")).values(), "Lf": -2.0})
     )
+
+
+@pytest.mark.parametrize(
+    ("at", "said"),
+    [
+        (-0.2, "the hump at -0.2 m lies under front as the run begins, which it meets as a sudden step"),
+        (-3.0, "the hump at -3 m lies under rear as the run begins"),
+        (-1.0, "the hump at -1 m lies behind the first wheel as the run begins: it is met from rear on alone"),
+        (0.5, None),
+    ],
+)
+def test_humps_at_the_start_are_told(tmp_path, at, said):
+    hump = f"{{shape: half_sine, length: 0.5 m, height: 5 cm, at: {at} m}}"
+    (tmp_path / "run.yaml").write_text(f"vehicle: sedan2\nspeed: 2 m/s\nduration: 3 s\nroad: [{{hump: {hump}}}]\n", encoding="utf-8")
+    found = [item for item in simulate(tmp_path / "run.yaml").warnings if "as the run begins" in item]
+    assert [item[: len(said or "")] for item in found] == ([said] if said else [])

@@ -22,7 +22,15 @@ from vehgen.simulate.response import Response, ResponseChannel
 from vehgen.simulate.run_file.loading import RunLike, as_run
 from vehgen.simulate.run_scenario import make_scenario
 from vehgen.simulate.scenario import Scenario
-from vehgen.simulate.warnings import at_every_step, lift_off, missed_peaks, roads_not_met, spectral_nulls, step_too_coarse
+from vehgen.simulate.warnings import (
+    at_every_step,
+    humps_at_the_start,
+    lift_off,
+    missed_peaks,
+    roads_not_met,
+    spectral_nulls,
+    step_too_coarse,
+)
 from vehgen.vehicle import Vehicle, VehicleLike
 
 Array = NDArray[np.float64]
@@ -250,6 +258,7 @@ def simulate(run: RunLike, *, vehicle: VehicleLike | None = None) -> Response:
         *lift_off(simulator.model, values, steps[:, n:]),
         *missed_peaks(channels, scenario, read[0], steps[:, :n] / factors),
         *roads_not_met(scenario),
+        *humps_at_the_start(scenario, dict(zip(run.vehicle.axles, simulator.model.wheel_offsets(values).tolist(), strict=True))),
         *spectral_nulls(simulator.model, values, scenario),
         *step_too_coarse(simulator.model, values, scenario),
         *doubtful_profiles(simulator.model, values, scenario),

@@ -83,6 +83,16 @@ def roads_not_met(scenario: Scenario) -> Iterator[str]:
             yield f"the {what} at {begin:.4g} m is not met: the run ends at {end:.4g} m; a longer `duration`, or a road that begins earlier"
 
 
+def humps_at_the_start(scenario: Scenario, axles: Mapping[str, float]) -> Iterator[str]:
+    """Warn of humps that lie under a wheel as the run begins, a sudden step, or behind the first; axles stand so far behind it [m]."""
+    for hump in scenario.humps:
+        end = hump.at + hump.length
+        if under := [name for name, behind in axles.items() if hump.at < -behind < end]:
+            yield f"the hump at {hump.at:g} m lies under {under[0]} as the run begins, which it meets as a sudden step: put it ahead (`at`)"
+        elif end <= 0 and (later := [name for name, behind in axles.items() if -behind <= hump.at]):
+            yield f"the hump at {hump.at:g} m lies behind the first wheel as the run begins: it is met from {later[0]} on alone"
+
+
 def spectral_nulls(model: EquationsOfMotion, values: Mapping[str, float], scenario: Scenario) -> Iterator[str]:
     """Warn where a null of a hump's spectrum meets a hop mode: the run hardly excites that axle."""
     hop = np.array([item.motion == "hop" for item in model.coordinates])
