@@ -50,3 +50,55 @@ def test_a_band_may_reach_the_highest_frequency_whatever_comes_before_the_hump(t
     (trial,) = load_trials([path])
     assert len(lead_in(trial).recording.time) % 2 == (at != "4 m")
     assert len(validate("sedan2", path, bands=[(20.0, 50.0)]).channels) == 4
+
+
+def changed(path, change):
+    """Write a run's table anew, its rows `t, F_az, F_q, R_az, R_q` as `change` makes them."""
+    table = path.with_suffix(".csv")
+    np.savetxt(
+        table, change(np.loadtxt(table, delimiter=",", skiprows=1)), delimiter=",", header="t,F_az,F_q,R_az,R_q", comments="", fmt="%.8g"
+    )
+
+
+def of(number, act):
+    def change(rows):
+        rows[:, number] = act(rows[:, number])
+        return rows
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (of(3, lambda x: x), []),
+        (of(3, lambda x: -x), ["run: R_az reads the vehicle's answer the other way round (correlation -"]),
+        (of(3, lambda x: np.roll(x, 80)), ["run: R_az is like the vehicle's answer 0.80 s later (correlation 0."]),
+        (of(3, lambda x: np.roll(x, -80)), ["run: R_az is like the vehicle's answer 0.80 s earlier (correlation 0."]),
+        (of(3, lambda x: np.random.default_rng(3).normal(0, 0.002, len(x))), ["run: R_az reads 0.00"]),
+        (of(3, lambda x: x + 9.81), []),
+    ],
+    ids=["as it is", "turned", "late", "early", "dead", "with gravity"],
+)
+def test_a_channel_that_is_another_than_the_vehicles_answer_is_told(tmp_path, change, said):
+    path = write_run(tmp_path, "run", sedan_truth(), 2.5)
+    changed(path, change)
+    found = validate("sedan2", path, bands=BANDS).channels
+    doubts = [doubt for item in found if (doubt := item.doubt())]
+    assert [doubt[: len(begin)] for doubt, begin in zip(doubts, said, strict=True)] == said
+
+
+def test_a_motion_that_was_not_recorded_is_no_noise(tmp_path):
+    path = write_run(tmp_path, "run", sedan_truth(), 2.5)
+    changed(path, of(3, lambda x: np.random.default_rng(3).normal(0, 0.002, len(x))))
+    found = {item.channel: item for item in validate("sedan2", path, bands=BANDS).channels}
+    assert found["R_az"].audible.all()
+    assert (found["R_az"].errors > 5).all()
+
+
+def test_what_a_sensor_reads_at_rest_is_no_error_of_the_model(tmp_path):
+    path = write_run(tmp_path, "run", sedan_truth(), 2.5)
+    plain = {item.channel: item.errors for item in validate("sedan2", path, bands=[(0.1, 2.0)]).channels}
+    changed(path, of(1, lambda x: x + 9.81))
+    offset = {item.channel: item.errors for item in validate("sedan2", path, bands=[(0.1, 2.0)]).channels}
+    assert offset["F_az"] == pytest.approx(plain["F_az"], abs=1e-3)

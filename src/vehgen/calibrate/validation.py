@@ -19,6 +19,7 @@ from vehgen.fit.trial import Trial, TrialLike, load_trials
 from vehgen.measure import ARTICULATED_BANDS, SPECTRA, TWO_AXLE_BANDS, band_rms, record_psd, relative_errors, welch_psd
 from vehgen.measure.astm import NOTE
 from vehgen.measure.curves import ChannelCurves
+from vehgen.measure.likeness import ALIKE, UNLIKE, Agreement, agreement
 from vehgen.measure.quality import in_foreign_unit
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 
@@ -31,6 +32,8 @@ NOISE_BAND_SHARES = (0.82, 0.94)
 """The top of the band, as shares of the highest frequency."""
 REFERENCE_HZ = (1.0, 25.0)
 """Frequencies of a reference spectrum [Hz]."""
+READ_AT_REST = ("acceleration", "fore_aft_acceleration", "pitch_rate", "pitch_acceleration")
+"""What sensors read of these at rest is an offset of theirs."""
 MAX_CHANNELS = 500
 """A file with more channels than this is refused: no figure could show them."""
 LONGEST_RECORD = 3.0
@@ -42,9 +45,9 @@ class ChannelComparison:
     """One channel of one run, measured against simulated.
 
     `frequency shape (n,)` [Hz], `measured_psd` and `simulated_psd shape (n,)` [unit^2/Hz]; `measured_rms`, `simulated_rms`, `errors` `shape
-    (n_bands,)`, errors as Eq. 32 of Wu & Li 2023; `audible` says in which bands the measured RMS stands LOUD times above the noise that the
-    top of the band shows, and above what shook the vehicle before a hump: errors elsewhere compare with those. `time`, `measured`,
-    `simulated` are the histories.
+    (n_bands,)`, errors as Eq. 32 of Wu & Li 2023; `audible` says in which bands the measured or the simulated RMS stands LOUD times above
+    the noise that the top of the band shows, and above what shook the vehicle before a hump: errors elsewhere compare with those. `time`,
+    `measured`, `simulated` are the histories; what an accelerometer or a gyroscope reads at rest is taken off.
     """
 
     run: str
@@ -75,6 +78,26 @@ class ChannelComparison:
     def in_foreign_unit(self) -> bool:
         """Whether it stands above noise, and is so much louder or quieter than the vehicle's answer as only another unit makes it."""
         return bool(self.audible.any()) and in_foreign_unit(self.loudness)
+
+    @property
+    def agreement(self) -> Agreement:
+        """How alike both histories are, and how much later the measured one would have to be taken."""
+        return agreement(self.measured, self.simulated, float(self.time[1] - self.time[0]))
+
+    def doubt(self) -> str | None:
+        """Say what a channel's unit, sign or clock may be, where its history is another than the vehicle's answer; None where it is not."""
+        if not self.audible.any():
+            return None
+        what, alike = f"{self.run}: {self.channel}", self.agreement
+        if self.in_foreign_unit:
+            return f"{what} reads {self.loudness:.4g} times what the vehicle answers: is it in the unit that is stated, and not dead?"
+        if alike.at_once < -ALIKE:
+            return f"{what} reads the vehicle's answer the other way round (correlation {alike.at_once:.2f}): is its `sign` right?"
+        if alike.at_best > ALIKE and alike.at_once < UNLIKE:
+            when = "later" if alike.late > 0 else "earlier"
+            said = f"{abs(alike.late):.2f} s {when} (correlation {alike.at_best:.2f}, as it is {alike.at_once:.2f})"
+            return f"{what} is like the vehicle's answer {said}: is the hump's `at`, the speed or the clock another?"
+        return None
 
     @property
     def psds(self) -> ChannelCurves:
@@ -185,6 +208,8 @@ def compare_trial(trial: Trial, bands: Bands) -> list[ChannelComparison]:
     dt, before = trial.recording.dt, lead_in(trial)
     for i, channel in enumerate(trial.recording.channels):
         measured, simulated = trial.recording.values[:, i], result.responses[0, :, i]
+        if channel.quantity in READ_AT_REST:
+            measured = measured - (measured if before is None else before.recording.values[:, i]).mean()
         densities = []
         for values in (measured, simulated):
             averaged = rough and len(values) * dt > LONGEST_RECORD * SEGMENT
@@ -203,7 +228,7 @@ def compare_trial(trial: Trial, bands: Bands) -> list[ChannelComparison]:
                 measured_rms=rms[0],
                 simulated_rms=rms[1],
                 errors=relative_errors(rms[1], rms[0]),
-                audible=rms[0] > LOUD * noise,
+                audible=np.maximum(rms[0], rms[1]) > LOUD * noise,
                 frequency=frequency,
                 measured_psd=densities[0],
                 simulated_psd=densities[1],

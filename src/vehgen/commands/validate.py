@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from vehgen.commands.option_strings import read_bands
 from vehgen.commands.results import add_out, folder_named, tell_written
 from vehgen.commands.terminal import add_json, print_json, print_table, warn
 from vehgen.files import check_results, write_text
-
-if TYPE_CHECKING:
-    from vehgen.calibrate.validation import Validation
 
 EXAMPLE = "vehgen validate calibrated/tractor5_calibrated.yaml road_b.yaml --out validation"
 ARGUMENT_OPTIONS = {"reference": "--astm"}
@@ -52,7 +48,7 @@ def run(options: argparse.Namespace) -> None:
     found = validate(vehicle, trials, bands=bands, reference=options.astm)
     write_text(files[0], json_text(found))
     files += save_validation_figures(found, folder)
-    doubts = _doubts(found)
+    doubts = [doubt for item in found.channels if (doubt := item.doubt())]
     if options.json:
         data = found.to_dict()
         del data["reference"]
@@ -69,12 +65,3 @@ def run(options: argparse.Namespace) -> None:
         print_table(f"{item.run}: {item.channel}", ("band [Hz]", "measured rms", "simulated rms", "error [%]"), rows, right=(1, 2, 3))
     warn(doubts)
     tell_written(files)
-
-
-def _doubts(found: Validation) -> list[str]:
-    """Return a warning for each channel that reads far more, or far less, than what the vehicle answers."""
-    return [
-        f"{item.run}: {item.channel} reads {item.loudness:.4g} times what the vehicle answers: is it in the unit that is stated?"
-        for item in found.channels
-        if item.in_foreign_unit
-    ]

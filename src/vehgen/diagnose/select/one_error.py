@@ -16,7 +16,7 @@ from vehgen.diagnose.inputs.judging import supposed_mistakes
 from vehgen.diagnose.result import Decided
 from vehgen.diagnose.select.criteria import is_told
 from vehgen.diagnose.select.fitter import Fitter
-from vehgen.diagnose.select.ranking import SearchRound, merit
+from vehgen.diagnose.select.ranking import SearchRound, merit, own_numbers
 from vehgen.effects import RunEffect
 from vehgen.effects.evidence import StartingPoint
 from vehgen.fit.parallel import HERE, Runner
@@ -134,8 +134,12 @@ def _within_belief(fit: ModelFit, believed: Detection) -> ModelFit:
 
 
 def _explains(fit: ModelFit, strained: Detection, believed: Detection) -> bool:
-    """Return whether an error alone explains the runs, better than the many of the strained base."""
-    return merit(fit) < strained.base.squares and leaves_noise(fit, believed)
+    """Return whether an error alone explains the runs, and is likelier than the many of the strained base.
+
+    By the whole likelihood: gains that a base supposes make its noise louder or quieter, so that squares over it do not compare.
+    """
+    price = own_numbers(fit) * float(np.log(fit.n_residuals))
+    return fit.least_squares.loss + price < strained.base.least_squares.loss and leaves_noise(fit, believed)
 
 
 def leaves_noise(fit: ModelFit, detection: Detection) -> bool:
