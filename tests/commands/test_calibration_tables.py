@@ -83,6 +83,13 @@ def test_the_facts_that_help_most_are_asked_for_with_how_to_give_them(open_summa
     assert "help most" not in printed(capsys, replace(open_summary, prior_data_advice=(replace(KERB_MASS, width_left=0.95),)))
 
 
+def test_channels_that_the_fit_does_not_explain_are_named_though_chi2_is_one(summary, capsys):
+    assert "not explained" not in printed(capsys, summary)
+    apart = {**dict.fromkeys(summary.objective, 0.3), "hump: F_az": 0.7, "hump: R_az": 1.34}
+    text = printed(capsys, replace(summary, objective=apart, run_chi2={"hump": 1.0}))
+    assert "not explained by the fit, by the area between the PSDs: hump: R_az (1.34), hump: F_az (0.70); what is left" in text
+
+
 def test_wider_intervals_and_doubtful_runs_are_spoken_of(summary, capsys):
     far = tuple(replace(item, sigmas=-5.0, value=-0.05 if item.name == "speed" else item.value) for item in summary.conditions)
     text = printed(capsys, replace(summary, conditions=far, run_chi2={"hump": 2.25}, interval_inflation=1.5))

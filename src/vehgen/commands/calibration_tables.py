@@ -12,6 +12,8 @@ if TYPE_CHECKING:
 
 MAX_CHI2 = 1.2
 """Above this the residuals are larger than the noise model allows."""
+UNEXPLAINED_AREA = 0.5
+"""Channels whose PSDs lie so far apart are not those of the vehicle: of vehicles that fit, also over rough roads, 0.3 were the most."""
 FAR_OFF_SIGMAS = 3.0
 """A run's condition this far off what was known is doubtful."""
 NEVER_LEFT_OUT = ("delay", "speed", "height", "clock")
@@ -119,6 +121,19 @@ def _far_off(outcome: CalibrationSummary) -> list[str]:
     return found
 
 
+def _unexplained(outcome: CalibrationSummary) -> list[str]:
+    """Say which channels the fit does not explain: what it leaves may pass for noise or roughness, and chi2 then shows nothing."""
+    apart = {name: area for name, area in outcome.objective.items() if area > UNEXPLAINED_AREA}
+    if not apart:
+        return []
+    told = _listed([f"{name} ({area:.2f})" for name, area in sorted(apart.items(), key=lambda item: -item[1])])
+    return [
+        f"not explained by the fit, by the area between the PSDs: {told}; what is left was taken for noise or a rough road, which chi2 may "
+        "not show. A channel that is exchanged, turned, dead or in another unit, or something that the model lacks? Look at the figures, "
+        "and let `diagnose` look for it"
+    ]
+
+
 def _warnings(outcome: CalibrationSummary) -> list[str]:
     found = list(dict.fromkeys(item.told for item in outcome.recorder))
     rank, searched = outcome.rank, outcome.searched
@@ -131,6 +146,7 @@ def _warnings(outcome: CalibrationSummary) -> list[str]:
     bound = [name for name, item in outcome.parameters.items() if item.status == "bound"]
     if bound:
         found.append(f"set by the search range, not by the data: {', '.join(bound)}")
+    found += _unexplained(outcome)
     found += _far_off(outcome)
     found += [
         f"the tyre of {name} would have left the road (its load falls to {share:.2f} of the static load): the linear tyre does not hold"

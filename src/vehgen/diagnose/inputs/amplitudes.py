@@ -206,9 +206,8 @@ def other_gain(run: str, channel: str, gain: float) -> MeasurementFault:
 
 def drift_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     """Yield that channels have an offset or a drift, all of them together."""
-    found: dict[str, list[str]] = {}
+    found: dict[str, dict[str, float]] = {}
     trials = []
-    largest = 0.0
     for trial, predicted in zip(case.trials, case.predictions, strict=True):
         if not is_held(trial.simulator.model, trial.values):
             return  # what nothing holds drifts by itself
@@ -219,8 +218,7 @@ def drift_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
         share = np.abs(line).max(axis=0) / np.maximum(loudness, 1e-300)
         for name, own in zip(trial.channels, share, strict=True):
             if own > DRIFT_NOTICED:
-                found.setdefault(name, []).append(trial.name)
-                largest = max(largest, float(own))
+                found.setdefault(name, {})[trial.name] = float(own)
         values = trial.recording.values - np.where(share > DRIFT_NOTICED, line, 0.0)
         trials.append(replace(trial, recording=replace(trial.recording, values=values)))
     if found:
@@ -229,7 +227,8 @@ def drift_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
                 "drift",
                 tuple(runs),
                 (name,),
-                f"{name} has an offset or drifts {place_words(tuple(runs), case.runs)}, by up to {100 * largest:.0f} % of its RMS",
+                f"{name} has an offset or drifts {place_words(tuple(runs), case.runs)}, "
+                f"by up to {100 * max(runs.values()):.0f} % of its RMS",
                 "take mean and trend off the column, or import the recording with its quiet lead-in, which does so",
             )
             for name, runs in found.items()
