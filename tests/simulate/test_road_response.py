@@ -29,9 +29,50 @@ sensors: {rear: {body: body, behind: rear, distance: 0.2 m, channels: {accelerat
 outputs: {load: {axle: rear, quantity: tyre_force}}
 """
 
+M, MU, K, KT, SPEED = 2000.0, 300.0, 120e3, 900e3, 20.0
+"""Body and axle [kg], suspension and tyre [N/m], and the speed [m/s] of :func:`two_masses`."""
+
 
 def outputs(found):
     return {item.name: item for item in found.outputs}
+
+
+def two_masses(ratio, relaxation=None):
+    """Return the file of a body on an axle whose suspension has a damping ratio, that of the body on it alone, and may relax [N/m, s]."""
+    laws = f", laws: [{{relaxation: {{k: {relaxation[0]} N/m, time: {relaxation[1]} s}}}}]" if relaxation else ""
+    spring = f"{{k: {K} N/m, c: {2 * ratio * np.sqrt(K * M):.12g} N s/m{laws}}}"
+    return (
+        f"name: two_masses\nbodies: {{body: {{mass: {M} kg, motions: [heave]}}}}\n"
+        f"axles: {{axle: {{body: body, x: 0 m, mass: {MU} kg, suspension: {spring}, tyre: {{k: {KT} N/m}}}}}}"
+    )
+
+
+def two_masses_by_hand(ratio, relaxation=(0.0, 0.0)):
+    """Return by output the numerator n of H = s^2 n/d per metre of road, and d: polynomials of s in descending powers.
+
+    A suspension of stiffness S/T, T = 1 + s time, has S = (k + c s) T + k1 s time: Newton's laws of body and axle, multiplied by T.
+    """
+    k1, time = relaxation
+    T = np.poly1d([time, 1.0])
+    S = np.poly1d([2 * ratio * np.sqrt(K * M), K]) * T + np.poly1d([k1 * time, 0.0])
+    d = np.poly1d([M * MU, 0.0, M * KT, 0.0, 0.0]) * T + S * np.poly1d([M + MU, 0.0, KT])
+    return {"body": KT * S, "axle tyre": KT * (np.poly1d([M * MU, 0.0, 0.0]) * T + (M + MU) * S), "axle travel": -KT * M * T}, d
+
+
+def exact_rms(n, d):
+    """Return the RMS on a road of class C at the speed, of H = s^2 n/d: an integral of partial fractions, exact.
+
+    G(f) is C/f^2, so that |H|^2 G is C (2 pi)^2 w^2 |n|^2/|d|^2, a sum of r/(w - p) over the poles p and their conjugates.
+    """
+    roots = -1j * d.roots
+    poles = np.concatenate([roots, roots.conj()])
+    total = 0j
+    low, high = 2 * np.pi * 0.011 * SPEED, 2 * np.pi * 2.83 * SPEED
+    for i, pole in enumerate(poles):
+        others = np.prod(pole - np.delete(poles, i)) * abs(d.coeffs[0]) ** 2
+        residue = pole**2 * n(1j * pole) * n(-1j * pole) / others
+        total += residue * (np.log(high - pole) - np.log(low - pole))
+    return np.sqrt(total.real / (2 * np.pi) * (2 * np.pi) ** 2 * 256e-6 * (SPEED * 0.1) ** 2 / SPEED)
 
 
 def test_a_quarter_car_has_the_closed_form():
@@ -56,6 +97,69 @@ def test_a_quarter_car_has_the_closed_form():
     np.testing.assert_allclose(found.psd[row], abs(expected) ** 2 * road, rtol=1e-4)
     tyre = names.index(f"{axle_name} tyre")
     np.testing.assert_allclose(found.amplitude[tyre], abs(wheel * (1 - axle_over_road)), rtol=1e-4)
+
+
+LIGHTLY = [(0.3, None), (2e-3, None), (5e-5, None), (1e-6, None), (5e-5, (2000.0, 2.0))]
+
+
+@pytest.mark.parametrize(("ratio", "relaxation"), LIGHTLY)
+def test_rms_and_peaks_are_exact_however_light_the_damping(ratio, relaxation):
+    found = road_response(parse_vehicle(two_masses(ratio, relaxation)), speed=SPEED, roughness="C")
+    numerators, d = two_masses_by_hand(ratio, *([relaxation] if relaxation else []))
+    table = {row[0]: row[4:] for row in found.table()[1]}
+    near = [p.imag + abs(p.real) * np.linspace(-9.0, 9.0, 9001) for p in d.roots if p.imag > 0]
+    s = 1j * np.concatenate([2 * np.pi * np.geomspace(0.011 * SPEED, 2.83 * SPEED, 20001), *near])
+    for name, n in numerators.items():
+        amplitude = abs(s**2 * n(s) / d(s))
+        assert outputs(found)[name].rms == pytest.approx(exact_rms(n, d), rel=1e-3)
+        largest, at, loudest = table[name]
+        assert largest == pytest.approx(amplitude.max(), rel=1e-3)
+        first, second = 2j * np.pi * at, 2j * np.pi * loudest
+        assert abs(first**2 * n(first) / d(first)) == pytest.approx(amplitude.max(), rel=2e-3)
+        assert abs(second * n(second) / d(second)) == pytest.approx((amplitude / abs(s)).max(), rel=2e-3)
+
+
+@pytest.mark.parametrize(("ratio", "relaxation"), LIGHTLY)
+def test_the_curves_that_are_kept_have_the_rms_that_is_told(ratio, relaxation):
+    found = road_response(parse_vehicle(two_masses(ratio, relaxation)), speed=SPEED, roughness="C")
+    columns, rows = found.curves()
+    written = [",".join(columns), *(",".join(f"{cell:.9g}" for cell in row) for row in rows)]
+    assert len(rows) < 2500
+    table = np.loadtxt(written[1:], delimiter=",")
+    for i, item in enumerate(found.outputs):
+        assert np.sqrt(np.trapezoid(table[:, 4 + 3 * i], table[:, 0])) == pytest.approx(item.rms, rel=0.01)
+
+
+def test_a_mode_without_damping_is_warned_of(tmp_path, capsys):
+    found = road_response(parse_vehicle(two_masses(1e-9)), speed=SPEED, roughness="C")
+    assert [note.partition(" has hardly any damping (ratio ")[0] for note in found.notes] == [
+        "body heave at 1.157 Hz",
+        "axle hop at 9.29 Hz",
+    ]
+    assert all("body, axle hop, axle travel, axle tyre mean nothing" in note for note in found.notes)
+    assert RoadResponse.from_dict(json.loads(json.dumps(found.to_dict(), allow_nan=False))).notes == found.notes
+    assert road_response(parse_vehicle(two_masses(1e-5)), speed=SPEED).notes == ()
+    path = tmp_path / "undamped.yaml"
+    path.write_text(two_masses(0.0))
+    assert main(["response", str(path), "--out", str(tmp_path / "out")]) == 0
+    assert "warning: axle hop at 9.29 Hz has hardly any damping (ratio 0" in capsys.readouterr().err
+
+
+def test_what_the_road_does_not_shake_needs_no_damper():
+    """Two equal boxes move together: what they would do against each other is damped by nothing and excited by nothing."""
+
+    def loaded(boxes, mass, stiffness):
+        box = f"{{mass: {mass} kg, motions: [heave], carried_by: {{body: body, x: 0 m, z: 1 m}}}}"
+        links = ", ".join(f"on_{name}: {{body: {{x: 0 m}}, {name}: {{x: 0 m}}, k: {stiffness} kN/m}}" for name in boxes)
+        bodies = "".join(f", {name}: {box}" for name in boxes)
+        text = two_masses(0.3).replace("[heave]}}", f"[heave]}}{bodies}}}\nlinks: {{{links}}}")
+        return road_response(parse_vehicle(text), speed=SPEED)
+
+    found = loaded(["one", "two"], 50, 300)
+    assert found.notes == ()
+    together = outputs(loaded(["one"], 100, 600))
+    for name, same in (("body", "body"), ("one", "one"), ("two", "one"), ("axle tyre", "axle tyre")):
+        assert outputs(found)[name].rms == pytest.approx(together[same].rms, rel=3e-4)
 
 
 def test_a_long_simulation_has_the_same_rms(tmp_path):

@@ -6,7 +6,7 @@ import argparse
 
 from vehgen.commands.option_strings import PLACE_KEYS, read_sensor, read_speed
 from vehgen.commands.results import add_out, folder_named, tell_written
-from vehgen.commands.terminal import add_vehicle, print_json, print_table
+from vehgen.commands.terminal import add_vehicle, print_json, print_table, warn
 from vehgen.files import check_results, write_text
 
 EXAMPLE = "vehgen response tractor5.yaml --speed 20 --road B --out response"
@@ -58,4 +58,5 @@ def run(options: argparse.Namespace) -> None:
     title = f"{found.title}: road of class {found.roughness} (ISO 8608) at {found.speed:g} m/s"
     cells = [[cell if isinstance(cell, str) else "" if cell is None else f"{cell:.4g}" for cell in row] for row in rows]
     print_table(title, columns, cells, right=range(2, len(columns)))
+    warn(found.notes)
     tell_written(files)

@@ -23,16 +23,20 @@ from vehgen.files.results import Cell, Result, Table
 from vehgen.measure.ride_comfort import WEIGHTINGS
 from vehgen.mechanics import ElementOutput, Output, Place, PointOutput, all_values, derive
 from vehgen.road.iso8608 import CLASSES, SPATIAL_BAND_CYCLES_PER_M, displacement_psd
+from vehgen.simulate.frequency import maxwell_branches
 from vehgen.simulate.frequency_response import DEFAULT_SPEED_M_S, frequency_response
+from vehgen.simulate.resonance_lines import oscillating_poles, undamped_notes, with_peaks
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 from vehgen.vehicle.loading import vehicle_files
 
 Array = NDArray[np.float64]
 DEFAULT_CLASS = "B"
 LEAST_LINES, WIDEST_STEP_HZ = 4000, 0.02
-"""Lines over the standard's frequencies, by which RMS values are integrated: at least so many, at most so far apart."""
-LINES_KEPT = 1200
-"""About so many of them, evenly spaced on a logarithmic axis, a result holds."""
+"""Lines over the standard's frequencies, by which RMS values are integrated: at least so many, at most so far apart, and more at peaks."""
+LINES_KEPT, PEAK_STEP_KEPT = 1200, 0.25
+"""About so many of them, evenly spaced on a logarithmic axis, a result holds, and at peaks those so far apart: see :func:`with_peaks`."""
+FREQUENCY_DIGITS = 9
+"""Frequencies are rounded to what a CSV file tells of them."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +68,8 @@ class RoadResponse(Result):
         Of each output on the road `shape (n_outputs, n)` [unit^2/Hz].
     road_psd
         Of the road's height over time `shape (n,)` [m^2/Hz].
+    notes
+        Which numbers mean nothing, since hardly any damping bounds them.
     versions, inputs
         Of packages; names of the vehicle's files with their SHA-256.
     """
@@ -82,6 +88,7 @@ class RoadResponse(Result):
     road_psd: Array1D
     versions: dict[str, str]
     inputs: dict[str, str]
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         shape = len(self.outputs), len(self.frequency)
@@ -150,12 +157,15 @@ def road_response(
     model = derive(vehicle, [output for _, output in wanted])
     if not isinstance(speed, Real):
         raise ArgumentError(f"`speed`: a number in m/s was expected, found {shown(speed)}", "speed")
-    frequency = _lines(speed)
-    lines = frequency_response(model, frequency, values=all_values(model, free), speed=speed).values[:, :, 0].T
-    found = dict(zip((channel.name for channel in model.channels), lines, strict=True))
+    values = all_values(model, free)
+    poles = oscillating_poles(model.numeric(values), maxwell_branches(model, values))
+    frequency = np.unique(rounded(with_peaks(_even_lines(speed), poles), FREQUENCY_DIGITS))
+    curves = frequency_response(model, frequency, values=values, speed=speed).values[:, :, 0].T
+    found = dict(zip((channel.name for channel in model.channels), curves, strict=True))
     units = {channel.name: channel.unit for channel in model.channels}
     rows = [(output.name, group, units[output.name], found[output.name]) for group, output in wanted]
-    return _result(vehicle, rows, frequency, speed, roughness)
+    notes = tuple(undamped_notes(model, values, poles, frequency, found))
+    return _result(vehicle, rows, frequency, poles, speed, roughness, notes)
 
 
 def _wanted(vehicle: Vehicle, places: tuple[Place, ...]) -> list[tuple[str, Output]]:
@@ -170,7 +180,7 @@ def _wanted(vehicle: Vehicle, places: tuple[Place, ...]) -> list[tuple[str, Outp
     return found
 
 
-def _lines(speed: float) -> Array:
+def _even_lines(speed: float) -> Array:
     """Return the frequencies [Hz] that the standard's roads have at a speed; one line where the speed is none, which others refuse."""
     low, high = (n * max(speed, 0.0) for n in SPATIAL_BAND_CYCLES_PER_M)
     if not 0 < speed <= SPEED_LIMIT.high:
@@ -178,33 +188,43 @@ def _lines(speed: float) -> Array:
     return np.linspace(low, high, max(LEAST_LINES, int(min((high - low) / WIDEST_STEP_HZ, 1e5))) + 1)
 
 
+def _lines_kept(frequency: Array, poles: NDArray[np.complex128], responses: NDArray[np.complex128], psds: Array) -> NDArray[np.intp]:
+    """Return which lines a result holds: even ones on a logarithmic axis, those beside poles, and where each output is largest."""
+    wanted = with_peaks(np.geomspace(frequency[0], frequency[-1], LINES_KEPT), poles, PEAK_STEP_KEPT)
+    near = np.searchsorted(frequency, np.clip(wanted * (1 - 1e-12), frequency[0], frequency[-1]))
+    return np.unique(np.concatenate([near, np.abs(responses).argmax(axis=1), psds.argmax(axis=1)]))
+
+
 def _result(
     vehicle: Vehicle,
     rows: list[tuple[str, str, str, NDArray[np.complex128]]],
     frequency: Array,
+    poles: NDArray[np.complex128],
     speed: float,
     roughness: str,
+    notes: tuple[str, ...],
 ) -> RoadResponse:
     """Return the result of outputs (name, group, unit, response) over frequencies."""
     road = displacement_psd(roughness, frequency / speed) / speed
     ear = np.abs(WEIGHTINGS["Wk"].response(frequency)) ** 2
+    responses = np.array([response for *_, response in rows])
+    psds = np.abs(responses) ** 2 * road
     outputs = []
-    for name, group, unit, response in rows:
-        psd = np.abs(response) ** 2 * road
+    for (name, group, unit, _), psd in zip(rows, psds, strict=True):
         weighted = float(np.sqrt(scipy.integrate.trapezoid(psd * ear, frequency))) if group == "body acceleration" else np.nan
         outputs.append(RoadOutput(name, group, unit, float(np.sqrt(scipy.integrate.trapezoid(psd, frequency))), weighted))
-    kept = np.unique(np.searchsorted(frequency, np.geomspace(frequency[0], frequency[-1], LINES_KEPT) * (1 - 1e-12)))
-    responses = np.array([response[kept] for *_, response in rows])
+    kept = _lines_kept(frequency, poles, responses, psds)
     return RoadResponse(
         title=vehicle.title or vehicle.name,
         speed=speed,
         roughness=roughness,
         outputs=tuple(outputs),
-        frequency=rounded(frequency[kept], 7),
-        amplitude=rounded(np.abs(responses), 6),
-        phase=rounded(np.degrees(np.angle(responses)), 6),
-        psd=rounded(np.abs(responses) ** 2 * road[kept], 6),
+        frequency=frequency[kept],
+        amplitude=rounded(np.abs(responses[:, kept]), 6),
+        phase=rounded(np.degrees(np.angle(responses[:, kept])), 6),
+        psd=rounded(psds[:, kept], 6),
         road_psd=rounded(road[kept], 6),
         versions=versions(),
         inputs=file_hashes(vehicle_files(vehicle)),
+        notes=notes,
     )
