@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from tests.fit.recordings import sedan_truth, write_run
@@ -84,10 +85,18 @@ def test_the_facts_that_help_most_are_asked_for_with_how_to_give_them(open_summa
 
 
 def test_channels_that_the_fit_does_not_explain_are_named_though_chi2_is_one(summary, capsys):
-    assert "not explained" not in printed(capsys, summary)
-    apart = {**dict.fromkeys(summary.objective, 0.3), "hump: F_az": 0.7, "hump: R_az": 1.34}
+    text = printed(capsys, summary)
+    assert "not explained" not in text
+    assert "rougher than class D" not in text
+    apart = {**dict.fromkeys(summary.objective, 0.7), "hump: F_az": 0.95, "hump: R_az": 1.34}
     text = printed(capsys, replace(summary, objective=apart, run_chi2={"hump": 1.0}))
-    assert "not explained by the fit, by the area between the PSDs: hump: R_az (1.34), hump: F_az (0.70); what is left" in text
+    assert "not explained by the fit, by the area between the PSDs: hump: R_az (1.34), hump: F_az (0.95); what the fit leaves" in text
+
+
+def test_a_hump_on_a_road_too_rough_for_one_is_told(summary, capsys):
+    noise = tuple(replace(item, road_level_m3=np.array([1e-6, 0.1, 0.2, 0.1, 1e-6])) for item in summary.noise)
+    text = printed(capsys, replace(summary, noise=noise))
+    assert "hump: a road rougher than class D was taken to lie under the hump (0.1 m^3); what the fit leaves" in text
 
 
 def test_wider_intervals_and_doubtful_runs_are_spoken_of(summary, capsys):

@@ -340,12 +340,6 @@ def test_options_that_cannot_be_used(tmp_path, capsys, sensors, road, message):
     assert message in refusal(capsys, tmp_path / "run.yaml", both("hump_2ms")[:1], sensors=sensors, road=road)
 
 
-def test_one_export_for_two_sensors_is_refused(tmp_path, capsys):
-    first = both("hump_2ms")[0]
-    said = refusal(capsys, tmp_path / "run.yaml", [first, first])
-    assert f"L1 ({first.name}) and L2 ({first.name}) recorded the same numbers" in said
-
-
 def test_a_plain_csv_in_the_vehicles_axes(tmp_path, capsys):
     """What an import wrote can be imported again, and stays what it was."""
     assert command(tmp_path / "run.yaml", both("hump_2ms")[:1], sensors=(L1,)) == 0

@@ -8,7 +8,8 @@ import pytest
 
 from vehgen.commands.option_strings import read_column_map
 from vehgen.errors import InputError
-from vehgen.phones import ColumnMap, EpochMap, read_export
+from vehgen.phones import ColumnMap, EpochMap, PhoneSensor, read_export
+from vehgen.phones.importing import read_phones
 
 from .exports import SEPARATORS, SHARED, phyphox, sensor_logger, still, table, write_folder, write_zip
 
@@ -79,6 +80,14 @@ def test_a_file_that_holds_nothing_is_told(tmp_path, text):
     export = read_export(write_zip(tmp_path / "a.zip", {**files, "Gyroscope.csv": text}))
     assert "rotation" not in export.streams
     assert [note for note in export.notes if ("Gyroscope.csv is empty" if not text else "no sample of rotation") in note]
+
+
+def test_one_export_for_two_sensors_is_refused(tmp_path):
+    sensors = [PhoneSensor("L1", "tractor", forward="y"), PhoneSensor("L2", "semitrailer", forward="y")]
+    one, other = (write_zip(tmp_path / f"{i}.zip", sensor_logger(*still(2000, seed=i))) for i in range(2))
+    with pytest.raises(InputError, match=r"L1 \(0.zip\) and L2 \(0.zip\) recorded the same numbers"):
+        read_phones([one, one], sensors, None, 25.0)
+    assert len(read_phones([one, other], sensors, None, 25.0)) == 2
 
 
 def test_sensor_logger_without_gravity(tmp_path):

@@ -19,7 +19,7 @@ from vehgen.fit.trial import Trial, TrialLike, load_trials
 from vehgen.measure import ARTICULATED_BANDS, SPECTRA, TWO_AXLE_BANDS, band_rms, record_psd, relative_errors, welch_psd
 from vehgen.measure.astm import NOTE
 from vehgen.measure.curves import ChannelCurves
-from vehgen.measure.likeness import ALIKE, UNLIKE, Agreement, agreement
+from vehgen.measure.likeness import ALIKE_ABOVE, UNLIKE_BELOW, Agreement, agreement
 from vehgen.measure.quality import in_foreign_unit
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 
@@ -91,9 +91,9 @@ class ChannelComparison:
         what, alike = f"{self.run}: {self.channel}", self.agreement
         if self.in_foreign_unit:
             return f"{what} reads {self.loudness:.4g} times what the vehicle answers: is it in the unit that is stated, and not dead?"
-        if alike.at_once < -ALIKE:
+        if alike.at_once < -ALIKE_ABOVE:
             return f"{what} reads the vehicle's answer the other way round (correlation {alike.at_once:.2f}): is its `sign` right?"
-        if alike.at_best > ALIKE and alike.at_once < UNLIKE:
+        if alike.at_best > ALIKE_ABOVE and alike.at_once < UNLIKE_BELOW:
             when = "later" if alike.late > 0 else "earlier"
             said = f"{abs(alike.late):.2f} s {when} (correlation {alike.at_best:.2f}, as it is {alike.at_once:.2f})"
             return f"{what} is like the vehicle's answer {said}: is the hump's `at`, the speed or the clock another?"

@@ -12,10 +12,16 @@ if TYPE_CHECKING:
 
 MAX_CHI2 = 1.2
 """Above this the residuals are larger than the noise model allows."""
-UNEXPLAINED_AREA = 0.5
-"""Channels whose PSDs lie so far apart are not those of the vehicle: of vehicles that fit, also over rough roads, 0.3 were the most."""
+UNEXPLAINED_AREA = 0.9
+"""Where PSDs lie so far apart the fit explains next to nothing; of vehicles that fit, also over rough roads, 0.7 was the most."""
+TOO_ROUGH_M3 = 1e-3
+"""A hump lies on a road of class D of ISO 8608 at most, whose level this is."""
 FAR_OFF_SIGMAS = 3.0
 """A run's condition this far off what was known is doubtful."""
+PASSED_FOR_NOISE = (
+    "what the fit leaves passed for noise or a rough road, so that chi2 may not show it. Is a channel exchanged, turned, dead or in "
+    "another unit, or does the model lack something? Look at the figures, and let `diagnose` look for it"
+)
 NEVER_LEFT_OUT = ("delay", "speed", "height", "clock")
 """Conditions of a run that are told however near they are to what was known; others only from LITTLE_OFF_SIGMAS on."""
 LITTLE_OFF_SIGMAS = 1.0
@@ -122,16 +128,16 @@ def _far_off(outcome: CalibrationSummary) -> list[str]:
 
 
 def _unexplained(outcome: CalibrationSummary) -> list[str]:
-    """Say which channels the fit does not explain: what it leaves may pass for noise or roughness, and chi2 then shows nothing."""
+    """Say what the fit does not explain: what it leaves may pass for noise or roughness, and chi2 then shows nothing."""
     apart = {name: area for name, area in outcome.objective.items() if area > UNEXPLAINED_AREA}
-    if not apart:
-        return []
-    told = _listed([f"{name} ({area:.2f})" for name, area in sorted(apart.items(), key=lambda item: -item[1])])
-    return [
-        f"not explained by the fit, by the area between the PSDs: {told}; what is left was taken for noise or a rough road, which chi2 may "
-        "not show. A channel that is exchanged, turned, dead or in another unit, or something that the model lacks? Look at the figures, "
-        "and let `diagnose` look for it"
-    ]
+    found = []
+    if apart:
+        told = _listed([f"{name} ({area:.2f})" for name, area in sorted(apart.items(), key=lambda item: -item[1])])
+        found.append(f"not explained by the fit, by the area between the PSDs: {told}; {PASSED_FOR_NOISE}")
+    for item in outcome.noise:
+        if (level := sorted(item.road_level_m3)[len(item.road_level_m3) // 2]) > TOO_ROUGH_M3:
+            found.append(f"{item.run}: a road rougher than class D was taken to lie under the hump ({level:.1g} m^3); {PASSED_FOR_NOISE}")
+    return found
 
 
 def _warnings(outcome: CalibrationSummary) -> list[str]:

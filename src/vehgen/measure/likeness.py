@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 LONGEST_LATE = 3.0
 """So much later or earlier one may be taken [s]."""
-ALIKE, UNLIKE = 0.6, 0.3
+ALIKE_ABOVE, UNLIKE_BELOW = 0.6, 0.3
 """Correlations beyond which two histories are one motion, and below which they are not."""
 
 
