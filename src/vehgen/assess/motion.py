@@ -14,6 +14,7 @@ from vehgen.simulate import Run, Simulator, make_scenario
 from vehgen.simulate.budgets import MAX_RESPONSE_NUMBERS
 from vehgen.simulate.build import body_channels
 from vehgen.simulate.profile_warnings import doubtful_profiles
+from vehgen.simulate.table_warnings import doubtful_tables
 from vehgen.simulate.warnings import lift_off, step_too_coarse
 
 Array = NDArray[np.float64]
@@ -93,6 +94,7 @@ def simulated_motion(run: Run) -> AssessedMotion:
         *lift_off(simulator.model, values, response[:, forces]),
         *step_too_coarse(simulator.model, values, scenario),
         *doubtful_profiles(simulator.model, values, scenario),
+        *doubtful_tables(run, simulator.model, scenario),
     )
     channels = tuple(
         AssessedChannel(item.name, item.quantity, item.unit, item.owner, isinstance(output, PointOutput), i < len(asked), response[:, i])

@@ -22,15 +22,8 @@ from vehgen.simulate.response import Response, ResponseChannel
 from vehgen.simulate.run_file.loading import RunLike, as_run
 from vehgen.simulate.run_scenario import make_scenario
 from vehgen.simulate.scenario import Scenario
-from vehgen.simulate.warnings import (
-    at_every_step,
-    humps_at_the_start,
-    lift_off,
-    missed_peaks,
-    roads_not_met,
-    spectral_nulls,
-    step_too_coarse,
-)
+from vehgen.simulate.table_warnings import doubtful_tables
+from vehgen.simulate.warnings import at_every_step, doubtful_humps, lift_off, missed_peaks, spectral_nulls, step_too_coarse
 from vehgen.vehicle import Vehicle, VehicleLike
 
 Array = NDArray[np.float64]
@@ -257,11 +250,11 @@ def simulate(run: RunLike, *, vehicle: VehicleLike | None = None) -> Response:
     messages = [
         *lift_off(simulator.model, values, steps[:, n:]),
         *missed_peaks(channels, scenario, read[0], steps[:, :n] / factors),
-        *roads_not_met(scenario),
-        *humps_at_the_start(scenario, dict(zip(run.vehicle.axles, simulator.model.wheel_offsets(values).tolist(), strict=True))),
+        *doubtful_humps(scenario, dict(zip(run.vehicle.axles, simulator.model.wheel_offsets(values).tolist(), strict=True))),
         *spectral_nulls(simulator.model, values, scenario),
         *step_too_coarse(simulator.model, values, scenario),
         *doubtful_profiles(simulator.model, values, scenario),
+        *doubtful_tables(run, simulator.model, scenario),
     ]
     time = np.arange(responses.shape[1], dtype=np.float64) * scenario.dt * scenario.decimation
     return Response(time, read, channels, tuple(messages))

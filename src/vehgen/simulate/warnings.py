@@ -73,23 +73,22 @@ def missed_peaks(
     )
 
 
-def roads_not_met(scenario: Scenario) -> Iterator[str]:
-    """Warn of humps and profiles that lie beyond where the run ends."""
+def doubtful_humps(scenario: Scenario, axles: Mapping[str, float]) -> Iterator[str]:
+    """Warn of humps and profiles beyond where the run ends, and of humps that lie under a wheel, or behind the first, as it begins.
+
+    Axles stand so far behind the first [m]. A hump under a wheel acts as a sudden step.
+    """
     end = float(scenario.speed.distance(scenario.time)[-1])
     for part in scenario.track.parts:
         begin = part.at if isinstance(part, Hump) else part.distance[0] if isinstance(part, MeasuredProfile) else 0.0
         if begin > end:
             what = "hump" if isinstance(part, Hump) else "profile"
             yield f"the {what} at {begin:.4g} m is not met: the run ends at {end:.4g} m; a longer `duration`, or a road that begins earlier"
-
-
-def humps_at_the_start(scenario: Scenario, axles: Mapping[str, float]) -> Iterator[str]:
-    """Warn of humps that lie under a wheel as the run begins, a sudden step, or behind the first; axles stand so far behind it [m]."""
     for hump in scenario.humps:
-        end = hump.at + hump.length
-        if under := [name for name, behind in axles.items() if hump.at < -behind < end]:
+        past = hump.at + hump.length
+        if under := [name for name, behind in axles.items() if hump.at < -behind < past]:
             yield f"the hump at {hump.at:g} m lies under {under[0]} as the run begins, which it meets as a sudden step: put it ahead (`at`)"
-        elif end <= 0 and (later := [name for name, behind in axles.items() if -behind <= hump.at]):
+        elif past <= 0 and (later := [name for name, behind in axles.items() if -behind <= hump.at]):
             yield f"the hump at {hump.at:g} m lies behind the first wheel as the run begins: it is met from {later[0]} on alone"
 
 

@@ -1,0 +1,98 @@
+"""What makes a table of speeds, forces or displacements doubtful: it does not cover the run, has a hole, or its times are in ms."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehgen.files.tables import read_columns
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion
+from vehgen.road import SpeedHistory
+from vehgen.simulate.run_file import Run
+from vehgen.simulate.run_file.entries import DisplacementEntry, ForceEntry, SpeedFile
+from vehgen.simulate.run_scenario import ground_links
+from vehgen.simulate.scenario import Scenario
+
+Array = NDArray[np.float64]
+HOLE_SPACINGS = 10.0
+"""A gap of so many times the median spacing is a hole."""
+FEWEST_ROWS_WITH_HOLES = 20
+"""A table of fewer rows was drawn, not measured: its straight lines are meant."""
+UNCOVERED_SHARE = 0.01
+"""A table that leaves out so little of the run covers it."""
+TIMES_LONGER_IN_MS = 50.0
+"""A table that lasts so many times as long as the run may be in ms."""
+
+
+@dataclass(frozen=True)
+class _Table:
+    """A table of a run: what it is called, its entry, and its times [s]."""
+
+    name: str
+    entry: SpeedFile | ForceEntry | DisplacementEntry
+    time: Array
+
+
+def doubtful_tables(run: Run, model: EquationsOfMotion, scenario: Scenario) -> Iterator[str]:
+    """Warn of tables of speeds, forces and displacements that end or begin within the run, have a hole, or seem to be in ms."""
+    for table in _tables(run, model, scenario):
+        if _seems_in_ms(table, run, scenario):
+            yield (
+                f"{table.name} lasts {np.ptp(table.time):.4g} s, {np.ptp(table.time) / scenario.duration:.3g} times as long as the run: "
+                "is its time in ms? State `time_unit: ms`, or `time_unit: s` if it is not"
+            )
+        else:
+            yield from _uncovered(table, scenario)
+            yield from _holes(table, scenario)
+
+
+def _tables(run: Run, model: EquationsOfMotion, scenario: Scenario) -> Iterator[_Table]:
+    """Yield the tables of a run that have two rows and more; one of a single row states a constant."""
+    file = run.file
+    if isinstance(scenario.speed, SpeedHistory) and isinstance(file.speed, SpeedFile):
+        yield _Table(f"the table of the speed ({file.speed.file})", file.speed, scenario.speed.time)
+    for (name, force), signal in zip(file.forces.items(), scenario.forces, strict=True):
+        if signal.time is not None and len(signal.time) > 1:
+            yield _Table(f"the table of the force {name} ({force.file})", force, signal.time)
+    for link, moving in zip(ground_links(model), scenario.ground, strict=True):
+        if moving is not None and moving.time is not None and len(moving.time) > 1:
+            entry = file.displacements[link]
+            yield _Table(f"the table of the displacement {link} ({entry.file})", entry, moving.time)
+
+
+def _seems_in_ms(table: _Table, run: Run, scenario: Scenario) -> bool:
+    """Whether a table whose unit of time nobody states lasts so long that it may be in ms."""
+    if table.entry.time_unit is not None or np.ptp(table.time) < TIMES_LONGER_IN_MS * scenario.duration:
+        return False
+    assert table.entry.file is not None
+    return read_columns(Path(run.folder) / table.entry.file, (table.entry.time,)).units[0] is None
+
+
+def _uncovered(table: _Table, scenario: Scenario) -> Iterator[str]:
+    first, last, end = float(table.time[0]), float(table.time[-1]), scenario.duration
+    spared = max(min(float(np.median(np.diff(table.time))), UNCOVERED_SHARE * end), scenario.dt * scenario.decimation)
+    late, early = first > spared, last < end - spared
+    held = [f"its first value is held before {first:.4g} s"] if late else []
+    held += [f"its last value is held after {last:.4g} s"] if early else []
+    if held:
+        yield f"{table.name} covers {first:.4g} to {last:.4g} s, the run lasts from 0 to {end:.4g} s: {' and '.join(held)}"
+
+
+def _holes(table: _Table, scenario: Scenario) -> Iterator[str]:
+    if len(table.time) < FEWEST_ROWS_WITH_HOLES:
+        return
+    gaps = np.diff(table.time)
+    usual = float(np.median(gaps))
+    within = (table.time[1:] > 0) & (table.time[:-1] < scenario.duration)
+    holes = np.flatnonzero((gaps > HOLE_SPACINGS * usual) & within)
+    if holes.size:
+        widest = int(holes[np.argmax(gaps[holes])])
+        others = f" ({len(holes)} such holes in all)" if len(holes) > 1 else ""
+        yield (
+            f"{table.name} has a hole from {table.time[widest]:.4g} to {table.time[widest + 1]:.4g} s, its rows being {usual:.3g} s apart"
+            f"{others}: a straight line bridges it"
+        )
