@@ -1,4 +1,4 @@
-"""Warnings of measured profiles: that end before the run, lack long waves, or have too few points for axle hop."""
+"""Warnings of measured profiles: that end before the run, lack long waves, have a hole or too few points for axle hop, or are in mm."""
 
 from __future__ import annotations
 
@@ -67,3 +67,52 @@ def test_points_too_far_apart_for_axle_hop_are_told(tmp_path: Path):
 def test_points_that_nearly_coincide_ask_for_no_memory():
     distance = np.r_[1e-9 * np.arange(51), 100.0]
     assert np.isfinite(long_wave_share(MeasuredProfile(distance, 1e-3 * np.sin(distance))))
+
+
+def test_a_few_points_too_far_apart_are_told_where_they_were_measured(tmp_path: Path):
+    s = np.arange(0.0, 60.0, 4.0)
+    h = 0.01 * np.sin(2 * np.pi * s / 3)
+    said = warnings_of(tmp_path, s, h, 5, 6)
+    assert "has a point every 4 m, no wave shorter than 8 m: at 5 m/s it excites nothing above 0.625 Hz" in said
+    drawn = s + np.where(np.arange(len(s)) % 2, 1.0, 0.0)
+    assert "a point every" not in warnings_of(tmp_path, drawn, h, 5, 6)
+    assert "a point every" not in warnings_of(tmp_path, s[:7], h[:7], 5, 4)
+    steps = np.where(s < 20, 0.0, np.where(s < 40, 0.02, 0.01))
+    assert "a point every" not in warnings_of(tmp_path, s, steps, 5, 6)
+
+
+def test_a_hole_that_wheels_cross_is_told(tmp_path: Path):
+    s, h = road(60.0, 0.1)
+    kept = np.r_[0:100, 300:601]
+    said = warnings_of(tmp_path, s[kept], h[kept], 5, 6)
+    assert "the measured profile has a hole from 9.9 to 30 m, its points being 0.1 m apart: wheels cross it on a straight line" in said
+    assert "hole" not in warnings_of(tmp_path, s[kept], h[kept], 5, 1.9)
+    assert "hole" not in warnings_of(tmp_path, np.delete(s, slice(100, 108)), np.delete(h, slice(100, 108)), 5, 6)
+    two = np.delete(kept, slice(20, 40))
+    assert "a hole from 9.9 to 30 m, its points being 0.1 m apart (2 such holes in all)" in warnings_of(tmp_path, s[two], h[two], 5, 6)
+
+
+def test_a_hole_behind_the_first_wheels_is_told_where_the_last_ones_cross_it(tmp_path: Path):
+    s, h = road(60.0, 0.05)
+    kept = np.r_[0:20, 40:1201]
+    assert "has a hole from -1.55 to -0.5 m" in warnings_of(tmp_path, s[kept] - 2.5, h[kept], 5, 6)
+    assert "hole" not in warnings_of(tmp_path, s[kept] - 12.5, h[kept], 5, 6)
+
+
+def test_level_roads_between_obstacles_and_points_in_groups_are_no_holes(tmp_path: Path):
+    s = np.linspace(0, 2, 200)
+    bumps = 0.03 * np.sin(np.pi * s / 2) ** 2
+    assert "hole" not in warnings_of(tmp_path, np.r_[s, s + 20], np.r_[bumps, bumps], 5, 6)
+    slabs = np.arange(0.0, 60.0, 4.0)
+    faulted = np.c_[slabs, slabs + 0.01, slabs + 3.99].ravel()
+    assert "hole" not in warnings_of(tmp_path, faulted, np.tile([0.0, 0.001, 0.005], len(slabs)), 5, 6)
+
+
+def test_heights_in_mm_that_are_read_as_m_are_asked_for_their_unit(tmp_path: Path):
+    s = np.arange(0, 60, 0.1)
+    h = 0.01 * np.sin(2 * np.pi * s / 3)
+    said = warnings_of(tmp_path, s, 1e3 * h, 5, 6)
+    assert "rises or falls by 9.95 m over 0.5 m, its heights range over 19.89 m: are the heights in mm? Then state `unit: mm`" in said
+    assert "in mm" not in warnings_of(tmp_path, s, h, 5, 6)
+    assert "in mm" not in warnings_of(tmp_path, s, 0.2 * s, 5, 6)
+    assert "in mm" not in warnings_of(tmp_path, s, np.where(s < 20, 0.0, 0.8), 5, 6)

@@ -58,6 +58,7 @@ def test_a_hole_is_told_with_its_place(tmp_path: Path, kind: str):
 def test_holes_outside_of_the_run_and_drawn_tables_are_not_told(tmp_path: Path):
     assert warned(tmp_path, FORCE, np.r_[np.arange(-3, -2, 0.01), np.arange(-0.5, 4.01, 0.01), np.arange(6, 7, 0.01)]) == []
     assert warned(tmp_path, FORCE, np.array([0, 1, 1.01, 1.02, 9])) == []
+    assert warned(tmp_path, FORCE, np.r_[np.arange(0, 1.4, 0.1), 3.99]) == []
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -1,4 +1,4 @@
-"""What makes a measured profile doubtful: it ends before the run, or its points hold too little of a road's waves."""
+"""What makes a measured profile doubtful: it ends before the run, has a hole, is in mm, or its points hold too little of a road's waves."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.road import MeasuredProfile
+from vehgen.simulate.holes import holes
 from vehgen.simulate.modes import natural_modes
 from vehgen.simulate.scenario import Scenario
 
@@ -25,15 +26,30 @@ EIGHT_LONG_WAVES_M = 8 * LONG_WAVE_M
 LEAST_LONG_WAVES = 0.05
 """Roads of exponents 1.5 to 3 have 0.4 and more of the long waves that their short ones let expect with the exponent 2 of ISO 8608."""
 MEASURED_POINTS = 50
-"""A profile of fewer points was drawn, not measured: its straight lines are meant."""
+"""A profile of fewer points was drawn, not measured, and its straight lines are meant, unless they are evenly spaced, as nobody draws."""
+EVEN_POINTS = 8
+"""So few points tell that they are evenly spaced."""
+EVEN_SPACING = 0.1
+"""Evenly spaced points lie no further than this share from their median spacing."""
+DRAWN_LEVEL = 0.25
+"""A profile that is level along this share of its lines was drawn."""
+SAME_HEIGHT = 1e-3
+"""A hole whose two sides differ by this share of the profile's range is a level piece of road."""
+MM_RANGE_M = 2.0
+"""A profile whose heights range over more, and that rises steeply, is read as m and was in mm."""
+MM_WAY_M = 0.5
+"""No vehicle climbs more than this way, over this way."""
 MIN_END_GAP_M = 0.05
 """A profile that ends so little before the run is long enough."""
 
 
 def doubtful_profiles(model: EquationsOfMotion, values: Mapping[str, float], scenario: Scenario) -> Iterator[str]:
-    """Warn of measured profiles that end before the run, have no long waves, or points too far apart for axle hop."""
+    """Warn of measured profiles that end before the run, are in mm, have a hole, no long waves, or points too far apart for axle hop."""
     yield from profiles_that_end(scenario)
+    behind = float(model.wheel_offsets(values).max(initial=0.0))
     for name, profile in _measured(scenario):
+        yield from _in_mm(name, profile)
+        yield from _with_holes(name, profile, scenario, behind)
         if not _is_obstacle(profile):
             yield from _without_long_waves(name, profile)
         yield from _too_coarse(name, profile, model, values, scenario)
@@ -56,6 +72,15 @@ def _is_obstacle(profile: MeasuredProfile) -> bool:
     return bool(abs(heights[-1] - heights[0]) <= BACK_ON_LEVEL * np.ptp(heights))
 
 
+def _is_drawn(profile: MeasuredProfile) -> bool:
+    """Whether a profile's few points are where its straight lines meet, instead of where somebody measured."""
+    if len(profile.distance) >= MEASURED_POINTS:
+        return False
+    gaps = np.diff(profile.distance)
+    even = np.abs(gaps / np.median(gaps) - 1).max() <= EVEN_SPACING
+    return bool(len(profile.distance) < EVEN_POINTS or not even or np.mean(np.diff(profile.heights) == 0) >= DRAWN_LEVEL)
+
+
 def _too_short(name: str, profile: MeasuredProfile, scenario: Scenario) -> Iterator[str]:
     along = scenario.speed.distance(scenario.time)
     if profile.end < along[-1] - MIN_END_GAP_M:
@@ -63,6 +88,31 @@ def _too_short(name: str, profile: MeasuredProfile, scenario: Scenario) -> Itera
         yield (
             f"{name} ends at {profile.end:.4g} m, the run at {along[-1]:.4g} m: from {when:.4g} s on the first wheel stays "
             "at its last height; shorten `duration`, or measure a longer profile"
+        )
+
+
+def _in_mm(name: str, profile: MeasuredProfile) -> Iterator[str]:
+    """Warn where heights seem to be in mm: a road in mm that is read as m has slopes of several."""
+    rise = float(np.abs(np.interp(profile.distance + MM_WAY_M, profile.distance, profile.heights) - profile.heights).max())
+    if rise > MM_WAY_M and np.ptp(profile.heights) > MM_RANGE_M:
+        yield (
+            f"{name} rises or falls by {rise:.3g} m over {MM_WAY_M:g} m, its heights range over {np.ptp(profile.heights):.4g} m: "
+            "are the heights in mm? Then state `unit: mm`"
+        )
+
+
+def _with_holes(name: str, profile: MeasuredProfile, scenario: Scenario, behind: float) -> Iterator[str]:
+    """Warn of holes that wheels cross; the last of them runs so far behind the first [m]."""
+    found = holes(profile.distance, -behind, float(scenario.speed.distance(scenario.time)[-1]))
+    steps = np.abs(np.diff(profile.heights))[found]
+    found = found[steps > SAME_HEIGHT * np.ptp(profile.heights)]
+    if found.size:
+        begin, end = profile.distance[found[0] : found[0] + 2]
+        others = f" ({len(found)} such holes in all)" if len(found) > 1 else ""
+        spacing = float(np.median(np.diff(profile.distance)))
+        yield (
+            f"{name} has a hole from {begin:.4g} to {end:.4g} m, its points being {spacing:.3g} m apart{others}: "
+            "wheels cross it on a straight line"
         )
 
 
@@ -99,7 +149,7 @@ def _too_coarse(
     spacing = float(np.median(np.diff(profile.distance)))
     hop = np.array([item.motion == "hop" for item in model.coordinates])
     hops = [mode.undamped_hz for mode in natural_modes(model, values) if hop.any() and mode.energy[hop].sum() >= 0.5]
-    if len(profile.distance) < MEASURED_POINTS or not hops:
+    if _is_drawn(profile) or not hops:
         return
     highest = scenario.top_speed / (2 * spacing)
     if highest < min(hops):

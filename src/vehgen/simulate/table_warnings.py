@@ -12,16 +12,13 @@ from numpy.typing import NDArray
 from vehgen.files.tables import read_columns
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.road import SpeedHistory
+from vehgen.simulate.holes import holes
 from vehgen.simulate.run_file import Run
 from vehgen.simulate.run_file.entries import DisplacementEntry, ForceEntry, SpeedFile
 from vehgen.simulate.run_scenario import ground_links
 from vehgen.simulate.scenario import Scenario
 
 Array = NDArray[np.float64]
-HOLE_SPACINGS = 10.0
-"""A gap of so many times the median spacing is a hole."""
-FEWEST_ROWS_WITH_HOLES = 20
-"""A table of fewer rows was drawn, not measured: its straight lines are meant."""
 UNCOVERED_SHARE = 0.01
 """A table that leaves out so little of the run covers it."""
 TIMES_LONGER_IN_MS = 50.0
@@ -83,16 +80,12 @@ def _uncovered(table: _Table, scenario: Scenario) -> Iterator[str]:
 
 
 def _holes(table: _Table, scenario: Scenario) -> Iterator[str]:
-    if len(table.time) < FEWEST_ROWS_WITH_HOLES:
-        return
-    gaps = np.diff(table.time)
-    usual = float(np.median(gaps))
-    within = (table.time[1:] > 0) & (table.time[:-1] < scenario.duration)
-    holes = np.flatnonzero((gaps > HOLE_SPACINGS * usual) & within)
-    if holes.size:
-        widest = int(holes[np.argmax(gaps[holes])])
-        others = f" ({len(holes)} such holes in all)" if len(holes) > 1 else ""
+    found = holes(table.time, 0.0, scenario.duration)
+    if found.size:
+        begin, end = table.time[found[0] : found[0] + 2]
+        others = f" ({len(found)} such holes in all)" if len(found) > 1 else ""
+        spacing = float(np.median(np.diff(table.time)))
         yield (
-            f"{table.name} has a hole from {table.time[widest]:.4g} to {table.time[widest + 1]:.4g} s, its rows being {usual:.3g} s apart"
-            f"{others}: a straight line bridges it"
+            f"{table.name} has a hole from {begin:.4g} to {end:.4g} s, its rows being {spacing:.3g} s apart{others}: "
+            "a straight line bridges it"
         )
