@@ -143,6 +143,30 @@ def test_the_example_drives_over_the_hump(compiler, options, tmp_path):
     assert found[:, 0] == pytest.approx(time)
 
 
+def test_the_example_refuses_what_is_no_speed(tmp_path):
+    _, source, main = export("quarter_car", "c", tmp_path)
+    program = compile_c([source, main], tmp_path / "run")
+    for wrong, said in (
+        (["abc"], "expected the speed [m/s] as a finite number, found 'abc'"),
+        (["36 km/h"], "found '36 km/h'"),
+        ([""], "found ''"),
+        (["nan"], "found 'nan'"),
+        (["inf"], "found 'inf'"),
+        (["1e999"], "found '1e999'"),
+        (["0"], "expected a speed above 0 m/s, found 0"),
+        (["-2"], "expected a speed above 0 m/s, found -2"),
+        (["2", "long"], "expected the length [m] as a finite number, found 'long'"),
+        (["2", "0.5", "0.03", "3s"], "expected the duration [s] as a finite number, found '3s'"),
+        (["2", "0.5", "0.03", "1e300"], "cannot be used"),
+        (["2", "0.5", "0.03", "3", "4"], "at most 4 numbers were expected"),
+    ):
+        done = subprocess.run([program, *wrong], capture_output=True, text=True, check=False)
+        assert (done.returncode, done.stdout) == (2, ""), wrong
+        assert said in done.stderr
+    done = subprocess.run([program, "2", "0.5", "0.03", "0.01"], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr, len(done.stdout.splitlines())) == (0, "", 12)
+
+
 def test_a_law_that_does_not_converge_is_told(tmp_path):
     model = derive(sedan_with("bump_stop").with_changes({"axles": {"front": {"suspension": {"laws": [
         {"cubic_stiffness": {"k3": "9e13 N/m^3"}}]}}}}), OUTPUTS)  # fmt: skip

@@ -8,6 +8,7 @@
 static const double PI = 3.14159265358979323846;
 static const double HUMP_START = 0.3; /* ahead of the first axle at the beginning [m] */
 static const double TIME_STEP = @DT@; /* [s] */
+static const double MOST_STEPS = 1e9;
 
 static double speed = 2.0, length = 0.5, height = 0.03, duration = 3.0;
 
@@ -42,19 +43,40 @@ static void print_outputs(const @prefix@_model *model, double time, const double
     printf("\n");
 }
 
+/* Read a whole text as a finite number; return whether it is one. */
+static int read_number(const char *text, double *number)
+{
+    char *end;
+
+    *number = strtod(text, &end);
+    return end != text && *end == '\0' && isfinite(*number);
+}
+
 int main(int argc, char **argv)
 {
     static @prefix@_model model;
     double before[@PREFIX@_N_DRIVES + 1], after[@PREFIX@_N_DRIVES + 1], mean[@PREFIX@_N_DRIVES + 1];
     double *const options[] = {&speed, &length, &height, &duration};
+    const char *const names[] = {"the speed [m/s]", "the length [m]", "the height [m]", "the duration [s]"};
     long n, n_steps;
     int i, failed;
 
     for (i = 1; i < argc && i <= 4; i++) {
-        *options[i - 1] = atof(argv[i]);
+        if (!read_number(argv[i], options[i - 1])) {
+            fprintf(stderr, "expected %s as a finite number, found '%s'\n", names[i - 1], argv[i]);
+            return 2;
+        }
+    }
+    if (argc > 5) {
+        fprintf(stderr, "at most 4 numbers were expected: speed, length, height, duration\n");
+        return 2;
+    }
+    if (!(speed > 0.0)) {
+        fprintf(stderr, "expected a speed above 0 m/s, found %g\n", speed);
+        return 2;
     }
     failed = @prefix@_setup(&model, NULL, TIME_STEP);
-    if (failed || !(length > 0.0) || !(duration >= 0.0)) {
+    if (failed || !(length > 0.0) || !(duration >= 0.0) || !(duration / TIME_STEP < MOST_STEPS)) {
         fprintf(stderr, "the vehicle or the hump cannot be used (code %d)\n", failed);
         return 2;
     }
