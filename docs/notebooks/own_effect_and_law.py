@@ -6,9 +6,22 @@
 # of a YAML file. Neither is a program: what is no expression is refused.
 
 # %%
-# %matplotlib inline
+# The files of the examples, copied into a folder of their own: what is written here stays there.
+import atexit
+import os
+import shutil
+import tempfile
 from pathlib import Path
 
+examples = Path(globals().get("__file__", "notebook")).resolve().parent.parent / "examples"
+if (examples / "my_truck.yaml").is_file():  # else they are expected in the current folder
+    own = tempfile.mkdtemp()
+    atexit.register(shutil.rmtree, own, ignore_errors=True)
+    shutil.copytree(examples, own, dirs_exist_ok=True)
+    os.chdir(own)
+
+# %%
+# %matplotlib inline
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd

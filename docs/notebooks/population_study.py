@@ -5,6 +5,21 @@
 # advances a whole population at once; pandas keeps the account.
 
 # %%
+# The files of the examples, copied into a folder of their own: what is written here stays there.
+import atexit
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+examples = Path(globals().get("__file__", "notebook")).resolve().parent.parent / "examples"
+if (examples / "my_truck.yaml").is_file():  # else they are expected in the current folder
+    own = tempfile.mkdtemp()
+    atexit.register(shutil.rmtree, own, ignore_errors=True)
+    shutil.copytree(examples, own, dirs_exist_ok=True)
+    os.chdir(own)
+
+# %%
 # %matplotlib inline
 import numpy as np
 import pandas as pd
@@ -29,8 +44,6 @@ fleet.describe().loc[["mean", "std", "min", "max"]].T
 # A `Simulator` compiles the vehicle for what is to be computed; a scenario is the road under every wheel, at a speed.
 
 # %%
-from pathlib import Path
-
 Path("hump.yaml").write_text("""
 vehicle: tractor5
 speed: 5 m/s

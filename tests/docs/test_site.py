@@ -6,11 +6,13 @@ import importlib.util
 import json
 import re
 import sys
+from pathlib import Path
 
 import pytest
 from ruamel.yaml import YAML
 
 import vehgen
+from tests.commands.calls import python
 from tests.docs.pages import ROOT
 from vehgen.commands import COMMANDS
 from vehgen.commands.schema import SCHEMAS
@@ -121,6 +123,39 @@ def test_links_of_notebooks_lead_somewhere(path):
 def test_files_that_notebooks_read_are_examples(path):
     for name in re.findall(r"\"((?:phones|hidden)/[\w.]+)\"", path.read_text(encoding="utf-8")):
         assert (DOCS / "examples" / name).exists(), name
+
+
+def setup_cell(path):
+    """Return the first cell of code."""
+    return path.read_text(encoding="utf-8").split("# %%\n")[1]
+
+
+def test_notebooks_begin_in_a_copy_of_the_examples_wherever_they_are_run(tmp_path):
+    assert len({setup_cell(path) for path in NOTEBOOKS}) == 1
+    script = f"{setup_cell(NOTEBOOKS[0])}\nprint(own, Path('my_truck.yaml').is_file(), Path.cwd().samefile(own))\n"
+    (tmp_path / "docs" / "notebooks").mkdir(parents=True)
+    (tmp_path / "docs" / "examples").mkdir()
+    (tmp_path / "docs" / "examples" / "my_truck.yaml").write_text("name: my_truck\n")
+    (tmp_path / "docs" / "notebooks" / "own.py").write_text(script)
+    for arguments, folder in (
+        (["own.py"], tmp_path / "docs" / "notebooks"),
+        (["docs/notebooks/own.py"], tmp_path),
+        (["-c", script], tmp_path / "docs" / "notebooks"),  # a notebook knows no file of its own
+    ):
+        done = python("-W", "error", *arguments, folder=folder)
+        own, *found = done.stdout.split()
+        assert (done.returncode, done.stderr, found) == (0, "", ["True", "True"])
+        assert not Path(own).exists()
+    assert python("-c", f"{setup_cell(NOTEBOOKS[0])}\nassert 'own' not in globals()", folder=tmp_path).returncode == 0
+
+
+@pytest.mark.thorough
+def test_the_first_notebook_runs_from_its_own_folder_and_leaves_nothing_there():
+    folder = DOCS / "notebooks"
+    before = sorted(folder.iterdir())
+    done = python("first_vehicle.py", folder=folder, MPLBACKEND="Agg", PYTHONDONTWRITEBYTECODE="1")
+    assert done.returncode == 0, done.stderr
+    assert sorted(folder.iterdir()) == before
 
 
 def test_docstrings_are_rewritten_for_the_site(site_module):
