@@ -124,3 +124,14 @@ def test_an_axle_without_mass_has_no_hop_and_an_undamped_peak_stays_a_number():
     assert frequency == pytest.approx(natural, rel=1e-3)
     assert height == pytest.approx(1.0 / abs(1.0 - (frequency / natural) ** 2), rel=1e-6)
     assert found.curves[0].amplitude == pytest.approx(1.0 / np.abs(1.0 - (found.frequency / natural) ** 2), rel=1e-9)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 1e-3, 1e-5])
+def test_the_peak_of_a_mode_is_seen_however_little_it_is_damped(ratio):
+    """One mass on a damped tyre, k + i w c over k - m w^2 + i w c: at resonance sqrt(1 + 1/(4 ratio^2)), and hardly more at its peak."""
+    damped = UNDAMPED.replace("k: 400 kN/m", f"k: 400 kN/m, c: {2 * ratio * np.sqrt(400e3 * 400):.9g} N s/m")
+    vehicle = parse_vehicle(damped)
+    found = road_amplitudes(vehicle, vehicle.values())
+    (heave,) = [item for item in found.curves if item.group == "body heave"]
+    assert heave.peak == pytest.approx((np.sqrt(1000) / (2 * np.pi), np.sqrt(1 + 1 / (4 * ratio**2))), rel=1.5e-2)
+    assert heave.amplitude.max() == pytest.approx(heave.peak[1], rel=2e-2)

@@ -67,6 +67,12 @@ CASES = [
         "@{shape: points, height: 2 cm,",
         "the key height belongs to a hump of the shape half_sine or",
     ),
+    (
+        "random road twice",
+        "  - iso8608: {class: B, seed: 1}\n",
+        "  - iso8608: {class: B, seed: 1}\n  - @iso8608: {class: B, seed: 1}\n",
+        "the same random road twice is one of twice the heights; another `seed` was expected",
+    ),
     ("seed of a word", "seed: 1}", "seed: @true}", "input should be a valid integer (found 'True')"),
     (
         "force of a suspension that there is not",

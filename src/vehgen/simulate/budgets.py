@@ -66,7 +66,10 @@ def check_run(run: Run, duration: float, way: float, n_wheels: int) -> None:
     if steps > MAX_STEPS:
         reason = f"a run has at most {MAX_STEPS} steps; {duration:g} s in steps of {file.step:g} s are more"
     elif numbers > MAX_RESPONSE_NUMBERS:
-        reason = f"{steps:.0f} steps of this vehicle are {numbers:.3g} numbers in memory; at most {MAX_RESPONSE_NUMBERS:.3g} were expected"
+        reason = (
+            f"{steps:.0f} steps of this vehicle are {numbers:.3g} numbers in memory; at most {MAX_RESPONSE_NUMBERS:.3g} were expected: "
+            "a shorter run, or a longer `step` and `sample`"
+        )
     elif (steps * n_wheels + (way / GRID if file.footprint is not None else 0.0)) * len(file.road) > MOST_LOOKUPS:
         reason = f"{steps:.0f} steps over {way:.3g} m of a road of {len(file.road)} entries; a shorter run or fewer entries were expected"
     if reason is not None:

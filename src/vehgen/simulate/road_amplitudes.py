@@ -9,12 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.mechanics import ElementOutput, EquationsOfMotion, Output, Place, PointOutput, all_values, derive
+from vehgen.simulate.frequency import maxwell_branches
 from vehgen.simulate.frequency_response import DEFAULT_SPEED_M_S, axle_delays, over_one_road
+from vehgen.simulate.resonance_lines import oscillating_poles, with_peaks
 from vehgen.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 AMPLITUDE_BAND_HZ, AMPLITUDE_LINES = (0.2, 30.0), 600
 """Frequencies of the curves, evenly spaced on a logarithmic axis."""
+CURVE_STEP = 0.25
+"""Lines beside a peak are so many of its half widths apart, where it is narrower than the others see."""
 LINES_OF_A_PEAK = 21
 """So many between the two lines beside a peak tell where it is."""
 HEAVE, HOP, TYRE_LOAD = "body heave", "axle hop", "tyre load"
@@ -73,7 +77,8 @@ def road_amplitudes(vehicle: Vehicle, values: Mapping[str, float], speed: float 
     model = derive(vehicle, [output for _, _, output in wanted])
     known = all_values(model, values)
     delays = axle_delays(model, known, speed)
-    frequency = np.geomspace(*AMPLITUDE_BAND_HZ, AMPLITUDE_LINES)
+    poles = oscillating_poles(model.numeric(known), maxwell_branches(model, known))
+    frequency = with_peaks(np.geomspace(*AMPLITUDE_BAND_HZ, AMPLITUDE_LINES), poles, CURVE_STEP)
     found = np.abs(over_one_road(model, known, frequency, delays))
     lines = _peak_lines(found)
     loads = {name: found[lines[i], i] if lines[i] else 0.0 for i, (group, name, _) in enumerate(wanted) if group == TYRE_LOAD}
