@@ -51,6 +51,7 @@ def test_a_packed_matlab_file_is_measured_before_it_is_unpacked(tmp_path, monkey
     ("text", "message"),
     [
         ("t,a\n0,1\n1,1e300\n", r"a\.csv:3:2: '1e300' in column 'a' is beyond 1e\+20"),
+        ("t,a\n0,1\n1,1_000\n", r"a\.csv:3:2: expected a number in column 'a', found '1_000'"),
         ("\n\nt,a\n0,1\n\n1,x\n", r"a\.csv:6:2: expected a number in column 'a', found 'x'"),
         ("t,a,A\n0,1,2\n", "two columns 'a'"),
         ("t,a\n0," + "1" * 1_000_001, r"a\.csv:2:1: a line of more than 1000000 characters"),

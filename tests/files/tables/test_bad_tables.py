@@ -24,6 +24,8 @@ CASES = [
     ("t;az\n0;1,5\n1;2.5\n", "3:2: '2.5' in column 'az': a decimal comma and a decimal point in one table"),
     ("t;az\n0;1.234,5\n", "2:2: '1.234,5' in column 'az' is not a finite number"),
     ("t;az\n0;1,2,3\n", "2:2: '1,2,3' in column 'az' is not a finite number"),
+    ("t,az\n0,1_000\n", "2:2: '1_000' in column 'az' is not a finite number"),
+    ("t;az\n0;1_000,5\n", "2:2: '1_000,5' in column 'az' is not a finite number"),
     ("t,az\n0,1,5\n", "2:3: 3 cells below 2 headings"),
     ("t;az\n0;1;5\n", "2:3: 3 cells below 2 headings"),
     ("t,az\n0,00,1,5\n", "2:3: 4 cells below 2 headings; where each number is in two of them for its decimal comma, separate columns by"),

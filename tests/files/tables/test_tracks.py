@@ -31,7 +31,7 @@ def gpx(points: list[tuple[float, float, str, str]], head: str = "") -> str:
     )
 
 
-def rmc(second: float, knots: float, status: str = "A") -> str:
+def rmc(second: float, knots: float | str, status: str = "A") -> str:
     body = f"GNRMC,1200{second:05.2f},{status},4807.038,N,01131.000,E,{knots},084.4,010524,,"
     return f"${body}*{reduce(lambda a, b: a ^ b, body.encode()):02X}"
 
@@ -81,6 +81,8 @@ FAULTS = [
     (gpx(GOOD[:1]), "a track of at least two points was expected"),
     (gpx([GOOD[0], GOOD[0]]), "run.gpx:4:1: the times of a track must ascend"),
     (gpx([GOOD[0], (91.0, 0.0, "", "")]), "run.gpx:4:3: a number of at most 90 was expected, found '91.000000000'"),
+    (gpx(GOOD).replace('lat="48.0', 'lat="4_8.0'), "run.gpx:3:3: a number of at most 90 was expected, found '4_8.000000000'"),
+    (f"{rmc(0, 1)}\n{rmc(1, '1_0')}\n", "date, time and speed were expected, found '010524', '120001.00', '1_0'"),
     (gpx([GOOD[0], (1.0, 1.0, "noon", "")]), "a time such as 2024-05-01T12:00:00Z was expected, found 'noon'"),
     (gpx([GOOD[0], (1.0, 1.0, "10:00:00", "")]), "a time such as 2024-05-01T12:00:00Z was expected, found '10:00:00'"),
     (gpx(GOOD).replace("<time>2024-05-01T12:00:01Z</time>", ""), "run.gpx:4:"),

@@ -109,6 +109,13 @@ class TableColumns:
                 raise InputError(reason, self.place(int(row), column))
 
 
+def plain_float(text: str | float) -> float:
+    """Return the number that a text is; raises ValueError for none, and for `1_000`, which only Python takes for one."""
+    if isinstance(text, str) and "_" in text:
+        raise ValueError(text)
+    return float(text)
+
+
 def unmeasured(number: float) -> str:
     """Return what is wrong with a number that no sensor measured."""
     return f"beyond {LARGEST_MEASURED:g}, which nothing measures" if np.isfinite(number) else "not a finite number"

@@ -10,7 +10,7 @@ import numpy as np
 
 from vehgen.errors import InputError, Position, shown
 from vehgen.files.reading import read_bytes
-from vehgen.files.tables.columns import MAX_TABLE_BYTES, TableColumns
+from vehgen.files.tables.columns import MAX_TABLE_BYTES, TableColumns, plain_float
 from vehgen.files.tables.csv_table import MOST_ROWS
 from vehgen.files.tables.moments import moment
 from vehgen.files.tables.sheet import Sheet
@@ -59,7 +59,7 @@ class _Points:
     def number(self, text: str, most: float) -> float:
         """Return a number of at most `most` in size; raises InputError for anything else."""
         try:
-            found = float(text)
+            found = plain_float(text)
         except ValueError:
             found = math.nan
         if not abs(found) <= most:

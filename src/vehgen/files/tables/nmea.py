@@ -10,7 +10,7 @@ import numpy as np
 
 from vehgen.errors import InputError, Position, shown
 from vehgen.files.reading import read_lines
-from vehgen.files.tables.columns import MAX_TABLE_BYTES, TableColumns
+from vehgen.files.tables.columns import MAX_TABLE_BYTES, TableColumns, plain_float
 from vehgen.files.tables.csv_table import MOST_ROWS
 from vehgen.files.tables.sheet import Sheet
 
@@ -61,8 +61,8 @@ def _fix(fields: list[str], place: Position) -> tuple[float, float]:
     clock, day = fields[_TIME_FIELD], fields[_DATE_FIELD]
     try:
         whole = datetime.strptime(f"{day} {clock[:6]}", "%d%m%y %H%M%S").replace(tzinfo=UTC)
-        time = (whole + timedelta(seconds=float(f"0{clock[6:]}"))).timestamp()
-        return time, float(fields[_SPEED_FIELD]) * KNOT
+        time = (whole + timedelta(seconds=plain_float(f"0{clock[6:]}"))).timestamp()
+        return time, plain_float(fields[_SPEED_FIELD]) * KNOT
     except (ValueError, OverflowError) as error:
         raise InputError(
             f"date, time and speed were expected, found {shown(day)}, {shown(clock)}, {shown(fields[_SPEED_FIELD])}", place

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from vehgen.errors import InputError, Position, shown
-from vehgen.files.tables.columns import LARGEST_MEASURED, MAX_TABLE_NUMBERS, TableColumns, unmeasured
+from vehgen.files.tables.columns import LARGEST_MEASURED, MAX_TABLE_NUMBERS, TableColumns, plain_float, unmeasured
 from vehgen.files.tables.headings import check_cells, declared_unit, find_heading, is_unit, may_be_word, name_and_unit
 from vehgen.files.tables.moments import form_of
 
@@ -111,7 +111,7 @@ def _may_be_number(text: str) -> bool:
 def _number(cell: Cell, signs: set[str] | None) -> float:
     """Return a cell's number, NaN where it is none; where a comma may be decimal, `signs` takes up which sign it was."""
     try:
-        number = float(cell)
+        number = plain_float(cell)
         if signs is not None and isinstance(cell, str) and "." in cell:
             signs.add(".")
         return number
@@ -120,6 +120,6 @@ def _number(cell: Cell, signs: set[str] | None) -> float:
             return float("nan")
     signs.add(",")
     try:
-        return float(cell.replace(",", "."))
+        return plain_float(cell.replace(",", "."))
     except ValueError:
         return float("nan")
