@@ -235,6 +235,7 @@ def test_what_cannot_be_is_refused(rough, arguments, said):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.thorough
 def test_the_command_writes_a_page_a_table_and_a_figure(rough, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     found = run_json(capsys, "assess", str(rough), "--from", "100", "--weighting", "Wb", "--slope", "3", "--out", "out")

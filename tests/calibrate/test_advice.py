@@ -57,6 +57,7 @@ def test_sensitivities_are_those_of_finite_differences(tmp_path):
         )
 
 
+@pytest.mark.thorough
 def test_the_first_sensor_feels_axle_1_and_the_second_the_others_as_in_the_papers_figure_5(truck):
     found = sensitivity(truck)
     power = found.index.sum(axis=2) * found.values[:, None] ** 2
@@ -66,6 +67,7 @@ def test_the_first_sensor_feels_axle_1_and_the_second_the_others_as_in_the_paper
         assert rows[3:, 1].min() > 10 * rows[0, 1]
 
 
+@pytest.mark.thorough
 def test_two_sensors_go_to_the_front_of_the_tractor_and_the_rear_of_the_semitrailer(truck):
     found = advise_sensors(truck, 2)
     first, second = found.best[1].places

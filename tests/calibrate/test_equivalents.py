@@ -34,6 +34,7 @@ def of_trial(problem, fit, compute):
     return compute(model, problem.values_of(fit.values, problem.trials[0]))
 
 
+@pytest.mark.thorough
 def test_a_fit_that_ended_far_off_comes_back_to_the_file_which_answers_alike(truck, far):
     found = nearest_equivalent(far)
     assert np.abs(truck.space.unit(far.values) - truck.space.unit(truck.space.start)).max() > 0.3

@@ -47,6 +47,7 @@ def test_a_good_fit_is_scored_and_drawn_as_one_where_the_speed_was_misstated(sum
         assert np.std(curve.measured - curve.simulated) < 0.02 * np.std(curve.measured), (curve.run, curve.channel)
 
 
+@pytest.mark.thorough
 def test_what_is_drawn_leaves_the_noise_alone_where_noise_is_small(tmp_path):
     """In steps of 1 ms it would leave up to 1.7 times the noise: the simulation's own error."""
     noise = 0.0005

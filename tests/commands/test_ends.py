@@ -15,7 +15,7 @@ import pytest
 
 from tests.commands.calls import python
 from vehgen.commands import diagnose, main
-from vehgen.commands.faults import REPEATS
+from vehgen.commands.faults import HAS_ALARMS
 from vehgen.commands.progress import Bars
 from vehgen.commands.terminal import MAX_LINE, one_line, print_table, warn
 from vehgen.errors import CacheWarning, InputError, printable
@@ -184,7 +184,7 @@ def test_termination_removes_temporary_files(work: Path):
     assert list(work.iterdir()) == []
 
 
-@pytest.mark.skipif(not REPEATS, reason="needs alarms")
+@pytest.mark.skipif(not HAS_ALARMS, reason="needs alarms")
 def test_termination_that_is_lost_is_asked_for_again(work: Path):
     program = (
         "import os, signal, sys, time\n"

@@ -69,6 +69,7 @@ def test_what_was_fitted_until_ctrl_c_is_kept(detection_of, monkeypatch):
     assert [fit.label for fit in fits] == seen
 
 
+@pytest.mark.thorough
 def test_laws_at_a_place_that_is_kept_stay_rivals(detection_of):
     candidates, fits, rivals = settled(detection_of(CUBIC, runs=HUMPS), kept_at="front")
     assert {item.label for item in candidates if item.place == "front"} <= {item.label for item in rivals}

@@ -100,6 +100,7 @@ def test_what_falls_as_far_within_its_bounds_goes_before_what_ends_at_one(found_
     assert faint._likeliest_first(found_of, [bent, inside]) == [bent, inside]
 
 
+@pytest.mark.thorough
 def test_what_ends_at_a_bound_and_does_no_better_is_no_tie(found_of, monkeypatch):
     best = found_of.fits[0]
     rival = at_a_bound(replace(best, effects=(replace(best.last, effect=EFFECTS["quadratic_damping"]),)))

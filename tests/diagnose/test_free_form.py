@@ -104,6 +104,7 @@ def test_a_place_tested_before_another_recorder_was_found_is_tested_anew(cubic):
         np.testing.assert_allclose(again.force, force.force, rtol=1e-6, atol=1e-6 * np.abs(force.force).max())
 
 
+@pytest.mark.thorough
 def test_a_suspension_is_shown_rather_than_its_tyre(cubic):
     assert strongest(cubic[1]).place.label == "suspension rear"
     assert strongest([item for item in cubic[1] if not item.place.rows]) is None

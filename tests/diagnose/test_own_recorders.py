@@ -67,6 +67,7 @@ def test_a_missing_effect_is_not_taken_for_low_passes_of_the_sensors(trials_of):
     assert not found.is_quiet
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("fallen", [149.0, 151.0])
 @pytest.mark.parametrize("told", [None, "told"])
 def test_one_recorder_and_an_effect_stand_in_place_of_each_sensors_own_where_they_explain_far_more(detection_of, monkeypatch, fallen, told):

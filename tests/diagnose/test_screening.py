@@ -62,6 +62,7 @@ def test_a_bending_frame_is_worth_a_fit_where_no_single_force_explains_the_gap(d
     assert len(found) < len(candidates)
 
 
+@pytest.mark.thorough
 def test_laws_of_tyres_are_worth_a_fit_where_their_axles_parameters_are_at_bounds(detection_of, monkeypatch):
     """An unsprung mass at its bound does part of what tyre damping does, which then gains nothing to the first order."""
     monkeypatch.setattr(screening, "MAX_CANDIDATES", 1)

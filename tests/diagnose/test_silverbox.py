@@ -133,6 +133,7 @@ def test_at_a_low_level_nothing_is_named(runs):
     assert found.effects == ()
 
 
+@pytest.mark.thorough
 def test_free_runs_of_the_test_splits_are_as_good_as_the_best(silverbox, runs):
     prepare, free_run, path = silverbox
     force, displacement = prepare.read_silverbox(path)

@@ -134,6 +134,7 @@ def test_all_masses_and_springs_by_one_factor_change_nothing(exports, right):
         assert own.distance == pytest.approx(other.distance, rel=1e-4)
 
 
+@pytest.mark.thorough
 def test_without_a_vehicle_the_measured_alone(exports, right):
     found = vehgen.transmissibility(exports)
     assert found.channels == ("S1_az", "S2_az")

@@ -29,6 +29,7 @@ def test_mischief_is_seen(worker: Worker, name: str):
         assert verdict.outcome == (REFUSED if name == "refuse" else ACCEPTED), verdict.reasons
 
 
+@pytest.mark.thorough
 def test_a_file_that_nobody_can_have_is_not_missed(worker: Worker):
     case = mischief("refuse")
     assert worker.try_case(replace(case, files={**case.files, "x" * 300: b""})).outcome == REFUSED

@@ -153,6 +153,7 @@ def test_a_rough_road_does_not_bring_loud_moments_closer(loudness):
     assert _clock_deviation(imported) == pytest.approx(np.hypot(0.01, 0.007 * 6.0), rel=0.05)
 
 
+@pytest.mark.thorough
 def test_where_the_vehicle_fits_too_badly_for_its_axles_to_tell_the_speed_the_gps_does(tmp_path, capsys, monkeypatch):
     by_gps = facts(capsys, tmp_path / "gps.yaml", both("hump_2ms"))
     monkeypatch.setattr("vehgen.phones.clocks.TRUSTED", 0.9999)

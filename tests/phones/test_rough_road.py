@@ -56,6 +56,7 @@ def test_a_pitch_rate_is_read_where_forward_is_said(tmp_path, motion, front):
     assert np.corrcoef(found.values[:, 1], true[:, 1])[0, 1] > 0.98
 
 
+@pytest.mark.thorough
 def test_holes_are_told_not_refused(tmp_path, motion, front):
     found = read_drive([front, write_rear(tmp_path, motion, shift=2.0, hole=(80.0, 80.4))], SENSORS, 20.0, 8.0)
     assert len(found.holes) == 1

@@ -141,6 +141,7 @@ RIGS = ("damper_dyno", "drop_test", "shaker")
 """Bundled later than the baseline was recorded."""
 
 
+@pytest.mark.thorough
 def test_the_recorder_writes_runs_of_every_bundled_vehicle(tmp_path):
     axles = {name: list(load_vehicle(name).axles) for name in bundled_models()}
     runs = write_runs(tmp_path, axles)

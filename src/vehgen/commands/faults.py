@@ -22,7 +22,7 @@ UNUSABLE, STOPPED, TERMINATED = 2, 130, 143
 """Exit codes; the last two are those of shells, 128 and the number of the signal."""
 ASKED_AGAIN = 5.0
 """After so many seconds a command that goes on after SIGTERM is asked again, where the system has alarms."""
-REPEATS = hasattr(signal, "setitimer")
+HAS_ALARMS = hasattr(signal, "setitimer")
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -151,7 +151,7 @@ def _terminable() -> Iterator[None]:
         return
 
     def terminate(number: int, frame: FrameType | None) -> None:
-        if REPEATS:
+        if HAS_ALARMS:
             signal.signal(signal.SIGALRM, terminate)
             signal.setitimer(signal.ITIMER_REAL, ASKED_AGAIN)
         raise SystemExit(TERMINATED)
@@ -160,6 +160,6 @@ def _terminable() -> Iterator[None]:
     try:
         yield
     finally:
-        if REPEATS:
+        if HAS_ALARMS:
             signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGTERM, former)
