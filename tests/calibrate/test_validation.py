@@ -8,6 +8,7 @@ from tests.fit.recordings import sedan_truth, write_run
 from vehgen.calibrate.validation import validate
 from vehgen.fit.lead_in import lead_in
 from vehgen.fit.trial import load_trials
+from vehgen.simulate import simulate
 
 BANDS = [(2.0, 5.0), (8.0, 12.0)]
 
@@ -102,3 +103,18 @@ def test_what_a_sensor_reads_at_rest_is_no_error_of_the_model(tmp_path):
     changed(path, of(1, lambda x: x + 9.81))
     offset = {item.channel: item.errors for item in validate("sedan2", path, bands=[(0.1, 2.0)]).channels}
     assert offset["F_az"] == pytest.approx(plain["F_az"], abs=1e-3)
+
+
+def test_a_motion_with_a_mean_and_no_rest_before_it_is_compared_whole(tmp_path):
+    """A rig that falls from its first moment: a recording of the very same motion has no error."""
+    (tmp_path / "rig.yaml").write_text("extends: drop_test\n", encoding="utf-8")
+    run = tmp_path / "run.yaml"
+    lines = "vehicle: rig.yaml\nspeed: 1 m/s\nduration: 0.12 s\nsample: 1 ms\ninitial: {car: {displacement: 40 mm}}\n"
+    run.write_text(lines + "sensors: {s: {body: car, channels: {acceleration: az}}}\n", encoding="utf-8")
+    response = simulate(run)
+    table = np.column_stack([response.time, response.values[0]])
+    np.savetxt(tmp_path / "run.csv", table, delimiter=",", header="t,az", comments="", fmt="%.9g")
+    run.write_text(run.read_text() + "recording: run.csv\nacquisition: none\n", encoding="utf-8")
+    (found,) = validate(tmp_path / "rig.yaml", run, bands=[(0.0, 50.0)]).channels
+    assert abs(response.values[0].mean()) > 0.1 * response.values[0].std()
+    assert found.errors == pytest.approx([0.0], abs=1e-4)

@@ -87,16 +87,18 @@ def test_the_facts_that_help_most_are_asked_for_with_how_to_give_them(open_summa
 def test_channels_that_the_fit_does_not_explain_are_named_though_chi2_is_one(summary, capsys):
     text = printed(capsys, summary)
     assert "not explained" not in text
-    assert "rougher than class D" not in text
+    assert "rougher than class" not in text
     apart = {**dict.fromkeys(summary.objective, 0.7), "hump: F_az": 0.95, "hump: R_az": 1.34}
     text = printed(capsys, replace(summary, objective=apart, run_chi2={"hump": 1.0}))
     assert "not explained by the fit, by the area between the PSDs: hump: R_az (1.34), hump: F_az (0.95); what the fit leaves" in text
 
 
-def test_a_hump_on_a_road_too_rough_for_one_is_told(summary, capsys):
-    noise = tuple(replace(item, road_level_m3=np.array([1e-6, 0.1, 0.2, 0.1, 1e-6])) for item in summary.noise)
+@pytest.mark.parametrize(("level", "told"), [(1.5e-3, False), (3e-3, True)])
+def test_a_road_too_rough_for_a_calibration_is_told(summary, capsys, level, told):
+    """Class D of ISO 8608 ends at 2048e-6 m^3."""
+    noise = tuple(replace(item, road_level_m3=np.array([1e-6, 0.1, 0.2, level, 1e-6])) for item in summary.noise)
     text = printed(capsys, replace(summary, noise=noise))
-    assert "hump: a road rougher than class D was taken to lie under the hump (0.1 m^3); what the fit leaves" in text
+    assert ("hump: its road was taken to be rougher than class D beside what the run file states (0.003 m^3)" in text) == told
 
 
 def test_wider_intervals_and_doubtful_runs_are_spoken_of(summary, capsys):

@@ -15,7 +15,6 @@ import pytest
 
 from tests.commands.calls import python
 from vehgen.commands import diagnose, main
-from vehgen.commands.faults import HAS_ALARMS
 from vehgen.commands.progress import Bars
 from vehgen.commands.terminal import MAX_LINE, one_line, print_table, warn
 from vehgen.errors import CacheWarning, InputError, printable
@@ -182,27 +181,6 @@ def test_termination_removes_temporary_files(work: Path):
     found = python("-c", program, folder=work)
     assert (found.returncode, found.stdout, found.stderr) == (143, "", "")
     assert list(work.iterdir()) == []
-
-
-@pytest.mark.skipif(not HAS_ALARMS, reason="needs alarms")
-def test_termination_that_is_lost_is_asked_for_again(work: Path):
-    program = (
-        "import os, signal, sys, time\n"
-        "from vehgen.commands import faults, main, models\n"
-        "faults.ASKED_AGAIN = 0.3\n"
-        "def run(options):\n"
-        "    try:\n"
-        "        os.kill(os.getpid(), signal.SIGTERM)\n"
-        "        time.sleep(1)\n"
-        "    except SystemExit:\n"
-        "        print('lost', flush=True)\n"
-        "    time.sleep(20)\n"
-        "    print('went on')\n"
-        "models.run = run\n"
-        "sys.exit(main(['models']))\n"
-    )
-    found = python("-c", program, folder=work)
-    assert (found.returncode, found.stdout.split(), found.stderr) == (143, ["lost"], "")
 
 
 @pytest.mark.slow

@@ -187,6 +187,25 @@ def test_what_bears_only_so_much_has_no_equilibrium_under_more():
     assert "no stable static equilibrium" in equilibria(model, columns(model)).failures[0]
 
 
+def test_what_tips_off_its_contacts_has_no_equilibrium():
+    """The COG of a box stands behind both of its contacts: a far stop of the law would catch it a kilometre lower."""
+    law = "[{bump_stop: {k: 1.5 MN/m, clearance: 0.01 m, from: unloaded}}]"
+    text = f"""\
+bodies:
+  floor: {{mass: 1 t, motions: [heave]}}
+  box: {{mass: 400 kg, pitch_inertia: 50 kg m^2, carried_by: {{body: floor, x: 0 m}}}}
+axles: {{w: {{body: floor, x: 0 m, tyre: {{k: 200 kN/m, c: 4 kN s/m}}}}}}
+links:
+  a: {{floor: {{x: 0.5 m}}, box: {{x: 0.5 m}}, k: 0 N/m, laws: {law}}}
+  b: {{floor: {{x: REAR}}, box: {{x: REAR}}, k: 0 N/m, laws: {law}}}
+"""
+    held = derive(parse_vehicle(text.replace("REAR", "-0.5 m")))
+    forces = dict(zip((item.name for item in held.elements), equilibria(held, columns(held)).forces[0], strict=True))
+    assert forces == pytest.approx({"w": 1400 * G, "a": 200 * G, "b": 200 * G}, rel=1e-6)
+    tipped = derive(parse_vehicle(text.replace("REAR", "0.2 m")))
+    assert "no stable static equilibrium" in equilibria(tipped, columns(tipped)).failures[0]
+
+
 def test_tyres_leave_the_road_at_the_load_that_the_laws_leave_them():
     law = "{cubic_stiffness: {k3: K N/m^3, from: unloaded}}"
     axle = f"{{suspension: {{laws: [{law}]}}, tyre: {{laws: [{{tyre_liftoff: {{}}}}]}}}}\n"

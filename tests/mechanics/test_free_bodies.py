@@ -108,3 +108,10 @@ def test_a_motion_that_neither_spring_nor_weight_decides_stays_at_rest():
     loads = static_loads(parse_vehicle(TWO_AXLES.replace("MOTION", "pitch").replace("REAR", "-1.5 m")))
     assert loads.axles == pytest.approx({"front": 9.81 * (1000 + 400 * 0.5 / 3), "rear": 9.81 * (1000 + 400 * 2.5 / 3)}, rel=1e-9)
     assert loads.elements["link", "floor"] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_body_that_turns_freely_falls_where_its_weight_turns_it():
+    """Held 1 mm beside its COG."""
+    beside = TWO_AXLES.replace("pallet: {x: 0 m}", "pallet: {x: 0.001 m}").replace("van: {x: -1 m}", "van: {x: -0.999 m}")
+    with pytest.raises(InputError, match=r"nothing holds pitch\.pallet against gravity"):
+        static_loads(parse_vehicle(beside.replace("MOTION", "heave, pitch").replace("REAR", "-1.5 m")))

@@ -72,6 +72,8 @@ def test_two_exports_in_one_folder_are_refused(tmp_path):
     with pytest.raises(InputError, match=r"holds 'first/.*' and 'second/.*': the export of one recording was expected"):
         read_export(folder)
     assert "acceleration" in read_export(folder / "first").streams
+    beside = write_folder(tmp_path / "beside", {**files, "raw/notes.txt": "a,b\n1,2\n", "processed/notes.txt": "a,b\n1,2\n"})
+    assert "acceleration" in read_export(beside).streams
 
 
 @pytest.mark.parametrize("text", ["", "time,seconds_elapsed,z,y,x\n"])

@@ -247,11 +247,15 @@ def test_lint_finds_what_is_odd():
         (-0.2, "the hump at -0.2 m lies under front as the run begins, which it meets as a sudden step"),
         (-3.0, "the hump at -3 m lies under rear as the run begins"),
         (-1.0, "the hump at -1 m lies behind the first wheel as the run begins: it is met from rear on alone"),
+        (-100.0, "the hump at -100 m lies behind the first wheel as the run begins: it is not met"),
+        (0.05, "the hump at 0.05 m lies under front as the run begins"),
         (0.5, None),
     ],
 )
 def test_humps_at_the_start_are_told(tmp_path, at, said):
     hump = f"{{shape: half_sine, length: 0.5 m, height: 5 cm, at: {at} m}}"
-    (tmp_path / "run.yaml").write_text(f"vehicle: sedan2\nspeed: 2 m/s\nduration: 3 s\nroad: [{{hump: {hump}}}]\n", encoding="utf-8")
+    (tmp_path / "run.yaml").write_text(
+        f"vehicle: sedan2\nspeed: 2 m/s\nduration: 3 s\nfootprint: 0.2 m\nroad: [{{hump: {hump}}}]\n", encoding="utf-8"
+    )
     found = [item for item in simulate(tmp_path / "run.yaml").warnings if "as the run begins" in item]
     assert [item[: len(said or "")] for item in found] == ([said] if said else [])

@@ -86,3 +86,29 @@ def test_one_row_states_a_constant(tmp_path: Path):
     (tmp_path / "t.csv").write_text("t,v\n0,500\n")
     (tmp_path / "run.yaml").write_text(FORCE + ENDING)
     assert simulate(load_run(tmp_path / "run.yaml")).warnings == ()
+
+
+def test_a_pulse_that_begins_and_ends_at_rest_covers_the_run(tmp_path: Path):
+    times = np.linspace(1.0, 1.2, 50)
+    (tmp_path / "run.yaml").write_text(FORCE + ENDING)
+
+    def said(values: np.ndarray) -> list[str]:
+        np.savetxt(tmp_path / "t.csv", np.column_stack([times, values]), delimiter=",", header="t,v", comments="")
+        return [item for item in simulate(load_run(tmp_path / "run.yaml")).warnings if "table" in item]
+
+    pulse = 1e3 * np.sin(np.pi * (times - 1.0) / 0.2)
+    assert said(pulse) == []
+    (text,) = said(np.where(times > 1.1, 1e3, pulse))
+    assert text.endswith("its last value is held after 1.2 s")
+
+
+def test_a_track_that_lacks_less_than_one_of_its_rows_covers_the_run(tmp_path: Path):
+    run = SPEED + "duration: 30 s\n"
+    for times, told in ((np.arange(0.6, 31), False), (np.arange(0.0, 29.5), False), (np.arange(2.0, 31), True)):
+        np.savetxt(tmp_path / "t.csv", np.column_stack([times, np.full(len(times), 5.0)]), delimiter=",", header="t,v", comments="")
+        (tmp_path / "run.yaml").write_text(run)
+        assert bool([item for item in simulate(load_run(tmp_path / "run.yaml")).warnings if "covers" in item]) == told
+
+
+def test_a_long_track_of_which_a_run_is_a_part_is_not_in_ms(tmp_path: Path):
+    assert warned(tmp_path, SPEED, np.arange(0.0, 1500.0)) == []

@@ -19,7 +19,7 @@ from vehgen.fit.trial import Trial, TrialLike, load_trials
 from vehgen.measure import ARTICULATED_BANDS, SPECTRA, TWO_AXLE_BANDS, band_rms, record_psd, relative_errors, welch_psd
 from vehgen.measure.astm import NOTE
 from vehgen.measure.curves import ChannelCurves
-from vehgen.measure.likeness import ALIKE_ABOVE, UNLIKE_BELOW, Agreement, agreement
+from vehgen.measure.likeness import ALIKE_ABOVE, ONE_MOTION, UNLIKE_BELOW, Agreement, agreement
 from vehgen.measure.quality import in_foreign_unit
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 
@@ -47,7 +47,8 @@ class ChannelComparison:
     `frequency shape (n,)` [Hz], `measured_psd` and `simulated_psd shape (n,)` [unit^2/Hz]; `measured_rms`, `simulated_rms`, `errors` `shape
     (n_bands,)`, errors as Eq. 32 of Wu & Li 2023; `audible` says in which bands the measured or the simulated RMS stands LOUD times above
     the noise that the top of the band shows, and above what shook the vehicle before a hump: errors elsewhere compare with those. `time`,
-    `measured`, `simulated` are the histories; what an accelerometer or a gyroscope reads at rest is taken off.
+    `measured`, `simulated` are the histories; what an accelerometer or a gyroscope reads at rest is taken off; where a run has no
+    rest, by how much its mean is another than the simulated one.
     """
 
     run: str
@@ -81,7 +82,7 @@ class ChannelComparison:
 
     @property
     def agreement(self) -> Agreement:
-        """How alike both histories are, and how much later the measured one would have to be taken."""
+        """How alike both histories are, as they are and with the measured one later by so much."""
         return agreement(self.measured, self.simulated, float(self.time[1] - self.time[0]))
 
     def doubt(self) -> str | None:
@@ -93,7 +94,7 @@ class ChannelComparison:
             return f"{what} reads {self.loudness:.4g} times what the vehicle answers: is it in the unit that is stated, and not dead?"
         if alike.at_once < -ALIKE_ABOVE:
             return f"{what} reads the vehicle's answer the other way round (correlation {alike.at_once:.2f}): is its `sign` right?"
-        if alike.at_best > ALIKE_ABOVE and alike.at_once < UNLIKE_BELOW:
+        if alike.at_best > ONE_MOTION and alike.at_once < UNLIKE_BELOW:
             when = "later" if alike.late > 0 else "earlier"
             said = f"{abs(alike.late):.2f} s {when} (correlation {alike.at_best:.2f}, as it is {alike.at_once:.2f})"
             return f"{what} is like the vehicle's answer {said}: is the hump's `at`, the speed or the clock another?"
@@ -209,7 +210,7 @@ def compare_trial(trial: Trial, bands: Bands) -> list[ChannelComparison]:
     for i, channel in enumerate(trial.recording.channels):
         measured, simulated = trial.recording.values[:, i], result.responses[0, :, i]
         if channel.quantity in READ_AT_REST:
-            measured = measured - (measured if before is None else before.recording.values[:, i]).mean()
+            measured = measured - (measured.mean() - simulated.mean() if before is None else before.recording.values[:, i].mean())
         densities = []
         for values in (measured, simulated):
             averaged = rough and len(values) * dt > LONGEST_RECORD * SEGMENT

@@ -6,6 +6,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from vehgen.commands.terminal import print_table, say, warn
+from vehgen.road.iso8608 import CLASSES
 
 if TYPE_CHECKING:
     from vehgen.calibrate.result import CalibrationSummary, ConditionSummary, FactAdvice
@@ -14,8 +15,8 @@ MAX_CHI2 = 1.2
 """Above this the residuals are larger than the noise model allows."""
 UNEXPLAINED_AREA = 0.9
 """Where PSDs lie so far apart the fit explains next to nothing; of vehicles that fit, also over rough roads, 0.7 was the most."""
-TOO_ROUGH_M3 = 1e-3
-"""A hump lies on a road of class D of ISO 8608 at most, whose level this is."""
+ROUGHEST_ROAD = "D"
+"""A calibration's road is of this class of ISO 8608 at most."""
 FAR_OFF_SIGMAS = 3.0
 """A run's condition this far off what was known is doubtful."""
 PASSED_FOR_NOISE = (
@@ -130,13 +131,16 @@ def _far_off(outcome: CalibrationSummary) -> list[str]:
 def _unexplained(outcome: CalibrationSummary) -> list[str]:
     """Say what the fit does not explain: what it leaves may pass for noise or roughness, and chi2 then shows nothing."""
     apart = {name: area for name, area in outcome.objective.items() if area > UNEXPLAINED_AREA}
-    found = []
+    found, roughest = [], CLASSES[ROUGHEST_ROAD][2]
     if apart:
         told = _listed([f"{name} ({area:.2f})" for name, area in sorted(apart.items(), key=lambda item: -item[1])])
         found.append(f"not explained by the fit, by the area between the PSDs: {told}; {PASSED_FOR_NOISE}")
     for item in outcome.noise:
-        if (level := sorted(item.road_level_m3)[len(item.road_level_m3) // 2]) > TOO_ROUGH_M3:
-            found.append(f"{item.run}: a road rougher than class D was taken to lie under the hump ({level:.1g} m^3); {PASSED_FOR_NOISE}")
+        if (level := sorted(item.road_level_m3)[len(item.road_level_m3) // 2]) > roughest:
+            found.append(
+                f"{item.run}: its road was taken to be rougher than class {ROUGHEST_ROAD} beside what the run file states "
+                f"({level:.1g} m^3); {PASSED_FOR_NOISE}"
+            )
     return found
 
 

@@ -20,9 +20,6 @@ from vehgen.errors import CacheWarning, InputError, ModelWarning, did_you_mean, 
 
 UNUSABLE, STOPPED, TERMINATED = 2, 130, 143
 """Exit codes; the last two are those of shells, 128 and the number of the signal."""
-ASKED_AGAIN = 5.0
-"""After so many seconds a command that goes on after SIGTERM is asked again, where the system has alarms."""
-HAS_ALARMS = hasattr(signal, "setitimer")
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -142,24 +139,16 @@ def _nobody_reads() -> bool:
 
 @contextmanager
 def _terminable() -> Iterator[None]:
-    """End by SIGTERM as by any other error, so that temporary files are removed.
-
-    An error that is raised within a callback of a finaliser is lost: it is raised again every ASKED_AGAIN seconds until the command ends.
-    """
+    """End by SIGTERM as by any other error, so that temporary files are removed."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
 
     def terminate(number: int, frame: FrameType | None) -> None:
-        if HAS_ALARMS:
-            signal.signal(signal.SIGALRM, terminate)
-            signal.setitimer(signal.ITIMER_REAL, ASKED_AGAIN)
         raise SystemExit(TERMINATED)
 
     former = signal.signal(signal.SIGTERM, terminate)
     try:
         yield
     finally:
-        if HAS_ALARMS:
-            signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGTERM, former)

@@ -6,6 +6,7 @@ They are wide: they refuse no vehicle, rig or road that could stand in a laborat
 from __future__ import annotations
 
 from dataclasses import dataclass
+from numbers import Integral
 
 from vehgen.errors import ArgumentError, InputError, shown
 from vehgen.files.units import (
@@ -102,7 +103,7 @@ def check_seed(seed: int, name: str) -> None:
 
 def check_count(count: int, name: str, least: int, most: int) -> None:
     """Raise ArgumentError for a number of things below `least` or above `most`; `name` is the argument's."""
-    if not (isinstance(count, int) and least <= count <= most):
+    if isinstance(count, bool) or not (isinstance(count, Integral) and least <= count <= most):
         raise ArgumentError(f"`{name}`: a whole number from {least} to {most} was expected, found {shown(count)}", name)
 
 

@@ -13,6 +13,8 @@ LONGEST_LATE = 3.0
 """So much later or earlier one may be taken [s]."""
 ALIKE_ABOVE, UNLIKE_BELOW = 0.6, 0.3
 """Correlations beyond which two histories are one motion, and below which they are not."""
+ONE_MOTION = 0.8
+"""The first of these where the best of many lags was taken: two decaying motions of 5 s have 0.6 by chance."""
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,8 @@ ACCEPTED = 1e-8
 LOAD_STEPS = 20
 HELD_BY = 1e6, 1e-3
 """Springs to the ground between which a search fades them, over the mass [1/s^2]."""
+LONGEST_FALL = 30.0
+"""What travels further [m] until something holds it has fallen."""
 NOT_FOUND = "no stable static equilibrium was found: its laws that count from the unloaded position cannot carry its weight"
 
 
@@ -167,6 +169,8 @@ class _Balance:
         found = self._followed(np.zeros(len(scale)), np.linspace(0, 1, LOAD_STEPS + 1)[1:], 0 * whole)
         if not np.isfinite(found).all():
             found = self._followed(np.zeros(len(scale)), whole, np.append(np.geomspace(*HELD_BY, LOAD_STEPS - 1), 0.0))
+            if not (np.abs(self.travels((scale * found)[None])) < LONGEST_FALL).all():  # it fell until a far stop caught it
+                found = np.full(len(scale), np.nan)
         return np.asarray(scale * found)[None]
 
     def _followed(self, x: Array, loads: Array, springs: Array) -> Array:

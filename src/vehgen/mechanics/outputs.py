@@ -33,8 +33,8 @@ DISTANCE_ALONE = "`distance` counts from what `behind` names, and nothing is nam
 class Place:
     """A place on a body: `x` ahead of its COG, or `distance` [m] behind an axle, hinge or body named `behind`, `height` [m] above the COG.
 
-    `x` may be given as a text, such as `1.2 m` or `wheelbase - 1 m`, or as a number [m]; lengths may be texts, too. What is no length of at
-    most 1 km, `x` beside `behind`, and a `distance` behind nothing are an InputError.
+    `x` may be given as a text, such as `1.2 m` or `wheelbase - 1 m`, or as a number [m]; lengths may be texts, too. A number that is no
+    length of at most 1 km, `x` beside `behind`, and a `distance` behind nothing are an InputError.
     Each place has a parameter `NAME.shift` [m], which moves it forward; it is 0 unless a population or a fit says otherwise.
     """
 

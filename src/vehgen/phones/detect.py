@@ -35,19 +35,17 @@ def read_export(path: str | Path, columns: ColumnMap | None = None) -> PhoneExpo
         return read_matlab(path)
     tables: list[Table] = []
     refused: list[InputError] = []
-    members = read_members(path)
-    _check_one_recording(path, members)
-    for name, data in members.items():
+    for name, data in read_members(path).items():
         try:
             tables.append(read_table(data, name, str(path)))
         except InputError as error:
             refused.append(error)
     if not tables:
         raise refused[0]
-    if any(is_sensor_logger(table) for table in tables):
-        return _with_passed_over(read_sensor_logger([table for table in tables if is_sensor_logger(table)]), refused)
-    if any(is_phyphox(table) for table in tables):
-        return _with_passed_over(read_phyphox([table for table in tables if is_phyphox(table)]), refused)
+    for is_of, read in ((is_sensor_logger, read_sensor_logger), (is_phyphox, read_phyphox)):
+        if own := [table for table in tables if is_of(table)]:
+            _check_one_recording(path, [table.file for table in own])
+            return _with_passed_over(read(own), refused)
     if len(tables) > 1 and columns is not None:
         raise ArgumentError(f"{path} holds {len(tables)} tables; with `columns`, give the one table", "columns")
     return read_plain(tables[0], columns)

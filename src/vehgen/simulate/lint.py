@@ -54,7 +54,7 @@ def _loads(loads: Mapping[str, float]) -> Iterator[Finding]:
 
 def _deflections(deflections: Mapping[tuple[str, str], float]) -> Iterator[Finding]:
     for (kind, name), travel in deflections.items():
-        if abs(travel) > DEFLECTION.get(kind, np.inf):
+        if travel > DEFLECTION.get(kind, np.inf):
             yield (
                 "deflection",
                 name,

@@ -37,6 +37,8 @@ SAME_HEIGHT = 1e-3
 """A hole whose two sides differ by this share of the profile's range is a level piece of road."""
 MM_RANGE_M = 2.0
 """A profile whose heights range over more, and that rises steeply, is read as m and was in mm."""
+MM_AT_LEAST = 0.9
+"""Not so large a share of the way is steep by a kerb alone."""
 MM_WAY_M = 0.5
 """No vehicle climbs more than this way, over this way."""
 MIN_END_GAP_M = 0.05
@@ -93,7 +95,8 @@ def _too_short(name: str, profile: MeasuredProfile, scenario: Scenario) -> Itera
 
 def _in_mm(name: str, profile: MeasuredProfile) -> Iterator[str]:
     """Warn where heights seem to be in mm: a road in mm that is read as m has slopes of several."""
-    rise = float(np.abs(np.interp(profile.distance + MM_WAY_M, profile.distance, profile.heights) - profile.heights).max())
+    rises = np.abs(np.interp(profile.distance + MM_WAY_M, profile.distance, profile.heights) - profile.heights)
+    rise = float(np.quantile(rises, MM_AT_LEAST))  # not at a kerb alone
     if rise > MM_WAY_M and np.ptp(profile.heights) > MM_RANGE_M:
         yield (
             f"{name} rises or falls by {rise:.3g} m over {MM_WAY_M:g} m, its heights range over {np.ptp(profile.heights):.4g} m: "

@@ -84,12 +84,15 @@ def doubtful_humps(scenario: Scenario, axles: Mapping[str, float]) -> Iterator[s
         if begin > end:
             what = "hump" if isinstance(part, Hump) else "profile"
             yield f"the {what} at {begin:.4g} m is not met: the run ends at {end:.4g} m; a longer `duration`, or a road that begins earlier"
+    reach = scenario.track.footprint / 2
     for hump in scenario.humps:
         past = hump.at + hump.length
-        if under := [name for name, behind in axles.items() if hump.at < -behind < past]:
+        if under := [name for name, behind in axles.items() if hump.at - reach < -behind < past + reach]:
             yield f"the hump at {hump.at:g} m lies under {under[0]} as the run begins, which it meets as a sudden step: put it ahead (`at`)"
-        elif past <= 0 and (later := [name for name, behind in axles.items() if -behind <= hump.at]):
-            yield f"the hump at {hump.at:g} m lies behind the first wheel as the run begins: it is met from {later[0]} on alone"
+        elif past <= 0 and axles:
+            later = next((name for name, behind in axles.items() if -behind <= hump.at), None)
+            met = "it is not met" if later is None else f"it is met from {later} on alone"
+            yield f"the hump at {hump.at:g} m lies behind the first wheel as the run begins: {met}"
 
 
 def spectral_nulls(model: EquationsOfMotion, values: Mapping[str, float], scenario: Scenario) -> Iterator[str]:

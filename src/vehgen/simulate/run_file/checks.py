@@ -53,11 +53,12 @@ def _check_settings(run: Run) -> None:
         raise InputError("`band` is [lowest, highest] frequency compared; the first must be the lower one", document.find(("band",)))
     if file.set is not None:
         check_known(file.set, vehicle.sets, f"{vehicle.name} has no parameter set", document, "set")
-    random = [(number, entry.iso8608) for number, entry in enumerate(file.road) if entry.iso8608 is not None]
-    for place, (number, entry) in enumerate(random):
-        if entry in [other for _, other in random[:place]]:
-            said = "the same random road twice is one of twice the heights; another `seed` was expected"
+    seeds: set[int] = set()
+    for number, entry in enumerate(file.road):
+        if entry.iso8608 is not None and entry.iso8608.seed in seeds:
+            said = "two random roads of one seed go up and down together, as one that is higher; another `seed` was expected"
             raise InputError(said, document.find(("road", number)))
+        seeds |= {entry.iso8608.seed} if entry.iso8608 is not None else set()
 
 
 def _check_parameters(run: Run) -> None:

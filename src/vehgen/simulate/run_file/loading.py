@@ -47,14 +47,16 @@ class Run:
         """
         update: dict[str, float | str] = {}
         if speed is not None:
-            if not isinstance(speed, Real) or not 0 < speed < math.inf:
+            if isinstance(speed, bool) or not isinstance(speed, Real) or not 0 < speed < math.inf:
                 raise ArgumentError(f"`speed`: a number above 0 in m/s was expected, found {shown(speed)}", "speed")
             if (reason := SPEED_LIMIT.refusal(float(speed))) is not None:
                 raise ArgumentError(f"`speed`: {reason}", "speed")
+            if not self.vehicle.axles:
+                raise ArgumentError(f"`speed`: {self.vehicle.name} has no wheels, nothing depends on it", "speed")
             update["speed"] = float(speed)
         if parameter_set is not None:
-            if parameter_set not in self.vehicle.sets:
-                known = did_you_mean(parameter_set, self.vehicle.sets)
+            if not isinstance(parameter_set, str) or parameter_set not in self.vehicle.sets:
+                known = did_you_mean(str(parameter_set), self.vehicle.sets)
                 said = f"`parameter_set`: {self.vehicle.name} has no parameter set {shown(parameter_set)}; {known}"
                 raise ArgumentError(said, "parameter_set")
             update["set"] = parameter_set
