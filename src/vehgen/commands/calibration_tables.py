@@ -6,7 +6,6 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from vehgen.commands.terminal import print_table, say, warn
-from vehgen.road.iso8608 import CLASSES
 
 if TYPE_CHECKING:
     from vehgen.calibrate.result import CalibrationSummary, ConditionSummary, FactAdvice
@@ -130,6 +129,8 @@ def _far_off(outcome: CalibrationSummary) -> list[str]:
 
 def _unexplained(outcome: CalibrationSummary) -> list[str]:
     """Say what the fit does not explain: what it leaves may pass for noise or roughness, and chi2 then shows nothing."""
+    from vehgen.road.iso8608 import CLASSES
+
     apart = {name: area for name, area in outcome.objective.items() if area > UNEXPLAINED_AREA}
     found, roughest = [], CLASSES[ROUGHEST_ROAD][2]
     if apart:

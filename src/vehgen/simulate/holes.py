@@ -23,3 +23,11 @@ def holes(places: NDArray[np.float64], low: float, high: float) -> NDArray[np.in
         return np.zeros(0, dtype=np.intp)
     found = np.flatnonzero(wide & (places[1:] > low) & (places[:-1] < high))
     return np.asarray(found[np.argsort(-gaps[found], kind="stable")])
+
+
+def widest(places: NDArray[np.float64], found: NDArray[np.intp], unit: str, rows: str) -> str:
+    """Say where the first of some holes is, as :func:`holes` found them, and what `rows` of the table let expect, both in `unit`."""
+    begin, end = places[found[0] : found[0] + 2]
+    others = f" ({len(found)} such holes in all)" if len(found) > 1 else ""
+    spacing = float(np.median(np.diff(places)))
+    return f"has a hole from {begin:.4g} to {end:.4g} {unit}, its {rows} being {spacing:.3g} {unit} apart{others}"

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.road import MeasuredProfile
-from vehgen.simulate.holes import holes
+from vehgen.simulate.holes import holes, widest
 from vehgen.simulate.modes import natural_modes
 from vehgen.simulate.scenario import Scenario
 
@@ -110,13 +110,7 @@ def _with_holes(name: str, profile: MeasuredProfile, scenario: Scenario, behind:
     steps = np.abs(np.diff(profile.heights))[found]
     found = found[steps > SAME_HEIGHT * np.ptp(profile.heights)]
     if found.size:
-        begin, end = profile.distance[found[0] : found[0] + 2]
-        others = f" ({len(found)} such holes in all)" if len(found) > 1 else ""
-        spacing = float(np.median(np.diff(profile.distance)))
-        yield (
-            f"{name} has a hole from {begin:.4g} to {end:.4g} m, its points being {spacing:.3g} m apart{others}: "
-            "wheels cross it on a straight line"
-        )
+        yield f"{name} {widest(profile.distance, found, 'm', 'points')}: wheels cross it on a straight line"
 
 
 def _without_long_waves(name: str, profile: MeasuredProfile) -> Iterator[str]:

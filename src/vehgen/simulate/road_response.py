@@ -34,7 +34,7 @@ DEFAULT_CLASS = "B"
 LEAST_LINES, WIDEST_STEP_HZ = 4000, 0.02
 """Lines over the standard's frequencies, by which RMS values are integrated: at least so many, at most so far apart, and more at peaks."""
 LINES_KEPT, PEAK_STEP_KEPT = 1200, 0.25
-"""About so many of them, evenly spaced on a logarithmic axis, a result holds, and at peaks those so far apart: see :func:`with_peaks`."""
+"""Evenly spaced on a logarithmic axis a result holds so many of them at most, and at peaks those so far apart: see :func:`with_peaks`."""
 FREQUENCY_DIGITS = 9
 """Frequencies are rounded to what a CSV file tells of them."""
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vehgen.files.tables import read_columns
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.road import SpeedHistory
-from vehgen.simulate.holes import FEWEST_ROWS_WITH_HOLES, holes
+from vehgen.simulate.holes import FEWEST_ROWS_WITH_HOLES, holes, widest
 from vehgen.simulate.run_file import Run
 from vehgen.simulate.run_file.entries import DisplacementEntry, ForceEntry, SpeedFile
 from vehgen.simulate.run_scenario import ground_links
@@ -96,10 +96,4 @@ def _uncovered(table: _Table, scenario: Scenario) -> Iterator[str]:
 def _holes(table: _Table, scenario: Scenario) -> Iterator[str]:
     found = holes(table.time, 0.0, scenario.duration)
     if found.size:
-        begin, end = table.time[found[0] : found[0] + 2]
-        others = f" ({len(found)} such holes in all)" if len(found) > 1 else ""
-        spacing = float(np.median(np.diff(table.time)))
-        yield (
-            f"{table.name} has a hole from {begin:.4g} to {end:.4g} s, its rows being {spacing:.3g} s apart{others}: "
-            "a straight line bridges it"
-        )
+        yield f"{table.name} {widest(table.time, found, 's', 'rows')}: a straight line bridges it"

@@ -16,7 +16,7 @@ from vehgen.diagnose.inputs.judging import supposed_mistakes
 from vehgen.diagnose.result import Decided
 from vehgen.diagnose.select.criteria import is_told
 from vehgen.diagnose.select.fitter import Fitter
-from vehgen.diagnose.select.ranking import SearchRound, merit, own_numbers
+from vehgen.diagnose.select.ranking import SearchRound, merit, price_of_numbers
 from vehgen.effects import RunEffect
 from vehgen.effects.evidence import StartingPoint
 from vehgen.fit.parallel import HERE, Runner
@@ -138,8 +138,7 @@ def _explains(fit: ModelFit, strained: Detection, believed: Detection) -> bool:
 
     By the whole likelihood: gains that a base supposes make its noise louder or quieter, so that squares over it do not compare.
     """
-    price = own_numbers(fit) * float(np.log(fit.n_residuals))
-    return fit.least_squares.loss + price < strained.base.least_squares.loss and leaves_noise(fit, believed)
+    return fit.least_squares.loss + price_of_numbers(fit) < strained.base.least_squares.loss and leaves_noise(fit, believed)
 
 
 def leaves_noise(fit: ModelFit, detection: Detection) -> bool:

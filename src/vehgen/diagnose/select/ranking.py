@@ -35,7 +35,12 @@ def merit(fit: ModelFit) -> float:
     That price is BIC's for the last effect's numbers. Errors count because of two effects that do as well, the one that needs a phone's
     clock to be 30 ms off in every run is the less likely one.
     """
-    return fit.squares + own_numbers(fit) * float(np.log(fit.n_residuals))
+    return fit.squares + price_of_numbers(fit)
+
+
+def price_of_numbers(fit: ModelFit) -> float:
+    """Return what the last effect's numbers have to gain, by BIC, for the fit to be the likelier one."""
+    return own_numbers(fit) * float(np.log(fit.n_residuals))
 
 
 def own_numbers(fit: ModelFit) -> int:
