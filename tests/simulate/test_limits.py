@@ -52,7 +52,9 @@ CASES = [
     (
         "random roads",
         HUMP,
-        "duration: 300 s\nroad: [{@iso8608: {class: A}}" + ", {iso8608: {class: B}}" * 100 + "]\n",
+        "duration: 300 s\nroad: [{@iso8608: {class: A}}"
+        + "".join(f", {{iso8608: {{class: B, seed: {i}}}}}" for i in range(1, 101))
+        + "]\n",
         "random roads are made up to 50000 m",
     ),
     (
