@@ -45,7 +45,7 @@ def check_run(run: Run) -> None:
 
 
 def _check_settings(run: Run) -> None:
-    """Check the speed, the band and the parameter set."""
+    """Check the speed, the band, the parameter set, and that no two random roads are one."""
     file, vehicle, document = run.file, run.vehicle, run.document
     if vehicle.axles and "speed" not in file.model_fields_set:
         raise InputError(f"the file lacks the key 'speed': {vehicle.name} has wheels", document.position)
