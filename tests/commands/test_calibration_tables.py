@@ -50,6 +50,11 @@ def test_runs_are_told_with_what_was_known_of_them(summary, capsys):
     assert "kf/mf" in text
 
 
+def test_masses_beside_tyres_without_damping_are_doubted(summary, capsys):
+    assert "no damping to the tyres of front, rear" in printed(capsys, summary)
+    assert "no damping" not in printed(capsys, replace(summary, undamped_tyres=()))
+
+
 def test_errors_near_what_was_known_are_counted_and_not_listed(summary, capsys):
     near = tuple(replace(item, sigmas=0.99) for item in summary.conditions)
     text = printed(capsys, replace(summary, conditions=near))

@@ -1,5 +1,7 @@
 """What a base hides that has bent its parameters and the errors of its runs to a mistake of the measurement."""
 
+import re
+import shutil
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -11,15 +13,19 @@ from tests.diagnose.conftest import CUBIC, HUMPS, edited
 from vehgen.diagnose import ending
 from vehgen.diagnose.decision import Decision
 from vehgen.diagnose.detect.detection import detect
-from vehgen.diagnose.inputs import humps, judging, vehicle
+from vehgen.diagnose.inputs import axles, humps, judging
 from vehgen.diagnose.inputs.amplitudes import silent_hypotheses
+from vehgen.diagnose.inputs.axles import axle_hypotheses
 from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.humps import exchanged_humps
 from vehgen.diagnose.inputs.judging import plain_mistakes, recorded_mistakes
 from vehgen.diagnose.inputs.labels import label_hypotheses
 from vehgen.diagnose.inputs.refits import BaseRefits
-from vehgen.diagnose.inputs.vehicle import axle_hypotheses
+from vehgen.fit.trial import load_trials
 from vehgen.measure.acquisition import POINT_SAMPLES, AcquisitionChain
+from vehgen.simulate import Simulator
+from vehgen.vehicle import load_vehicle
+from vehgen.vehicle.loading import bundled_models
 
 BAND = (0.5, 25.0)
 R_AZ, R_Q = 2, 3
@@ -98,8 +104,52 @@ def test_a_recording_that_is_put_right_keeps_the_noise_of_the_base(detection_of)
 def test_axles_are_not_blamed_where_a_clock_leaves_noise(detection_of, monkeypatch, clock, blamed):
     parameters = perturbed("sedan2", 3)
     parameters["wheelbase"] *= 1.15
-    monkeypatch.setattr(vehicle, "other_rate", lambda case: clock)
+    monkeypatch.setattr(axles, "other_rate", lambda case: clock)
     assert bool(list(axle_hypotheses(BaseRefits(detection_of(parameters=parameters, runs=HUMPS))))) is blamed
+
+
+@pytest.mark.thorough
+def test_a_distance_that_the_file_says_in_numbers_is_fitted(record, monkeypatch, tmp_path):
+    """The same wheelbase as above, of which the vehicle file has no parameter: what it is is fitted, not only tried."""
+    parameters = perturbed("sedan2", 3)
+    parameters["wheelbase"] *= 1.15
+    shutil.copytree(record(parameters=parameters, runs=HUMPS)[0].parent, tmp_path, dirs_exist_ok=True)
+    numbers = re.sub(r"  wheelbase: .*\n", "", bundled_models()["sedan2"].read_text()).replace("wheelbase - Lf", "2.8 m - Lf")
+    (tmp_path / "plain.yaml").write_text(numbers)
+    paths = sorted(path for path in tmp_path.glob("*.yaml") if path.name != "plain.yaml")
+    for path in paths:
+        path.write_text(re.sub(r"vehicle: .*", "vehicle: plain.yaml", path.read_text()))
+    monkeypatch.setattr(axles, "other_rate", lambda case: None)
+    case = BaseRefits(detect(load_trials(paths)))
+    (found,) = axle_hypotheses(case)
+    fit, left = case.judge(found)
+    (fault,) = found.describe(fit.misfit.adjusted(fit.x))
+    assert left < found.limit
+    assert fault.value == pytest.approx(0.15 * 2.8, abs=0.03)
+    assert "rear seems to run" in fault.message
+    assert "not 2.80 m" in fault.message
+
+
+def test_axles_are_moved_alone_and_with_all_behind_where_no_parameter_says_where_they_run(tmp_path):
+    """The hinge's distance moves both axles of the semitrailer; the numbers of the third axle and of the fourth are nobody's."""
+    text = bundled_models()["tractor5"].read_text().replace("L13 - b1", "4.80 m - b1").replace("Lh4 - b6", "8.50 m - b6")
+    text = re.sub(r"  (L13|Lh4): .*\n", "", text)
+    text = re.sub(r"(L13|Lh4): [^,}]+(, |(?=}))", "", text)
+    (tmp_path / "t.yaml").write_text(text)
+    vehicle = load_vehicle(tmp_path / "t.yaml")
+    road = SimpleNamespace(track=SimpleNamespace(parts=("hump",)))
+    simulator = Simulator(vehicle, [])
+    trial = SimpleNamespace(values=vehicle.values(), fixed=(), simulator=simulator, run=SimpleNamespace(vehicle=vehicle), scenario=road)
+    case = SimpleNamespace(trials=[trial], problem=SimpleNamespace(space=SimpleNamespace(names=tuple(vehicle.ranges()))))
+    found = {distance.axles: (distance.parameter, round(distance.value, 6)) for distance in axles._distances(case)}
+    assert found == {
+        ("axle2",): ("L12", 3.46),
+        ("axle4", "axle5"): ("L1h", 3.75),
+        ("axle5",): ("Lh5", 9.73),
+        ("axle3",): ("", 4.8),
+        ("axle3", "axle4", "axle5"): ("", 4.8),
+        ("axle4",): ("", 12.25),
+    }
 
 
 @pytest.mark.thorough
@@ -117,7 +167,7 @@ def test_axles_are_blamed_where_a_speed_leaves_noise_with_many_other_errors(dete
         return (SimpleNamespace(loss=losses[0] + dearer), 0.0) if shared else (fit, left)
 
     monkeypatch.setattr(case, "refit", fitted)
-    monkeypatch.setattr(vehicle, "other_rate", lambda case: None)
+    monkeypatch.setattr(axles, "other_rate", lambda case: None)
     assert bool(list(axle_hypotheses(case))) is blamed
 
 

@@ -130,12 +130,16 @@ def test_believable_errors_are_small(detection_of):
         assert max(abs(item.sigmas) for item in part.conditions()) <= 2.5 + 1e-9
 
 
-def test_a_quiet_refit_at_the_edge_of_its_range_is_told(detection_of):
+@pytest.mark.parametrize(("share", "damped"), [(0.0, True), (1.0, False)])
+def test_a_quiet_refit_at_the_edge_of_its_range_is_told(detection_of, share, damped):
+    """A light axle on a soft tyre is what damping in the tyre looks like; a heavy one is not."""
     detection = detection_of(runs=HUMPS)
     fit = detection.base.least_squares
     x = fit.x.copy()
-    x[fit.misfit.problem.space.names.index("mr")] = 0.0
+    x[fit.misfit.problem.space.names.index("mr")] = share
     bent = replace(detection, base=replace(detection.base, least_squares=replace(fit, x=x)))
-    told, plain = (Decision(item, [], False, lambda *known: None)._nothing().verdict for item in (bent, detection))
-    assert any("ends at its edge for mr" in note for note in told.notes)
-    assert not any("at its edge" in note for note in plain.notes)
+    for end in (Decision._nothing, lambda ending: ending._end("too_weak", "small")):
+        told, plain = (end(Decision(item, [], False, lambda *known: None)).verdict for item in (bent, detection))
+        (note,) = [note for note in told.notes if "ends at its edge for mr" in note]
+        assert ("damping in the tyres of rear" in note) is damped
+        assert not any("at its edge" in note for note in plain.notes)

@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 from vehgen.codegen import Excitation, Kernel
 from vehgen.diagnose.fits.candidate import has_room, list_candidates
 from vehgen.effects import EFFECTS, EffectLocator
-from vehgen.effects.locator import base_parameters
+from vehgen.effects.locator import base_parameters, undamped_tyres
 from vehgen.effects.places import dampers
 from vehgen.mechanics import Place, PointOutput, derive
 from vehgen.vehicle import load_vehicle, parse_vehicle
@@ -88,3 +88,11 @@ def test_nothing_is_searched_where_a_mount_has_taken_the_dashpot_away():
     for place, rooms in (("rear", [True, False]), ("front", [True, True])):
         (candidate,) = [item for item in list_candidates(vehicle, (), [EFFECTS["quadratic_damping"]]) if item.place == place]
         assert [has_room(candidate, locator) for locator in (plain, EffectLocator(mounted, mounted.values()))] == rooms
+
+
+def test_tyres_without_damping_are_those_whose_axle_or_stiffness_is_searched():
+    sedan = load_vehicle("sedan2")
+    assert undamped_tyres(sedan, ["mf", "kr"]) == ("front",)
+    assert undamped_tyres(sedan, ["mH", "ktr", "ktf"]) == ("front", "rear")
+    damped = sedan.with_changes({"axles": {"rear": {"tyre": {"c": "100 N s/m"}}}})
+    assert undamped_tyres(damped, ["mr", "ktr"]) == ()

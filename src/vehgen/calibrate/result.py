@@ -165,6 +165,9 @@ class CalibrationSummary(Result):
         Facts that could be measured, best first: what each would do for the intervals.
     recorder
         What stands for recorders that no run file declares, step by step.
+    undamped_tyres
+        Axles whose mass or tyre's stiffness was searched, and to whose tyres the vehicle file gives no damping: what real ones damp passes
+        for lighter axles on softer tyres, and no interval knows of it.
     """
 
     KIND: ClassVar[str] = "calibration"
@@ -201,6 +204,7 @@ class CalibrationSummary(Result):
     interval_inflation: float = 1.0
     prior_data_advice: tuple[FactAdvice, ...] = ()
     recorder: tuple[RecorderSummary, ...] = ()
+    undamped_tyres: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if len(self.steps) != len(self.history):

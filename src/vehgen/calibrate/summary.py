@@ -34,6 +34,7 @@ from vehgen.calibrate.result import (
     RecorderSummary,
 )
 from vehgen.calibrate.step_intervals import step_uncertainties
+from vehgen.effects.locator import undamped_tyres
 from vehgen.files.provenance import file_hashes, versions
 from vehgen.fit.parallel import Runner
 from vehgen.fit.prior_data import PriorData
@@ -110,6 +111,7 @@ def summarise(
         interval_inflation=1.0 if uncertainty is None else uncertainty.inflation,
         prior_data_advice=() if uncertainty is None else advise_prior_data(uncertainty, prior_data),
         recorder=tuple(_recorders(calibration)),
+        undamped_tyres=undamped_tyres(problem.trials[0].run.vehicle, problem.space.names),
     )
 
 

@@ -61,7 +61,7 @@ def show_calibration(outcome: CalibrationSummary) -> None:
         [(name, f"{value:.4f}") for name, value in outcome.objective.items()],
         right=(1,),
     )
-    for text in _advice(outcome.prior_data_advice):
+    for text in [*_advice(outcome.prior_data_advice), *_undamped(outcome.undamped_tyres)]:
         say(text, "advice: ")
     warn(_warnings(outcome))
 
@@ -200,3 +200,13 @@ def _entry(item: FactAdvice) -> str:
 def _rounded(item: FactAdvice) -> str:
     """Return how well a fact would be known, in two digits."""
     return f"{float(f'{item.uncertainty:.2g}'):g} {item.unit}"
+
+
+def _undamped(axles: tuple[str, ...]) -> list[str]:
+    """Say what tyres without damping make of the masses of their axles."""
+    if not axles:
+        return []
+    return [
+        f"the file gives no damping to the tyres of {_listed(list(axles))}: what real ones damp passes for lighter axles on softer tyres, "
+        "and no interval knows of it; give these tyres a `c` with a range to see by how much"
+    ]

@@ -29,6 +29,7 @@ from vehgen.diagnose.select.search import DiagnosisProgress
 from vehgen.diagnose.select.validation import gain_interval
 from vehgen.diagnose.verdict import Gap, NamedParameter, PlaceChi, Verdict, VerdictName
 from vehgen.effects import Effect
+from vehgen.effects.locator import undamped_tyres
 from vehgen.fit.parallel import HERE, Runner
 
 
@@ -109,7 +110,8 @@ class Ending:
         return self._mistaken(found.faults) if found.at_once and alone else None
 
     def _end(self, verdict: VerdictName, reason: str, next_experiment: str | None = None) -> Decided:
-        found = Verdict(verdict, reason, (), self._gap(), self._places(), next_experiment=next_experiment, notes=tuple(self.notes))
+        notes = (*self.notes, *(self._edge() if verdict == "too_weak" else ()))
+        found = Verdict(verdict, reason, (), self._gap(), self._places(), next_experiment=next_experiment, notes=notes)
         return self._decided(found, ())
 
     def _decided(self, verdict: Verdict, chain: Sequence[ModelFit], law: FreeForm | None = None) -> Decided:
@@ -118,7 +120,11 @@ class Ending:
 
     def _edge(self) -> list[str]:
         """Return the note on base parameters that the refit leaves at the edge of their bounds, if there are any."""
-        return [wording.at_the_edge(edge)] if (edge := self.base.least_squares.on_bound) else []
+        found = self.base.least_squares
+        space = found.misfit.problem.space
+        low = {name for name, value, filed in zip(space.names, found.values, space.start, strict=True) if value < filed}
+        tyres = undamped_tyres(self.detection.trials[0].run.vehicle, low.intersection(found.on_bound))
+        return [wording.at_the_edge(found.on_bound, tyres)] if found.on_bound else []
 
     def _stopped(self) -> Decided:
         self.interrupted = True

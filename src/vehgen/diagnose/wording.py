@@ -186,9 +186,12 @@ def supposed(messages: Sequence[str]) -> str:
     return f"The refit supposes more than can be believed, for want of the effect or because it is so: {'; '.join(messages)}"
 
 
-def at_the_edge(names: Sequence[str]) -> str:
-    """Return the note on base parameters that the refit leaves at the edge of their bounds."""
-    return f"the refit, within 35 % of the file's values, ends at its edge for {', '.join(names)}: if they are uncertain, calibrate first"
+def at_the_edge(names: Sequence[str], tyres: Sequence[str] = ()) -> str:
+    """Return the note on base parameters that the refit leaves at the edge of their bounds; `tyres` are axles whose damping looks so."""
+    told = f"the refit, within 35 % of the file's values, ends at its edge for {', '.join(names)}: if they are uncertain, calibrate first"
+    if not tyres:
+        return told
+    return f"{told}; damping in the tyres of {' and '.join(tyres)}, of which the file has none, would look like this, too"
 
 
 def constant_force(found: Condition) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -12,7 +12,7 @@ from vehgen.effects.places import EVERY_TYRE, alike, members
 from vehgen.mechanics import GRAVITY, EquationsOfMotion, derive, static_loads
 from vehgen.mechanics.energies import pitch_inertia
 from vehgen.vehicle import Vehicle
-from vehgen.vehicle.parts import Spring
+from vehgen.vehicle.parts import ZERO, Spring
 
 Size = Literal["k", "c", "kt", "m"]
 """Stiffness and damping of a suspension, link or hinge; stiffness of a tyre; mass of an axle."""
@@ -102,6 +102,15 @@ def base_parameters(vehicle: Vehicle, place: str, sizes: Sequence[Size]) -> tupl
     while follow := {name for name in wanted if vehicle.parameters[name].equals is not None}:
         wanted = (wanted - follow).union(*(vehicle.parameters[name].definition.names for name in follow))
     return tuple(name for name in vehicle.free_parameters if name in wanted)
+
+
+def undamped_tyres(vehicle: Vehicle, parameters: Collection[str]) -> tuple[str, ...]:
+    """Return the axles to whose tyres a vehicle file gives no damping, and whose mass or tyre's stiffness depends on one of `parameters`.
+
+    What such a tyre damps passes for a lighter axle on a softer tyre: recordings of bodies hardly tell the two apart.
+    """
+    bare = [name for name, axle in vehicle.axles.items() if axle.tyre.c == ZERO]
+    return tuple(name for name in bare if not set(parameters).isdisjoint(base_parameters(vehicle, name, ("m", "kt"))))
 
 
 class EffectLocator:

@@ -120,7 +120,7 @@ class Scenario:
 
         Speed and `wander` are seen from where the vehicle is at the time `anchor` [s]; `deformation` is that of the humps
         (length, form, skew, rounding; default: as it is). `forces` are gains and offsets [N] of the forces, `displacements` gains of
-        those of the ground; on a rig without a road both come `delay` later. `farther` is each axle's (default: as before).
+        those of the ground; on a rig without a road both come `delay` later. `farther` is each axle's [m], beside what the run already has.
         """
         if not (0 < speed < math.inf and math.isfinite(delay) and math.isfinite(height)):
             said = "a finite `delay` and `height` and a `speed` above 0 were expected"
@@ -129,7 +129,7 @@ class Scenario:
         same = (delay, speed, wander) == (0.0, 1.0, None)
         law = self.speed if same else AdjustedSpeed(self.speed, delay, speed, anchor, wander)
         track = replace(self.track, scale=self.track.scale * height, deformation=deformation or self.track.deformation)
-        found = replace(self, speed=law, track=track, farther=farther or self.farther)
+        found = replace(self, speed=law, track=track, farther=_together(self.farther, farther))
         if not (forces or displacements or late):
             return found
         errors = forces or [(1.0, 0.0)] * len(self.forces)
@@ -225,3 +225,8 @@ def _times(start: float, dt: float, steps: int) -> Array:
     times = np.asarray(start + np.arange(steps + 1) * dt, dtype=np.float64)
     times.setflags(write=False)
     return times
+
+
+def _together(farther: tuple[float, ...], more: tuple[float, ...]) -> tuple[float, ...]:
+    """Return how much farther behind the first each axle runs for two reasons [m]; nothing where there is neither."""
+    return tuple(one + other for one, other in zip(farther, more, strict=True)) if farther and more else farther or more

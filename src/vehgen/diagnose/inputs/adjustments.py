@@ -74,3 +74,17 @@ class ClockRate(Adjustment):
     def scenario(self, scenario: Scenario, value: float) -> Scenario:
         """Return the scenario with steps, and samples, that are as short as the clock is fast."""
         return replace(scenario, dt=scenario.dt / value, duration=scenario.duration / value)
+
+
+@dataclass(frozen=True)
+class AxleShift(Adjustment):
+    """How much farther behind the first axle some axles run than the vehicle file says [m], by when the road comes to them.
+
+    `moved` says of every axle, in the layout's order, whether it is one of them: 1, else 0.
+    """
+
+    moved: tuple[float, ...] = ()
+
+    def scenario(self, scenario: Scenario, value: float) -> Scenario:
+        """Return the scenario in which the road comes later to these axles."""
+        return scenario.adjusted(farther=tuple(value * share for share in self.moved))

@@ -20,6 +20,7 @@ from vehgen.diagnose.inputs.amplitudes import (
     silent_hypotheses,
     unit_hypotheses,
 )
+from vehgen.diagnose.inputs.axles import axle_hypotheses
 from vehgen.diagnose.inputs.checks import check_inputs
 from vehgen.diagnose.inputs.clocks import clock_hypotheses
 from vehgen.diagnose.inputs.conditions import BEYOND, findings_of_conditions, moved_roads
@@ -32,7 +33,7 @@ from vehgen.diagnose.inputs.labels import label_hypotheses
 from vehgen.diagnose.inputs.levels import level_hypotheses
 from vehgen.diagnose.inputs.recorders import filter_hypotheses, rate_hypotheses, slow_recorder
 from vehgen.diagnose.inputs.refits import BaseRefits, base_refits
-from vehgen.diagnose.inputs.vehicle import axle_hypotheses, other_vehicle, strange_run, strange_run_hypotheses, unrelated_recording
+from vehgen.diagnose.inputs.vehicle import other_vehicle, strange_run, strange_run_hypotheses, unrelated_recording
 from vehgen.diagnose.thresholds import NOISE_FLOOR, WEAK
 from vehgen.fit.least_squares import LeastSquaresFit
 

@@ -1,43 +1,24 @@
-"""A vehicle that is not the file's: axles elsewhere, other parameters, or recordings that have nothing to do with it.
-
-Axles are suspected where moving one makes measured and predicted correlate better; the parameters where the base fit hangs on its bounds.
-"""
+"""A vehicle that is not the file's: other parameters, where the base fit hangs on its bounds, or recordings of something else."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vehgen.diagnose.fits.model_fit import BASE_RANGE
-from vehgen.diagnose.inputs.comparison import Comparison, compare
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always
-from vehgen.diagnose.inputs.recorders import other_rate
 from vehgen.diagnose.inputs.refits import LEAST_RUNS, BaseRefits
-from vehgen.fit.adjustments import SpeedScale
 from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import Trial
 from vehgen.fit.window import transform
 
-Array = NDArray[np.float64]
-MOVED = 0.25
-"""Largest share of the excess that axles elsewhere may leave: of honest effects a late sensor comes nearest, and leaves 0.39."""
 OTHER = 0.004
 """The same for parameters beyond BASE_RANGE, unless the noise floor is reached: of honest effects relaxation comes nearest (0.017)."""
 UNRELATED_SHARE = 0.6
 """Share of the energy that a stranger's recordings leave unexplained in every run; a wrong speed, an honest effect, leaves 0.52."""
-NOTICED = 0.02
-"""Gain in correlation from which a moved axle is fitted."""
-AXLE_SHIFT_SHARE = 0.25
-"""Distances between axles are changed by up to this share of themselves."""
-AXLE_SHIFT_STEP_M, FINE_STEP = 0.1, 0.01
-SPEED_SCALES = tuple(round(0.8 + 0.01 * i, 2) for i in range(41))
-"""True speeds over stated ones that are tried in the axles' place."""
-NUDGE = 1e-3
-"""Parameters are changed by this share to see which axles they move."""
 SUSPECTS = 2
 """So many runs that the base fits worst may be of another vehicle."""
 OWN_STARTS, OWN_REACH = 8, 0.3
@@ -46,81 +27,6 @@ FEW = 2
 """So few parameters far off may stand for what the model lacks there."""
 STRANGE = 0.1
 """Largest share of the excess that the other runs may leave without it."""
-SPEED_FITS_TOO, SPEED_DEARER = 2.0, 36.0
-"""Where another speed or clock leaves noise, or less than so many times what other axles leave, the axles are not blamed; but for a speed
-with which -2 ln L is higher by so much: errors beyond belief make up for it."""
-
-
-def axle_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
-    """Yield that axles are another distance apart, where that makes the recordings correlate better, and no speed or clock does."""
-    found = []
-    for name in _distances(case):
-        value = case.trials[0].values[name]
-        reach = round(AXLE_SHIFT_SHARE * value / AXLE_SHIFT_STEP_M)
-        found.append((*_best(case, [_restated(case, name, value + i * AXLE_SHIFT_STEP_M) for i in range(-reach, reach + 1)]), name))
-    if not found:
-        return
-    score, trials, name = max(found, key=lambda item: item[0])
-    if score < _mean(case.comparisons) + NOTICED:
-        return
-    trials = _best(case, [_restated(case, name, trials[0].values[name] + i * FINE_STEP) for i in range(-5, 6)])[1]
-    moved, left = case.refit(case.problem.with_trials(trials))
-    if left > MOVED:
-        return
-    speed = SpeedScale("runs", 0.01, 1.0)
-    scores = {
-        scale: _mean([compare(trial, case.predict(trial, (speed,), (scale,)), case.band) for trial in case.trials])
-        for scale in SPEED_SCALES
-    }
-    scale = max(scores, key=lambda key: scores[key])
-    enough, clock = max(SPEED_FITS_TOO * left, case.noise), other_rate(case)
-    faster, by_speed = case.refit(case.problem, (speed,), (scale,))
-    if (by_speed < enough and faster.loss < moved.loss + SPEED_DEARER) or (clock is not None and clock[1] < enough):
-        return
-    stated, value = case.trials[0].values[name], trials[0].values[name]
-    shift = value - stated
-    axles = _axles_moved(case, name)
-    words = f"{' and '.join(axles)} {'seems' if len(axles) == 1 else 'seem'} to run {abs(shift):.2f} m "
-    words += f"{'further' if shift > 0 else 'less'} behind the axles before than the vehicle file says, by when the road is met"
-    message = f"{words}: {name} is about {value:.2f} m there, not {stated:.2f} m"
-    cure = "measure the distance and put the vehicle file right"
-    yield Hypothesis(trials, always(MeasurementFault("axle_position", (), (), message, cure, shift, "m")), MOVED)
-
-
-def _distances(case: BaseRefits) -> Iterator[str]:
-    """Yield the parameters of the vehicle file that say where axles run and are not fitted."""
-    trial = case.trials[0]
-    for name, value in trial.values.items():
-        free = name not in case.problem.space.names and not any(name in own.fixed for own in case.trials)
-        if free and value > 0 and _axles_moved(case, name):
-            yield name
-
-
-def _axles_moved(case: BaseRefits, name: str) -> list[str]:
-    """Return the axles that a parameter moves along the vehicle."""
-    trial = case.trials[0]
-    model, changed = trial.simulator.model, trial.values | {name: trial.values[name] * (1 + NUDGE)}
-    shifts = np.abs(model.wheel_offsets(changed) - model.wheel_offsets(trial.values))
-    return [axle for axle, shift in zip(trial.run.vehicle.axles, shifts, strict=True) if shift > NUDGE * NUDGE]
-
-
-def _restated(case: BaseRefits, name: str, value: float) -> tuple[Trial, ...]:
-    """Return all runs of a vehicle of which one parameter is another."""
-    return tuple(replace(trial, values=trial.values | {name: value}) for trial in case.trials)
-
-
-def _mean(items: Sequence[Comparison]) -> float:
-    return float(np.mean([item.score for item in items]))
-
-
-def _best(case: BaseRefits, choices: Sequence[tuple[Trial, ...]]) -> tuple[float, tuple[Trial, ...]]:
-    """Return the mean correlation of all runs in the best of several choices, and that choice."""
-    best = (-np.inf, case.trials)
-    for trials in choices:
-        score = _mean([compare(trial, case.predict(trial), case.band) for trial in trials])
-        if score > best[0]:
-            best = score, trials
-    return best
 
 
 def strange_run_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
