@@ -43,6 +43,11 @@ def test_a_half_sine_of_form_two_is_a_versine():
     assert drawn.deformed(form=2.0).height(s) == pytest.approx(Hump.from_shape("versine", 2.0, 0.8, 0.05).height(s), abs=1e-12)
 
 
+def test_a_hump_of_no_height_has_none_in_any_form():
+    flat = Hump.from_shape("half_sine", 2.0, 0.8, 0.0)
+    assert (flat.deformed(form=2.0).height(np.linspace(1.9, 2.9, 101)) == 0).all()
+
+
 def test_a_longer_hump_starts_where_it_starts():
     drawn = Hump.from_shape("half_sine", 2.0, 0.8, 0.05)
     s = np.linspace(1.9, 2.9, 1001)

@@ -174,8 +174,8 @@ def _deformed(s: Array, shape: Shape, whole: float, change: tuple[float, float, 
     length, form, skew = change
     share = s / (whole * length)
     heights = shape(whole * share)
-    if form != 1.0:
-        highest = _highest(shape, whole)
+    highest = 0.0 if form == 1.0 else _highest(shape, whole)
+    if highest > 0:
         heights = np.copysign(highest * (np.abs(heights) / highest) ** form, heights)
     return np.asarray(heights * (1 + skew * (2 * share - 1)))
 

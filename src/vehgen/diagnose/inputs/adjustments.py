@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from vehgen.fit.adjustments import Adjustment, Gain, SensorDelay
 from vehgen.fit.trial import Trial
+from vehgen.road import Hump
+from vehgen.road.track import Profile
 from vehgen.simulate import Scenario
 
 Array = NDArray[np.float64]
@@ -88,3 +90,22 @@ class AxleShift(Adjustment):
     def scenario(self, scenario: Scenario, value: float) -> Scenario:
         """Return the scenario in which the road comes later to these axles."""
         return scenario.adjusted(farther=tuple(value * share for share in self.moved))
+
+
+@dataclass(frozen=True)
+class RoadBump(Adjustment):
+    """The height of a bump that is on some roads, beside what the run files have [m]; below 0 it is a dip.
+
+    `roads` holds the parts of each track that it is on, and where it begins there [m]; it is `length` [m] long, and a versine.
+    """
+
+    length: float = 1.0
+    roads: tuple[tuple[tuple[Profile, ...], float], ...] = ()
+
+    def scenario(self, scenario: Scenario, value: float) -> Scenario:
+        """Return the scenario over the bump, where its road has it."""
+        track = scenario.track
+        at = next((at for parts, at in self.roads if parts is track.parts), None)
+        if at is None or value == 0:
+            return scenario
+        return replace(scenario, track=replace(track, parts=(*track.parts, Hump.from_shape("versine", at, self.length, value))))

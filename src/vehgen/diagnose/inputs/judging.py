@@ -33,6 +33,7 @@ from vehgen.diagnose.inputs.labels import label_hypotheses
 from vehgen.diagnose.inputs.levels import level_hypotheses
 from vehgen.diagnose.inputs.recorders import filter_hypotheses, rate_hypotheses, slow_recorder
 from vehgen.diagnose.inputs.refits import BaseRefits, base_refits
+from vehgen.diagnose.inputs.road_features import feature_hypotheses
 from vehgen.diagnose.inputs.vehicle import other_vehicle, strange_run, strange_run_hypotheses, unrelated_recording
 from vehgen.diagnose.thresholds import NOISE_FLOOR, WEAK
 from vehgen.fit.least_squares import LeastSquaresFit
@@ -72,6 +73,7 @@ SUBTLE: tuple[Generator, ...] = (
     filter_hypotheses,
     axle_hypotheses,
     hump_hypotheses,
+    feature_hypotheses,
     rate_hypotheses,
     strange_run_hypotheses,
     odd_hump_hypotheses,
