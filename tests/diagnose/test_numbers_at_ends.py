@@ -67,3 +67,14 @@ def test_what_does_as_well_within_its_range_goes_before_what_ends_at_its_end():
     assert simplest_first([bent, fit("cubic_stiffness", 2.0)], base)[0] is bent
     strained = fit("bump_stop", 1.01, ("mr",))
     assert simplest_first([strained, inside], base) == [strained, inside]
+
+
+@pytest.mark.parametrize(
+    ("stop", "spring", "first"), [((), (), "spring"), ((), ("k",), "stop"), (("k",), ("k",), "spring"), (("k",), (), "spring")]
+)
+def test_a_special_case_goes_before_what_holds_it_unless_it_alone_ends_at_its_end(stop, spring, first):
+    """A stop that only bump met was told as a spring that joins in there, of the largest stiffness that such a spring may have."""
+    general = fit("bump_stop", 1.01, tuple(f"bump_stop_{name}" for name in stop))
+    special = fit("progressive_stiffness", 1.012, tuple(f"progressive_stiffness_{name}" for name in spring))
+    wanted = {"stop": general, "spring": special}[first]
+    assert simplest_first([general, special], SimpleNamespace(training=20.0))[0] is wanted

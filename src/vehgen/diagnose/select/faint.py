@@ -21,7 +21,7 @@ from vehgen.diagnose.select.criteria import fall, falls_as_far, is_told
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import fitted_freed
 from vehgen.diagnose.select.placebo_laws import like_a_placebo_law
-from vehgen.diagnose.select.ranking import SearchRound, merit
+from vehgen.diagnose.select.ranking import SearchRound, goes_before, merit
 from vehgen.diagnose.select.reaching_runs import with_checking_run
 from vehgen.diagnose.select.search import LOOKS_AGAIN, fit_leading_again
 from vehgen.diagnose.select.validation import surely_falls, validation_fall
@@ -138,7 +138,7 @@ def _falls(found: SearchRound, fit: ModelFit) -> bool:
 def _likeliest_first(found: SearchRound, fits: Sequence[ModelFit]) -> list[ModelFit]:
     """Return fits in their order, but first one that falls as far as the best: its special case, or within bounds where that is at one."""
     for fit in fits[1:]:
-        likelier = fits[0].last.holds(fit.last) or (_ends_at_a_bound(fits[0]) and not _ends_at_a_bound(fit))
+        likelier = goes_before(fit, fits[0], _ends_at_a_bound(fit), _ends_at_a_bound(fits[0]))
         if likelier and falls_as_far(found, fit, fits[0]):
             return [fit, *(item for item in fits if item is not fit)]
     return list(fits)

@@ -64,7 +64,10 @@ def does_as_well(mean_square: float, best: float, before: float) -> bool:
 
 
 def simplest_first(fits: Sequence[ModelFit], base: ModelFit) -> list[ModelFit]:
-    """Return fits in their order, but first one that does as well as the best: its special case, or within its range where that is not.
+    """Return fits in their order, but first one that does as well as the best: within its range where that is not, or its special case.
+
+    A special case at the end of its range does not go before what is within its own: the stop of a van, which only bump met, was told as a
+    spring of the largest stiffness that one may have.
 
     Parameters
     ----------
@@ -75,10 +78,15 @@ def simplest_first(fits: Sequence[ModelFit], base: ModelFit) -> list[ModelFit]:
     """
     before = max(base.training - 1, 0.0)
     for fit in fits[1:]:
-        likelier = fits[0].last.holds(fit.last) or (bool(numbers_at_ends(fits[0])) and not numbers_at_ends(fit))
+        likelier = goes_before(fit, fits[0], bool(numbers_at_ends(fit)), bool(numbers_at_ends(fits[0])))
         if likelier and np.isfinite(fit.validation) and does_as_well(fit.training, fits[0].training, before):
             return [fit, *(item for item in fits if item is not fit)]
     return list(fits)
+
+
+def goes_before(fit: ModelFit, best: ModelFit, ends: bool, best_ends: bool) -> bool:
+    """Return whether a fit that does as well as the best one is the likelier: its special case, or alone of the two within its range."""
+    return best_ends if ends != best_ends else best.last.holds(fit.last)
 
 
 def holding(fits: Sequence[ModelFit], fit: ModelFit, base: ModelFit) -> list[ModelFit]:
