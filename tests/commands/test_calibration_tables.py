@@ -13,6 +13,7 @@ from vehgen.calibrate.summary import summarise
 from vehgen.commands.calibration_tables import show_calibration
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
+from vehgen.report.plots.calibration_plots import plot_intervals
 
 KERB_MASS = FactAdvice("kerb mass", "kerb_mass: ...", 1700.0, 17.3, "kg", 0.2, 0.15, ("kf", "mf"))
 FRONT = FactAdvice("load of front", "axle_weights: {front: ...}", 9000.0, 90.0, "N", 0.4, 0.1, ("mf",))
@@ -112,3 +113,12 @@ def test_wider_intervals_and_doubtful_runs_are_spoken_of(summary, capsys):
     assert "(chi2 2.25): all intervals are wider by the factor 1.50" in text
     assert text.count("hump: fitted far off what was known of it: ") == 1
     assert "speed (-5.0%, 5.0 standard deviations)" in text
+
+
+def test_intervals_that_go_on_beyond_the_axis_end_in_an_arrow(summary):
+    wide, name = dict(summary.parameters), next(iter(summary.parameters))
+    wide[name] = replace(wide[name], interval=(0.5 * wide[name].value, 12 * wide[name].value), status="weak")
+    for parameters, arrows in ((wide, [(">", 100.0)]), (summary.parameters, [])):
+        figure = plot_intervals(replace(summary, parameters=parameters, modes=(), combinations={}))
+        lines = [line for axes in figure.axes for line in axes.get_lines()]
+        assert [(line.get_marker(), line.get_xdata()[0]) for line in lines if line.get_marker() in "<>"] == arrows

@@ -25,14 +25,14 @@ MET_AT = 0.3
 """The vehicle meets that bump after this share of a run; the answer to one elsewhere comes later or earlier."""
 STEP_M = 0.02
 """Places along the road are tried so far apart."""
-SHOWN = 0.3
+SHOWS_BUMP = 0.3
 """A run shows a bump that takes this share off what the base leaves beyond noise."""
 FEATURE_LEFT = 0.25
 """Largest share of the excess that a bump may leave."""
 HEIGHT_SCALE_M = 0.01
-TURNS = 2
+LOOKS = 2
 """So often is it looked for, each time beside the vehicle that suits what was found before."""
-SAME_PLACE_M = 0.5
+ONE_PLACE_M = 0.5
 """Places of runs that are no farther apart are one."""
 
 
@@ -41,7 +41,7 @@ def feature_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     if not all(trial.scenario.track.parts for trial in case.trials):
         return
     fit, found = case.refit(case.problem)[0], dict[int, _Bump]()
-    for _ in range(TURNS):
+    for _ in range(LOOKS):
         found = _look_for(fit, case.trials, found)
         if not found:
             return
@@ -72,11 +72,11 @@ def _hypothesis(case: BaseRefits, bumps: dict[int, _Bump]) -> Hypothesis:
     first = next(iter(bumps.values()))
     roads = tuple((case.trials[number].scenario.track.parts, bump.at) for number, bump in bumps.items())
 
-    def told(numbers: Array) -> tuple[MeasurementFault, ...]:
+    def describe(numbers: Array) -> tuple[MeasurementFault, ...]:
         return (_fault(case, {number: replace(bump, height=float(numbers[-1])) for number, bump in bumps.items()}),)
 
     shared = RoadBump("road", HEIGHT_SCALE_M, length=first.length, roads=roads)
-    return Hypothesis(case.trials, told, FEATURE_LEFT, (shared,), (first.height,))
+    return Hypothesis(case.trials, describe, FEATURE_LEFT, (shared,), (first.height,))
 
 
 def _look_for(fit: LeastSquaresFit, trials: Sequence[Trial], known: dict[int, _Bump]) -> dict[int, _Bump]:
@@ -99,7 +99,7 @@ def _look_for(fit: LeastSquaresFit, trials: Sequence[Trial], known: dict[int, _B
         for sign in (1.0, -1.0):
             peaks = [int(np.argmax(sign * numerators)) for _, numerators, _ in answers]
             gains = [max(sign * own[1][peak], 0.0) ** 2 / own[2] for own, peak in zip(answers, peaks, strict=True)]
-            shown = [number for number, gain in enumerate(gains) if gain > SHOWN * max(runs[number].excess, 1.0)]
+            shown = [number for number, gain in enumerate(gains) if gain > SHOWS_BUMP * max(runs[number].excess, 1.0)]
             if shown and sum(gains[number] for number in shown) > best[0]:
                 height = sum(answers[i][1][peaks[i]] for i in shown) / sum(answers[i][2] for i in shown)
                 bumps = {i: _Bump(float(answers[i][0][peaks[i]]), length, float(height)) for i in shown}
@@ -122,10 +122,10 @@ class _Run:
         """Return run `number` of a fit that left whitened lines over a bump that is `known`."""
         run = cls(fit, number, trial, left, 0.0)
         if known is not None:
-            run = replace(run, left=left + run.lines(known))
+            run = replace(run, left=left + run.added_lines(known))
         return replace(run, excess=float(2 * (np.abs(run.left) ** 2).sum() - 2 * left.size))
 
-    def lines(self, bump: _Bump) -> Complex:
+    def added_lines(self, bump: _Bump) -> Complex:
         """Return what a bump adds to the whitened lines."""
         misfit, numbers, error = self.fit.misfit, self.fit.misfit.adjusted(self.fit.x), self.fit.misfit.errors_of(self.fit.x, self.number)
         if misfit.shared and isinstance(misfit.shared[-1], RoadBump):
@@ -139,7 +139,7 @@ class _Run:
         scenario = self.trial.scenario
         along, met = scenario.speed.distance(scenario.time), scenario.start + MET_AT * scenario.duration
         begin = float(np.interp(met, scenario.time, along))
-        answer = self.lines(_Bump(begin, length, SMALL_M)) / SMALL_M
+        answer = self.added_lines(_Bump(begin, length, SMALL_M)) / SMALL_M
         places = np.arange(along[0], along[-1], STEP_M)
         later = np.interp(places, along, scenario.time) - met
         product = (np.conj(answer) * self.left).sum(axis=1)
@@ -161,8 +161,8 @@ def _where(trials: Sequence[Trial], bumps: dict[int, _Bump]) -> str:
     places = np.array([bump.at for bump in bumps.values()])
     humps = [trials[number].scenario.humps for number in bumps]
     behind = places - np.array([own[0].at for own in humps]) if all(humps) else places
-    if np.ptp(places) > SAME_PLACE_M >= np.ptp(behind):
+    if np.ptp(places) > ONE_PLACE_M >= np.ptp(behind):
         return f"beginning {abs(behind.mean()):.1f} m {'behind' if behind.mean() > 0 else 'ahead of'} the begin of the hump"
-    if np.ptp(places) > SAME_PLACE_M:
+    if np.ptp(places) > ONE_PLACE_M:
         return f"beginning at {', '.join(f'{place:.1f}' for place in places)} m along the road"
     return f"beginning {places.mean():.1f} m along the road"

@@ -99,6 +99,12 @@ class _Bar:
     is_told: bool = True
 
 
+def _beyond(bars: Sequence[_Bar], reach: float) -> list[tuple[int, int]]:
+    """Return the rows of bars that go on beyond an axis of so many percent to each side, and to which side: -1 or 1."""
+    ends = [(row, side, bar.interval[side > 0] / bar.value - 1) for row, bar in enumerate(bars) if bar.interval for side in (-1, 1)]
+    return [(row, side) for row, side, share in ends if side * 100 * share > reach]
+
+
 def _draw_bars(axes: Axes, bars: Sequence[_Bar], fixed: str) -> dict[str, Line2D]:
     """Draw a bar a row, in percent about its value; returns what to call the kinds of marks drawn."""
     found: dict[str, Line2D] = {}
@@ -116,6 +122,8 @@ def _draw_bars(axes: Axes, bars: Sequence[_Bar], fixed: str) -> dict[str, Line2D
     axes.set_ylim(len(bars) - 0.4, -0.6)
     reach = min(max(abs(end) for end in axes.get_xlim()), WIDEST)
     axes.set_xlim(-reach, reach)
+    for row, side in _beyond(bars, reach):
+        axes.plot([side * reach], [row], marker="<" if side < 0 else ">", color=SIMULATED, ms=6, clip_on=False)
     axes.set_xlabel("interval about the estimate [%]", color=INK)
     axes.grid(color="#e3e7ea", lw=0.6, axis="x")
     axes.spines[["top", "right"]].set_visible(False)
