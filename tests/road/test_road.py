@@ -131,6 +131,15 @@ def test_no_speed_is_refused(speed):
         ConstantSpeed(speed)
 
 
+def test_what_lies_behind_the_first_wheel_counts_as_level():
+    """Chainage is often counted from a marker: rows before the run's begin were a step under all wheels."""
+    profile = MeasuredProfile(np.array([-4.0, -1.0, 1.0, 3.0]), np.array([0.5, 0.3, 0.1, 0.4]))
+    met = profile.met_from(0.0)
+    np.testing.assert_allclose(met.height(np.array([-9.0, -2.0, 0.0, 0.5, 2.0, 9.0])), [0, 0, 0, -0.05, 0.05, 0.2], atol=1e-15)
+    assert profile.met_from(-5.0) is profile
+    assert (profile.met_from(7.0).height(np.array([-3.0, 0.0, 2.0, 9.0])) == 0).all()
+
+
 def test_measured_profile_and_points():
     profile = MeasuredProfile(np.array([0.0, 1.0, 3.0]), np.array([0.1, 0.2, 0.0]))
     np.testing.assert_allclose(profile.height(np.array([-1, 0.5, 2, 9])), [0, 0.05, 0.0, -0.1], atol=1e-15)

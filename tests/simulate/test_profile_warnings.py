@@ -92,11 +92,20 @@ def test_a_hole_that_wheels_cross_is_told(tmp_path: Path):
     assert "a hole from 9.9 to 30 m, its points being 0.1 m apart (2 such holes in all)" in warnings_of(tmp_path, s[two], h[two], 5, 6)
 
 
-def test_a_hole_behind_the_first_wheels_is_told_where_the_last_ones_cross_it(tmp_path: Path):
+def test_a_hole_behind_the_first_wheel_is_crossed_by_nobody(tmp_path: Path):
+    """What lies behind it counts as level."""
     s, h = road(60.0, 0.05)
     kept = np.r_[0:20, 40:1201]
-    assert "has a hole from -1.55 to -0.5 m" in warnings_of(tmp_path, s[kept] - 2.5, h[kept], 5, 6)
-    assert "hole" not in warnings_of(tmp_path, s[kept] - 12.5, h[kept], 5, 6)
+    assert "has a hole from 0.95 to 2 m" in warnings_of(tmp_path, s[kept], h[kept], 5, 6)
+    assert "hole" not in warnings_of(tmp_path, s[kept] - 2.5, h[kept], 5, 6)
+
+
+def test_a_road_that_was_levelled_ends_before_its_run_and_an_obstacle_does_not(tmp_path: Path):
+    s, h = road(60.0, 0.05)
+    levelled = h - np.interp(s, s[[0, -1]], h[[0, -1]])
+    assert "ends at 60 m, the run at 100 m" in warnings_of(tmp_path, s, levelled, 5, 20)
+    crossing = np.where((s > 5) & (s < 55), levelled - np.interp(s, [5, 55], np.interp([5, 55], s, levelled)), 0.0)
+    assert "ends at" not in warnings_of(tmp_path, s, crossing, 5, 20)
 
 
 def test_level_roads_between_obstacles_and_points_in_groups_are_no_holes(tmp_path: Path):

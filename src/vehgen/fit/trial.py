@@ -200,9 +200,8 @@ def make_trial(run: Run, name: str, simulators: SimulatorPool | None = None) -> 
     simulator = _simulator(run, measurement, simulators or SimulatorPool())
     values = simulator.model.values(overrides=run.values())
     timed = replace(run, file=run.file.model_copy(update={"duration": float(measurement.time[-1])}))
-    scenario = replace(
-        make_scenario(timed, simulator.model, values), duration=length, dt=step, decimation=decimation, start=float(measurement.time[0])
-    )
+    begin = float(measurement.time[0])
+    scenario = replace(make_scenario(timed, simulator.model, values, begin), duration=length, dt=step, decimation=decimation, start=begin)
     scenario = replace(scenario, chains=channel_chains(run, 1 / dt))
     check_hump_reached(run, scenario, simulator.model.wheel_offsets(values), name)
     check_inputs_last(run, scenario, measurement, simulator.model)

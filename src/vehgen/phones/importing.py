@@ -170,6 +170,7 @@ def _assemble(
         if quiet[1] - quiet[0] < LEAST_LEAD:
             quiet = (zero, zero + float(time[-1]))
         upward, pitch, orientation = phone.turned(*quiet)
+        phone.check_holes((upward, pitch), zero, zero + float(time[-1]))
         columns.append(phone.sampled((upward, pitch), time + zero))
         names = [output.name for output in phone.sensor.outputs(pitch is not None)]
         channels += names
@@ -249,6 +250,11 @@ def _noise(
 def _speed_warnings(plan: Plan, found: FoundSpeed, fitted: float | None) -> list[str]:
     """Say where the axles' marks contradict the speed, and where the speed was to be found from them and is not."""
     warnings = []
+    if plan.road.hump is not None and found.told is not None and found.told.changes:
+        warnings.append(
+            f"the speed changed in the pass ({found.told.low:.2f} to {found.told.high:.2f} m/s): a run has one speed, about which a driver "
+            "may wander a little; record a steady pass, or state a table of speeds"
+        )
     if fitted is not None and abs(fitted / found.value - 1) > SPEED_DOUBT:
         given = "axles" if found.gps_tells else f"{fitted:.3f}"
         better = f"the axles' marks fit {fitted:.3f} m/s better than {found.value:.3f} m/s ({found.source})"

@@ -33,17 +33,21 @@ FoundHump = HumpEvent | InputError | None
 
 @dataclass(frozen=True)
 class FoundSpeed:
-    """The speed of a pass [m/s], where it is from, its standard deviation [m/s] if that is a GPS, and whether a GPS tells one at all."""
+    """The speed of a pass [m/s], where it is from, its standard deviation [m/s] if that is a GPS, and whether a GPS tells one at all.
+
+    `told` is what a GPS tells of it.
+    """
 
     value: float
     source: str
     deviation: float | None = None
     gps_tells: bool = False
+    told: CrossingSpeed | None = None
 
     @classmethod
     def by_gps(cls, told: CrossingSpeed, name: str) -> FoundSpeed:
         """Return the speed that the GPS of the phone of a name tells."""
-        return cls(told.median, f"{name}: {told}", told.deviation, gps_tells=True)
+        return cls(told.median, f"{name}: {told}", told.deviation, gps_tells=True, told=told)
 
 
 def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundSpeed, list[FoundHump]]:
@@ -55,11 +59,11 @@ def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundS
         message = f"{teller.name} recorded no GPS speed, near which the axles' marks would tell it; give `speed` in m/s, e.g. 2.0"
         raise ArgumentError(message, "speed")
     if speed is None:
-        speed = crossing_speed(speed_stream(teller.export), teller.begin, teller.end, teller.name).median
+        speed = crossing_speed(speed_stream(teller.export), teller.begin, teller.end, teller.name, moving=True).median
     if plan.road.hump is None:
         if plan.speed is not None:
             return FoundSpeed(plan.speed, "given"), [None] * len(phones)
-        told = crossing_speed(speed_stream(teller.export), teller.begin, teller.end, teller.name)
+        told = crossing_speed(speed_stream(teller.export), teller.begin, teller.end, teller.name, moving=True)
         return FoundSpeed.by_gps(told, teller.name), [None] * len(phones)
     events = [_event(phone, distance / speed) for phone in phones]
     event = events[phones.index(teller)]
@@ -73,7 +77,7 @@ def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundS
             if plan.speed is None:
                 raise
     if plan.speed is not None:
-        return FoundSpeed(plan.speed, "given" + (f"; {teller.name}: {told}" if told else ""), gps_tells=told is not None), events
+        return FoundSpeed(plan.speed, "given" + (f"; {teller.name}: {told}" if told else ""), gps_tells=told is not None, told=told), events
     assert told is not None
     return FoundSpeed.by_gps(told, teller.name), events
 
@@ -135,7 +139,8 @@ def locate(
         elif event is None:
             raise InputError(
                 f"{phones[i].name} fits the answer of {plan.vehicle.name} to the road badly (correlation {item.correlation:.2f}): are "
-                "vehicle, sensor, road and speed those of this recording?"
+                "vehicle, sensor, road and speed those of this recording? Does the profile's 0 m lie where the drive over it begins, and "
+                "is the recording cut to that drive (`from`, `to`)?"
             )
         else:
             set_in = event.onset - expected_onset(answer(1.0)[:, columns[i].start], step, event.contrast) + lead / speed

@@ -26,6 +26,9 @@ from vehgen.phones.resampling import check_rate, clean, gaps, resample, sampling
 Array = NDArray[np.float64]
 LONGEST_GAP = 0.1
 """Longer holes within the time that is used [s] are refused."""
+LONGEST_LOUD_GAP, NEAR_S = 0.035, 0.15
+"""Where a pass moves the phone more than in its mean, from so long before a hole to so long after it [s], no longer hole is bridged: a line
+over 50 ms had taken a quarter off an axle's hop."""
 SHORTEST_RECORDING_S, LONGEST_RECORDING_S = 2.0, 3600.0
 """How long a recording may be [s]."""
 QUIET, MARGIN = 5.0, 0.25
@@ -129,6 +132,18 @@ class Phone:
             columns.append(resample(stream.time, stream.values, grid)[:, 0])
         return np.column_stack(columns)
 
+    def check_holes(self, streams: tuple[Stream | None, ...], start: float, end: float) -> None:
+        """Refuse holes from `start` to `end` [s] that a line bridges badly, as the phone moves there; raises InputError."""
+        for stream in (item for item in streams if item is not None):
+            whole = _rms(stream, start, end)
+            for begin, length in gaps(stream.time):
+                inside = start < begin < end and length > LONGEST_LOUD_GAP
+                if inside and _rms(stream, begin - NEAR_S, begin + length + NEAR_S) > whole:
+                    raise InputError(
+                        f"{self.name}: no {stream.unit} samples for {1e3 * length:.0f} ms from {begin:.2f} s, while it is shaken: a line "
+                        "across them would tell of another vehicle; record again, or leave this phone out"
+                    )
+
     def holes(self) -> list[tuple[float, float]]:
         """Return begin and end of every hole longer than LONGEST_GAP [s]."""
         return [(start, start + length) for stream in self._used() for start, length in gaps(stream.time) if length > LONGEST_GAP]
@@ -204,3 +219,8 @@ def speed_stream(export: PhoneExport) -> Stream | None:
 def _centred(stream: Stream, start: float, end: float) -> Stream:
     part = stream.between(start, end).values
     return replace(stream, values=stream.values - (part.mean(axis=0) if len(part) else 0.0))
+
+
+def _rms(stream: Stream, start: float, end: float) -> float:
+    values = stream.between(start, end).values
+    return float(np.sqrt(np.mean(values**2))) if len(values) else 0.0

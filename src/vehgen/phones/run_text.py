@@ -91,7 +91,7 @@ def run_text(imported: Imported, vehicle: VehicleLike, out: Path) -> str:
     comments = ["Made by `vehgen import`; what was found and assumed stands beside what it led to."]
     comments += [f"warning: {text}" for text in imported.warnings]
     fitted = "" if imported.fitted_speed is None else f"; the axles' marks fit {imported.fitted_speed:.3f} m/s best"
-    where = "at: front wheel at t = 0 to the hump" if imported.at is not None else "the front wheel is at its begin at t = 0"
+    where = "at: front wheel at t = 0 to the hump" if imported.at is not None else "the front wheel is at 0 m along it at t = 0"
     data: dict[str, Any] = {
         "vehicle": _vehicle(vehicle, folder),
         "set": plan.parameter_set,

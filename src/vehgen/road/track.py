@@ -38,7 +38,7 @@ class Profile(Protocol):
 class MeasuredProfile:
     """A measured profile: points `distance`, `heights` [m] `shape (n,)`, linear between them, constant outside.
 
-    Its first height counts as the level on which the vehicle starts.
+    Its first height counts as the level on which the vehicle starts; see :meth:`met_from` for one that begins behind it.
     """
 
     distance: Array
@@ -52,6 +52,15 @@ class MeasuredProfile:
     def end(self) -> float:
         """Where the profile ends [m]."""
         return float(self.distance[-1])
+
+    def met_from(self, s: float) -> MeasuredProfile:
+        """Return the profile as a vehicle meets it that stands still with its first wheel at s [m]: level up to there."""
+        if s <= self.distance[0]:
+            return self
+        ahead, here = self.distance > s, float(np.interp(s, self.distance, self.heights))
+        if not ahead.any():
+            return MeasuredProfile(self.distance, np.full_like(self.heights, here))
+        return MeasuredProfile(np.concatenate([[s], self.distance[ahead]]), np.concatenate([[here], self.heights[ahead]]))
 
     def height(self, s: Array) -> Array:
         """Return the height above the first point [m] at positions s [m]."""

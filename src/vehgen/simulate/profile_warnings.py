@@ -16,7 +16,9 @@ from vehgen.simulate.scenario import Scenario
 
 Array = NDArray[np.float64]
 BACK_ON_LEVEL = 0.01
-"""A profile whose last height differs from its first by this share of its range is an obstacle on a level road: what follows is level."""
+"""A profile whose last height differs from its first by this share of its range is an obstacle on a level road, and what follows level."""
+LEVEL_ENDS_M = 1.0
+"""A long obstacle is level so far from both ends, too: roads that were levelled, or high-passed, also begin and end at one height."""
 LONG_WAVE_M = 10.0
 """Waves of this length and longer shake bodies at the speeds of roads."""
 SHORT_WAVES_M = (1.0, 4.0)
@@ -70,8 +72,10 @@ def _measured(scenario: Scenario) -> list[tuple[str, MeasuredProfile]]:
 
 
 def _is_obstacle(profile: MeasuredProfile) -> bool:
-    heights = profile.heights
-    return bool(abs(heights[-1] - heights[0]) <= BACK_ON_LEVEL * np.ptp(heights))
+    distance, heights = profile.distance, profile.heights
+    ends = (distance <= distance[0] + LEVEL_ENDS_M) | (distance >= distance[-1] - LEVEL_ENDS_M)
+    looked_at = heights[ends] if distance[-1] - distance[0] >= LONG_WAVE_M else heights[[0, -1]]
+    return bool(np.abs(looked_at - heights[0]).max() <= BACK_ON_LEVEL * np.ptp(heights))
 
 
 def _is_drawn(profile: MeasuredProfile) -> bool:

@@ -40,8 +40,8 @@ AFTER_LAST_HUMP = 3.0
 """Seconds simulated after the last wheel left the last hump, where a run does not say how long it is."""
 
 
-def make_scenario(run: RunLike, model: EquationsOfMotion, values: Mapping[str, float]) -> Scenario:
-    """Build the scenario of a run or its file.
+def make_scenario(run: RunLike, model: EquationsOfMotion, values: Mapping[str, float], begin: float = 0.0) -> Scenario:
+    """Build the scenario of a run or its file, of which a measured profile behind the first wheel at the time `begin` [s] is no part.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def make_scenario(run: RunLike, model: EquationsOfMotion, values: Mapping[str, f
     speed = _speed(run)
     if file.duration is not None:
         _check_cost(run, file.duration, speed, model)
-    parts = tuple(_road_part(number, run, speed, offsets) for number in range(len(file.road)))
+    parts = tuple(_road_part(number, run, speed, offsets, begin) for number in range(len(file.road)))
     track = Track(parts, footprint=file.footprint or 0.0)
     if file.duration is not None:
         duration = file.duration
@@ -102,7 +102,7 @@ def _speed(run: Run) -> SpeedLaw:
     return SpeedHistory(*found.values)
 
 
-def _road_part(number: int, run: Run, speed: SpeedLaw, offsets: Array) -> Profile:
+def _road_part(number: int, run: Run, speed: SpeedLaw, offsets: Array, begin: float) -> Profile:
     entry = run.file.road[number]
     if entry.hump is not None:
         return _hump(entry.hump, run, ("road", number, "hump"))
@@ -110,7 +110,7 @@ def _road_part(number: int, run: Run, speed: SpeedLaw, offsets: Array) -> Profil
         place = ("road", number, "profile")
         with placed(run, *place, "file"):
             found = profile_table(Path(run.folder) / entry.profile.file, entry.profile, _finder(run, *place))
-        return MeasuredProfile(*found.values)
+        return MeasuredProfile(*found.values).met_from(float(speed.distance(np.array([begin]))[0]))
     assert entry.iso8608 is not None
     with placed(run, "road", number, "iso8608", key=True):
         return Iso8608Road(entry.iso8608.class_, entry.iso8608.seed, _random_length(run, speed, offsets))
