@@ -89,6 +89,7 @@ def test_a_shaken_table_has_the_numbers_of_algebra(tmp_path):
     assert cycles.equivalent == pytest.approx(2 * travel * 4 ** (1 / 5), rel=0.01)
     assert found.rate == pytest.approx(1000.0)
     assert found.tyres == ()
+    assert not any("RMS alone" in text for text in found.notes)
 
 
 def test_a_pin_has_the_cycles_of_the_mass_that_it_carries(tmp_path):
@@ -184,6 +185,93 @@ def test_a_recorded_tyre_load_is_its_force_and_its_static_load(tmp_path):
     assert recorded.static == simulated.static
     assert recorded.coefficient == pytest.approx(simulated.coefficient, rel=0.01)
     assert recorded.high == pytest.approx(simulated.high, rel=0.01)
+
+
+RECORDED = """\
+vehicle: sedan2
+speed: 15 m/s
+recording: drive.csv
+sensors:
+  seat: {body: body, x: 0.4 m, channels: {acceleration: az, fore_aft_acceleration: ax}}
+  strut: {axle: rear, channels: {suspension_force: strut}}
+  cell: {axle: front, channels: {tyre_load: load}}
+"""
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    """Assess 20 s of sines, some about a mean, and of a strut's force whose turning points lie on samples."""
+    folder, t = tmp_path_factory.mktemp("recorded"), np.arange(4000) / 200
+    sines = ((9.8, 2.0, 4.0), (0.5, 1.5, 5.0), (4e3, 800.0, 1.0))  # mean, amplitude, frequency
+    az, ax, load = (mean + size * np.sin(2 * np.pi * hertz * t) for mean, size, hertz in sines)
+    sizes = np.repeat([1000.0, 15.0, 5.0], [2000, 1000, 1000])  # 10 cycles, then 10 each of 1.5 and 0.5 % of their range
+    strut = sizes * (1 - 4 * np.abs(np.mod(np.r_[t[:2000], 2 * t[2000:]], 1) - 0.5))
+    rows = [",".join(f"{value:.9g}" for value in row) for row in zip(t, az, ax, strut, load, strict=True)]
+    (folder / "drive.csv").write_text("\n".join(["t,az,ax,strut,load", *rows]) + "\n")
+    (folder / "run.yaml").write_text(RECORDED)
+    return assess(folder / "run.yaml", recorded=True)
+
+
+def test_channels_and_shocks_are_about_their_means(recorded):
+    load, az = of(recorded.channels, "load"), of(recorded.channels, "az")
+    assert (load.rms, load.peak) == (pytest.approx(800 / np.sqrt(2), rel=1e-3), pytest.approx(800, rel=1e-3))
+    assert (az.rms, az.crest) == (pytest.approx(np.sqrt(2), rel=1e-3), pytest.approx(np.sqrt(2), rel=5e-3))
+    (shock,) = recorded.shock
+    assert shock.largest == pytest.approx(2 * np.sqrt(101.0), rel=0.06)
+    assert shock.maximax[0] < 1.0  # far below the sine an oscillator hardly moves; beginning with the mean, it would by 9.8 m/s^2 and more
+
+
+def test_fore_aft_motion_is_weighted_by_wd(recorded):
+    """0.409 is what ISO 2631-1 gives Wd at 5 Hz, in its Table 3."""
+    found = of(recorded.ride, "ax")
+    assert found.weighting == "Wd"
+    assert found.rms == pytest.approx(0.409 * 1.5 / np.sqrt(2), rel=0.01)
+
+
+def test_cycles_count_from_a_hundredth_of_the_largest_range(recorded):
+    strut = of(recorded.cycles, "strut")
+    assert strut.largest == pytest.approx(2000.0)
+    assert strut.cycles == pytest.approx(20, abs=1)
+    assert strut.levels == pytest.approx(2000 * np.arange(1, 41) / 40, rel=1e-4)
+    assert strut.cumulative == pytest.approx(np.full(40, 10.0), abs=1)
+
+
+def test_tables_are_in_the_units_that_they_name(assessed, recorded):
+    found, other = ({item.title: item for item in assessment_tables(result)} for result in (assessed, recorded))
+
+    def cells(table, name):
+        return dict(zip(table.columns, next(row for row in table.rows if row[0] == name), strict=True))
+
+    tyre, load, shock = of(assessed.tyres, "front"), of(assessed.cycles, "front tyre"), of(assessed.shock, "az")
+    assert float(cells(found["Tyre loads and road damage"], "front")["static [kN]"]) == pytest.approx(tyre.static / 1e3, rel=1e-3)
+    assert float(cells(found["Shock response"], "az")["largest [g]"]) == pytest.approx(shock.largest / 9.80665, rel=1e-3)
+    for name, unit, factor in (("front tyre", "kN", 1e-3), ("front travel", "mm", 1e3)):
+        row = cells(found["Cycles"], name)
+        assert row["unit"] == unit
+        assert float(row["largest range"]) == pytest.approx(of(assessed.cycles, name).largest * factor, rel=1e-3)
+    assert load.largest > 100.0
+    ratio = cells(other["Transport vibration"], "az")["/ II"]
+    assert float(ratio) == pytest.approx(np.sqrt(2) / 9.80665 / of(recorded.transport, "az").levels[1].rms, rel=0.01)
+
+
+HUMP = "road: [{hump: {shape: half_sine, length: 0.6 m, height: HEIGHT, at: 3 m}}]\n"
+
+
+@pytest.mark.parametrize(
+    ("road", "said"),
+    [
+        (HUMP.replace("HEIGHT", "15 cm"), "the tyre of front would leave the road"),
+        (HUMP.replace("HEIGHT", "1 mm") + "step: 10 ms\n", "the step of 10 ms is too coarse"),
+        ("road: [{profile: {file: road.csv, distance: s, height: h}}]\n", "the measured profile has a hole from 6 to 8 m"),
+    ],
+    ids=["a tyre that lifts off", "a coarse step", "a hole of a profile"],
+)
+def test_what_makes_a_motion_doubtful_is_noted(tmp_path, road, said):
+    s = np.delete(np.arange(0, 12.05, 0.1), slice(61, 80))
+    np.savetxt(tmp_path / "road.csv", np.column_stack([s, 1e-3 * np.sin(s)]), delimiter=",", header="s,h", comments="")
+    (tmp_path / "run.yaml").write_text(f"vehicle: sedan2\nspeed: 5 m/s\nduration: 2 s\n{road}")
+    found = assess(tmp_path / "run.yaml")
+    assert any(text.startswith(said) for text in found.notes)
 
 
 def test_recorders_have_no_part_in_the_motion(rough, assessed, tmp_path):
