@@ -11,11 +11,12 @@ from tests.commands.calls import run_json
 from vehgen.commands import main
 from vehgen.errors import InputError, ModelWarning
 from vehgen.measure.ride_comfort import WEIGHTINGS, evaluate_vibration
-from vehgen.mechanics import ElementOutput, Place, PointOutput
+from vehgen.mechanics import ElementOutput, Place, PointOutput, derive
 from vehgen.mechanics.hinge_forces import far_side
 from vehgen.simulate import load_run, simulate
-from vehgen.simulate.frequency import transfer_functions
+from vehgen.simulate.frequency import maxwell_branches, transfer_functions
 from vehgen.simulate.frequency_response import frequency_response
+from vehgen.simulate.resonance_lines import oscillating_poles
 from vehgen.simulate.road_response import RoadResponse, road_response
 from vehgen.vehicle import load_vehicle, parse_vehicle
 
@@ -119,6 +120,15 @@ def test_rms_and_peaks_are_exact_however_light_the_damping(ratio, relaxation):
         assert abs(second * n(second) / d(second)) == pytest.approx((amplitude / abs(s)).max(), rel=2e-3)
 
 
+def test_the_poles_of_a_relaxing_suspension_are_those_of_its_polynomial():
+    """One that relaxes half of its stiffness in a twentieth of a second moves both poles far."""
+    model = derive(parse_vehicle(two_masses(0.1, (K / 2, 0.05))))
+    values = model.values()
+    roots = two_masses_by_hand(0.1, (K / 2, 0.05))[1].roots
+    found = oscillating_poles(model.numeric(values), maxwell_branches(model, values))
+    np.testing.assert_allclose(found, sorted(roots[roots.imag > 0], key=lambda root: root.imag), rtol=1e-9)
+
+
 @pytest.mark.parametrize(("ratio", "relaxation"), LIGHTLY)
 def test_the_curves_that_are_kept_have_the_rms_that_is_told(ratio, relaxation):
     found = road_response(parse_vehicle(two_masses(ratio, relaxation)), speed=SPEED, roughness="C")
@@ -202,7 +212,6 @@ def test_axles_meet_the_road_one_after_another():
 
 def test_what_is_solved_in_parts_is_the_same(monkeypatch):
     frequency = np.linspace(0.5, 20.0, 41)
-    from vehgen.mechanics import derive
     from vehgen.simulate import frequency as module
 
     model = derive("sedan2", [PointOutput("az", Place("p", "body"), "acceleration")])
