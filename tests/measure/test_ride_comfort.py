@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from vehgen.measure.ride_comfort import WEIGHTINGS, evaluate_vibration, running_rms, weighted
+from vehgen.measure.ride_comfort import (
+    WEIGHTINGS,
+    WeightedVibration,
+    evaluate_vibration,
+    likely_reaction,
+    reasons_to_doubt_rms,
+    running_rms,
+    weighted,
+)
 
 TABLE_3 = {
     "Wk": {0.5: 418, 0.8: 477, 1: 482, 1.25: 484, 1.6: 494, 2: 531, 2.5: 631, 3.15: 804, 4: 967, 5: 1039, 6.3: 1054, 8: 1036,
@@ -61,3 +69,39 @@ def test_nothing_wraps_around_from_the_end_to_the_beginning():
     values = np.zeros(2000)
     values[-50:] = 1.0
     assert abs(weighted(values, 0.01, WEIGHTINGS["Wk"])[:1500]).max() < 0.05 * values.max()
+
+
+@pytest.mark.parametrize(
+    ("rms", "reaction"),
+    [
+        (0.0, "not uncomfortable"),
+        (0.31, "not uncomfortable"),
+        (0.32, "a little uncomfortable"),
+        (0.55, "a little uncomfortable or fairly uncomfortable"),
+        (0.7, "fairly uncomfortable"),
+        (0.9, "fairly uncomfortable or uncomfortable"),
+        (1.1, "uncomfortable"),
+        (1.4, "uncomfortable or very uncomfortable"),
+        (1.8, "very uncomfortable"),
+        (2.2, "very uncomfortable or extremely uncomfortable"),
+        (2.6, "extremely uncomfortable"),
+    ],
+)
+def test_reactions_overlap_as_in_the_standard(rms, reaction):
+    """ISO 2631-1, C.2.3: less than 0.315, 0.315 to 0.63, 0.5 to 1, 0.8 to 1.6, 1.25 to 2.5, more than 2 m/s^2."""
+    assert likely_reaction(rms) == reaction
+
+
+@pytest.mark.parametrize(
+    ("share", "measures"),
+    [(0.5, 0), (0.4, 1), (0.2, 1), (0.14, 2), (0.03, 2), (0.02, 3)],
+)
+def test_an_rms_is_doubted_where_vibration_lasts_a_small_share_of_the_time(share, measures):
+    """A sine of amplitude 1 for seconds of a rest: MTVV/RMS is p^(-1/2), VDV/(RMS T^(1/4)) (3/2p)^(1/4), the crest factor (2/p)^(1/2)."""
+    rms, duration = np.sqrt(share / 2), 600.0
+    found = WeightedVibration(rms, np.sqrt(0.5), (3 / 8 * share * duration) ** 0.25, 1 / rms)
+    told = "".join(reasons_to_doubt_rms(found, duration))
+    named = [name for name in ("MTVV over RMS", "VDV over RMS T^(1/4)", "weighted crest factor") if name in told]
+    assert named == ["MTVV over RMS", "VDV over RMS T^(1/4)", "weighted crest factor"][:measures]
+    if measures == 3:
+        assert "MTVV over RMS 7.07 (above 1.5), VDV over RMS T^(1/4) 2.94 (above 1.75)" in told
