@@ -1,6 +1,7 @@
 """One error of the measurement in place of many: which one is told, and that none is where there are two, or where many are likelier."""
 
 from dataclasses import replace
+from importlib import import_module
 from types import SimpleNamespace
 
 import pytest
@@ -11,7 +12,7 @@ from vehgen.diagnose.detect.detection import BELIEVED_SIGMAS, supposing
 from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.select.estimates import estimate
 from vehgen.diagnose.select.fitter import Fitter
-from vehgen.diagnose.select.one_error import _within_belief, one_error, taken_over
+from vehgen.diagnose.select.one_error import _explains, _within_belief, one_error, taken_over
 from vehgen.effects import EFFECTS
 
 GAIN = Effect("sensor_gain", "F_az", {"error": 0.15})
@@ -85,6 +86,20 @@ def test_none_is_told_where_many_small_errors_are_likelier(detection_of):
     fit = detection.base.least_squares
     likelier = replace(detection, base=replace(detection.base, least_squares=replace(fit, loss=fit.loss - 1e4)))
     assert tried(detection, likelier, names=("sensor_gain",)).fits == ()
+
+
+@pytest.mark.parametrize(("numbers", "gain", "told"), [(1, 6.8, False), (1, 7.0, True), (2, 13.7, False), (2, 13.9, True)])
+def test_an_error_pays_for_its_numbers_by_the_log_of_all_samples(monkeypatch, numbers, gain, told):
+    """BIC of 1000 residuals: each number has to gain ln(1000) = 6.91, in -2 ln of the likelihood."""
+    monkeypatch.setattr(import_module("vehgen.diagnose.select.one_error"), "leaves_noise", lambda fit, detection: True)
+    misfit = SimpleNamespace(problem=SimpleNamespace(trials=[None]))
+    fit = SimpleNamespace(
+        n_residuals=1000,
+        least_squares=SimpleNamespace(loss=-500.0 - gain, misfit=misfit),
+        last=SimpleNamespace(effect=SimpleNamespace(n_numbers=lambda n_runs: numbers * n_runs)),
+    )
+    strained = SimpleNamespace(base=SimpleNamespace(least_squares=SimpleNamespace(loss=-500.0)))
+    assert _explains(fit, strained, None) is told
 
 
 @pytest.mark.thorough
