@@ -10,6 +10,7 @@ import scipy.signal
 
 from vehgen.road import MeasuredProfile
 from vehgen.simulate import load_run, simulate
+from vehgen.simulate.holes import holes
 from vehgen.simulate.profile_warnings import long_wave_share
 
 RUN = "vehicle: sedan2\nspeed: SPEED m/s\nduration: SECONDS s\nroad: [{profile: {file: road.csv, distance: s, height: h}}]\n"
@@ -115,6 +116,16 @@ def test_level_roads_between_obstacles_and_points_in_groups_are_no_holes(tmp_pat
     slabs = np.arange(0.0, 60.0, 4.0)
     faulted = np.c_[slabs, slabs + 0.01, slabs + 3.99].ravel()
     assert "hole" not in warnings_of(tmp_path, faulted, np.tile([0.0, 0.001, 0.005], len(slabs)), 5, 6)
+
+
+@pytest.mark.parametrize(("wide", "told"), [(4, 4), (6, 0)])
+def test_wide_gaps_that_are_a_tenth_of_all_are_how_a_table_was_drawn(wide: int, told: int):
+    """Of 50 gaps, 8 and 12 in a hundred."""
+    gaps = np.ones(50)
+    gaps[5 : 5 + 7 * wide : 7] = 20.0 + np.arange(wide)
+    places = np.r_[0.0, np.cumsum(gaps)]
+    found = holes(places, 0.0, places[-1])
+    assert found.tolist() == [5 + 7 * i for i in reversed(range(told))]
 
 
 def test_heights_in_mm_that_are_read_as_m_are_asked_for_their_unit(tmp_path: Path):
