@@ -48,7 +48,10 @@ def test_an_ideal_low_pass_is_left_out_where_it_passes_all_and_little_folds():
     assert late.for_slow_motions(10.0, 100.0) == AcquisitionChain("none", delay=0.01, resolution=0.1)
     assert UNKNOWN.for_slow_motions(4.0, 100.0).is_point_sample
     assert late.for_slow_motions(20.0, 100.0) is late  # from 80 Hz on motions would fold
+    assert late.for_slow_motions(12.0, 100.0) is late  # from 88 Hz on, 7 times as fast
     low = AcquisitionChain("ideal", cut_off=5.0)
     assert low.for_slow_motions(10.0, 100.0) is low
+    assert low.for_slow_motions(5.0, 100.0) is low  # it halves them there
+    assert low.for_slow_motions(4.5, 100.0).is_point_sample
     recursive = AcquisitionChain("bessel", 4, 45.0)
     assert recursive.for_slow_motions(4.0, 100.0) is recursive
