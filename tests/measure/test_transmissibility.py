@@ -7,7 +7,7 @@ import scipy.signal
 from tests.measure.rough_half_car import SEDAN, drive, true_response
 from vehgen.errors import InputError
 from vehgen.measure.shared_peaks import shared_peaks
-from vehgen.measure.transmissibility import estimate_ratio, segment_transforms
+from vehgen.measure.transmissibility import SegmentTransforms, estimate_ratio, segment_transforms
 
 SPEED = 15.0
 BAND = (0.5, 20.0)
@@ -50,6 +50,30 @@ def test_limits_without_blur_hold_95_of_100_where_noise_is_in_the_channel_alone(
         lines += len(found.h1)
     assert held / lines == pytest.approx(0.95, abs=0.012)
     assert found.coherence.mean() == pytest.approx(0.8, abs=0.02)
+
+
+def drawn(random, averages, gain):
+    """Return the estimate of independent averages of x and y = gain x + noise as loud at 20000 lines, and these lines' spectra."""
+    x, noise = (random.normal(size=(2, averages, 20_000)) * np.sqrt(0.5) for _ in range(2))
+    x, noise = x[0] + 1j * x[1], noise[0] + 1j * noise[1]
+    lines = SegmentTransforms(np.arange(20_000.0), np.zeros(averages), np.stack([x, gain * x + noise], axis=2))
+    spectra = lines.spectra()
+    return estimate_ratio(spectra, averages, 0, 1), spectra
+
+
+def test_a_line_without_common_motion_is_taken_for_one_with_it_in_5_of_100():
+    found, _ = drawn(np.random.default_rng(11), 9, 0.0)
+    assert found.common.mean() == pytest.approx(0.05, abs=0.007)
+
+
+def test_the_error_of_a_ratio_is_that_of_its_scatter_however_few_the_averages():
+    """Of y = g x + noise, sum(x* y)/sum(|x|^2) scatters about g as 1/sum(|x|^2) is large; half of that lies along the magnitude."""
+    for gain in (1j, -2.0):
+        found, spectra = drawn(np.random.default_rng(12), 9, gain)
+        h1 = spectra[:, 0, 1] / spectra[:, 0, 0].real
+        assert np.mean(2 * (found.error * found.h1) ** 2) == pytest.approx(np.mean(np.abs(h1 - gain) ** 2), rel=0.04)
+        assert np.mean(np.exp(1j * found.phase)) == pytest.approx(gain / abs(gain), abs=0.1)
+        np.testing.assert_allclose(found.ratio**2, spectra[:, 1, 1].real / spectra[:, 0, 0].real)
 
 
 def test_spectra_are_those_of_scipy():
@@ -110,3 +134,22 @@ def test_a_peak_counts_where_all_channels_show_it_above_chance():
     assert len(peaks[0].prominence) == 2
     white = segment_transforms(random.normal(size=(60_000, 2)), 0.01, 4.0).between(*BAND)
     assert shared_peaks(white.frequency, np.einsum("nii->ni", white.spectra()).real, white.averages()) == ()
+
+
+def test_a_peak_is_as_high_above_its_surroundings_as_it_is_in_decibels():
+    """Ten and a hundred times as loud; peaks that lie two lines apart are one, those three apart are two."""
+    frequency = np.arange(100) * 0.25
+
+    def bell(at, height):
+        return height ** np.exp(-(((np.arange(100) - at) / 3) ** 2))
+
+    (peak,) = shared_peaks(frequency, np.column_stack([bell(40, 10.0), bell(42, 100.0)]), 50.0)
+    assert peak.frequency == pytest.approx(10.25)
+    assert peak.prominence == pytest.approx((10.0, 20.0), abs=1e-3)
+    assert shared_peaks(frequency, np.column_stack([bell(40, 10.0), bell(43, 100.0)]), 50.0) == ()
+
+
+def test_errors_of_spectra_make_a_peak_of_two_channels_in_less_than_one_drive_of_twenty():
+    random, frequency = np.random.default_rng(13), np.arange(160) * 0.125
+    draws = [random.gamma(30.0, 1 / 30.0, (160, 2)) for _ in range(200)]
+    assert np.mean([bool(shared_peaks(frequency, densities, 30.0)) for densities in draws]) < 0.05
