@@ -7,7 +7,7 @@ import pytest
 
 from vehgen.cargo.frame_file import DampingPoint, rayleigh
 from vehgen.cargo.panels import Layer, equivalent_layer
-from vehgen.cargo.sections import Bar, Channel, Tube
+from vehgen.cargo.sections import Bar, Channel, SectionEntry, Tube
 from vehgen.errors import InputError
 
 
@@ -20,14 +20,17 @@ def raster(inside, height, width, n=1200):
     return mask.sum() * cell, ((z - z.mean()) ** 2).sum() * cell, ((y - y.mean()) ** 2).sum() * cell
 
 
-@pytest.mark.parametrize("kind", ["tube", "channel"])
-def test_thin_walled_sections(kind):
+@pytest.mark.parametrize("kind", ["bar", "tube", "channel"])
+def test_areas_and_second_moments(kind):
     h, b, t = 0.15, 0.06, 0.005
 
     def flange(z):
         return (z < t) | (z > h - t)
 
-    if kind == "tube":
+    if kind == "bar":
+        found = Bar(height="150 mm", width="60 mm").section()
+        exact = raster(lambda y, z: z > 0, h, b)
+    elif kind == "tube":
         found = Tube(height="150 mm", width="60 mm", thickness="5 mm").section()
         exact = raster(lambda y, z: flange(z) | (y < t) | (y > b - t), h, b)
     else:
@@ -42,9 +45,29 @@ def test_torsion_constants():
     assert Tube(height="101 mm", width="101 mm", thickness="1 mm").section().torsion == pytest.approx(0.001 * 0.1**3, rel=1e-12)
 
 
+@pytest.mark.parametrize(("height", "width"), [(0.1, 0.05), (0.05, 0.1)])
+def test_a_bar_resists_torsion_upright_as_lying(height, width):
+    """0.229 a b^3 of sides of two to one (Timoshenko & Goodier)."""
+    assert Bar(height=f"{height} m", width=f"{width} m").section().torsion == pytest.approx(0.229 * 0.1 * 0.05**3, rel=5e-3)
+
+
+def test_a_channel_resists_torsion_as_its_three_walls_do():
+    """Each is a narrow bar that ends where another begins: their ends take off some percent."""
+    channel = Channel(height="150 mm", width="60 mm", thickness="3 mm").section()
+    walls = [Bar(height=height, width="3 mm").section().torsion for height in ("60 mm", "144 mm", "60 mm")]
+    assert channel.torsion == pytest.approx(sum(walls), rel=0.03)
+
+
+def test_numbers_of_a_table_of_sections_stay_as_they_are():
+    entry = SectionEntry(plain={"area": "10 cm^2", "strong": "80 cm^4", "weak": "20 cm^4", "torsion": "3 cm^4"})
+    found = entry.section()
+    assert (found.area, found.strong, found.weak, found.torsion) == pytest.approx((1e-3, 80e-8, 20e-8, 3e-8))
+
+
 def test_a_full_section_is_no_tube():
     with pytest.raises(InputError, match="less than half as thick"):
         Tube(height="100 mm", width="40 mm", thickness="20 mm")
+    assert Tube(height="100 mm", width="40 mm", thickness="19 mm").section().area == pytest.approx(0.1 * 0.04 - 0.062 * 0.002)
 
 
 def bending(layers):
@@ -70,6 +93,8 @@ def test_an_equivalent_layer_stretches_bends_and_weighs_the_same(layers):
     plane = one.modulus / (1 - one.poisson**2)
     assert plane * one.thickness == pytest.approx(stretch, rel=1e-5)
     assert plane * one.thickness**3 / 12 == pytest.approx(bend, rel=1e-4)
+    across = sum(item.modulus / (1 - item.poisson**2) * item.thickness * item.poisson for item in layers)  # held there while stretched
+    assert plane * one.thickness * one.poisson == pytest.approx(across, rel=1e-9)
     assert one.density * one.thickness == pytest.approx(sum(layer.density * layer.thickness for layer in layers), rel=1e-12)
 
 
