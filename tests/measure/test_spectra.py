@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from vehgen.errors import InputError
-from vehgen.measure import ARTICULATED_BANDS, SPECTRA, band_rms, record_psd, relative_errors, welch_psd
+from vehgen.measure import ARTICULATED_BANDS, SPECTRA, TWO_AXLE_BANDS, Spectrum, band_rms, record_psd, relative_errors, welch_psd
 
 
 @pytest.mark.parametrize("n", [500, 501])
@@ -41,7 +41,21 @@ def test_relative_errors_follow_equation_32():
     assert relative_errors(np.array([1.2, 0.9, 1.0]), np.array([1.0, 1.0, 0.0])) == pytest.approx([0.2, -0.1, np.nan], nan_ok=True)
 
 
-@pytest.mark.parametrize(("name", "rms"), [("level II", 0.52), ("2016 medium", 0.54), ("2016 low", 0.40), ("2016 high", 0.70)])
+def test_the_papers_bands_are_the_same_for_both_kinds_of_vehicles_and_touch():
+    assert TWO_AXLE_BANDS[1:-1] == ARTICULATED_BANDS
+    assert [low for low, _ in TWO_AXLE_BANDS[1:]] == [high for _, high in TWO_AXLE_BANDS[:-1]]
+
+
+def test_a_spectrum_that_falls_as_the_inverse_of_frequency_has_equal_shares_in_equal_ratios():
+    found = Spectrum("pink", np.array([1.0, 10.0, 100.0]), np.array([1.0, 0.1, 0.01]))
+    assert found.rms == pytest.approx(np.sqrt(np.log(100.0)))
+    assert found.rms_within(2.0, 20.0) == pytest.approx(np.sqrt(np.log(10.0)))
+
+
+@pytest.mark.parametrize(
+    ("name", "rms"),
+    [("level I", 0.73), ("level II", 0.52), ("level III", 0.37), ("2016 medium", 0.54), ("2016 low", 0.40), ("2016 high", 0.70)],
+)
 def test_astm_spectra_have_the_overall_rms_that_goes_with_them(name, rms):
     spectrum = SPECTRA[name]
     assert spectrum.rms == pytest.approx(rms, abs=0.006)
