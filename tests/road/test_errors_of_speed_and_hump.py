@@ -41,6 +41,8 @@ def test_a_half_sine_of_form_two_is_a_versine():
     drawn = Hump.from_shape("half_sine", 2.0, 0.8, 0.05)
     s = np.linspace(1.9, 2.9, 1001)
     assert drawn.deformed(form=2.0).height(s) == pytest.approx(Hump.from_shape("versine", 2.0, 0.8, 0.05).height(s), abs=1e-12)
+    hole = Hump.from_shape("half_sine", 2.0, 0.8, -0.05).deformed(form=2.0)
+    assert hole.height(s) == pytest.approx(Hump.from_shape("versine", 2.0, 0.8, -0.05).height(s), abs=1e-12)
 
 
 def test_a_hump_of_no_height_has_none_in_any_form():

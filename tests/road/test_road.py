@@ -51,6 +51,8 @@ def test_rounded_rectangle():
     curvature = np.abs(np.gradient(slope, s)) / (1 + slope**2) ** 1.5
     on_foot = (s > 1.001) & (s < 1 + 0.95 * run)
     np.testing.assert_allclose(1 / curvature[on_foot], 0.04, rtol=1e-3)
+    hole = Hump.from_shape("rectangle", 1.0, 0.5, -0.03, radius=0.04)
+    np.testing.assert_array_equal(hole.height(s), -z)
 
 
 @pytest.mark.parametrize(("length", "height", "radius"), [(0.5, 0.1, 0.04), (0.1, 0.03, 0.04), (0.5, 0.03, -1)])
@@ -67,6 +69,12 @@ def test_spectral_nulls(shape, nulls):
     np.testing.assert_allclose(Hump.from_shape(shape, 5, 0.4, 0.03).spectral_nulls(2.0, 20.5), nulls, atol=0.02)
 
 
+def test_spectral_nulls_end_where_they_are_asked_to_and_are_no_mere_minima():
+    hump = Hump.from_shape("half_sine", 5, 0.4, 0.03)
+    assert hump.spectral_nulls(2.0, 12.49) == pytest.approx([7.5], abs=0.02)
+    assert hump.deformed(skew=0.2).spectral_nulls(2.0, 20.5).tolist() == []  # the far end is 1.5 times as high, and fills them
+
+
 @pytest.mark.parametrize("roughness", ["A", "C", "H"])
 def test_iso8608_has_its_psd(roughness):
     spectra = []
@@ -79,6 +87,25 @@ def test_iso8608_has_its_psd(roughness):
         band = (n >= low) & (n < 2 * low)
         ratio = np.trapezoid(mean[band], n[band]) / np.trapezoid(displacement_psd(roughness, n[band]), n[band])
         assert 0.85 < ratio < 1.15
+
+
+def test_iso8608_has_all_its_waves_however_short_the_road():
+    """The mean square of waves of k cycles a period falls as 1/k^2; a road of 20 m has those of 91 m, of which the first is too long."""
+    long, short = Iso8608Road("C", 1, 5000.0, 0.05), Iso8608Road("C", 1, 20.0, 0.05)
+    power = (long.height(5.0 + np.arange(0, 5000, 0.05)) ** 2).mean()
+    assert power == pytest.approx(256e-6 * 0.1**2 * (1 / 0.011 - 1 / 2.83), rel=0.02)
+    power = (short.height(5.0 + np.arange(0, 91, 0.05)) ** 2).mean()
+    assert power == pytest.approx(256e-6 * 0.1**2 * 91 * (np.pi**2 / 6 - 1), rel=0.01)
+
+
+def test_a_random_road_repeats_itself_without_a_step():
+    road = Iso8608Road("C", 1, 100.0)
+    period = 100.01
+    s = np.array([period - 0.01, period - 0.005, period])
+    before, middle, after = road.height(s)
+    assert road.height(s + period) == pytest.approx([before, middle, after])
+    assert middle == pytest.approx((before + after) / 2, abs=1e-12)
+    assert abs(after - before) > 1e-6
 
 
 def test_iso8608_classes_are_the_standards():
@@ -105,6 +132,10 @@ def test_footprint_is_a_moving_average():
 
     expected = (area(S + 0.12) - area(S - 0.12)) / 0.24
     np.testing.assert_allclose(track.height(S), expected, atol=2e-6)
+    np.testing.assert_allclose(Track((hump,), footprint=0.24, scale=1.1).height(S), 1.1 * expected, atol=2e-6)
+    assert track.end == pytest.approx(1.4 + 0.12)
+    ahead, beyond = track.height(np.array([track.end - 0.01, track.end + 0.002]))
+    assert ahead > 1e-5 > 1e-9 > beyond
     short = Track((Hump.from_shape("half_sine", 1.0, 0.02, 0.03),), footprint=0.3)
     assert np.trapezoid(short.height(S), S) == pytest.approx(0.03 * 0.02 * 2 / np.pi, rel=0.02)
 
