@@ -29,6 +29,17 @@ def test_a_wander_of_one_size_is_another_speed():
     assert strayed.distance(T) == pytest.approx(plain.distance(T), abs=1e-9)
 
 
+def test_a_wander_is_a_natural_spline_that_stays_as_it_is_outside():
+    """Of 0, 1, 0 a unit apart it rises as (3 x - x^3)/2, without curvature at its ends."""
+    found = Wander((1.0, 2.0, 3.0), (0.0, 1.0, 0.0)).at(np.array([0.0, 1.5, 2.0, 2.5, 9.0]))
+    assert found == pytest.approx([0.0, 0.6875, 1.0, 0.6875, 0.0])
+    assert Wander((1.0, 2.0, 3.0), (0.02, 0.05, -0.01)).at(np.array([-4.0, 8.0])) == pytest.approx([0.02, -0.01])
+
+
+def test_a_delay_is_how_much_later_the_vehicle_is_where_it_is():
+    assert AdjustedSpeed(ConstantSpeed(3.0), 0.2).distance(np.array([0.2, 1.2])) == pytest.approx([0.0, 3.0])
+
+
 def test_a_measured_speed_keeps_its_shape_when_it_is_scaled():
     measured = SpeedHistory(np.array([0.0, 4.0, 8.0]), np.array([2.0, 4.0, 3.0]))
     law = AdjustedSpeed(measured, 0.0, 1.1, 3.0)
