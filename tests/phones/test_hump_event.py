@@ -72,11 +72,19 @@ def gps(values):
 def test_gps_speed_is_the_median_of_valid_readings_in_the_crossing():
     found = crossing_speed(gps([0, 0, -1, 2.0, 2.1, 1.9, np.nan, 9.0]), 2.0, 7.0, "phone")
     assert (found.median, found.low, found.high, found.count) == (2.0, 1.9, 2.1, 3)
+    assert found.deviation == pytest.approx(0.1 / np.sqrt(3))
+    assert crossing_speed(gps([0.4, 0.5, 0.5]), 0.0, 5.0, "phone").median == 0.5
 
 
 @pytest.mark.parametrize(
     ("values", "message"),
-    [(None, "recorded no GPS speed"), ([-1, -1, -1], "no valid GPS speed"), ([0, 0, 0.1], "cannot be"), ([900, 900], "cannot be")],
+    [
+        (None, "recorded no GPS speed"),
+        ([-1, -1, -1], "no valid GPS speed"),
+        ([0, 0, 0.1], "cannot be"),
+        ([900, 900], "cannot be"),
+        ([70, 70], "cannot be"),
+    ],
 )
 def test_no_speed_asks_for_one(values, message):
     with pytest.raises(InputError, match=rf"{message}.*give `speed`"):

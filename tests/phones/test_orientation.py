@@ -5,6 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from vehgen.errors import InputError
+from vehgen.phones.gravity import no_gravity
 from vehgen.phones.orientation import AXES, find_orientation
 
 FORWARD, LEFT, UP = np.eye(3)
@@ -67,6 +68,24 @@ def test_what_cannot_be_known_is_asked_for(gravity, options, message):
     with pytest.raises(InputError) as caught:
         find_orientation(None if gravity is None else np.array(gravity, dtype=float), "phone", **options)
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize(("tilt", "flat"), [(0, True), (35, True), (45, False), (90, False)])
+def test_a_phone_lies_flat_up_to_forty_degrees(tilt, flat):
+    gravity = 9.81 * np.array([np.sin(np.radians(tilt)), 0.0, np.cos(np.radians(tilt))])
+    if flat:
+        assert find_orientation(gravity, "phone").tilt == pytest.approx(tilt, abs=1e-6)
+        assert find_orientation(gravity, "phone", "z").sign == 1
+        return
+    for up, said in ((None, "did not lie flat"), ("z", "is not along z, said to point up")):
+        with pytest.raises(InputError, match=said):
+            find_orientation(gravity, "phone", up)
+
+
+@pytest.mark.parametrize(("reading", "factor"), [(0.99, 9.80665), (32.2, 0.3048), (1002.0, 0.00980665), (979.0, 0.01), (9790.0, 0.001)])
+def test_another_unit_is_told_with_what_makes_it_m_per_s2(reading, factor):
+    told = no_gravity(reading, "").partition("multiply its accelerations by ")[2].partition(";")[0]
+    assert float(told) == pytest.approx(factor, rel=1e-4)
 
 
 def test_face_down_and_reversed_are_told_apart_by_up():
