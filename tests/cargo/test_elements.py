@@ -1,6 +1,7 @@
 """Elements and eigenmodes against closed forms of beams and plates."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -66,6 +67,42 @@ def test_bending_of_slender_beams(ends, held, roots, shares):
     modes = eigenmodes(matrices, np.unique(lying), 3)
     assert modes.frequency == pytest.approx([root**2 * constants[1] for root in roots], rel=4e-4)
     assert modes.effective_mass == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_shaft_twists_as_fast_as_its_torsion_constant_and_polar_inertia_tell():
+    """Held at one end it swings at (2 k - 1)/(4 L) sqrt(G J/(rho I_p))."""
+    n, length, strong, weak = 24, 2.0, 4e-8, 1e-8
+    mesh, _ = beam(n, length)
+    kind = BeamKind(Section(6e-4, strong, weak, 2.5e-8), E, NU, RHO)
+    held = [6 * i + d for i in range(n + 1) for d in (0, 1, 2, 4, 5)] + [3]
+    modes = eigenmodes(assemble(replace(mesh, kinds=(kind,))), np.unique(held), 2)
+    wave = math.sqrt(E / (2 * (1 + NU)) * 2.5e-8 / (RHO * (strong + weak)))
+    assert modes.frequency == pytest.approx([wave / (4 * length), 3 * wave / (4 * length)], rel=3e-3)
+
+
+def test_a_short_beam_shears_and_turns_as_timoshenkos_does():
+    """Pinned, with k = m pi/L: (S k^2 - rho A w^2) (E I k^2 + S - rho I w^2) = (S k)^2, S = 5/6 G A; the lower root of each k."""
+    n, length, height, width = 40, 1.0, 0.25, 0.1
+    mesh, _ = beam(n, length, height, width)
+    held = [6 * i + d for i in range(n + 1) for d in (0, 1, 3, 5)] + [2, mesh.n_dof - 4]
+    area, inertia = height * width, width * height**3 / 12
+    S = 5 / 6 * E / (2 * (1 + NU)) * area
+    expected = []
+    for k in (math.pi / length, 2 * math.pi / length):
+        a, b, c = RHO**2 * area * inertia, RHO * (area * (E * inertia * k**2 + S) + inertia * S * k**2), E * inertia * S * k**4
+        expected.append(math.sqrt((b - math.sqrt(b**2 - 4 * a * c)) / (2 * a)) / (2 * math.pi))
+    modes = eigenmodes(assemble(mesh), np.unique(held), 2)
+    assert modes.frequency == pytest.approx(expected, rel=2e-3)
+
+
+def test_modes_are_complete_once_one_moves_more_than_all_beyond_can():
+    """A beam that is higher than wide sways first, which lifts no mass; its second mode lifts 81 %."""
+    n = 12
+    mesh, _ = beam(n)
+    matrices = assemble(mesh)
+    held = [0, 1, 2, 3, *(mesh.n_dof - 6 + d for d in (1, 2))]
+    assert not eigenmodes(matrices, held, 1).complete
+    assert eigenmodes(matrices, held, 2).complete
 
 
 def test_simply_supported_plate_converges_to_naviers_frequencies():

@@ -9,8 +9,9 @@ import pytest
 
 from vehgen.cargo import load_cargo
 from vehgen.cargo.box_mesh import box_grid, box_mesh
+from vehgen.cargo.eigenmodes import Eigenmodes, RigidBody
 from vehgen.cargo.frame_file import load_frame
-from vehgen.cargo.module_model import cargo_text, convergence, module_model, node_limit
+from vehgen.cargo.module_model import _warnings, cargo_text, convergence, module_model, node_limit
 from vehgen.errors import InputError
 
 FRAME = """\
@@ -115,6 +116,28 @@ def test_what_sits_on_the_spring(read):
     assert whole.modes.effective_mass.sum() < whole.body.mass
 
 
+def modes_of(effective, hourglass=0.01, complete=True):
+    """Return modes of 5, 9 and 14 Hz that move some of a body of 1000 kg; the first has a share of its energy in hourglass control."""
+    return Eigenmodes(np.array([5.0, 9.0, 14.0]), np.zeros((3, 1, 6)), np.array(effective), np.array([hourglass, 0.0, 0.0]), complete)
+
+
+@pytest.mark.parametrize(
+    ("modes", "said"),
+    [
+        (modes_of([520.0, 300.0, 100.0]), ""),
+        (
+            modes_of([450.0, 100.0, 300.0]),
+            "moves 45% of the mass, so that one mass on a spring is a rough model; next: 14 Hz (30%) and 9 Hz",
+        ),
+        (modes_of([700.0, 0.0, 0.0], hourglass=0.07), "7% of the principal mode's strain energy is hourglass control"),
+        (modes_of([700.0, 0.0, 0.0], complete=False), "modes were sought up to 14 Hz; a higher one may move more mass vertically"),
+    ],
+)
+def test_a_module_that_one_spring_hardly_stands_for_is_warned_of(modes, said):
+    assert said in "".join(_warnings(modes, RigidBody(1000.0, np.zeros(3), 0.0)))
+    assert bool(_warnings(modes, RigidBody(1000.0, np.zeros(3), 0.0))) is bool(said)
+
+
 def test_the_cargo_file_reads_back(read, tmp_path):
     pytest.importorskip("pyfe3d")
     for kind in ("total", "effective"):
@@ -124,6 +147,7 @@ def test_the_cargo_file_reads_back(read, tmp_path):
         module = cargo.file.module
         assert (module.mass, module.k0, module.c0, module.fixed_mass) == (model.mass, model.stiffness, model.damping, model.fixed_mass)
         assert (module.front, module.base) == (0.5, 0.2)
+        assert module.pitch_inertia == model.body.pitch_inertia
         assert (module.cog.behind_front, module.cog.above_floor) == (model.body.cog[0], model.body.cog[2])
         assert (cargo.file.name, cargo.file.source) == ("box", "it's ours")
 
