@@ -8,7 +8,7 @@ import pytest
 from vehgen.errors import InputError
 from vehgen.phones.export import Stream
 from vehgen.phones.gps import crossing_speed
-from vehgen.phones.hump_event import find_hump
+from vehgen.phones.hump_event import expected_onset, find_hump
 from vehgen.phones.importing import clipping_warnings
 
 T = np.arange(0, 25, 0.01)
@@ -27,6 +27,25 @@ def test_the_onset_is_the_first_axle(seed):
     event = find_hump(T, crossing(seed=seed), 4.5, "phone")
     assert event.onset == pytest.approx(8.0, abs=0.03)
     assert event.contrast > 10
+
+
+@pytest.mark.parametrize(("noise", "found"), [(0.25, True), (0.6, False)])
+def test_a_hump_stands_out_from_a_road_a_sixth_as_loud_but_not_from_one_a_third_as_loud(noise, found):
+    if found:
+        event = find_hump(T, crossing(noise), 4.5, "phone")
+        assert event.contrast == pytest.approx(6.0, abs=0.6)
+        assert event.onset == pytest.approx(8.0, abs=0.05)
+        return
+    with pytest.raises(InputError, match="shows no hump"):
+        find_hump(T, crossing(noise), 4.5, "phone")
+
+
+@pytest.mark.parametrize("noise", [0.003, 0.01, 0.03])
+def test_the_energy_of_an_answer_is_expected_to_set_in_where_noise_lets_it_be_seen(noise):
+    """It grows by e a second; without noise it would set in where it begins."""
+    answer = np.where(T < 12, np.exp(T - 12), np.exp(-2 * (T - 12))) * np.sin(2 * np.pi * 3 * T)
+    event = find_hump(T, answer + np.random.default_rng(0).normal(0, noise, len(T)), 9.0, "phone")
+    assert expected_onset(answer, 0.01, event.contrast) == pytest.approx(event.onset, abs=0.4)
 
 
 def test_handling_the_phone_long_before_is_passed_over():
