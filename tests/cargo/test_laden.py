@@ -122,6 +122,10 @@ def test_levers_of_a_sedan(tmp_path):
     assert forward == pytest.approx(400 * (x["front"] - 1.4) / (before.mass + 400))
     assert up == pytest.approx(0.0)
     assert after.mass == before.mass + 400
+    higher = put(
+        tmp_path, "sedan2", "on: body\nbehind: front\nrigid: {mass: 400 kg, length: 1 m, height: 1 m, front: 0.9 m, base: 0.3 m}\n", "high"
+    )
+    assert compare_laden(vehicle, higher, "body").cog_shift == pytest.approx((forward, 400 * 0.8 / (before.mass + 400)))
 
 
 @pytest.mark.parametrize(
