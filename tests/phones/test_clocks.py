@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.signal
 
-from vehgen.phones.clocks import TRUSTED, match
+from vehgen.phones.clocks import TRUSTED, Match, match
 
 STEP, SPEED = 0.01, 10.0
 PACES, DAMPING = 2 * np.pi * np.array([3.0, 9.0]), 0.2
@@ -47,6 +47,28 @@ def test_a_long_road_is_found_though_the_speed_wanders(wander, tolerance):
     assert (found.correlation < TRUSTED) == (wander > 0)
     assert found.shift == pytest.approx(6.0, abs=tolerance)
     assert found.scale == pytest.approx(1.0, abs=0.002)
+
+
+@pytest.mark.parametrize("shift", [4.003, 3.997])
+def test_a_shift_between_two_samples_is_found(shift):
+    """A burst of 5 Hz, recorded so much later than it is expected."""
+
+    def burst(t):
+        return (np.exp(-(((t - 1.5) / 0.2) ** 2)) * np.sin(2 * np.pi * 5 * t))[:, None]
+
+    time = np.arange(0, 10, STEP)
+    (found,) = match([(time, burst(time - shift))], lambda scale: burst(np.arange(0, 3, STEP)), [slice(0, 1)], STEP, [(0.0, 8.0)])
+    assert found.shift == pytest.approx(shift, abs=1e-3)
+    assert found.correlation == pytest.approx(1.0, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("correlation", "backwards", "trusted"),
+    [(0.62, 0.5, True), (0.58, 0.25, False), (0.5, 0.15, True), (0.4, 0.15, False), (0.35, 0.05, True), (0.3, 0.05, False)],
+)
+def test_a_match_is_trusted_by_itself_or_beside_what_chance_does(correlation, backwards, trusted):
+    """From 0.6 on; below, where it is three times as good as the same answer backwards, and a third."""
+    assert Match(0.0, correlation, 1.0, backwards, ()).is_trusted is trusted
 
 
 @pytest.mark.thorough

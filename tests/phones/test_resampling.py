@@ -81,8 +81,22 @@ def test_a_clock_that_runs_backwards_is_refused():
         clean(Stream(t, t[:, None], ("x",), "m/s^2"), "phone")
 
 
-def test_two_recordings_in_one_file_are_refused():
-    first, second = np.arange(700) * 0.01, np.arange(500) * 0.01 + 0.0037
+@pytest.mark.parametrize(("swapped", "usable"), [(5, True), (20, False)])
+def test_a_clock_may_run_backwards_once_in_a_hundred_samples(swapped, usable):
+    t = np.arange(1000) * 0.01
+    first = 10 + 45 * np.arange(swapped)
+    t[first], t[first + 1] = t[first + 1], t[first]
+    stream = Stream(t, t[:, None], ("x",), "m/s^2")
+    if usable:
+        assert len(clean(stream, "phone")[0].time) == 1000
+        return
+    with pytest.raises(InputError, match=f"{swapped} times run backwards and 0 are repeated, of 1000: is it the time column"):
+        clean(stream, "phone")
+
+
+@pytest.mark.parametrize("length", [500, 150])
+def test_two_recordings_in_one_file_are_refused(length):
+    first, second = np.arange(700) * 0.01, np.arange(length) * 0.01 + 0.0037
     t = np.concatenate([first, second])
     with pytest.raises(InputError, match="phone: at its sample 701 the clock goes back, and on from there: two recordings in one file"):
         clean(Stream(t, t[:, None], ("x",), "m/s^2"), "phone")
@@ -104,8 +118,12 @@ def test_slow_logs_are_refused_with_the_rate_needed():
     with pytest.raises(InputError, match=r"logged at 0.1 Hz, if its times are in s; state `time_unit=ms`"):
         check_rate(np.arange(100) * 10.0, 25.0, "phone")
     assert check_rate(clock(59.4, 0.4), 25.0, "phone") == pytest.approx(59.4, rel=0.02)
+    assert check_rate(np.arange(100) / 49.6, 25.0, "phone") == pytest.approx(49.6)  # a clock may be a little slow
+    with pytest.raises(InputError, match="logged at 48 Hz; at least 50 Hz is needed"):
+        check_rate(np.arange(100) / 48.0, 25.0, "phone")
 
 
 def test_gaps_are_found():
     t = np.delete(np.arange(500) * 0.01, range(200, 230))
     assert gaps(t) == [pytest.approx((1.99, 0.31))]
+    assert gaps(np.delete(np.arange(500) * 0.01, [200, 201, 300, 301, 302, 303])) == [pytest.approx((2.99, 0.05))]
