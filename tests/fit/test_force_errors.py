@@ -7,6 +7,7 @@ from vehgen.fit.least_squares import FitOptions, fit_least_squares
 from vehgen.fit.noise import EVEN, Noise
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.problem import Problem
+from vehgen.fit.road_answer import road_answer, unstated_forces
 from vehgen.fit.space import SearchSpace
 from vehgen.fit.trial import load_trials
 
@@ -73,6 +74,27 @@ def test_errors_of_a_force_are_found(tmp_path, gravity, k, beside, zero):
     assert found["delay"] == pytest.approx(0.004, abs=2e-4)
     assert found["force_offset"] == pytest.approx(beside - 1.02 * zero, abs=0.05)
     assert fit.chi2 < 1.3
+
+
+@pytest.mark.parametrize("stated", [True, False])
+def test_white_errors_of_a_force_come_to_the_channels_through_the_rig(tmp_path, stated):
+    """One-sided densities: 2 dt sigma^2 of the force, times the square of 1/(k - m w^2 + i c w) of the displacement."""
+    t = np.arange(0.0, 4.0, 1e-2)
+    np.savetxt(tmp_path / "force.csv", np.column_stack([t, 7 * np.sin(9 * t)]), delimiter=",", header="t,F", comments="")
+    np.savetxt(tmp_path / "recording.csv", np.column_stack([t, t, t]), delimiter=",", header="t,y,v", comments="")
+    (tmp_path / "rig.yaml").write_text(RIG.format(gravity="true", k="40e3 N/m"), encoding="utf-8")
+    (tmp_path / "run.yaml").write_text(RUN.replace("unit: N", "unit: N, noise: 3 N") if stated else RUN, encoding="utf-8")
+    (trial,) = load_trials([tmp_path / "run.yaml"])
+    frequency = np.array([2.0, 7.0, 15.0])
+    s = 2j * np.pi * frequency
+    own = np.sqrt(2 * 1e-2) / (40e3 + 80.0 * s + 20.0 * s**2)
+    answer = road_answer(trial, frequency, trial.values)
+    through, other = (answer.forced, answer.unstated) if stated else (answer.unstated, answer.forced)
+    factor = 3.0 if stated else 1.0
+    assert other is None
+    np.testing.assert_allclose(through[:, :, 0], factor * np.column_stack([own, s * own]), rtol=1e-9)
+    assert unstated_forces(trial) == pytest.approx([0.0 if stated else 7 / np.sqrt(2)], rel=0.03)
+    assert next(item.sigma for item in Nuisances().of_run(trial) if item.name == "delay") == pytest.approx(1e-2)
 
 
 def pushes(s, pieces):

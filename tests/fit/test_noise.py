@@ -6,10 +6,11 @@ import scipy.optimize
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from tests.fit.recordings import sedan_truth, write_run
-from vehgen.fit.noise import EVEN, LOUDER_HZ, Noise, estimate_noise
+from vehgen.fit.noise import EVEN, LOUDER_HZ, DrawnRoughness, Noise, estimate_noise
 from vehgen.fit.road_answer import KNOT_WAVENUMBERS, RoadAnswer, road_answer
 from vehgen.fit.trial import load_trials
 from vehgen.fit.window import taper, transform
+from vehgen.simulate.frequency_response import frequency_response
 
 
 def make_answer(random, n=400, channels=4, axles=3):
@@ -31,6 +32,26 @@ def test_the_whitener_makes_the_density_one():
     white = noise.whitener(answer)
     found = white @ noise.density(answer) @ white.conj().transpose(0, 2, 1)
     assert np.abs(found - np.eye(4)).max() < 1e-6
+
+
+def test_drawn_roughness_of_a_linear_vehicle_is_as_likely_as_its_levels_and_rougher_with_them():
+    random = np.random.default_rng(6)
+    answer, sigma = make_answer(random, n=30), np.array([0.01, 0.1, 0.02, 0.2])
+    plain = Noise(np.full(len(KNOT_WAVENUMBERS), 2e-4), sigma)
+    gain = answer.gain @ answer.gain.conj().transpose(0, 2, 1)
+    drawn = replace(plain, drawn=DrawnRoughness(answer.frequency, 2e-4 * gain, np.zeros((1, 4))))
+    lines = random.standard_normal((30, 4)) + 1j * random.standard_normal((30, 4))
+    own = 2 * answer.dt * np.eye(4) * sigma**2
+    for factor in (1.0, 3.0):
+        first, second = plain.rougher(factor), drawn.rougher(factor)
+        np.testing.assert_allclose(first.density(answer) - own, factor * 2e-4 * gain, rtol=1e-9, atol=1e-15)
+        np.testing.assert_allclose(second.density(answer), first.density(answer), rtol=1e-9, atol=1e-15)
+        assert second.loss(lines, answer) == pytest.approx(first.loss(lines, answer), rel=1e-9)
+
+
+def test_drawn_roughness_is_that_of_the_nearest_frequency():
+    drawn = DrawnRoughness(np.array([1.0, 2.0, 4.0]), np.arange(3.0)[:, None, None].astype(complex), np.zeros((1, 1)))
+    assert drawn.at(np.array([0.1, 1.4, 1.6, 2.9, 3.1, 50.0]))[:, 0, 0].real.tolist() == [0, 0, 1, 1, 2, 2]
 
 
 def test_louder_bands_add_to_the_channel_alone():
@@ -148,6 +169,18 @@ def test_coloured_noise_has_the_density_of_white_noise_at_44_hz_and_more_below()
     answer = RoadAnswer(np.array([11.0, 44.0]), np.array([5.5, 22.0]), np.zeros((2, 1, 1), dtype=complex), 0.01)
     density = Noise(EVEN, np.array([0.3]), 0.5).density(answer)[:, 0, 0].real
     assert density == pytest.approx(2 * 0.01 * 0.3**2 * np.array([2.0, 1.0]))
+
+
+def test_roughness_comes_as_from_one_road_under_all_axles(tmp_path):
+    """G H R H* of an endless record is what one road of that density does, each axle later by its distance behind the first."""
+    (trial,) = load_trials([write_run(tmp_path, "hump", sedan_truth(), 2.5)])
+    frequency = np.linspace(1.0, 20.0, 40)
+    gain = road_answer(trial, frequency, trial.values, windowed=False).gain
+    found = gain @ gain.conj().transpose(0, 2, 1)
+    per_metre = frequency_response(trial.simulator.model, frequency, values=trial.values, speed=2.5).values[:, :, 0]
+    expected = per_metre[:, :, None] * per_metre[:, None, :].conj() * (0.1**2 * 2.5 / frequency**2)[:, None, None]
+    size = np.sqrt(np.einsum("nii->ni", expected).real)
+    np.testing.assert_allclose(found / (size[:, :, None] * size[:, None, :]), expected / (size[:, :, None] * size[:, None, :]), atol=2e-3)
 
 
 def test_axles_agree_as_their_average_over_speeds_that_a_run_may_have_had(tmp_path):

@@ -18,7 +18,7 @@ from vehgen.fit.nuisances import LOW_PASS, Nuisances, asked_nuisances, wander_kn
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
 from vehgen.measure.acquisition import AcquisitionChain
-from vehgen.road import Hump
+from vehgen.road import Hump, MeasuredProfile
 
 TRUTH = sedan_truth()
 SIGMA = np.array([0.02, 1e-3, 0.02, 1e-3])
@@ -182,6 +182,28 @@ def test_a_run_file_says_how_well_it_knows_itself(tmp_path):
     assert sigmas["gain", "F_q"] == 0.03
     assert sigmas["position", "F"] == pytest.approx(0.05)
     assert sigmas["axle_position", "rear"] == pytest.approx(0.002)
+
+
+def test_deviations_in_units_are_shares_of_what_the_run_has(tmp_path):
+    stated = "uncertainty: {speed: 0.03, wander: 0.1 m/s, length: 1 cm}\n"
+    trial = changed(tmp_path, lambda v: v, text=lambda text: text + stated)
+    sigmas = {(item.name, item.place): item.sigma for item in Nuisances().of_run(trial)}
+    wander = [sigma for (name, _), sigma in sigmas.items() if name == "wander"]
+    assert wander == pytest.approx([0.04] * len(wander_knots(trial)))
+    assert Nuisances().speed_spread(trial) == pytest.approx(0.05)
+    assert sigmas["length", ""] == pytest.approx(0.01 / 0.5)
+    assert sigmas["wear", ""] == pytest.approx(64.0)  # edges are rounded by 8 mm
+    assert [place for name, place in sigmas if name == "clock"] == ["R"]  # against that of the first
+
+
+def test_a_long_run_has_knots_of_its_wander_farther_apart(tmp_path):
+    trial = changed(tmp_path, lambda v: v)
+    profile = MeasuredProfile(np.linspace(0.0, 200.0, 2001), np.zeros(2001))
+    for duration, count in ((9.5, 11), (60.0, 16)):
+        track = replace(trial.scenario.track, parts=(*trial.scenario.track.parts, profile))
+        knots = wander_knots(replace(trial, scenario=replace(trial.scenario, track=track, duration=duration)))
+        assert len(knots) == count
+        assert np.diff(knots) == pytest.approx(duration / (count - 1))
 
 
 def test_a_wander_has_knots_while_wheels_are_on_the_hump(tmp_path):
