@@ -14,7 +14,7 @@ from vehgen.errors import ArgumentError, InputError
 from vehgen.export import EXPORT_FORMATS, export, matrix_schema
 from vehgen.mechanics import Place, PointOutput, derive, static_loads
 from vehgen.simulate import natural_modes
-from vehgen.vehicle import bundled_models
+from vehgen.vehicle import bundled_models, parse_vehicle
 
 
 def read_json(path):
@@ -62,6 +62,12 @@ def test_force_laws_are_described_in_json_and_refused_by_name_elsewhere(tmp_path
         ("dry_friction", "suspension", "front"), ("tyre_liftoff", "tyre", "front"),
         ("dry_friction", "suspension", "rear"), ("tyre_liftoff", "tyre", "rear"),
     ]  # fmt: skip
+    tyre = found["force_laws"][
+        1
+    ]  # where all is lifted by a metre with the road, it travels by nothing; where the road rises alone, by that
+    lifted = [float(item["name"] != "pitch.body") for item in found["coordinates"]]
+    assert np.dot(tyre["row"], lifted) + np.sum(tyre["input_row"]) == pytest.approx(0.0, abs=1e-12)
+    assert np.abs(tyre["input_row"]).tolist() == [1.0, 0.0]
     friction = found["force_laws"][0]
     assert friction["parameters"] == {"force": 800.0}
     assert friction["static_force"] == pytest.approx(static_loads(vehicle).elements["suspension", "front"])
@@ -69,6 +75,14 @@ def test_force_laws_are_described_in_json_and_refused_by_name_elsewhere(tmp_path
         export(vehicle, "npz", tmp_path / "a.npz")
     assert not (tmp_path / "a.npz").exists()
     export(vehicle, "npz", tmp_path / "a.npz", linear=True)
+
+
+@pytest.mark.parametrize(("text", "gravity"), [("", 9.81), ("gravity: false\n", 0.0)])
+def test_gravity_is_that_of_the_vehicle(tmp_path, text, gravity):
+    (path,) = export(parse_vehicle(f"extends: sedan2\nname: sedan\n{text}"), "json", tmp_path / "a.json")
+    static = read_json(path)["static"]
+    assert static["gravity"] == gravity
+    assert bool(sum(static["axles"].values())) is bool(gravity)
 
 
 def test_the_same_vehicle_gives_the_same_bytes(tmp_path):
