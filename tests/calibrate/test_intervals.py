@@ -1,12 +1,14 @@
 """What recordings tell though not of single parameters, and how sure the fit is where it does not reach the noise."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from tests.calibrate.trucks import along_the_first_direction, fit_at, truck_problem
 from vehgen.calibrate.combinations import combination_unit, identifiable_ratios, sprung_mass
 from vehgen.calibrate.identifiability import find_structure
-from vehgen.calibrate.intervals import Uncertainty
+from vehgen.calibrate.intervals import Frozen, Uncertainty, _covariance, _with_frozen
 from vehgen.fit.least_squares import FIRST_NOISE
 from vehgen.fit.prior_data import load_prior_data
 
@@ -67,3 +69,23 @@ def test_intervals_grow_by_the_root_of_chi2_and_never_shrink(tmp_path, known):
     assert widths(loud) == pytest.approx(2 * widths(known), rel=0.05)
     assert quiet.inflation == 1.0
     assert widths(quiet) == pytest.approx(widths(known), rel=0.05)
+
+
+def test_an_interval_holds_nine_of_ten_and_is_symmetric_on_a_logarithmic_scale_above_zero():
+    """Of a standard deviation of 0.2: 1.645 of it to either side, relative to the value."""
+    alone = SimpleNamespace(covariance=np.diag([0.01, 5.0]))
+    above, below = (Uncertainty._interval(alone, "x", value, np.array([2.0, 0.0])) for value in (2.0, -2.0))
+    assert (above.low * above.high, above.high) == pytest.approx((4.0, 2.0 * np.exp(1.6449 * 0.1)), rel=1e-4)
+    assert (below.low, below.high) == pytest.approx((-2.0 - 1.6449 * 0.2, -2.0 + 1.6449 * 0.2), rel=1e-4)
+
+
+def test_what_recordings_say_nothing_of_is_known_to_two_ranges_and_that_adds_little_to_what_they_say():
+    assert _covariance(np.diag([0.0, 1e4])) == pytest.approx(np.diag([4.0, 1e-4]), rel=1e-3)
+
+
+def test_what_was_frozen_adds_its_own_error_to_what_leans_on_it():
+    """Errors propagate: b moves by -s for a unit of a, s = I_ab/I_bb, beside its own variance 1/I_bb; a keeps that of its step."""
+    information, variance = np.array([[9e6, 2e6], [2e6, 4e6]]), 1e-5
+    found = np.linalg.inv(_with_frozen(information, ["a", "b"], Frozen(("a",), np.array([[1 / variance]]))))
+    slope = 2e6 / 4e6
+    assert found == pytest.approx(np.array([[variance, -slope * variance], [-slope * variance, 1 / 4e6 + slope**2 * variance]]), rel=1e-5)
