@@ -97,6 +97,20 @@ def test_white_errors_of_a_force_come_to_the_channels_through_the_rig(tmp_path, 
     assert next(item.sigma for item in Nuisances().of_run(trial) if item.name == "delay") == pytest.approx(1e-2)
 
 
+def test_a_constant_force_beside_a_measured_one_is_a_tenth_of_the_loudest_runs(tmp_path):
+    t = np.arange(0.0, 4.0, 1e-2)
+    (tmp_path / "rig.yaml").write_text(RIG.format(gravity="true", k="40e3 N/m"), encoding="utf-8")
+    np.savetxt(tmp_path / "recording.csv", np.column_stack([t, t, t]), delimiter=",", header="t,y,v", comments="")
+    for name, size in (("loud", 70.0), ("quiet", 7.0)):
+        table = np.column_stack([t, size * np.sin(2 * np.pi * 5 * t)])
+        np.savetxt(tmp_path / f"{name}.csv", table, delimiter=",", header="t,F", comments="")
+        (tmp_path / f"{name}.yaml").write_text(RUN.replace("force.csv", f"{name}.csv"), encoding="utf-8")
+    loud, quiet = load_trials([tmp_path / "loud.yaml", tmp_path / "quiet.yaml"])
+    for trials, rms in (([loud, quiet], 70 / np.sqrt(2)), ([quiet, loud], 70 / np.sqrt(2)), ([quiet], 7 / np.sqrt(2))):
+        (sigma,) = (item.sigma for item in Nuisances().of_all_runs(trials) if item.name == "force_offset")
+        assert sigma == pytest.approx(0.1 * rms, rel=1e-6)
+
+
 def pushes(s, pieces):
     """Return a force of sines at times, that grows from nothing [N]."""
     return sum(a * np.sin(2 * np.pi * f * s + p) for a, f, p in pieces) * (1 - np.exp(-2 * s))
