@@ -192,6 +192,9 @@ def test_deviations_in_units_are_shares_of_what_the_run_has(tmp_path):
     assert wander == pytest.approx([0.04] * len(wander_knots(trial)))
     assert Nuisances().speed_spread(trial) == pytest.approx(0.05)
     assert sigmas["length", ""] == pytest.approx(0.01 / 0.5)
+    humps = (*trial.scenario.track.parts, Hump.from_shape("half_sine", 12.0, 0.2, 0.01))
+    two = replace(trial, scenario=replace(trial.scenario, track=replace(trial.scenario.track, parts=humps)))
+    assert next(item.sigma for item in Nuisances().of_run(two) if item.name == "length") == pytest.approx(0.01 / 0.5)  # of the longest
     assert sigmas["wear", ""] == pytest.approx(64.0)  # edges are rounded by 8 mm
     assert [place for name, place in sigmas if name == "clock"] == ["R"]  # against that of the first
 
