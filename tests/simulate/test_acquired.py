@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.signal
 
-from vehgen.measure.acquisition import AcquisitionChain
+from vehgen.measure.acquisition import UNKNOWN, AcquisitionChain
 from vehgen.mechanics import Place
 from vehgen.mechanics.outputs import ElementOutput, PointOutput
 from vehgen.road import ConstantSpeed, Hump, Iso8608Road, Track
@@ -112,3 +112,5 @@ def test_factors_of_spectral_lines_are_the_chains_responses():
     found = channel_factors(over_a_hump(chains={"az": CHAIN}), ("az", "q"), frequency)
     np.testing.assert_allclose(found[:, 0], CHAIN.response(frequency))
     np.testing.assert_array_equal(found[:, 1], 1.0)
+    unknown = channel_factors(over_a_hump(chains={"az": UNKNOWN}), ("az",), np.array([44.0, 48.0, 50.5]))[:, 0]
+    assert unknown == pytest.approx([1.0, 0.5, 0.0], abs=2e-3)  # what is kept every 10 ms holds nothing from 50 Hz on
