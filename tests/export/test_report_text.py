@@ -8,7 +8,7 @@ import pytest
 from tests.bundled import few
 from tests.export.vehicles import hostile, sedan_with, truck
 from vehgen.export import export
-from vehgen.mechanics import derive
+from vehgen.mechanics import Place, derive, static_loads
 from vehgen.vehicle import bundled_models
 
 
@@ -45,6 +45,17 @@ def test_names_units_and_laws_stand_in_the_tables(tmp_path):
     assert laws[2][4] == "force = 800"
     (path,) = export(sedan_with("dry_friction"), "latex", tmp_path / "a.tex")
     assert "Dry friction" in path.read_text(encoding="utf-8")
+
+
+def test_columns_and_static_loads_have_the_names_of_what_they_are_of(tmp_path):
+    (path,) = export(truck(), "markdown", tmp_path / "a.md", forces=[Place("engine", "body")])
+    found = tables(path.read_text(encoding="utf-8"))
+    assert found["F"][0] == ["", "engine"]
+    assert found["P"][0] == ["", "road.front", "road.rear", "ground.rope"]
+    (path,) = export("tractor5", "markdown", tmp_path / "b.md")
+    loads = static_loads("tractor5")
+    told = {row[0].replace("\\", ""): float(row[1]) for row in tables(path.read_text(encoding="utf-8"))["Static loads"][2:]}
+    assert told == pytest.approx({**loads.axles, **loads.hinges}, rel=1e-5)
 
 
 def test_hostile_names_stay_texts(tmp_path):
