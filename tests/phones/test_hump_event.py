@@ -95,6 +95,27 @@ def test_gps_speed_is_the_median_of_valid_readings_in_the_crossing():
     assert crossing_speed(gps([0.4, 0.5, 0.5]), 0.0, 5.0, "phone").median == 0.5
 
 
+def test_a_speed_that_changes_in_the_pass_is_known_less_well():
+    """Even from the lowest reading to the highest it would scatter by their distance over the root of 12."""
+    steady, changing = (crossing_speed(gps(values), 0.0, 5.0, "phone") for values in ([2.0, 2.3, 1.9], [2.6, 3.5]))
+    assert not steady.changes
+    assert changing.changes
+    assert changing.deviation == pytest.approx(np.sqrt(0.1**2 + 0.9**2 / 12) / np.sqrt(2))
+    assert not crossing_speed(gps([20.0, 21.5]), 0.0, 5.0, "phone").changes
+
+
+def test_a_reading_that_a_logger_repeats_counts_once():
+    rows = np.repeat([2.0, 2.1, 2.1], 100)
+    stream = Stream(np.arange(300) / 100, rows[:, None], ("speed",), "m/s")
+    assert crossing_speed(stream, 0.0, 5.0, "phone").count == 2
+    assert crossing_speed(gps([2.1, 2.1, 2.1]), 0.0, 5.0, "phone").count == 3
+
+
+def test_of_a_moving_vehicle_the_readings_at_rest_do_not_count():
+    values = [4.0, 4.1, 0.05, 0.02, 0.0, 0.1]
+    assert crossing_speed(gps(values), 0.0, 9.0, "phone", moving=True).median == pytest.approx(4.05)
+
+
 @pytest.mark.parametrize(
     ("values", "message"),
     [

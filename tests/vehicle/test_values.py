@@ -153,8 +153,10 @@ def test_sets_and_overrides_that_are_not_there():
     vehicle = parse_vehicle(GOOD)
     with pytest.raises(InputError, match=r"^rig has no parameter set 'sfot'; did you mean 'soft'\?$"):
         vehicle.values("sfot")
-    with pytest.raises(InputError, match=r"^rig has no parameter 'b2' with a value; known: b1, kF, mB$"):
+    with pytest.raises(InputError, match=r"^rig: 'b2' has `equals` and follows b1; give a value to these instead$"):
         vehicle.values(overrides={"b2": 1.0})
+    with pytest.raises(InputError, match=r"^rig has no parameter 'b3' with a value; known: b1, kF, mB$"):
+        vehicle.values(overrides={"b3": 1.0})
 
 
 def test_values_of_a_population_are_checked_too():

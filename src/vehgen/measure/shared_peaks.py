@@ -1,7 +1,9 @@
 """Resonances that several sensors show: peaks of their spectra at one frequency.
 
 A motion of the whole vehicle stands out in every channel that it moves; what shakes one sensor alone stands out in one. A peak counts where
-it rises above its surroundings by more than the error of the spectrum (1/sqrt(averages), relative) makes in one spectrum of twenty.
+it rises above its surroundings by more than errors of the spectrum (1/sqrt(averages), relative) make of any one pair of its lines in one
+spectrum of twenty. Lines have many neighbours: of single spectra of white noise a third have such a peak, of pairs of independent ones no
+more than one in a hundred has a shared one.
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ from scipy.stats import norm
 
 Array = NDArray[np.float64]
 CHANCE = 0.05
-"""Share of spectra in which errors alone make one peak or more."""
+"""Share of spectra in which errors alone set one line or more so far above one neighbour."""
 WIDTH_LINES = 2.0
 """Peaks of two channels that are no more lines apart are one: the width of a Hann window's main lobe."""
 

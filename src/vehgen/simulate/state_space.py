@@ -149,10 +149,23 @@ def _named(model: EquationsOfMotion, A: Array, B: Array, C: Array, D: Array, col
 
 
 def model_with_channels(model: ModelLike, outputs: Iterable[Output] = (), forces: Iterable[Place] = ()) -> EquationsOfMotion:
-    """Return equations of motion with channels: those asked for, else the model's own, else acceleration and pitch rate of every body."""
+    """Return equations of motion with channels: those asked for, else the model's own, else acceleration and pitch rate of every body.
+
+    Raises
+    ------
+    ArgumentError
+        For a model that was derived with forces, or channels, which deriving it anew would drop.
+    """
     outputs, forces = tuple(outputs), tuple(forces)
-    if isinstance(model, EquationsOfMotion) and model.channels and not outputs and not forces:
-        return model
+    if isinstance(model, EquationsOfMotion):
+        if model.channels and not outputs and not forces:
+            return model
+        if model.forces and not forces:
+            said = f"the model has forces ({', '.join(model.forces)}), which other outputs than its own would leave out"
+            raise ArgumentError(f"{said}: give `forces`, too, or derive it with its outputs", "forces")
+        if model.channels and not outputs:
+            said = f"the model has outputs ({', '.join(item.name for item in model.channels)}), which forces beside its own would leave out"
+            raise ArgumentError(f"{said}: give `outputs`, too, or derive it with its forces", "outputs")
     vehicle = model.vehicle if isinstance(model, EquationsOfMotion) else as_vehicle(model)
     return derive(vehicle, outputs or body_channels(vehicle), forces)
 

@@ -155,6 +155,9 @@ class Vehicle(FileModel):
                 raise InputError(f"{self.name} has no parameter set {shown(parameter_set)}; {did_you_mean(parameter_set, self.sets)}")
             values |= {name: expression.evaluate({}) for name, expression in self.sets[parameter_set].items()}
         for name, value in (overrides or {}).items():
+            if name in self.parameters and name not in values:
+                follows = ", ".join(sorted(self.parameters[name].definition.names))
+                raise InputError(f"{self.name}: {shown(name)} has `equals` and follows {follows or 'its file'}; give a value to these instead")
             if name not in values:
                 raise InputError(f"{self.name} has no parameter {shown(name)} with a value; {did_you_mean(name, values)}")
             try:
