@@ -17,7 +17,7 @@ def without(begin, length):
 
 @pytest.mark.parametrize(("begin", "refused"), [(6.15, True), (5.0, False)], ids=["on the hump", "before it"])
 def test_a_hole_is_refused_where_the_phone_is_shaken(tmp_path, capsys, begin, refused):
-    """A line over 50 ms of an axle's hop took a quarter off it, and a healthy van became one that no effect explains."""
+    """Over 50 ms on the hump a quarter of it was lost, and a healthy van became one that no effect explains."""
     export = changed(tmp_path / "a.zip", both("hump_2ms")[0], without(begin, 0.06))
     if refused:
         assert "ms from 6.1" in refusal(capsys, tmp_path / "run.yaml", [export], sensors=(L1,))

@@ -27,8 +27,8 @@ Array = NDArray[np.float64]
 LONGEST_GAP = 0.1
 """Longer holes within the time that is used [s] are refused."""
 LONGEST_LOUD_GAP, NEAR_S = 0.035, 0.15
-"""Where a pass moves the phone more than in its mean, from so long before a hole to so long after it [s], no longer hole is bridged: a line
-over 50 ms had taken a quarter off an axle's hop."""
+"""Where a pass moves the phone more than in its mean, from so long before a hole to so long after it [s], no longer hole is bridged: over
+50 ms on a hump a quarter of what it felt was lost."""
 SHORTEST_RECORDING_S, LONGEST_RECORDING_S = 2.0, 3600.0
 """How long a recording may be [s]."""
 QUIET, MARGIN = 5.0, 0.25
@@ -133,15 +133,15 @@ class Phone:
         return np.column_stack(columns)
 
     def check_holes(self, streams: tuple[Stream | None, ...], start: float, end: float) -> None:
-        """Refuse holes from `start` to `end` [s] that a line bridges badly, as the phone moves there; raises InputError."""
+        """Refuse holes from `start` to `end` [s] that are bridged badly, as the phone is shaken there; raises InputError."""
         for stream in (item for item in streams if item is not None):
             whole = _rms(stream, start, end)
             for begin, length in gaps(stream.time):
                 inside = start < begin < end and length > LONGEST_LOUD_GAP
                 if inside and _rms(stream, begin - NEAR_S, begin + length + NEAR_S) > whole:
                     raise InputError(
-                        f"{self.name}: no {stream.unit} samples for {1e3 * length:.0f} ms from {begin:.2f} s, while it is shaken: a line "
-                        "across them would tell of another vehicle; record again, or leave this phone out"
+                        f"{self.name}: no {stream.unit} samples for {1e3 * length:.0f} ms from {begin:.2f} s, while it is shaken: what "
+                        "would bridge them tells of another vehicle; record again, or leave this phone out"
                     )
 
     def holes(self) -> list[tuple[float, float]]:

@@ -157,7 +157,9 @@ class Vehicle(FileModel):
         for name, value in (overrides or {}).items():
             if name in self.parameters and name not in values:
                 follows = ", ".join(sorted(self.parameters[name].definition.names))
-                raise InputError(f"{self.name}: {shown(name)} has `equals` and follows {follows or 'its file'}; give a value to these instead")
+                raise InputError(
+                    f"{self.name}: {shown(name)} has `equals` and follows {follows or 'its file'}; give a value to these instead"
+                )
             if name not in values:
                 raise InputError(f"{self.name} has no parameter {shown(name)} with a value; {did_you_mean(name, values)}")
             try:
