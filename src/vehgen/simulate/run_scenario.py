@@ -41,7 +41,9 @@ AFTER_LAST_HUMP = 3.0
 
 
 def make_scenario(run: RunLike, model: EquationsOfMotion, values: Mapping[str, float], begin: float = 0.0) -> Scenario:
-    """Build the scenario of a run or its file, of which a measured profile behind the first wheel at the time `begin` [s] is no part.
+    """Build the scenario of a run or its file.
+
+    What lies behind the first wheel at the time `begin` [s] is no part of a measured profile.
 
     Raises
     ------
