@@ -8,9 +8,10 @@ import pytest
 import scipy.stats
 
 from tests.diagnose.conftest import CUBIC, HUMPS
+from vehgen.diagnose import wording
 from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.select import estimates
-from vehgen.diagnose.select.estimates import RunEstimate, _median_error, estimate, excluded, p_value
+from vehgen.diagnose.select.estimates import RunEstimate, _median_error, estimate, excluded, p_value, untold
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.validation import gain_interval, seen_again, validation_gain
 from vehgen.diagnose.verdict import NamedParameter
@@ -55,6 +56,13 @@ def test_a_gain_that_sits_in_few_lines_is_uncertain_but_no_more_than_everything(
 def test_runs_without_a_gap_show_no_gain():
     assert validation_gain(fit(noise(4)), fit(noise(5, 0.9))) is None
     assert gain_interval(fit(noise(4)), fit(noise(5, 0.9)), ["new"]) is None
+
+
+def test_numbers_whose_intervals_reach_below_zero_are_not_told():
+    """A stop in rebound that no run met was 0.043 m, from -2.1 to 2.2 m."""
+    told = {"k": NamedParameter(391e3, (375e3, 408e3), "N/m"), "rebound": NamedParameter(0.043, (-2.1, 2.2), "m")}
+    assert untold(told | {"fixed": NamedParameter(2.0, None, "")}) == ["rebound"]
+    assert wording.not_told(["rebound"]).startswith("these runs do not tell how large rebound is")
 
 
 def test_chance_is_the_likelihood_ratio_in_units_of_what_is_left():

@@ -16,7 +16,7 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.phrases import candidate_words
 from vehgen.diagnose.select.alternatives import Alternative, alternatives_beside
 from vehgen.diagnose.select.criteria import excess, p_value_of, tied
-from vehgen.diagnose.select.estimates import estimate, unstable
+from vehgen.diagnose.select.estimates import estimate, unstable, untold
 from vehgen.diagnose.select.ranking import SearchRound, holding
 from vehgen.diagnose.select.search import DiagnosisProgress
 from vehgen.diagnose.select.validation import gain_interval, validation_gain
@@ -133,6 +133,8 @@ class Naming:
         told = []
         for candidate in fit.effects:
             told += [f"{candidate.label}: {text}" for text in unstable(fit, candidate)]
+            if candidate.effect.changes_vehicle and (names := untold(estimate(fit, candidate))):
+                told.append(f"{candidate.label}: {wording.not_told(names)}")
         if fit.least_squares.on_bound:
             told.append(f"on the bound of its range: {', '.join(fit.least_squares.on_bound)}")
         told += [wording.constant_force(item) for item in _constant_forces(fit)]

@@ -204,6 +204,12 @@ def constant_force_words(found: Condition) -> str:
     return f"a constant force of {found.value:.3g} N beside {found.place}"
 
 
+def not_told(names: Sequence[str]) -> str:
+    """Return the note that runs do not tell how large some numbers of an effect are."""
+    are = "is" if len(names) == 1 else "are"
+    return f"these runs do not tell how large {join_names(names, 'and')} {are}, as of a stop that none of them meets"
+
+
 def more_general(effect: str, forces: Sequence[str]) -> str:
     """Return the note that an effect, of `phrases.effect_words`, does as well as the one named, its special case, with `forces` beside."""
     beside = f", with {join_names(forces, 'and')}" if forces else ""

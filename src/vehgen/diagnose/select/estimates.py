@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -277,6 +277,11 @@ def unstable(fit: ModelFit, candidate: Candidate | None = None) -> list[str]:
                 told.append(f"{name} is {item.value:.4g} {item.unit}".rstrip() + f" in all runs, {own.value:.4g} in {own.run} alone")
                 break
     return told
+
+
+def untold(parameters: Mapping[str, NamedParameter]) -> list[str]:
+    """Return the numbers of a law, which are above 0, whose intervals do not say so: runs do not tell how large they are."""
+    return [name for name, item in parameters.items() if item.interval is not None and item.interval[0] <= 0 < item.value]
 
 
 def p_value(base: ModelFit, other: ModelFit, extra: int) -> float:
