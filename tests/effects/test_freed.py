@@ -94,5 +94,10 @@ def test_tyres_without_damping_are_those_whose_axle_or_stiffness_is_searched():
     sedan = load_vehicle("sedan2")
     assert undamped_tyres(sedan, ["mf", "kr"]) == ("front",)
     assert undamped_tyres(sedan, ["mH", "ktr", "ktf"]) == ("front", "rear")
+    for zero in ("0 N s/m", "0", "cT"):
+        text = {"parameters": {"cT": {"value": "0 N s/m"}}} | {"axles": {"rear": {"tyre": {"c": zero}}}}
+        assert undamped_tyres(sedan.with_changes(text), ["mr"]) == ("rear",)
+    searched = {"parameters": {"cT": {"value": "0 N s/m", "range": ["0 N s/m", "1 kN s/m"]}}, "axles": {"rear": {"tyre": {"c": "cT"}}}}
+    assert undamped_tyres(sedan.with_changes(searched), ["mr"]) == ()
     damped = sedan.with_changes({"axles": {"rear": {"tyre": {"c": "100 N s/m"}}}})
     assert undamped_tyres(damped, ["mr", "ktr"]) == ()

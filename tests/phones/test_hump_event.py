@@ -100,7 +100,8 @@ def test_a_speed_that_changes_in_the_pass_is_known_less_well():
     steady, changing = (crossing_speed(gps(values), 0.0, 5.0, "phone") for values in ([2.0, 2.3, 1.9], [2.6, 3.5]))
     assert not steady.changes
     assert changing.changes
-    assert changing.deviation == pytest.approx(np.sqrt(0.1**2 + 0.9**2 / 12) / np.sqrt(2))
+    assert changing.deviation_in_pass == pytest.approx(np.sqrt(0.1**2 / 2 + 0.9**2 / 12))
+    assert steady.deviation_in_pass == steady.deviation == pytest.approx(0.1 / np.sqrt(3))
     assert not crossing_speed(gps([20.0, 21.5]), 0.0, 5.0, "phone").changes
 
 

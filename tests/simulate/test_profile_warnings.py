@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import scipy.signal
 
+from vehgen.errors import InputError
 from vehgen.road import MeasuredProfile
 from vehgen.simulate import load_run, simulate
 from vehgen.simulate.holes import holes
@@ -107,6 +108,15 @@ def test_a_road_that_was_levelled_ends_before_its_run_and_an_obstacle_does_not(t
     assert "ends at 60 m, the run at 100 m" in warnings_of(tmp_path, s, levelled, 5, 20)
     crossing = np.where((s > 5) & (s < 55), levelled - np.interp(s, [5, 55], np.interp([5, 55], s, levelled)), 0.0)
     assert "ends at" not in warnings_of(tmp_path, s, crossing, 5, 20)
+
+
+def test_a_long_obstacle_that_was_drawn_has_its_ends_on_the_level(tmp_path: Path):
+    assert "ends at" not in warnings_of(tmp_path, np.array([0.0, 0.5, 11.5, 12.0]), np.array([0.0, 0.1, 0.1, 0.0]), 5, 20)
+
+
+def test_a_profile_behind_the_first_wheel_is_refused(tmp_path: Path):
+    with pytest.raises(InputError, match=r"run.yaml:\d+:\d+: the profile ends at -1 m, behind the first wheel, which begins at 0 m"):
+        warnings_of(tmp_path, np.array([-50.0, -20.0, -1.0]), np.array([0.0, 0.01, 0.02]), 5, 5)
 
 
 def test_level_roads_between_obstacles_and_points_in_groups_are_no_holes(tmp_path: Path):

@@ -12,7 +12,7 @@ from vehgen.effects.places import EVERY_TYRE, alike, members
 from vehgen.mechanics import GRAVITY, EquationsOfMotion, derive, static_loads
 from vehgen.mechanics.energies import pitch_inertia
 from vehgen.vehicle import Vehicle
-from vehgen.vehicle.parts import ZERO, Spring
+from vehgen.vehicle.parts import Spring
 
 Size = Literal["k", "c", "kt", "m"]
 """Stiffness and damping of a suspension, link or hinge; stiffness of a tyre; mass of an axle."""
@@ -109,7 +109,8 @@ def undamped_tyres(vehicle: Vehicle, parameters: Collection[str]) -> tuple[str, 
 
     What such a tyre damps passes for a lighter axle on a softer tyre: recordings of bodies hardly tell the two apart.
     """
-    bare = [name for name, axle in vehicle.axles.items() if axle.tyre.c == ZERO]
+    values, searched = vehicle.all_values(vehicle.values()), set(vehicle.ranges())
+    bare = [name for name, axle in vehicle.axles.items() if axle.tyre.c.evaluate(values) == 0 and searched.isdisjoint(axle.tyre.c.names)]
     return tuple(name for name in bare if not set(parameters).isdisjoint(base_parameters(vehicle, name, ("m", "kt"))))
 
 

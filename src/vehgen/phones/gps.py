@@ -33,9 +33,13 @@ class CrossingSpeed:
 
     @property
     def deviation(self) -> float:
-        """The standard deviation of the median [m/s]; of a speed that changes as if it went evenly from the lowest to the highest."""
-        scatter = (self.high - self.low) / np.sqrt(12) if self.changes else 0.0
-        return float(np.hypot(READING_DEVIATION_M_S, scatter) / np.sqrt(self.count))
+        """The standard deviation of the median [m/s] of a steady speed."""
+        return READING_DEVIATION_M_S / float(np.sqrt(self.count))
+
+    @property
+    def deviation_in_pass(self) -> float:
+        """That of the speed in a pass [m/s], which is somewhere between the lowest reading and the highest where it changes."""
+        return float(np.hypot(self.deviation, (self.high - self.low) / np.sqrt(12))) if self.changes else self.deviation
 
     @property
     def changes(self) -> bool:

@@ -250,7 +250,7 @@ def _noise(
 def _speed_warnings(plan: Plan, found: FoundSpeed, fitted: float | None) -> list[str]:
     """Say where the axles' marks contradict the speed, and where the speed was to be found from them and is not."""
     warnings = []
-    if plan.road.hump is not None and found.told is not None and found.told.changes:
+    if found.told is not None and found.told.changes:
         warnings.append(
             f"the speed changed in the pass ({found.told.low:.2f} to {found.told.high:.2f} m/s): a run has one speed, about which a driver "
             "may wander a little; record a steady pass, or state a table of speeds"

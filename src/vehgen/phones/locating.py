@@ -35,7 +35,7 @@ FoundHump = HumpEvent | InputError | None
 class FoundSpeed:
     """The speed of a pass [m/s], where it is from, its standard deviation [m/s] if that is a GPS, and whether a GPS tells one at all.
 
-    `told` is what a GPS tells of it.
+    `told` is what a GPS tells of it between the wheels' arrivals, if these stand out.
     """
 
     value: float
@@ -45,9 +45,10 @@ class FoundSpeed:
     told: CrossingSpeed | None = None
 
     @classmethod
-    def by_gps(cls, told: CrossingSpeed, name: str) -> FoundSpeed:
-        """Return the speed that the GPS of the phone of a name tells."""
-        return cls(told.median, f"{name}: {told}", told.deviation, gps_tells=True, told=told)
+    def by_gps(cls, told: CrossingSpeed, name: str, in_pass: bool = False) -> FoundSpeed:
+        """Return the speed that the GPS of the phone of a name tells, `in_pass` or of all that was recorded."""
+        deviation = told.deviation_in_pass if in_pass else told.deviation
+        return cls(told.median, f"{name}: {told}", deviation, gps_tells=True, told=told if in_pass else None)
 
 
 def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundSpeed, list[FoundHump]]:
@@ -67,7 +68,7 @@ def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundS
         return FoundSpeed.by_gps(told, teller.name), [None] * len(phones)
     events = [_event(phone, distance / speed) for phone in phones]
     event = events[phones.index(teller)]
-    begin, end = teller.begin, teller.end
+    begin, end, stands_out = teller.begin, teller.end, isinstance(event, HumpEvent)
     if isinstance(event, HumpEvent):
         begin, end = event.onset - 0.5, event.onset + distance / speed + 0.5
     if speed_stream(teller.export) is not None:
@@ -77,9 +78,14 @@ def find_speed(phones: list[Phone], plan: Plan, distance: float) -> tuple[FoundS
             if plan.speed is None:
                 raise
     if plan.speed is not None:
-        return FoundSpeed(plan.speed, "given" + (f"; {teller.name}: {told}" if told else ""), gps_tells=told is not None, told=told), events
+        return FoundSpeed(
+            plan.speed,
+            "given" + (f"; {teller.name}: {told}" if told else ""),
+            gps_tells=told is not None,
+            told=told if stands_out else None,
+        ), events
     assert told is not None
-    return FoundSpeed.by_gps(told, teller.name), events
+    return FoundSpeed.by_gps(told, teller.name, stands_out), events
 
 
 def _event(phone: Phone, crossing: float) -> FoundHump:

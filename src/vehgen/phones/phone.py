@@ -137,7 +137,7 @@ class Phone:
         for stream in (item for item in streams if item is not None):
             whole = _rms(stream, start, end)
             for begin, length in gaps(stream.time):
-                inside = start < begin < end and length > LONGEST_LOUD_GAP
+                inside = begin + length > start and begin < end and length > LONGEST_LOUD_GAP
                 if inside and _rms(stream, begin - NEAR_S, begin + length + NEAR_S) > whole:
                     raise InputError(
                         f"{self.name}: no {stream.unit} samples for {1e3 * length:.0f} ms from {begin:.2f} s, while it is shaken: what "

@@ -218,7 +218,7 @@ def profile_road(profile: Mapping[str, str]) -> RoadOption:
     except ValidationError as error:
         raise ArgumentError(f"`profile`: {error.errors()[0]['msg']}", "profile") from error
     entry = {key: found[key] for key in PROFILE_KEYS if key in found}
-    return RoadOption("profile", entry, profile=MeasuredProfile(*points.values))
+    return RoadOption("profile", entry, profile=MeasuredProfile(*points.values).met_from(0.0))
 
 
 def _known_keys(data: Mapping[str, Any], argument: str, known: tuple[str, ...]) -> dict[str, Any]:

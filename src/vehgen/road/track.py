@@ -54,12 +54,10 @@ class MeasuredProfile:
         return float(self.distance[-1])
 
     def met_from(self, s: float) -> MeasuredProfile:
-        """Return the profile as a vehicle meets it that stands still with its first wheel at s [m]: level up to there."""
+        """Return the profile as a vehicle meets it whose first wheel begins at s [m], ahead of the profile's end: level up to there."""
         if s <= self.distance[0]:
             return self
         ahead, here = self.distance > s, float(np.interp(s, self.distance, self.heights))
-        if not ahead.any():
-            return MeasuredProfile(self.distance, np.full_like(self.heights, here))
         return MeasuredProfile(np.concatenate([[s], self.distance[ahead]]), np.concatenate([[here], self.heights[ahead]]))
 
     def height(self, s: Array) -> Array:

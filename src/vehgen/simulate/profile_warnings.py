@@ -73,8 +73,9 @@ def _measured(scenario: Scenario) -> list[tuple[str, MeasuredProfile]]:
 
 def _is_obstacle(profile: MeasuredProfile) -> bool:
     distance, heights = profile.distance, profile.heights
-    ends = (distance <= distance[0] + LEVEL_ENDS_M) | (distance >= distance[-1] - LEVEL_ENDS_M)
-    looked_at = heights[ends] if distance[-1] - distance[0] >= LONG_WAVE_M else heights[[0, -1]]
+    ends = (distance < distance[0] + LEVEL_ENDS_M) | (distance > distance[-1] - LEVEL_ENDS_M)
+    by_ends = distance[-1] - distance[0] < LONG_WAVE_M or _is_drawn(profile)
+    looked_at = heights[[0, -1]] if by_ends else heights[ends]
     return bool(np.abs(looked_at - heights[0]).max() <= BACK_ON_LEVEL * np.ptp(heights))
 
 
@@ -82,7 +83,7 @@ def _is_drawn(profile: MeasuredProfile) -> bool:
     """Whether a profile's few points are where its straight lines meet, instead of where somebody measured."""
     if len(profile.distance) >= MEASURED_POINTS:
         return False
-    gaps = np.diff(profile.distance)
+    gaps = np.diff(profile.distance)[1:] if len(profile.distance) > 2 else np.diff(profile.distance)  # the first may begin at the wheel
     even = np.abs(gaps / np.median(gaps) - 1).max() <= EVEN_SPACING
     return bool(len(profile.distance) < EVEN_POINTS or not even or np.mean(np.diff(profile.heights) == 0) >= DRAWN_LEVEL)
 

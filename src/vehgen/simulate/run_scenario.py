@@ -112,7 +112,10 @@ def _road_part(number: int, run: Run, speed: SpeedLaw, offsets: Array, begin: fl
         place = ("road", number, "profile")
         with placed(run, *place, "file"):
             found = profile_table(Path(run.folder) / entry.profile.file, entry.profile, _finder(run, *place))
-        return MeasuredProfile(*found.values).met_from(float(speed.distance(np.array([begin]))[0]))
+            stands, profile = float(speed.distance(np.array([begin]))[0]), MeasuredProfile(*found.values)
+            if profile.end <= stands:
+                raise InputError(f"the profile ends at {profile.end:.6g} m, behind the first wheel, which begins at {stands:.6g} m")
+        return profile.met_from(stands)
     assert entry.iso8608 is not None
     with placed(run, "road", number, "iso8608", key=True):
         return Iso8608Road(entry.iso8608.class_, entry.iso8608.seed, _random_length(run, speed, offsets))

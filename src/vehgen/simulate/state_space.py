@@ -86,7 +86,7 @@ def state_space(
     outputs
         What comes out (default: the model's channels; those of a vehicle are acceleration and pitch rate of every body).
     forces
-        Where vertical forces act (default: the model's).
+        Where vertical forces act (default: the model's, where its own outputs come out).
     values
         Parameters [SI] by name; what is not named keeps the value of the set, or the file's.
     parameter_set
@@ -161,11 +161,13 @@ def model_with_channels(model: ModelLike, outputs: Iterable[Output] = (), forces
         if model.channels and not outputs and not forces:
             return model
         if model.forces and not forces:
-            said = f"the model has forces ({', '.join(model.forces)}), which other outputs than its own would leave out"
-            raise ArgumentError(f"{said}: give `forces`, too, or derive it with its outputs", "forces")
+            said = f"the model has forces ({', '.join(model.forces)}), which would be left out where it is derived anew for its outputs"
+            raise ArgumentError(f"{said}: give `forces`, too, or derive it with both", "forces")
         if model.channels and not outputs:
-            said = f"the model has outputs ({', '.join(item.name for item in model.channels)}), which forces beside its own would leave out"
-            raise ArgumentError(f"{said}: give `outputs`, too, or derive it with its forces", "outputs")
+            said = (
+                f"the model has outputs ({', '.join(item.name for item in model.channels)}), which would be left out where forces are added"
+            )
+            raise ArgumentError(f"{said}: give `outputs`, too, or derive it with both", "outputs")
     vehicle = model.vehicle if isinstance(model, EquationsOfMotion) else as_vehicle(model)
     return derive(vehicle, outputs or body_channels(vehicle), forces)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import zip_longest
 
 import numpy as np
 import scipy.signal
@@ -104,8 +105,8 @@ class RoadBump(Adjustment):
 
     def scenario(self, scenario: Scenario, value: float) -> Scenario:
         """Return the scenario over the bump, where its road has it."""
-        track = scenario.track
-        at = next((at for parts, at in self.roads if parts is track.parts), None)
+        track = scenario.track  # with other bumps behind the parts of the run file, where there are some
+        at = next((at for parts, at in self.roads if all(mine is its for mine, its in zip_longest(parts, track.parts[: len(parts)]))), None)
         if at is None or value == 0:
             return scenario
         return replace(scenario, track=replace(track, parts=(*track.parts, Hump.from_shape("versine", at, self.length, value))))

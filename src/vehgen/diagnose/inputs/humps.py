@@ -110,7 +110,7 @@ def _changed(case: BaseRefits, group: tuple[int, ...], shape: str, factor: float
         changed[i] = replace(trial, scenario=trial.scenario.adjusted(delay=item.lag, height=float(np.exp(levels[-1]))))
     hump = changed[group[0]].scenario.humps[0]
     runs, height = tuple(case.trials[i].name for i in group), _top(hump) * float(np.exp(np.mean(levels)))
-    words = f"about {hump.length:.2g} m long, {1e3 * height:.2g} mm high and shaped as a {shape.replace('_', ' ')}"
+    words = f"about {hump.length:.2g} m long, {1e3 * height:.0f} mm high and shaped as a {shape.replace('_', ' ')}"
     message = f"the hump {place_words(runs, case.runs)} is another than the file says: one {words} suits the recordings"
     cure = "measure length, height and profile of the hump and put the run file right"
     return changed, MeasurementFault("hump", runs, (), message, cure, hump.length, "m")

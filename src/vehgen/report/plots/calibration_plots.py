@@ -123,7 +123,8 @@ def _draw_bars(axes: Axes, bars: Sequence[_Bar], fixed: str) -> dict[str, Line2D
     reach = min(max(abs(end) for end in axes.get_xlim()), WIDEST)
     axes.set_xlim(-reach, reach)
     for row, side in _beyond(bars, reach):
-        axes.plot([side * reach], [row], marker="<" if side < 0 else ">", color=SIMULATED, ms=6, clip_on=False)
+        colour = SIMULATED if bars[row].is_told else "#7d8a94"
+        axes.plot([side * reach], [row], marker="<" if side < 0 else ">", color=colour, ms=6, clip_on=False)
     axes.set_xlabel("interval about the estimate [%]", color=INK)
     axes.grid(color="#e3e7ea", lw=0.6, axis="x")
     axes.spines[["top", "right"]].set_visible(False)
