@@ -201,7 +201,8 @@ def make_trial(run: Run, name: str, simulators: SimulatorPool | None = None) -> 
     values = simulator.model.values(overrides=run.values())
     timed = replace(run, file=run.file.model_copy(update={"duration": float(measurement.time[-1])}))
     begin = float(measurement.time[0])
-    scenario = replace(make_scenario(timed, simulator.model, values, begin), duration=length, dt=step, decimation=decimation, start=begin)
+    scenario = make_scenario(timed, simulator.model, values, min(begin, 0.0))  # a late clock's vehicle may still be at 0 m as it begins
+    scenario = replace(scenario, duration=length, dt=step, decimation=decimation, start=begin)
     scenario = replace(scenario, chains=channel_chains(run, 1 / dt))
     check_hump_reached(run, scenario, simulator.model.wheel_offsets(values), name)
     check_inputs_last(run, scenario, measurement, simulator.model)
