@@ -2,8 +2,8 @@
 
 A motion of the whole vehicle stands out in every channel that it moves; what shakes one sensor alone stands out in one. A peak counts where
 it rises above its surroundings by more than errors of the spectrum (1/sqrt(averages), relative) make of any one pair of its lines in one
-spectrum of twenty. Lines have many neighbours: of single spectra of white noise a third have such a peak, of pairs of independent ones no
-more than one in a hundred has a shared one.
+spectrum of twenty. Lines have many neighbours, so that single channels of mere noise often have such a peak; what is told of is one that
+all channels have at one frequency.
 """
 
 from __future__ import annotations
