@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import zip_longest
 
 import numpy as np
 import scipy.signal
@@ -105,8 +105,16 @@ class RoadBump(Adjustment):
 
     def scenario(self, scenario: Scenario, value: float) -> Scenario:
         """Return the scenario over the bump, where its road has it."""
-        track = scenario.track  # with other bumps behind the parts of the run file, where there are some
-        at = next((at for parts, at in self.roads if all(mine is its for mine, its in zip_longest(parts, track.parts[: len(parts)]))), None)
-        if at is None or value == 0:
-            return scenario
-        return replace(scenario, track=replace(track, parts=(*track.parts, Hump.from_shape("versine", at, self.length, value))))
+        at = next((at for parts, at in self.roads if _begins_with(scenario.track.parts, parts)), None)
+        return scenario if at is None or value == 0 else over_bump(scenario, at, self.length, value)
+
+
+def over_bump(scenario: Scenario, at: float, length: float, height: float) -> Scenario:
+    """Return a scenario over a versine, too, that begins at a place along the road, all in m."""
+    hump = Hump.from_shape("versine", at, length, height)
+    return replace(scenario, track=replace(scenario.track, parts=(*scenario.track.parts, hump)))
+
+
+def _begins_with(parts: Sequence[Profile], first: Sequence[Profile]) -> bool:
+    """Return whether parts of a road begin with these very ones; bumps that were added come behind."""
+    return len(parts) >= len(first) and all(one is other for one, other in zip(parts, first, strict=False))

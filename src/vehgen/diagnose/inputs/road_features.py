@@ -9,13 +9,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.diagnose.inputs.adjustments import RoadBump
+from vehgen.diagnose.inputs.adjustments import RoadBump, over_bump
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, place_words
 from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.fit.least_squares import LeastSquaresFit
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.trial import Trial
-from vehgen.road import Hump
 from vehgen.simulate import Scenario
 
 Array = NDArray[np.float64]
@@ -33,7 +32,9 @@ SHOWS_BUMP = 0.3
 FEATURE_LEFT = 0.25
 """Largest share of the excess that a bump may leave."""
 HEIGHT_SCALE_M = 0.01
+"""A typical height, in whose units it is fitted [m]."""
 FINE_GRID = 16
+"""So many points to the shortest period of a curve that is read between its points."""
 LOOKS = 2
 """So often is it looked for, each time beside the vehicle that suits what was found before."""
 ONE_PLACE_M = 0.5
@@ -63,11 +64,6 @@ class _Bump:
     at: float
     length: float
     height: float
-
-    def on(self, scenario: Scenario) -> Scenario:
-        """Return a scenario over the bump, too."""
-        hump = Hump.from_shape("versine", self.at, self.length, self.height)
-        return replace(scenario, track=replace(scenario.track, parts=(*scenario.track.parts, hump)))
 
 
 def _hypothesis(case: BaseRefits, bumps: dict[int, _Bump]) -> Hypothesis:
@@ -141,7 +137,7 @@ class _Run:
         """Return what a bump adds to the whitened lines."""
         misfit, error = self.misfit, self.misfit.errors_of(self.x, self.number)
         values, numbers = misfit.problem.space.values(misfit.split(self.x)[0])[None], misfit.adjusted(self.x)
-        roads = (bump.on(self.scenario), self.scenario)
+        roads = (over_bump(self.scenario, bump.at, bump.length, bump.height), self.scenario)
         over, without = (misfit.respond(self.number, values, numbers, error, scenario=road)[0] for road in roads)
         return misfit.whiten(self.number, misfit.channel_lines(self.number, over - without, error))
 

@@ -17,6 +17,8 @@ from vehgen.report.figure_files import save_figure
 from vehgen.report.plots.comparison import HIGHEST_SHOWN_HZ, SIMULATED, plot_histories, plot_psds
 from vehgen.report.plots.response_plot import COLOURS, STYLES
 
+NOT_TOLD = "#7d8a94"
+"""Colour of what the recordings do not tell by themselves."""
 WIDEST = 100.0
 """Intervals are cut off beyond this [%]."""
 
@@ -110,11 +112,11 @@ def _draw_bars(axes: Axes, bars: Sequence[_Bar], fixed: str) -> dict[str, Line2D
     found: dict[str, Line2D] = {}
     for row, bar in enumerate(bars):
         if bar.interval is None:
-            marker, colour, label = ("s", "#7d8a94", "not told by the recordings") if bar.is_told else ("x", "#b03030", "held fixed")
+            marker, colour, label = ("s", NOT_TOLD, "not told by the recordings") if bar.is_told else ("x", "#b03030", "held fixed")
             (mark,) = axes.plot([0.0], [row], marker=marker, color=colour, mfc="white", ls="", ms=5)
             found.setdefault(label, mark)
             continue
-        colour = SIMULATED if bar.is_told else "#7d8a94"
+        colour = SIMULATED if bar.is_told else NOT_TOLD
         (line,) = axes.plot([100 * (end / bar.value - 1) for end in bar.interval], [row, row], color=colour, lw=2.2)
         axes.plot([0.0], [row], marker="o", color=colour, mfc=colour if bar.is_told else "white", ls="", ms=4.5)
         found.setdefault("90 % interval" if bar.is_told else f"90 % interval if {fixed} were known", line)
@@ -123,7 +125,7 @@ def _draw_bars(axes: Axes, bars: Sequence[_Bar], fixed: str) -> dict[str, Line2D
     reach = min(max(abs(end) for end in axes.get_xlim()), WIDEST)
     axes.set_xlim(-reach, reach)
     for row, side in _beyond(bars, reach):
-        colour = SIMULATED if bars[row].is_told else "#7d8a94"
+        colour = SIMULATED if bars[row].is_told else NOT_TOLD
         axes.plot([side * reach], [row], marker="<" if side < 0 else ">", color=colour, ms=6, clip_on=False)
     axes.set_xlabel("interval about the estimate [%]", color=INK)
     axes.grid(color="#e3e7ea", lw=0.6, axis="x")
