@@ -144,6 +144,24 @@ def test_a_plain_csv_is_in_the_units_of_its_headings(tmp_path, name, above):
     assert found["speed"].values == pytest.approx(10.0)
 
 
+@pytest.mark.parametrize(("row", "acceleration"), [("ms,g,km/h,mrad/s", 9.80665), ("ms,,km/h,mrad/s", 9.80665e-3)])
+def test_a_plain_csv_may_have_a_row_of_units(tmp_path, row, acceleration):
+    (tmp_path / "log.csv").write_text(f"t,az [mg],v,q\n{row}\n0,0,36,0\n10,1,36,90\n")
+    found = read_export(tmp_path / "log.csv", ColumnMap("t", "az", pitch_rate="q", speed="v")).streams
+    assert found["vertical_acceleration"].time == pytest.approx([0.0, 0.01])
+    assert found["vertical_acceleration"].values[:, 0] == pytest.approx([0.0, acceleration])
+    assert found["speed"].values == pytest.approx(10.0)
+    assert found["pitch_rate"].values[:, 0] == pytest.approx([0.0, 0.09])
+    with pytest.raises(InputError, match=r"the heading 't \[ms\]' of .*log.csv says ms, `columns` s; correct one of them"):
+        read_export(tmp_path / "log.csv", ColumnMap("t", "az", time_unit="s"))
+
+
+def test_phyphox_accelerations_that_are_in_g_are_not_taken_for_some_without_gravity(tmp_path):
+    t, force, rotation = still()
+    with pytest.raises(InputError, match=r"the acceleration has a mean of 1 m/s.2; .*: it seems to be in g;"):
+        read_export(write_zip(tmp_path / "a.zip", phyphox(t, force / 9.80665, rotation)))
+
+
 @pytest.mark.parametrize(
     "moments",
     [

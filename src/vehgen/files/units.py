@@ -107,6 +107,7 @@ UNITS: dict[str, tuple[float, Dimension]] = {
     "MPa": (1e6, FORCE / (LENGTH * LENGTH)),
     "GPa": (1e9, FORCE / (LENGTH * LENGTH)),
     "rad": (1.0, NONE),
+    "mrad": (1e-3, NONE),
     "deg": (math.pi / 180.0, NONE),
 }
 """Unit name -> (factor to SI, dimension); Hz and rpm count turns, so that neither is a unit of an angular rate."""

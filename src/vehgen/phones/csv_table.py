@@ -22,7 +22,7 @@ from vehgen.files.reading import split_lines
 from vehgen.files.tables.csv_table import csv_rows, without_comments
 from vehgen.files.tables.headings import check_cells, name_and_unit
 from vehgen.files.tables.moments import OF_DAY, form_of, seconds
-from vehgen.files.tables.rows import MISSING_CELLS
+from vehgen.files.tables.rows import MISSING_CELLS, units_row
 from vehgen.files.units import ACCELERATION, FREQUENCY, TIME, Dimension, factor_to_si, parse_unit
 from vehgen.files.units import SPEED as SPEED_DIMENSION
 from vehgen.phones.export import PITCH_RATE_STREAM, SPEED_STREAM, VERTICAL_ACCELERATION_STREAM, PhoneExport, Stream
@@ -40,7 +40,10 @@ _NUMBER_CELL = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII
 
 @dataclass(frozen=True)
 class Table:
-    """A table of text: `name` for errors, `file` within its export, `header`; its bytes are read row by row when numbers are asked for."""
+    """A table of text: `name` for errors, `file` within its export, `header`; its bytes are read row by row when numbers are asked for.
+
+    Headings take up the units of a row below them, where there is one: `has_units_row`.
+    """
 
     name: str
     file: str
@@ -49,13 +52,14 @@ class Table:
     encoding: str
     delimiter: str
     decimal_comma: bool = False
+    has_units_row: bool = False
 
     def rows(self) -> Iterator[tuple[int, list[str]]]:
         """Yield the line and the cells of every row below the header that is not blank.
 
         Raises InputError for what is no table, and for a row of more cells than headings.
         """
-        for line, row in itertools.islice(_rows(self.data, self.encoding, self.delimiter, self.name), 1, None):
+        for line, row in itertools.islice(_rows(self.data, self.encoding, self.delimiter, self.name), 1 + self.has_units_row, None):
             check_cells(self.name, line, row, len(self.header))
             yield line, row
 
@@ -167,8 +171,11 @@ def read_table(data: bytes, file: str, export: str = "") -> Table:
     header = tuple("".join(sign if sign.isprintable() else " " for sign in cell).strip() for cell in rows[0])
     if len(header) > MAX_COLUMNS:
         raise InputError(f"{name} has {len(header)} columns; at most {MAX_COLUMNS} were expected")
+    units = units_row(rows[1], range(len(header))) if len(rows) > 1 else None
+    if units is not None:
+        header = tuple(f"{name_and_unit(own)[0]} [{unit}]" if unit else own for own, unit in zip(header, units, strict=True))
     decimal_comma = delimiter != "," and any(_DECIMAL_COMMA.match(cell.strip()) for row in rows[1:] for cell in row)
-    return Table(name, file, header, data, encoding, delimiter, decimal_comma)
+    return Table(name, file, header, data, encoding, delimiter, decimal_comma, units is not None)
 
 
 def _text(data: bytes, encoding: str) -> io.TextIOWrapper:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError
-from vehgen.phones.gravity import is_gravity, no_gravity
+from vehgen.phones.gravity import is_gravity, no_gravity, seems_in_g
 
 Array = NDArray[np.float64]
 
@@ -102,7 +102,7 @@ class PhoneExport:
 def acceleration_kind(values: Array) -> str:
     """Say whether `values shape (n, 3)` [m/s^2] hold gravity, by their mean: a phone that stays on a vehicle reads about 9.8 or 0 m/s^2.
 
-    With gravity it may read from half to twice as much, where its gain is wrong.
+    With gravity it may read from half to twice as much, where its gain is wrong. A steady 1 is gravity in g, as no offset is so large.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def acceleration_kind(values: Array) -> str:
         mean = float(np.linalg.norm(np.median(finite, axis=0)))
     if is_gravity(mean):
         return ACCELERATION_STREAM
-    if mean < 2.0:
+    if mean < 2.0 and not seems_in_g(mean):
         return LINEAR_ACCELERATION_STREAM
     raise InputError(
         f"the acceleration has a mean of {mean:.4g} m/s^2; a phone on a vehicle shows about 9.8 with gravity, about 0 without: "

@@ -25,6 +25,11 @@ def is_gravity(magnitude: float) -> bool:
     return STANDARD_GRAVITY / LARGEST_FACTOR <= magnitude <= STANDARD_GRAVITY * LARGEST_FACTOR
 
 
+def seems_in_g(magnitude: float) -> bool:
+    """Return whether a reading at rest, taken for m/s^2, seems to be gravity in g."""
+    return abs(magnitude / OTHER_UNITS["g"] - 1) <= UNIT_WITHIN
+
+
 def no_gravity(magnitude: float, otherwise: str) -> str:
     """Return in which unit a reading at rest that is not gravity [m/s^2] seems to be, and what to do; `otherwise` where it fits none."""
     off = {unit: abs(magnitude / worth - 1) for unit, worth in OTHER_UNITS.items()}

@@ -54,7 +54,7 @@ def read_rows(path: Path, header: Sequence[str], rows: Rows, names: tuple[str, .
             places = [find_heading(path, header, name, first) for name in names]
             units = [name_and_unit(header[place])[1] for place in places]
             doubtful = frozenset(i for i, place in enumerate(places) if may_be_word(header[place]))
-            if (below := _units_row(row, places)) is not None:
+            if (below := units_row(row, places)) is not None:
                 units_line = line
                 continue
         check_cells(path, line, row, len(header))
@@ -96,7 +96,7 @@ def _text(cell: Cell) -> str:
     return str(cell).strip()
 
 
-def _units_row(row: list[Cell], places: list[int]) -> list[str | None] | None:
+def units_row(row: Sequence[Cell], places: Sequence[int]) -> list[str | None] | None:
     """Return the units of columns where a row holds one at least and no number, what is no unit among them; else None."""
     texts = [_text(row[place]) if place < len(row) else "" for place in places]
     if not any(declared_unit(text) is not None and is_unit(text) for text in texts) or any(_may_be_number(text) for text in texts):
