@@ -67,6 +67,7 @@ def of(items, name):
     return next(item for item in items if getattr(item, "name", None) == name or getattr(item, "axle", None) == name)
 
 
+@pytest.mark.thorough
 def test_a_shaken_table_has_the_numbers_of_algebra(tmp_path):
     (tmp_path / "shaker.yaml").write_text(SHAKER)
     (tmp_path / "run.yaml").write_text(SHAKEN)

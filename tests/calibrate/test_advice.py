@@ -40,6 +40,7 @@ def truck(tmp_path_factory):
     return load_run(path)
 
 
+@pytest.mark.thorough
 def test_sensitivities_are_those_of_finite_differences(tmp_path):
     run = load_run(write_run(tmp_path, "hump", sedan_truth()))
     found = sensitivity(run, ["kr", "mf"])

@@ -85,6 +85,7 @@ def test_laws_of_bodies_are_tried_at_once_where_no_single_force_explains_the_gap
     assert [fit.last.effect.name for fit in fits] == ["cubic_stiffness", "frame_bending"][: 1 + nowhere]
 
 
+@pytest.mark.thorough
 def test_special_cases_and_candidates_that_no_run_tells_apart_stay_rivals(detection_of):
     detection = detection_of(CUBIC, runs=HUMPS)
     names = ("sensor_delay", "dry_friction", "asymmetric_friction")

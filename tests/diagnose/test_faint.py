@@ -114,6 +114,7 @@ def test_what_ends_at_a_bound_and_does_no_better_is_no_tie(found_of, monkeypatch
     assert tied(both, best) == [rival]
 
 
+@pytest.mark.thorough
 def test_none_is_told_whose_number_ends_its_range(detection_of, found_of, monkeypatch):
     detection = detection_of(UNLIKE, runs=HUMPS)
     monkeypatch.setattr(type(found_of.fits[0].least_squares), "adjusted_to_bounds", property(lambda self: (Gain("F_az"),)))
@@ -143,6 +144,7 @@ def found_of(detection_of):
     return faint_round(detection, candidates_of(detection))
 
 
+@pytest.mark.thorough
 def test_a_tie_falls_nearly_as_far_on_both_kinds_of_runs(found_of, monkeypatch):
     best = found_of.fits[0]
     rival = replace(best, effects=(replace(best.last, effect=EFFECTS["quadratic_damping"]),))
@@ -187,6 +189,7 @@ def test_all_that_fell_is_fitted_again_to_runs_that_changed_places(detection_of,
     assert sum({trial.name for trial in fit.least_squares.misfit.problem.trials} == fitted for fit in again) == LOOKED_AT_AGAIN + 1
 
 
+@pytest.mark.thorough
 def test_runs_do_not_change_places_for_what_falls_too_little_or_for_what_the_kept_run_speaks_against(detection_of, found_of, monkeypatch):
     detection = detection_of(UNLIKE, runs=HUMPS)
     monkeypatch.setattr(faint, "validation_fall", lambda *_: -1.0)

@@ -110,6 +110,7 @@ def test_a_suspension_is_shown_rather_than_its_tyre(cubic):
     assert strongest([item for item in cubic[1] if not item.place.rows]) is None
 
 
+@pytest.mark.thorough
 def test_a_body_has_a_moment_over_its_pitch(cubic):
     detection, results = cubic
     law = fit_free_form(recover(detection, pick(results, "body body"), component=1))

@@ -43,6 +43,7 @@ def test_a_resolved_simulation_adds_next_to_nothing_to_the_noise(detection_of, f
     assert 1.06 <= detection_of().nothing_missing < 1.08
 
 
+@pytest.mark.thorough
 def test_what_one_run_may_err_by_excuses_no_other_run(detection_of):
     found = detection_of()
     base = replace(found.base, mean_squares=dict.fromkeys(found.base.mean_squares, 1.2))

@@ -42,6 +42,7 @@ def test_runs_by_one_vehicle_agree(detection_of):
     assert disagreement(detection_of(runs=HUMPS)) is None
 
 
+@pytest.mark.thorough
 def test_two_runs_cannot_tell_which_of_them_is_odd(mixed):
     assert disagreement(detect(mixed[1:])) is None
 

@@ -83,6 +83,7 @@ def test_friction_of_a_driven_carriage_is_named_with_the_force_beside_the_record
     assert "would do as well" in note
 
 
+@pytest.mark.thorough
 def test_a_carriage_without_friction_lacks_nothing(tmp_path):
     assert diagnose(tmp_path / "carriage.yaml", write(tmp_path, 0.0)).verdict.verdict == "no_missing_effect"
 

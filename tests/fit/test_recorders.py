@@ -68,6 +68,7 @@ def test_the_low_pass_that_a_recording_was_made_through_stands_in_the_channels_t
     assert not has_unknown([applied])
 
 
+@pytest.mark.thorough
 def test_a_low_pass_beyond_the_band_of_a_fit_is_found_where_more_is_to_be_compared(tmp_path, rough):
     """A band that was cut for folding, before a better fit told the recorder, opens again."""
     late = 0.4159 / 38.0
@@ -94,6 +95,7 @@ def two_recorders(channels, front, rear):
     return np.column_stack([low_passed(channels[:, :2], *front), low_passed(channels[:, 2:], *rear)])
 
 
+@pytest.mark.thorough
 def test_sensors_have_low_passes_of_their_own_where_one_for_all_explains_far_less(tmp_path, rough):
     road, channels = rough
     late = {8: 0.8158 / 35.0, 2: 0.2251 / 20.0}

@@ -35,6 +35,7 @@ def test_a_file_that_nobody_can_have_is_not_missed(worker: Worker):
     assert worker.try_case(replace(case, files={**case.files, "x" * 300: b""})).outcome == REFUSED
 
 
+@pytest.mark.thorough
 def test_a_fault_is_kept_once_and_done_again(worker: Worker, tmp_path: Path):
     faults = Faults()
     for number, name in enumerate(("crash", "crash", "two_lines", "refuse")):
@@ -48,6 +49,7 @@ def test_a_fault_is_kept_once_and_done_again(worker: Worker, tmp_path: Path):
     assert worker.try_case(read_case(tmp_path / kept[0])).outcome == FAULT
 
 
+@pytest.mark.thorough
 def test_the_files_of_a_fault_in_the_folder_of_results_are_kept(worker: Worker, tmp_path: Path):
     case = mischief("crash")
     case, faults = replace(case, files={**case.files, "out/given.txt": b"x"}), Faults()

@@ -166,6 +166,7 @@ def test_lifted_tyres_never_pull():
     assert np.max(np.abs(accelerations)) < 200
 
 
+@pytest.mark.thorough
 def test_free_play_against_events_of_scipy():
     p = nominal("sedan2")
     c, play = p["cf"], 0.006
@@ -192,6 +193,7 @@ def test_free_play_against_events_of_scipy():
     assert np.linalg.norm(found["F_q"] - expected) < 2e-3 * np.linalg.norm(expected)
 
 
+@pytest.mark.thorough
 def test_air_spring_against_scipy_and_its_limits():
     p, kappa, p0, height = nominal("sedan2"), 1.4, 6e5, 0.12
     k, ratio, flow_time, heat_time = 5e4, 2.0, 0.3, 0.8

@@ -102,6 +102,7 @@ def test_loggers_files_can_be_read_and_simulated(healthy, tmp_path):
     assert not list(folder.rglob("truth*"))
 
 
+@pytest.mark.thorough
 def test_phones_exports_can_be_imported_and_tell_what_was_measured(tmp_path):
     case = draw_case("trial", 3, "healthy", 0, "phones")
     case = replace(case, runs=case.runs[:1])

@@ -57,6 +57,7 @@ def test_a_sedan_moves_as_scipy_integrates_the_half_car():
     assert np.max(np.abs(found - expected), axis=0) == pytest.approx(np.zeros(4), abs=2e-3 * np.max(np.abs(expected)))
 
 
+@pytest.mark.thorough
 def test_a_truck_on_a_ramp_rises_with_it_and_keeps_its_loads():
     setup, motion = moved("tractor5", steady(5.0), lambda s: 0.01 * s)
     place = motion.places["L2"]

@@ -441,6 +441,7 @@ def test_other_units_of_phyphox_are_read_as_headings_say_and_seen_where_they_do_
     assert "as if in deg/s" in warning
 
 
+@pytest.mark.thorough
 def test_a_profile_in_another_unit_is_seen(tmp_path, capsys):
     road = tmp_path / "road.csv"
     head, *lines = (FOLDER / "road.csv").read_text(encoding="utf-8").splitlines()

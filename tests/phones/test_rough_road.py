@@ -76,6 +76,7 @@ def test_recordings_at_different_times_are_refused(tmp_path, motion, front):
         read_drive([front, write_rear(tmp_path, motion, start=EPOCH + 300.0)], SENSORS, 20.0, 8.0)
 
 
+@pytest.mark.thorough
 def test_a_world_clock_that_is_off_is_told(tmp_path, motion, front):
     found = read_drive([front, write_rear(tmp_path, motion, shift=3.0, start=EPOCH + 9.0)], SENSORS, 20.0, 8.0)
     assert "are both of one drive?" in found.warnings[0]

@@ -140,6 +140,7 @@ def test_the_curves_that_are_kept_have_the_rms_that_is_told(ratio, relaxation):
         assert np.sqrt(np.trapezoid(table[:, 4 + 3 * i], table[:, 0])) == pytest.approx(item.rms, rel=0.01)
 
 
+@pytest.mark.thorough
 def test_a_mode_without_damping_is_warned_of(tmp_path, capsys):
     found = road_response(parse_vehicle(two_masses(1e-9)), speed=SPEED, roughness="C")
     assert [note.partition(" has hardly any damping (ratio ")[0] for note in found.notes] == [
