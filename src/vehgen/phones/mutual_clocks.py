@@ -26,8 +26,8 @@ LOUDNESS_WINDOW_S = 2.0
 """Recordings are divided by their running RMS of this length, so that one pothole does not outweigh the drive."""
 LEAST_SIGNIFICANCE = 8.0
 """The best correlation must be so many times the usual one; of chance alone the best of 100 000 shifts is about 4.5 times."""
-MAX_DRIFT = 3e-4
-"""Of two clocks: phones' oscillators are within some 50 millionths."""
+MAX_DRIFT = 1e-3
+"""Of two clocks: phones' oscillators are within some 50 millionths, times that a logger makes of a nominal rate may be off by more."""
 SHORTEST_FOR_DRIFT_S = 60.0
 """In less time two clocks drift apart by some milliseconds, which is too little to be found and to matter."""
 DRIFT_STEP_CYCLES = 0.1
@@ -86,7 +86,8 @@ def find_shift(first: tuple[Array, Array], other: tuple[Array, Array], least: fl
     if score[best] < LEAST_SIGNIFICANCE * usual:
         raise InputError(
             f"{names[0]} and {names[1]} have nothing in common at any shift of their clocks (best correlation {score[best] / usual:.1f} "
-            f"times the usual one, at least {LEAST_SIGNIFICANCE:g} were expected): were both in one vehicle, on one drive?"
+            f"times the usual one, at least {LEAST_SIGNIFICANCE:g} were expected): were both in one vehicle, on one drive, and are the "
+            "times of both measured, not made of a nominal rate?"
         )
     return float(other[0][0] - first[0][0] + step * lags[best])
 

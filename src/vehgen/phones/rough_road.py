@@ -13,7 +13,7 @@ from vehgen.errors import ArgumentError
 from vehgen.measure.transmissibility import FEWEST_AVERAGES
 from vehgen.phones.csv_table import ColumnMap
 from vehgen.phones.importing import clipping_warnings, read_phones
-from vehgen.phones.mutual_clocks import ClockMap, check_epochs, epoch_shift, find_drift, find_shift
+from vehgen.phones.mutual_clocks import MAX_DRIFT, ClockMap, check_epochs, epoch_shift, find_drift, find_shift
 from vehgen.phones.phone import Phone, speed_stream
 from vehgen.phones.plan import PhoneSensor
 
@@ -24,6 +24,8 @@ TOP_SHARE = 0.4
 """Share of the grid's rate up to which a band may reach: above, its low-pass begins."""
 WORLD_CLOCK_DOUBT_S = 5.0
 """World clocks that differ by more from what the recordings say deserve a warning; a long vehicle's rear meets a road some seconds late."""
+AT_THE_END = 0.98
+"""Share of the largest drift that is looked for from which on the true one may be larger."""
 EDGE_S = 0.05
 """Left out at either end of what the phones recorded together [s]."""
 
@@ -131,7 +133,15 @@ def _clocks(phones: Sequence[Phone], segment: float) -> tuple[list[ClockMap], li
         begin, end = max(first.begin, other.begin - shift), min(first.end, other.end - shift)
         time = np.arange(begin, end, step)
         drift = find_drift(time, _upward(first, time), _upward(other, time + shift), segment)
-        clocks.append(ClockMap(shift, drift, float(begin + end) / 2))
+        clock = ClockMap(shift, drift, float(begin + end) / 2)
+        late = find_shift((time, _upward(first, time)), (time, _upward(other, clock.at(time))), least, (first.name, other.name))
+        shift += late
+        clocks.append(ClockMap(shift, drift, clock.middle))
+        if abs(drift) > AT_THE_END * MAX_DRIFT:
+            warnings.append(
+                f"{names}: their clocks differ by {1e6 * abs(drift):.0f} millionths or more, the most that is looked for: are the "
+                "times of one made of a nominal rate? What both recorded fits less and less in time"
+            )
         notes.append(
             f"{other.name}: its clock is {shift:+.3f} s ahead of that of {first.name} and runs {1e6 * drift:+.0f} millionths faster"
         )
