@@ -129,7 +129,7 @@ def test_kernel_exact_solution_and_frequency_response_agree_on_forced_hinges(tmp
 
 def test_a_hinge_with_a_damper_has_a_moment_and_an_angle(tmp_path):
     sensors = "  pin: {hinge: drawbar, channels: {hinge_moment: M, hinge_angle: a}}\n"
-    sensors += "  rear: {body: rear, channels: {pitch: r}}\n  middle: {body: middle, channels: {pitch: m}}\n"
+    sensors += "  rear: {body: rear, channels: {pitch: r}}\n  middle: {body: middle, x: -4 m, channels: {pitch: m}}\n"
     found = simulate(train(tmp_path, PINS, sensors))
     assert [item.unit for item in found.channels[:2]] == ["N m", "rad"]
     moment, angle, rear, middle = found.values[0].T

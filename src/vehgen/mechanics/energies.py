@@ -126,8 +126,8 @@ def _elements(vehicle: Vehicle, motion: Kinematics) -> tuple[tuple[Element, ...]
         input_row = {inputs.index(f"ground.{name}"): one} if first == GROUND else {}
         elements.append(Element(name, "link", to_sympy(link.k), to_sympy(link.c), row, input_row, read_laws(vehicle, "link", name)))
     for name, hinge in vehicle.hinges.items():
-        (first, _), (second, _) = hinge.ends
-        row = combine((one, motion.pitch[second]), (down, motion.pitch[first]))
+        (first, first_point), (second, second_point) = hinge.ends
+        row = combine((one, motion.turn(second, to_sympy(second_point.x))), (down, motion.turn(first, to_sympy(first_point.x))))
         elements.append(Element(name, "hinge", to_sympy(hinge.k), to_sympy(hinge.c), row, {}, read_laws(vehicle, "hinge", name)))
     for name, (row, _) in motion.bending.items():
         bending = vehicle.bodies[name].bending

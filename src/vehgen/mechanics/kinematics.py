@@ -1,8 +1,9 @@
 """How every body and axle moves, as rows over the independent coordinates.
 
 Small motions in the pitch plane (ISO 8855: x forward, z up, pitch nose-down positive): a point (x, z) of a body rises by
-heave - x*pitch and moves forward by fore_aft + z*pitch. Hinges are constraints and are eliminated here: the first-declared body of
-a hinged group keeps its heave, every other body's heave follows from the pins.
+heave - x*pitch and moves forward by fore_aft + z*pitch. A body that bends turns by more or less than its pitch from place to place:
+what it carries, and pins above or below its axis, follow the turn at their place. Hinges are constraints and are eliminated here: the
+first-declared body of a hinged group keeps its heave, every other body's heave follows from the pins.
 """
 
 from __future__ import annotations
@@ -89,7 +90,7 @@ def derive_kinematics(vehicle: Vehicle) -> Kinematics:
         if "pitch" in body.motions:
             motion.pitch[name] = unit(index[f"pitch.{name}"])
         else:
-            motion.pitch[name] = motion.pitch[carrier.body] if carrier else {}
+            motion.pitch[name] = motion.turn(carrier.body, to_sympy(carrier.x)) if carrier else {}
         if "heave" in body.motions and name not in followers:
             motion.heave[name] = unit(index[f"heave.{name}"])
         elif name not in followers:
@@ -97,7 +98,8 @@ def derive_kinematics(vehicle: Vehicle) -> Kinematics:
         if carrier is None and name not in followers:
             motion.fore_aft[name], motion.groups[name] = {}, name
         elif carrier is not None:
-            motion.fore_aft[name] = combine((sp.S.One, motion.fore_aft[carrier.body]), (to_sympy(carrier.z), motion.pitch[carrier.body]))
+            turned = motion.turn(carrier.body, to_sympy(carrier.x))
+            motion.fore_aft[name] = combine((sp.S.One, motion.fore_aft[carrier.body]), (to_sympy(carrier.z), turned))
             motion.groups[name] = motion.groups[carrier.body]
         for follower, (parent, parent_point, point) in followers.items():
             if parent in motion.heave and follower not in motion.heave:
@@ -113,8 +115,8 @@ def _follow(motion: Kinematics, index: dict[str, int], body: str, parent: str, p
     motion.heave[body] = combine((sp.S.One, motion.rise(parent, to_sympy(parent_point.x))), (sp.S.NegativeOne, own))
     motion.fore_aft[body] = combine(
         (sp.S.One, motion.fore_aft[parent]),
-        (to_sympy(parent_point.z), motion.pitch[parent]),
-        (-to_sympy(point.z), motion.pitch[body]),
+        (to_sympy(parent_point.z), motion.turn(parent, to_sympy(parent_point.x))),
+        (-to_sympy(point.z), motion.turn(body, to_sympy(point.x))),
     )
     motion.groups[body] = motion.groups[parent]
 
