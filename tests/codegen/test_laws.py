@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+import sympy as sp
 
 from tests.oracles.laws import Branch, integrate, integrate_plastic
 from vehgen.codegen import Excitation, Kernel
 from vehgen.mechanics import Place, PointOutput, derive, static_loads
 from vehgen.mechanics.laws import LAWS
+from vehgen.mechanics.laws.base import LawState
 from vehgen.mechanics.static_loads import element_rows
 from vehgen.vehicle import parse_vehicle
 
@@ -40,9 +42,7 @@ CASES = {
     "asymmetric_damping": (
         lambda F: f"{{c: {F / 0.2} N s/m, ratio: 0.4, blow_off: 0.1 m/s, relief: 0.5}}",
         lambda F: {
-            "force": lambda d, v, s: (
-                F / 0.2 * (0.4 * positive(v) - positive(-v) - 0.5 * (positive(positive(v) - 0.1) - positive(positive(-v) - 0.1)))
-            )
+            "force": lambda d, v, s: F / 0.2 * (0.4 * (positive(v) - 0.5 * positive(v - 0.1)) - (positive(-v) - 0.5 * positive(-v - 0.1)))
         },
     ),
     "quadratic_damping": (lambda F: f"{{c2: {F / 0.1} N s^2/m^2}}", lambda F: {"force": lambda d, v, s: F / 0.1 * v * abs(v)}),
@@ -155,3 +155,11 @@ def test_law_against_scipy(name, law):
 
 def test_every_law_of_the_library_is_compared():
     assert set(LAWS) | {"law"} == set(CASES)
+
+
+@pytest.mark.parametrize(("ratio", "relief"), [(0.1, 0.9), (0.2, 0.55), (1.0, 0.0)])
+def test_a_damper_takes_energy_however_far_its_valves_open(ratio, relief):
+    motion = LawState(*sp.symbols("d v h k c static", real=True))
+    force = LAWS["asymmetric_damping"].write(motion, {"c": 1.0, "ratio": ratio, "blow_off": 0.1, "relief": relief}).force
+    for rate in (-3.0, -0.2, -0.05, 0.05, 0.2, 3.0):
+        assert float(force.subs(motion.v, rate)) * rate > 0
