@@ -42,6 +42,20 @@ def test_a_recording_that_ends_before_the_hump_is_refused(tmp_path):
         load_trials([path])
 
 
+@pytest.mark.parametrize("begin", [1.5, 1.7, 2.4])
+def test_a_recording_may_begin_while_the_vehicle_is_on_the_hump_or_between_its_axles(tmp_path, begin):
+    """The first wheel meets the hump at 1.6 s, the second at 2.72 s: what is simulated is the later part of the whole."""
+    path = write_run(tmp_path, "cut", TRUTH, 2.5, noise=0.0)
+    rows = np.loadtxt(tmp_path / "cut.csv", delimiter=",", skiprows=1)
+    kept = rows[rows[:, 0] >= begin - 1e-9]
+    np.savetxt(tmp_path / "cut.csv", kept, delimiter=",", header="t,F_az,F_q,R_az,R_q", comments="")
+    (trial,) = load_trials([path])
+    problem = make_problem([trial])
+    found = problem.respond(np.array([[TRUTH[name] for name in problem.space.names]]), trial, trial.scenario)[0][0]
+    assert np.abs(found - trial.recording.values).max() < 0.01 * np.abs(rows[:, 1:]).max()
+    assert trial.scenario.first_arrival == pytest.approx(1.6, abs=1e-3)
+
+
 SPEED, KNOWN_FROM = 12.0, 30.0
 """Of a run, and where its road's profile begins [m]."""
 

@@ -30,6 +30,8 @@ AT_REST_SAMPLES, AT_REST_SHARE = 3, 0.2
 """A vehicle rests at the begin of a recording whose first samples are all below this share of what it does later."""
 FORGOTTEN = 4.0
 """After so many decay times 2 % of a motion are left."""
+EARLIER_S = 0.5
+"""A run that was recorded from its humps on is simulated from so long before the first: its clock may be wrong."""
 MOST_LEFT_OUT = 0.01
 """No more than this share of a recording is left out at its end for quicker transforms: its last moments count little anyway."""
 QUICK_PRIME = 13
@@ -209,7 +211,23 @@ def make_trial(run: Run, name: str, simulators: SimulatorPool | None = None) -> 
     check_initial(run, measurement, simulator, scenario, values)
     for message in profiles_that_end(scenario):
         warnings.warn(ModelWarning(f"{name}: {message}"), stacklevel=3)
+    scenario = _from_the_first_hump(scenario)
     return _from_known_road(Trial(name, run, measurement, simulator, scenario, values, tuple(run.file.parameters)))
+
+
+def _from_the_first_hump(scenario: Scenario) -> Scenario:
+    """Return the scenario of a recording that begins on humps, or between them, from before the first: the vehicle moves as it begins.
+
+    What is simulated before the recording is not kept. Runs that something else drives, too, stay as they are.
+    """
+    driven = bool(scenario.forces) or any(signal is not None for signal in scenario.ground)
+    if not scenario.over_humps_alone or driven or scenario.initial is not None or scenario.start <= 0:
+        return scenario
+    dt, reach = scenario.dt * scenario.decimation, scenario.track.footprint / 2
+    before = np.arange(1, math.floor(scenario.start / dt) + 1)
+    met = scenario.speed.distance(scenario.start - before * dt) > min(hump.at for hump in scenario.humps) - reach
+    ahead = min(int(met.sum()) + math.ceil(EARLIER_S / dt), len(before)) if met.any() else 0
+    return replace(scenario, start=scenario.start - ahead * dt, duration=scenario.duration + ahead * dt, skipped=ahead)
 
 
 def _from_known_road(trial: Trial) -> Trial:
