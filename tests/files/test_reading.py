@@ -98,6 +98,12 @@ def test_what_is_not_utf8_has_line_and_column(tmp_path, content, place):
             read()
 
 
+@pytest.mark.parametrize("first", ["sep=;", "\ufeffSEP=;", '"sep=;"', "# of a logger\nsep=;"])
+def test_a_line_that_tells_excel_what_separates_columns_is_no_heading(tmp_path, first):
+    (tmp_path / "a.csv").write_text(f"{first}\nt [s];a\n0;1,5\n1;2\n", encoding="utf-8")
+    assert [column.tolist() for column in read_columns(tmp_path / "a.csv", ("t", "a")).values] == [[0.0, 1.0], [1.5, 2.0]]
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

@@ -242,6 +242,20 @@ def test_lint_finds_what_is_odd():
 
 
 @pytest.mark.parametrize(
+    ("driven", "told"),
+    [
+        ("", 1),
+        ("initial: {body: {velocity: 1 mm/s}}", 0),
+        ("forces: {push: {body: body, harmonic: {amplitude: 1 N, frequency: 1 Hz}}}", 0),
+        ("road: [{iso8608: {class: A, seed: 1}}]", 0),
+    ],
+)
+def test_a_run_in_which_nothing_moves_is_told(tmp_path, driven, told):
+    (tmp_path / "run.yaml").write_text(f"vehicle: sedan2\nspeed: 2 m/s\nduration: 1 s\n{driven}\n", encoding="utf-8")
+    assert sum("nothing drives the vehicle" in item for item in simulate(tmp_path / "run.yaml").warnings) == told
+
+
+@pytest.mark.parametrize(
     ("at", "said"),
     [
         (-0.2, "the hump at -0.2 m lies under front as the run begins, which it meets as a sudden step"),

@@ -97,7 +97,7 @@ class ChannelComparison:
         if alike.at_best > ONE_MOTION and alike.at_once < UNLIKE_BELOW:
             when = "later" if alike.late > 0 else "earlier"
             said = f"{abs(alike.late):.2f} s {when} (correlation {alike.at_best:.2f}, as it is {alike.at_once:.2f})"
-            return f"{what} is like the vehicle's answer {said}: is the hump's `at`, the speed or the clock another?"
+            return f"{what} is like the vehicle's answer {said}: is the road's place (a hump's `at`), the speed or the clock another?"
         return None
 
     @property

@@ -18,6 +18,7 @@ EXAMPLE = "vehgen calibrate tractor5.yaml hump_2ms.yaml hump_3ms.yaml --method j
 
 CALIBRATION_CURVES = ("psds", "histories", "steps", "band")
 """What calibration.json holds and --json leaves out."""
+ARGUMENT_OPTIONS = {"runs": "RUN"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -224,8 +224,8 @@ def _from_the_first_hump(scenario: Scenario) -> Scenario:
     if not scenario.over_humps_alone or driven or scenario.initial is not None or scenario.start <= 0:
         return scenario
     dt, reach = scenario.dt * scenario.decimation, scenario.track.footprint / 2
-    before = np.arange(1, math.floor(scenario.start / dt) + 1)
-    met = scenario.speed.distance(scenario.start - before * dt) > min(hump.at for hump in scenario.humps) - reach
+    before = np.asarray(scenario.start - dt * np.arange(1, math.floor(scenario.start / dt) + 1), dtype=np.float64)
+    met = scenario.speed.distance(before) > min(hump.at for hump in scenario.humps) - reach
     ahead = min(int(met.sum()) + math.ceil(EARLIER_S / dt), len(before)) if met.any() else 0
     return replace(scenario, start=scenario.start - ahead * dt, duration=scenario.duration + ahead * dt, skipped=ahead)
 

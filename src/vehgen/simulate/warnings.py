@@ -73,6 +73,12 @@ def missed_peaks(
     )
 
 
+def nothing_drives(scenario: Scenario) -> Iterator[str]:
+    """Warn of a run in which nothing moves the vehicle."""
+    if not (scenario.track.parts or scenario.forces or any(scenario.ground) or scenario.initial is not None):
+        yield "nothing drives the vehicle, which stays at rest: add a `road`, `forces`, `displacements` or `initial`"
+
+
 def doubtful_humps(scenario: Scenario, axles: Mapping[str, float]) -> Iterator[str]:
     """Warn of humps and profiles beyond where the run ends, and of humps that lie under a wheel, or behind the first, as it begins.
 

@@ -16,6 +16,7 @@ from vehgen.files.tables.rows import read_rows
 
 MOST_ROWS = 2_000_000
 """No table is longer: at 200 samples a second, two and three quarter hours."""
+_FOR_EXCEL = re.compile(r'\ufeff?"?sep=[^\r\n]"?\s*\Z', re.IGNORECASE)
 _NUMBER = re.compile(r'[\s"]*[-+.]*\d')
 _QUOTED = re.compile(r'"[^"]*"')
 
@@ -37,10 +38,13 @@ def read_csv(path: Path, names: tuple[str, ...]) -> TableColumns:
 
 
 def without_comments(lines: Iterable[str]) -> Iterator[str]:
-    """Yield lines, comments (`# ...`) above the heading as empty ones; what numbers follow is the heading, though it begins with `#`."""
+    """Yield lines, comments (`# ...`) above the heading as empty ones, and `sep=;`, by which Excel is told what separates columns.
+
+    What numbers follow is the heading, though it begins with `#`.
+    """
     above = True
     for line, after in itertools.pairwise(itertools.chain(lines, [""])):
-        above = above and line.lstrip()[:1] in ("", "#") and not _NUMBER.match(after)
+        above = above and (line.lstrip()[:1] in ("", "#") or _FOR_EXCEL.match(line) is not None) and not _NUMBER.match(after)
         yield "\n" if above else line
 
 
