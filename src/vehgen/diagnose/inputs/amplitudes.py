@@ -41,7 +41,8 @@ OTHER_UNIT = 0.5
 ONE_CHANNEL = 0.25
 """The same for a dead channel, for another gain in one run, and for a drift."""
 GAIN_NOTICED, GAIN_FAR = 0.08, 1.5
-"""A channel's level off by more than the one and less than the other in one run, as a logarithm, is fitted."""
+"""A channel's level off by more than the one and less than the other in one run, as a logarithm, is fitted; a gain as near to 1 as the one
+is no mistake that explains a gap: its refit found another way."""
 DRIFT_NOTICED = 0.1
 """An offset and drift of this share of a channel's RMS is taken out."""
 
@@ -191,7 +192,8 @@ def gain_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     name = trial.channels[int(channel)]
 
     def describe(numbers: Array) -> tuple[MeasurementFault, ...]:
-        return (other_gain(trial.name, name, float(numbers[-1])),)
+        gain = float(numbers[-1])
+        return (other_gain(trial.name, name, gain),) if abs(np.log(gain)) > GAIN_NOTICED else ()
 
     adjustment = RunGain(name, 0.05, 1.0, run=trial.name)
     yield Hypothesis(case.trials, describe, ONE_CHANNEL, (adjustment,), (begin,))
