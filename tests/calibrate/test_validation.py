@@ -78,14 +78,17 @@ def of(number, act):
         (of(3, lambda x: np.roll(x, -80)), ["run: R_az is like the vehicle's answer 0.80 s earlier (correlation 0."]),
         (of(3, lambda x: np.random.default_rng(3).normal(0, 0.002, len(x))), ["run: R_az reads 0.00"]),
         (of(3, lambda x: x + 9.81), []),
+        (
+            lambda rows: rows[:, [0, 3, 2, 1, 4]],
+            ["run: F_az and R_az each read what the vehicle answers at the other's place: are they exch"],
+        ),
     ],
-    ids=["as it is", "turned", "late", "early", "dead", "with gravity"],
+    ids=["as it is", "turned", "late", "early", "dead", "with gravity", "exchanged"],
 )
 def test_a_channel_that_is_another_than_the_vehicles_answer_is_told(tmp_path, change, said):
     path = write_run(tmp_path, "run", sedan_truth(), 2.5)
     changed(path, change)
-    found = validate("sedan2", path, bands=BANDS).channels
-    doubts = [doubt for item in found if (doubt := item.doubt())]
+    doubts = validate("sedan2", path, bands=BANDS).doubtful_channels()
     assert [doubt[: len(begin)] for doubt, begin in zip(doubts, said, strict=True)] == said
 
 

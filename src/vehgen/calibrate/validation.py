@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -111,6 +112,16 @@ class ChannelComparison:
         return ChannelCurves(self.run, self.channel, self.quantity, self.time, self.measured, self.simulated)
 
 
+def exchanged(one: ChannelComparison, other: ChannelComparison) -> bool:
+    """Whether two channels of a run, of one quantity, are each like the vehicle's answer at the other's place, and not at their own."""
+    if (one.run, one.quantity) != (other.run, other.quantity) or not (one.audible.any() and other.audible.any()):
+        return False
+    dt = float(one.time[1] - one.time[0])
+    own = [agreement(item.measured, item.simulated, dt).at_once for item in (one, other)]
+    across = [agreement(one.measured, other.simulated, dt).at_once, agreement(other.measured, one.simulated, dt).at_once]
+    return max(own) < UNLIKE_BELOW and min(across) > ALIKE_ABOVE
+
+
 @dataclass(frozen=True, eq=False)
 class ReferenceSpectrum:
     """A standard's spectrum of acceleration to draw beside the measured ones: `frequency` [Hz], `psd` [m^2/s^4/Hz], both `shape (n,)`."""
@@ -135,6 +146,16 @@ class Validation(Result):
     def __post_init__(self) -> None:
         if any(len(item.errors) != len(self.bands) for item in self.channels):
             raise ValueError("a number a band was expected of every channel")
+
+    def doubtful_channels(self) -> tuple[str, ...]:
+        """Say which channels seem to be exchanged, and what the unit, sign or clock of others may be."""
+        pairs = [pair for pair in combinations(self.channels, 2) if exchanged(*pair)]
+        places = [
+            f"{one.run}: {one.channel} and {other.channel} each read what the vehicle answers at the other's place" for one, other in pairs
+        ]
+        known = [id(item) for pair in pairs for item in pair]
+        others = [doubt for item in self.channels if id(item) not in known and (doubt := item.doubt())]
+        return (*(f"{text}: are they exchanged?" for text in places), *others)
 
     @property
     def worst(self) -> float:

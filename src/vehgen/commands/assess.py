@@ -23,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--weighting", default="Wk", metavar="NAME", help="of vertical accelerations: Wk (ISO 2631-1, default) or Wb (ISO 2631-4)"
     )
     parser.add_argument("--slope", type=float, default=5.0, metavar="M", help="slope of the S-N line for equivalent ranges (default 5)")
-    parser.add_argument("--from", type=float, default=0.0, dest="start", metavar="S", help="leave out what comes before (default 0)")
+    parser.add_argument("--from", type=float, default=0.0, dest="start", metavar="S", help="leave out the first S seconds (default 0)")
     add_out(parser, "DIR", "folder for the page, table, figure and JSON (default: RUN_assessment)")
     add_json(parser)
 

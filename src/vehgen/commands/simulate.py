@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("run_file", metavar="RUN", help="a run file")
     parser.add_argument("--speed", type=read_speed, metavar="M/S", help="constant speed in place of the run's")
     parser.add_argument("--set", metavar="NAME", dest="parameter_set", help="a named parameter set of the vehicle in place of the run's")
-    add_out(parser, "FILE", "where to write the response, .csv or .mat for MATLAB (default: RUN_response.csv beside it)")
+    add_out(parser, "FILE", "where to write the response: text such as .csv, or .mat for MATLAB (default: RUN_response.csv beside it)")
     parser.add_argument("--plot", action="store_true", help="draw the response too, beside the CSV file")
     add_json(parser)
 

@@ -48,12 +48,12 @@ def run(options: argparse.Namespace) -> None:
     found = validate(vehicle, trials, bands=bands, reference=options.astm)
     write_text(files[0], json_text(found))
     files += save_validation_figures(found, folder)
-    doubts = [doubt for item in found.channels if (doubt := item.doubt())]
+    doubts = found.doubtful_channels()
     if options.json:
         data = found.to_dict()
         del data["reference"]
         data["channels"] = [{key: value for key, value in channel.items() if key not in VALIDATION_CURVES} for channel in data["channels"]]
-        print_json({**data, "warnings": doubts, "files": [str(path) for path in files]})
+        print_json({**data, "warnings": list(doubts), "files": [str(path) for path in files]})
         return
     for item in found.channels:
         rows = [
