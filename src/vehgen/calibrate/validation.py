@@ -112,7 +112,7 @@ class ChannelComparison:
         return ChannelCurves(self.run, self.channel, self.quantity, self.time, self.measured, self.simulated)
 
 
-def exchanged(one: ChannelComparison, other: ChannelComparison) -> bool:
+def seem_exchanged(one: ChannelComparison, other: ChannelComparison) -> bool:
     """Whether two channels of a run, of one quantity, are each like the vehicle's answer at the other's place, and not at their own."""
     if (one.run, one.quantity) != (other.run, other.quantity) or not (one.audible.any() and other.audible.any()):
         return False
@@ -149,7 +149,7 @@ class Validation(Result):
 
     def doubtful_channels(self) -> tuple[str, ...]:
         """Say which channels seem to be exchanged, and what the unit, sign or clock of others may be."""
-        pairs = [pair for pair in combinations(self.channels, 2) if exchanged(*pair)]
+        pairs = [pair for pair in combinations(self.channels, 2) if seem_exchanged(*pair)]
         places = [
             f"{one.run}: {one.channel} and {other.channel} each read what the vehicle answers at the other's place" for one, other in pairs
         ]

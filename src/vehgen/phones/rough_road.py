@@ -134,9 +134,8 @@ def _clocks(phones: Sequence[Phone], segment: float) -> tuple[list[ClockMap], li
         time = np.arange(begin, end, step)
         drift = find_drift(time, _upward(first, time), _upward(other, time + shift), segment)
         clock = ClockMap(shift, drift, float(begin + end) / 2)
-        late = find_shift((time, _upward(first, time)), (time, _upward(other, clock.at(time))), least, (first.name, other.name))
-        shift += late
-        clocks.append(ClockMap(shift, drift, clock.middle))
+        shift += find_shift((time, _upward(first, time)), (time, _upward(other, clock.at(time))), least / 2, (first.name, other.name))
+        clocks.append(replace(clock, shift=shift))
         if abs(drift) > AT_THE_END * MAX_DRIFT:
             warnings.append(
                 f"{names}: their clocks differ by {1e6 * abs(drift):.0f} millionths or more, the most that is looked for: are the "

@@ -63,7 +63,7 @@ def read_rows(path: Path, header: Sequence[str], rows: Rows, names: tuple[str, .
             if not -LARGEST_MEASURED <= number <= LARGEST_MEASURED:
                 text = _text(row[place]) if place < len(row) else ""
                 position = Position(path, line, min(place, max(len(row) - 1, 0)) + 1)
-                cure = _cure_of_missing(path) if text.lower() in MISSING_CELLS else ""
+                cure = _cure_of_missing(path, text) if text.lower() in MISSING_CELLS else ""
                 cure = "; `vehgen import` reads the times of day of a recording" if form_of(text) else cure
                 raise InputError(f"{shown(text)} in column {shown(name)} is {unmeasured(number)}{cure}", position)
             if len(signs) > 1:
@@ -85,8 +85,8 @@ def read_rows(path: Path, header: Sequence[str], rows: Rows, names: tuple[str, .
     return found if below is None else _with_units(found, below, units_line)
 
 
-def _cure_of_missing(path: Path) -> str:
-    if path.suffix.lower() == ".xlsx":
+def _cure_of_missing(path: Path, text: str) -> str:
+    if not text and path.suffix.lower() == ".xlsx":
         return "; a formula has its value once Excel or LibreOffice has saved the workbook"
     return "; `vehgen import` bridges gaps of a recording, and points of a road may lie farther apart: leave the row out"
 
