@@ -22,6 +22,7 @@ from vehgen.errors import CacheWarning, InputError, printable
 RUN = """vehicle: quarter_car
 speed: 2 m/s
 duration: 1 s
+road: [{iso8608: {class: A, seed: 1}}]
 outputs:
   load: {axle: axle1, quantity: tyre_load}
 """
