@@ -48,6 +48,18 @@ def test_clocks_are_found_without_epochs(tmp_path, motion, front, shift, drift):
 
 
 @pytest.mark.thorough
+@pytest.mark.parametrize("drift", [4e-4, -9e-4])
+def test_the_shift_is_that_in_the_middle_of_the_drive(tmp_path, motion, front, drift):
+    """Both lay at one place, so that no way from axle to axle is in it; the piece that fits best without the drift is elsewhere."""
+    time, values = motion
+    beside = write_phone(tmp_path / "beside.zip", time, values[:, 0], values[:, 2], seed=2, shift=12.0, drift=drift)
+    found = read_drive([front, beside], SENSORS, 20.0, 8.0)
+    note = next(text for text in found.notes if "its clock is" in text)
+    told = float(note.split("its clock is ")[1].split(" s ")[0])
+    assert told == pytest.approx(12.0 + drift * float(time[-1]) / 2, abs=0.01)
+
+
+@pytest.mark.thorough
 def test_clocks_that_may_differ_by_more_than_is_looked_for_are_warned_of(tmp_path, motion, front):
     found = read_drive([front, write_rear(tmp_path, motion, drift=1.3e-3)], SENSORS, 20.0, 8.0)
     (warning,) = found.warnings
