@@ -8,7 +8,7 @@ import pytest
 from tests.fit.recordings import sedan_truth, write_run
 from vehgen.calibrate.calibration import Settings, calibrate_problem
 from vehgen.calibrate.genetic import GeneticSearch
-from vehgen.calibrate.result import CombinationSummary, FactAdvice
+from vehgen.calibrate.result import CombinationSummary, FactAdvice, HeldMasses
 from vehgen.calibrate.summary import summarise
 from vehgen.commands.calibration_tables import show_calibration
 from vehgen.fit.problem import make_problem
@@ -54,6 +54,16 @@ def test_runs_are_told_with_what_was_known_of_them(summary, capsys):
 def test_masses_beside_tyres_without_damping_are_doubted(summary, capsys):
     assert "no damping to the tyres of front, rear" in printed(capsys, summary)
     assert "no damping" not in printed(capsys, replace(summary, undamped_tyres=()))
+
+
+def test_it_is_said_what_hangs_on_masses_without_a_range(summary, capsys):
+    text = printed(capsys, summary)
+    assert "the file gives mH no range, and these recordings tell the rest only over mH" in text
+    assert "1 % more would make mf, mr, IZ, kf, kr, cf, cr, ktf ... 1 % larger, and no interval knows of it" in text
+    assert "the rest only over" not in printed(capsys, replace(summary, held_masses=None))
+    uneven = HeldMasses(("mT", "mS"), {"kf": 1.0, "kr": -0.5})
+    text = printed(capsys, replace(summary, held_masses=uneven))
+    assert "1 % more would make other parameters: kf by +1.0 %, kr by -0.5 %" in text
 
 
 def test_errors_near_what_was_known_are_counted_and_not_listed(summary, capsys):

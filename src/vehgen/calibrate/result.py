@@ -131,6 +131,18 @@ class FactAdvice:
     narrows: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class HeldMasses:
+    """Bodies' masses that no search changes, on which everything else hangs.
+
+    `names` are their parameters. Were all of them 1 % larger, recordings of motion alone would be the same with the parameters of
+    `follows` larger by so many percent.
+    """
+
+    names: tuple[str, ...]
+    follows: dict[str, float]
+
+
 @dataclass(frozen=True, eq=False)
 class CalibrationSummary(Result):
     """Everything a calibration tells.
@@ -168,6 +180,8 @@ class CalibrationSummary(Result):
     undamped_tyres
         Axles whose mass or tyre's stiffness was searched, and to whose tyres the vehicle file gives no damping: what real ones damp passes
         for lighter axles on softer tyres, and no interval knows of it.
+    held_masses
+        Bodies' masses that the vehicle file takes as known, and what hangs on them, which no interval counts; None where there are none.
     """
 
     KIND: ClassVar[str] = "calibration"
@@ -205,6 +219,7 @@ class CalibrationSummary(Result):
     prior_data_advice: tuple[FactAdvice, ...] = ()
     recorder: tuple[RecorderSummary, ...] = ()
     undamped_tyres: tuple[str, ...] = ()
+    held_masses: HeldMasses | None = None
 
     def __post_init__(self) -> None:
         if len(self.steps) != len(self.history):

@@ -19,6 +19,7 @@ from vehgen.calibrate.fitted_runs import (
     objective_terms,
     run_conditions,
 )
+from vehgen.calibrate.held_masses import find_held_masses
 from vehgen.calibrate.identifiability import find_structure
 from vehgen.calibrate.intervals import LEVEL, Estimate, Uncertainty, run_chi2
 from vehgen.calibrate.prior_data_advice import advise_prior_data
@@ -112,6 +113,7 @@ def summarise(
         prior_data_advice=() if uncertainty is None else advise_prior_data(uncertainty, prior_data),
         recorder=tuple(_recorders(calibration)),
         undamped_tyres=undamped_tyres(problem.trials[0].run.vehicle, problem.space.names),
+        held_masses=find_held_masses(problem, structure, calibration.array),
     )
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from vehgen.commands.terminal import print_table, say, warn
 
 if TYPE_CHECKING:
-    from vehgen.calibrate.result import CalibrationSummary, ConditionSummary, FactAdvice
+    from vehgen.calibrate.result import CalibrationSummary, ConditionSummary, FactAdvice, HeldMasses
 
 MAX_CHI2 = 1.2
 """Above this the residuals are larger than the noise model allows."""
@@ -27,6 +27,8 @@ NEVER_LEFT_OUT = ("delay", "speed", "height", "clock")
 LITTLE_OFF_SIGMAS = 1.0
 WORTH_ASKING = 0.8
 """A fact that leaves more than this share of the intervals' widths is not asked for."""
+EVENLY = 0.05
+"""Parameters that change by so nearly as many percent as the masses do are told in one breath."""
 MOST_NAMES = 8
 """So many parameters a message lists."""
 
@@ -61,7 +63,7 @@ def show_calibration(outcome: CalibrationSummary) -> None:
         [(name, f"{value:.4f}") for name, value in outcome.objective.items()],
         right=(1,),
     )
-    for text in [*_advice(outcome.prior_data_advice), *_undamped(outcome.undamped_tyres)]:
+    for text in [*_advice(outcome.prior_data_advice), *_undamped(outcome.undamped_tyres), *_held(outcome.held_masses)]:
         say(text, "advice: ")
     warn(_warnings(outcome))
 
@@ -209,4 +211,18 @@ def _undamped(axles: tuple[str, ...]) -> list[str]:
     return [
         f"the file gives no damping to the tyres of {_listed(list(axles))}: what real ones damp passes for lighter axles on softer tyres, "
         "and no interval knows of it; give these tyres a `c` with a range to see by how much"
+    ]
+
+
+def _held(masses: HeldMasses | None) -> list[str]:
+    """Say what hangs on masses that the vehicle file takes as known."""
+    if masses is None:
+        return []
+    names = " and ".join(masses.names)
+    follows = [f"{name} by {share:+.1f} %" for name, share in masses.follows.items()]
+    alike = all(abs(share - 1) < EVENLY for share in masses.follows.values())
+    told = f"{_listed(list(masses.follows))} 1 % larger" if alike else f"other parameters: {_listed(follows)}"
+    return [
+        f"the file gives {names} no range, and these recordings tell the rest only over {names}: 1 % more would make {told}, and no "
+        f"interval knows of it; where {names} is not known so well, give a range, and state with --facts what was weighed"
     ]
