@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.signal
 
-from tests.fit.recordings import sedan_truth, write_run
+from tests.fit.recordings import respond, sedan_truth, write_run
 from vehgen.calibrate.validation import validate
 from vehgen.fit.lead_in import lead_in
 from vehgen.fit.trial import load_trials
@@ -90,6 +90,36 @@ def test_a_channel_that_is_another_than_the_vehicles_answer_is_told(tmp_path, ch
     changed(path, change)
     doubts = validate("sedan2", path, bands=BANDS).doubtful_channels()
     assert [doubt[: len(begin)] for doubt, begin in zip(doubts, said, strict=True)] == said
+
+
+@pytest.mark.parametrize(
+    ("begin", "seed", "said"),
+    [
+        (0.0, 0, []),
+        (60.0, 0, ["run: F_az is like the vehicle's answer 6.00 s earlier (correlation 0.9"]),
+        (80.0, 0, ["run: F_az is like the vehicle's answer 8.00 s earlier (correlation 0.9"]),
+        (0.0, 1, ["run: F_az is nowhere like the vehicle's answer (correlation up to 0."]),
+    ],
+)
+def test_a_recording_of_another_part_of_a_road_is_told_from_one_of_another_road(tmp_path, begin, seed, said):
+    """At 10 m/s, from where the stated road begins on, or metres further."""
+    p = sedan_truth()
+    profile = np.arange(0.0, 500.0, 0.05)
+    for name, number in (("stated", 0), ("driven", seed)):
+        heights = scipy.signal.lfilter([1.0], [1.0, -0.99], np.random.default_rng(number).standard_normal(len(profile))) * 5e-4
+        np.savetxt(tmp_path / f"{name}.csv", np.column_stack([profile, heights]), delimiter=",", header="s,h", comments="")
+    driven = np.loadtxt(tmp_path / "driven.csv", delimiter=",", skiprows=1)
+    t, values = respond(p, lambda s: np.interp(s, *driven.T), 10.0, 45.0, {"F": p["Lf"]})
+    kept = (t >= 1.0 + begin / 10.0) & (t < 26.0 + begin / 10.0)
+    rows = np.column_stack([t[kept] - begin / 10.0, values[kept]])
+    np.savetxt(tmp_path / "run.csv", rows, delimiter=",", header="t,F_az,F_q", comments="", fmt="%.8g")
+    (tmp_path / "run.yaml").write_text(
+        "vehicle: sedan2\nspeed: 10 m/s\nroad: [{profile: {file: stated.csv, distance: s, height: h}}]\nrecording: run.csv\n"
+        "sensors: {F: {body: body, behind: front, channels: {acceleration: F_az}}}\nacquisition: none\n",
+        encoding="utf-8",
+    )
+    doubts = validate("sedan2", tmp_path / "run.yaml", bands=BANDS).doubtful_channels()
+    assert [doubt[: len(start)] for doubt, start in zip(doubts, said, strict=True)] == said
 
 
 def test_a_motion_that_was_not_recorded_is_no_noise(tmp_path):

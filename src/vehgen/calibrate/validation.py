@@ -99,6 +99,10 @@ class ChannelComparison:
             when = "later" if alike.late > 0 else "earlier"
             said = f"{abs(alike.late):.2f} s {when} (correlation {alike.at_best:.2f}, as it is {alike.at_once:.2f})"
             return f"{what} is like the vehicle's answer {said}: is the road's place (a hump's `at`), the speed or the clock another?"
+        if alike.at_best < UNLIKE_BELOW:
+            return (
+                f"{what} is nowhere like the vehicle's answer (correlation up to {alike.at_best:.2f}): is it of this run, over this road?"
+            )
         return None
 
     @property

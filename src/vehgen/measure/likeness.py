@@ -9,8 +9,8 @@ import scipy.signal
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-LONGEST_LATE = 3.0
-"""So much later or earlier one may be taken [s]."""
+LEAST_SHARED = 0.5
+"""Shifted histories are compared where they overlap; there lies this share of the energy of each at least."""
 ALIKE_ABOVE, UNLIKE_BELOW = 0.6, 0.3
 """Correlations beyond which two histories are one motion, and below which they are not."""
 ONE_MOTION = 0.8
@@ -19,7 +19,7 @@ ONE_MOTION = 0.8
 
 @dataclass(frozen=True)
 class Agreement:
-    """Correlation of two histories as they are, the largest with one shifted, and how late the first is then [s]."""
+    """Correlation of two histories as they are, the largest where they overlap with one shifted, and how late the first is then [s]."""
 
     at_once: float
     at_best: float
@@ -40,8 +40,19 @@ def agreement(first: Array, second: Array, dt: float) -> Agreement:
     size = float(np.linalg.norm(one) * np.linalg.norm(other))
     if size == 0:
         return Agreement(0.0, 0.0, 0.0)
-    products = scipy.signal.correlate(one, other, mode="full", method="fft") / size
-    lags = scipy.signal.correlation_lags(len(one), len(other)) * dt
-    near = np.abs(lags) <= LONGEST_LATE
-    best = int(np.argmax(np.where(near, products, -np.inf)))
-    return Agreement(float(one @ other) / size, float(products[best]), float(lags[best]))
+    products = scipy.signal.correlate(one, other, mode="full", method="fft")
+    lags = scipy.signal.correlation_lags(len(one), len(other))
+    shared = np.column_stack([_energy_after(one, lags), _energy_after(other[::-1], lags)])
+    shares = shared / np.array([one @ one, other @ other])
+    alike = np.where(shares.min(axis=1) >= LEAST_SHARED, products / np.sqrt(np.maximum(shared.prod(axis=1), 1e-300)), -np.inf)
+    best = int(np.argmax(alike))
+    return Agreement(float(one @ other) / size, float(alike[best]), float(lags[best]) * dt)
+
+
+def _energy_after(values: Array, lags: NDArray[np.int64]) -> Array:
+    """Return the energy of what of `values shape (n,)` overlaps with a history of the same length that begins `lags` samples later.
+
+    Lags below nought cut off as many samples at the end.
+    """
+    sums = np.concatenate([[0.0], np.cumsum(values**2)])
+    return np.where(lags >= 0, sums[-1] - sums[np.maximum(lags, 0)], sums[len(values) + np.minimum(lags, 0)])
