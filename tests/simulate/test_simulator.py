@@ -6,7 +6,9 @@ import re
 import numpy as np
 import pytest
 
+from tests.fit.recordings import sedan_truth, write_run
 from vehgen.errors import InputError, ModelWarning
+from vehgen.fit.trial import load_trials
 from vehgen.mechanics import ElementOutput, Place, PointOutput, derive, static_loads
 from vehgen.simulate import Simulator, lint, load_run, make_scenario, simulate, write_csv
 from vehgen.vehicle import load_vehicle, parse_vehicle
@@ -273,3 +275,31 @@ def test_humps_at_the_start_are_told(tmp_path, at, said):
     )
     found = [item for item in simulate(tmp_path / "run.yaml").warnings if "as the run begins" in item]
     assert [item[: len(said or "")] for item in found] == ([said] if said else [])
+
+
+@pytest.mark.parametrize(
+    ("place", "told"),
+    [
+        ("x: 3.9 m", ""),
+        ("x: 60 m", "58.8 m ahead of"),
+        ("behind: front, distance: 8 m", "5.2 m behind"),
+        ("behind: front, distance: -2 m", ""),
+    ],
+)
+def test_a_sensor_or_force_far_from_the_vehicle_is_doubted_once(tmp_path, place, told):
+    """The sedan's axles span 2.8 m, its front axle is 1.18 m ahead of the COG."""
+    push = "{body: body, x: -30 m, harmonic: {amplitude: 10 N, frequency: 2 Hz}}"
+    run = "vehicle: sedan2\nspeed: 1 m/s\nduration: 1 s\n"
+    run += f"sensors: {{S: {{body: body, {place}, channels: {{acceleration: a, pitch_rate: q}}}}}}\n"
+    warnings = simulate(run_of(tmp_path, f"{run}forces: {{push: {push}}}\n")).warnings
+    found = [text for text in warnings if "all axles, hinges and COGs" in text]
+    assert [text.startswith(("S is", "push is")) for text in found] == [True] * (1 + bool(told))
+    assert found[-1].startswith("push is 28.4 m behind")
+    assert told in found[0]
+
+
+def test_a_recording_of_a_sensor_far_from_the_vehicle_is_doubted(tmp_path):
+    path = write_run(tmp_path, "hump", sedan_truth())
+    path.write_text(path.read_text().replace("behind: rear,", "behind: rear, distance: 30 m,"))
+    with pytest.warns(ModelWarning, match=r"hump: R is 30 m behind all axles, hinges and COGs of the vehicle, which span 2.8 m"):
+        load_trials(path)

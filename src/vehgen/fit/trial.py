@@ -22,6 +22,7 @@ from vehgen.simulate.acquired import assumed_chains, channel_factors
 from vehgen.simulate.initial_state import initial_state
 from vehgen.simulate.profile_warnings import profiles_that_end
 from vehgen.simulate.run_file.acquisition import channel_chains
+from vehgen.simulate.warnings import far_places
 from vehgen.vehicle import Vehicle, VehicleLike, as_vehicle
 
 Array = NDArray[np.float64]
@@ -209,7 +210,7 @@ def make_trial(run: Run, name: str, simulators: SimulatorPool | None = None) -> 
     check_hump_reached(run, scenario, simulator.model.wheel_offsets(values), name)
     check_inputs_last(run, scenario, measurement, simulator.model)
     check_initial(run, measurement, simulator, scenario, values)
-    for message in profiles_that_end(scenario):
+    for message in (*far_places(simulator.model, values, run.places()), *profiles_that_end(scenario)):
         warnings.warn(ModelWarning(f"{name}: {message}"), stacklevel=3)
     scenario = _from_the_first_hump(scenario)
     return _from_known_road(Trial(name, run, measurement, simulator, scenario, values, tuple(run.file.parameters)))

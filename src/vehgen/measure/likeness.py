@@ -55,4 +55,4 @@ def _energy_after(values: Array, lags: NDArray[np.int64]) -> Array:
     Lags below nought cut off as many samples at the end.
     """
     sums = np.concatenate([[0.0], np.cumsum(values**2)])
-    return np.where(lags >= 0, sums[-1] - sums[np.maximum(lags, 0)], sums[len(values) + np.minimum(lags, 0)])
+    return np.asarray(np.where(lags >= 0, sums[-1] - sums[np.maximum(lags, 0)], sums[len(values) + np.minimum(lags, 0)]))

@@ -23,7 +23,7 @@ from vehgen.simulate.run_file.loading import RunLike, as_run
 from vehgen.simulate.run_scenario import make_scenario
 from vehgen.simulate.scenario import Scenario
 from vehgen.simulate.table_warnings import doubtful_tables
-from vehgen.simulate.warnings import at_every_step, doubtful_humps, lift_off, missed_peaks, nothing_drives, spectral_nulls, step_too_coarse
+from vehgen.simulate.warnings import at_every_step, doubtful_scenario, lift_off, missed_peaks
 from vehgen.vehicle import Vehicle, VehicleLike
 
 Array = NDArray[np.float64]
@@ -250,10 +250,7 @@ def simulate(run: RunLike, *, vehicle: VehicleLike | None = None) -> Response:
     messages = [
         *lift_off(simulator.model, values, steps[:, n:]),
         *missed_peaks(channels, scenario, read[0], steps[:, :n] / factors),
-        *nothing_drives(scenario),
-        *doubtful_humps(scenario, dict(zip(run.vehicle.axles, simulator.model.wheel_offsets(values).tolist(), strict=True))),
-        *spectral_nulls(simulator.model, values, scenario),
-        *step_too_coarse(simulator.model, values, scenario),
+        *doubtful_scenario(simulator.model, values, scenario, run.places()),
         *doubtful_profiles(simulator.model, values, scenario),
         *doubtful_tables(run, simulator.model, scenario),
     ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vehgen.files.number_text import five_digits
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
+from vehgen.mechanics.outputs import Place
 from vehgen.mechanics.static_loads import static_loads
 from vehgen.road import Hump, MeasuredProfile
 from vehgen.simulate.budgets import MAX_RESPONSE_NUMBERS
@@ -28,6 +29,8 @@ MISSED_PEAK = 0.1
 """A peak between samples that exceeds the largest of them by this share is worth a warning."""
 STEPS_OF_A_CYCLE = 10
 """A harmonic of fewer steps a cycle is bent."""
+SHORT_M = 2.0
+"""A vehicle is taken to be so long at least [m]: bodies reach beyond axles and COGs."""
 NULL_WIDTH = 0.05
 """A spectral null this near (relative) to a hop frequency leaves the mode unexcited."""
 
@@ -73,10 +76,37 @@ def missed_peaks(
     )
 
 
+def doubtful_scenario(model: EquationsOfMotion, values: Mapping[str, float], scenario: Scenario, places: Iterable[Place]) -> Iterator[str]:
+    """Warn of what a run does not meet or hardly excites, of steps that are too coarse, and of sensors and forces beside the vehicle."""
+    yield from nothing_drives(scenario)
+    yield from far_places(model, values, places)
+    yield from doubtful_humps(scenario, dict(zip(model.vehicle.axles, model.wheel_offsets(values).tolist(), strict=True)))
+    yield from spectral_nulls(model, values, scenario)
+    yield from step_too_coarse(model, values, scenario)
+
+
 def nothing_drives(scenario: Scenario) -> Iterator[str]:
     """Warn of a run in which nothing moves the vehicle."""
     if not (scenario.track.parts or scenario.forces or any(scenario.ground) or scenario.initial is not None):
         yield "nothing drives the vehicle, which stays at rest: add a `road`, `forces`, `displacements` or `initial`"
+
+
+def far_places(model: EquationsOfMotion, values: Mapping[str, float], places: Iterable[Place]) -> Iterator[str]:
+    """Warn of sensors and forces of a model that are farther from all axles, hinges and bodies' COGs than these are from each other."""
+    layout = model.layout
+    known = [*layout.axles.values(), *(x for x, _ in (*layout.bodies.values(), *layout.hinges.values()))]
+    named = {place.name: place for place in places if place.shift in model.parameters}.values()
+    wanted = [layout.bodies[place.body][0] + place.locate(model.vehicle, layout) for place in named]
+    found = np.array(model.evaluate_list([*known, *wanted], values))
+    last, first = found[: len(known)].min(), found[: len(known)].max()
+    length = max(first - last, SHORT_M)
+    for place, x in zip(named, found[len(known) :].tolist(), strict=True):
+        beyond, where = (x - first, "ahead of") if x > first else (last - x, "behind")
+        if beyond > length:
+            yield (
+                f"{place.name} is {beyond:.3g} m {where} all axles, hinges and COGs of the vehicle, which span {first - last:.3g} m: "
+                "is its place right?"
+            )
 
 
 def doubtful_humps(scenario: Scenario, axles: Mapping[str, float]) -> Iterator[str]:

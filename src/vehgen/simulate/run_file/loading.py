@@ -90,6 +90,10 @@ class Run:
         """Return the places of the applied forces."""
         return tuple(entry.place(name) for name, entry in self.file.forces.items())
 
+    def places(self) -> tuple[Place, ...]:
+        """Return where its sensors are and its forces act; a place of several channels comes once for each."""
+        return (*(output.place for output in self.outputs() if isinstance(output, PointOutput)), *self.forces())
+
 
 def load_run(path: str | Path, vehicle: Vehicle | None = None) -> Run:
     """Read a run file and the vehicle it names, or take another vehicle in its place.
