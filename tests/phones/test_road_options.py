@@ -33,3 +33,12 @@ def test_a_unit_that_is_none_is_refused(tmp_path: Path):
     (tmp_path / "road.csv").write_text("s,h\n0,0\n1,1\n")
     with pytest.raises(InputError, match=r"unknown unit 'metre'.*height is measured in m, mm, cm, km, in, ft"):
         profile_road(read_profile(f"{tmp_path / 'road.csv'},distance=s,height=h,unit=metre"))
+
+
+def test_a_profile_may_begin_within_its_table(tmp_path: Path):
+    (tmp_path / "road.csv").write_text("".join(["distance,height\n", *(f"{1200 + s:.9f},{h:.9f}\n" for s, h in zip(S, H, strict=True))]))
+    road = profile_road(read_profile(f"{tmp_path / 'road.csv'},start=1200.1 m,end=1.2005 km"))
+    assert road.profile is not None
+    assert road.entry["start"] == "1200.1 m"
+    np.testing.assert_allclose(road.profile.distance, np.arange(0.0, 0.41, 0.05), atol=1e-9)
+    np.testing.assert_allclose(road.profile.height(np.array([0.0, 0.2])), [0.0, H[6] - H[2]], atol=1e-8)

@@ -81,3 +81,45 @@ def test_a_recording_may_be_any_table_with_its_own_units(tmp_path: Path):
     np.testing.assert_allclose(recorded(tmp_path / "run", "{column: az, unit: g}"), az, rtol=1e-12)
     with pytest.raises(InputError, match=r"run\.yaml:6:\d+: the column 'az' is in 'g' as its file says .*, and in 'm/s\^2' as stated here"):
         recorded(tmp_path / "run", "{column: az, unit: m/s^2}")
+
+
+def over(folder: Path, table: pd.DataFrame, keys: str) -> np.ndarray:
+    table.to_csv(folder / "road.csv", index=False)
+    (folder / "run.yaml").write_text(
+        "vehicle: sedan2\nspeed: 10 m/s\nduration: 2 s\n"
+        f"road: [{{profile: {{file: road.csv, distance: s, height: h{keys}}}}}]\n"
+        "sensors: {L: {body: body, channels: {acceleration: az}}}\n",
+        encoding="utf-8",
+    )
+    return simulate(folder / "run.yaml").values[0]
+
+
+def test_a_survey_may_begin_and_end_anywhere(tmp_path: Path):
+    """The first wheel begins between two rows at 1212.34 m; what comes after the end is as if it had not been surveyed."""
+    survey = pd.DataFrame({"s": 1200.0 + S, "h": 40.0 + H})
+    ahead = S > 12.34
+    moved = np.concatenate([[0.0], S[ahead] - 12.34])
+    heights = np.concatenate([[np.interp(12.34, S, H)], H[ahead]])
+    whole = over(tmp_path, pd.DataFrame({"s": moved, "h": heights}), "")
+    assert np.abs(whole).max() > 0.1
+    np.testing.assert_allclose(over(tmp_path, survey, ", start: 1212.34 m"), whole, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(over(tmp_path, survey, ", start: 1.21234 km, end: 1.23 km"), whole, rtol=1e-9, atol=1e-9)
+    last = np.searchsorted(moved, 1220.03 - 1212.34) + 1
+    short = over(tmp_path, pd.DataFrame({"s": moved[:last], "h": heights[:last]}), "")
+    assert np.abs(short - whole).max() > 0.1
+    np.testing.assert_allclose(over(tmp_path, survey, ", start: 1212.34 m, end: 1220.03 m"), short, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        (", start: 3 m", "run.yaml:4:66: `start` and `end` must lie within 1200 m to 1230 m of the file, the start first"),
+        (", start: 1220 m, end: 1210 m", "run.yaml:4:66: `start` and `end` must lie"),
+        (", end: 1240 m", "run.yaml:4:64: `start` and `end` must lie"),
+        (", start: 3 s", "run.yaml:4:66: "),
+    ],
+)
+def test_a_place_that_a_survey_lacks_is_told(tmp_path: Path, keys: str, said: str):
+    with pytest.raises(InputError) as caught:
+        over(tmp_path, pd.DataFrame({"s": 1200.0 + S, "h": H}), keys)
+    assert said in str(caught.value)

@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     road = parser.add_mutually_exclusive_group()
     road.add_argument("--hump", metavar="SHAPE,length=L,height=H", help="the hump, as in a run file; metres")
-    road.add_argument("--profile", metavar="TABLE[,distance=C,height=C,unit=U]", help="a measured road instead of a hump")
+    road.add_argument("--profile", metavar="TABLE[,distance=C,height=C,unit=U,start=S]", help="a measured road instead of a hump")
     parser.add_argument(
         "--speed", metavar="M/S", help="speed of the pass (default: the median of the GPS), or `axles`: by when the axles crossed"
     )

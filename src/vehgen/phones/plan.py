@@ -25,7 +25,7 @@ from vehgen.simulate.run_file.entries import HumpEntry, ProfileEntry
 from vehgen.vehicle import Vehicle
 
 HUMP_KEYS = ("shape", "length", "height", "ramp", "radius", "file", "distance", "height_column", "distance_unit", "unit")
-PROFILE_KEYS = ("file", "distance", "height", "distance_unit", "unit")
+PROFILE_KEYS = ("file", "distance", "height", "distance_unit", "unit", "start", "end")
 
 
 @dataclass(frozen=True)

@@ -37,16 +37,7 @@ def speed_table(path: Path, entry: SpeedFile, find: Finder = nowhere) -> TableCo
     time, speed = _Column(entry.time, "time", "s", "time_unit", entry.time_unit), _Column(entry.speed, "speed", "m/s", "unit", entry.unit)
     found = _pair(path, time, speed, find)
     found.check_ascending()
-    if entry.start is not None or entry.end is not None:
-        first, last = found.values[0][[0, -1]]
-        start, end = first if entry.start is None else entry.start, last if entry.end is None else entry.end
-        if not first <= start < end <= last:
-            key = "start" if entry.start is not None else "end"
-            raise InputError(f"`start` and `end` must lie within {first:g} s to {last:g} s of the file, the start first", find(key))
-        times = found.values[0]
-        found = found.between(times[times <= start][-1], times[times >= end][0])
-        if entry.start is not None:
-            found = replace(found, values=(found.values[0] - start, found.values[1]))
+    found = _cut(found, entry, "s", find)
     if (stands := np.flatnonzero(found.values[1] <= 0)).size:
         cut = "; `start` and `end` of the entry cut a track to the pass"
         raise InputError(f"every speed of a history must be above 0{cut}", found.place(int(stands[0]), 1))
@@ -55,9 +46,10 @@ def speed_table(path: Path, entry: SpeedFile, find: Finder = nowhere) -> TableCo
 
 
 def profile_table(path: Path, entry: ProfileEntry, find: Finder = nowhere) -> TableColumns:
-    """Return distances and heights of a measured profile [m]."""
+    """Return distances from where the run begins and heights of a measured profile [m]."""
     found = _pair(path, *_road_columns(entry.distance, entry.distance_unit, entry.height, entry.unit), find)
     found.check_ascending()
+    found = _cut(found, entry, "m", find)
     found.check_limit(1, PROFILE_HEIGHT)
     return found
 
@@ -84,6 +76,20 @@ def input_table(path: Path, entry: ForceEntry | DisplacementEntry, find: Finder 
     found.check_ascending(least=1)
     found.check_limit(1, FORCE_LIMIT if isinstance(entry, ForceEntry) else DISPLACEMENT)
     return found
+
+
+def _cut(found: TableColumns, entry: SpeedFile | ProfileEntry, unit: str, find: Finder) -> TableColumns:
+    """Return the rows that an entry's `start` and `end` enclose, those about them included; the first column counts from `start`."""
+    if entry.start is None and entry.end is None:
+        return found
+    column = found.values[0]
+    first, last = column[[0, -1]]
+    start, end = first if entry.start is None else entry.start, last if entry.end is None else entry.end
+    if not first <= start < end <= last:
+        key = "start" if entry.start is not None else "end"
+        raise InputError(f"`start` and `end` must lie within {first:g} {unit} to {last:g} {unit} of the file, the start first", find(key))
+    kept = found.between(column[column <= start][-1], column[column >= end][0])
+    return kept if entry.start is None else replace(kept, values=(kept.values[0] - start, *kept.values[1:]))
 
 
 def _road_columns(distance: str, distance_unit: str | None, height: str, unit: str | None) -> tuple[_Column, _Column]:

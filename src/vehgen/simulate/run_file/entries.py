@@ -83,13 +83,18 @@ class IsoEntry(FileModel):
 
 
 class ProfileEntry(FileModel):
-    """A measured profile: a table with columns of distance and height, in m, in the units that it gives itself or in those stated here."""
+    """A measured profile: a table with columns of distance and height, in m, in the units that it gives itself or in those stated here.
+
+    The first wheel stands at the distance `start` of the file as the run begins (default: at its 0); rows after `end` do not count.
+    """
 
     file: FileName
     distance: Column = "distance"
     height: Column = "height"
     distance_unit: str | None = None
     unit: str | None = None
+    start: RoadPosition | None = None
+    end: RoadPosition | None = None
 
 
 class RoadEntry(FileModel):
