@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
-from tests.vehicle.rig import Fault, check_refused, name_of
+from tests.vehicle.rig import GOOD, Fault, check_refused, name_of
+from vehgen.errors import InputError
+from vehgen.vehicle import load_vehicle
 
 FAULTS: list[Fault] = [
     # symbols
@@ -108,3 +112,17 @@ FAULTS: list[Fault] = [
 @pytest.mark.parametrize("fault", FAULTS, ids=name_of)
 def test_a_fault_of_symbols_or_units(fault: Fault):
     check_refused(*fault[1:])
+
+
+def test_a_parameter_of_the_wrong_unit_is_told_where_it_is_declared(tmp_path: Path):
+    """Of a file that extends another the declaration is blamed: the use was right before."""
+    (tmp_path / "base.yaml").write_text(GOOD, encoding="utf-8")
+    (tmp_path / "own.yaml").write_text("extends: base.yaml\nname: own\nparameters: {kF: {value: 20 kN}}\n", encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        load_vehicle(tmp_path / "own.yaml")
+    assert str(caught.value).startswith(f"{tmp_path / 'own.yaml'}:3:26: axles.front.suspension.k must be in N/m, found N in 'kF' at ")
+    assert str(caught.value).endswith("base.yaml:15:61")
+    alone = GOOD.replace("kF: {value: 200 kN/m", "kF: {value: 200 kN", 1).replace("sets:\n  soft: {kF: 150 kN/m}\n", "")
+    (tmp_path / "alone.yaml").write_text(alone, encoding="utf-8")
+    with pytest.raises(InputError, match=r"alone\.yaml:15:61: .*found N in 'kF'; line 6 declares it$"):
+        load_vehicle(tmp_path / "alone.yaml")

@@ -73,7 +73,21 @@ def check_dimension(
         unitless = [name for name in sorted(expression.names) if dimensions[name] == NONE]
         where = f"; give {unitless[0]!r} its unit" if unitless else f"; write e.g. {example_of(shortened(expression.text), expected)}"
         message = f"missing unit: {message}{where}"
-    raise InputError(message, document.find(path))
+    place, declared = document.find(path), _declared(expression, document)
+    if declared is None:
+        raise InputError(message, place)
+    if declared.file == place.file:
+        raise InputError(f"{message}; line {declared.line} declares it", place)
+    raise InputError(f"{message} at {place}", declared)  # the file that is extended was right before
+
+
+def _declared(expression: Expression, document: Located) -> Position | None:
+    """Return where a file declares the only parameter that an expression names, None where it names more, or none of its own."""
+    parameters = document.child("parameters")
+    if parameters is None or len(expression.names) != 1:
+        return None
+    parameter = parameters.child(*expression.names)
+    return None if parameter is None or parameter.position.is_argument else parameter.find(("value",))
 
 
 def _is_zero(expression: Expression) -> bool:
