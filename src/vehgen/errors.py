@@ -112,11 +112,22 @@ class CacheWarning(UserWarning):
     """The answer stands, but it takes longer than it need: compiled code cannot be kept or used."""
 
 
+def nearest_names(word: str, known: Iterable[str], most: int, likeness: float = 0.6) -> list[str]:
+    """Return up to `most` of the known names that are near to `word`, the nearest first; small and capital letters count as alike.
+
+    `likeness` is difflib's ratio from which on a name is near, 1 for the same name.
+    """
+    folded: dict[str, list[str]] = {}
+    for name in known:
+        folded.setdefault(name.casefold(), []).append(name)
+    near = difflib.get_close_matches(word[:MAX_MESSAGE].casefold(), folded, n=most, cutoff=likeness)
+    return [name for match in near for name in folded[match]][:most]
+
+
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Say which known names are nearest to `word`, or list what is allowed."""
     known = list(known)
-    near = difflib.get_close_matches(word[:MAX_MESSAGE], known, n=3, cutoff=0.6)
-    if near:
+    if near := nearest_names(word, known, 3):
         return "did you mean " + " or ".join(shown(name) for name in near) + "?"
     if not known:
         return "none is declared"

@@ -37,6 +37,12 @@ def test_a_heading_stays_on_its_line(text):
         assert not any(unicodedata.category(character) in ("Cc", "Cs") for character in text)
 
 
+def test_capitals_do_not_hide_the_nearest_name():
+    assert did_you_mean("SPEED", ["speed", "step", "set"]) == "did you mean 'speed'?"
+    assert did_you_mean("kf", ["kF", "KF", "kr"]) == "did you mean 'kF' or 'KF' or 'kr'?"
+    assert did_you_mean("MASS", []) == "none is declared"
+
+
 def test_errors_quote_little_of_a_file_and_escape_it():
     assert shown("a\u202eb") == r"'a\u202eb'"
     assert shown("x" * 10_000) == "'" + "x" * 57 + "...'"

@@ -68,6 +68,8 @@ def test_a_missing_file_is_told_with_its_nearest_neighbour(tmp_path):
         (tmp_path / name).touch()
     with pytest.raises(InputError, match=r"no file .*humps_2ms\.csv; did you mean 'hump_2ms\.csv'\?$"):
         read_bytes(tmp_path / "humps_2ms.csv", 10)
+    with pytest.raises(InputError, match=r"no file .*HUMPS_2MS\.CSV; did you mean 'hump_2ms\.csv'\?$"):
+        read_bytes(tmp_path / "HUMPS_2MS.CSV", 10)
     for name in ("b.csv", "hump_2ms.mf4", "absent/hump_2ms.csv"):
         with pytest.raises(InputError, match=rf"no file .*{name}$"):
             read_bytes(tmp_path / name, 10)

@@ -156,6 +156,7 @@ def test_a_text_may_extend_bundled_models_only(tmp_path: Path):
     [
         ("extends: absent.yaml\n", "1:10", "no file {folder}/absent.yaml, and no bundled model 'absent'; known: "),
         ("name: a\nextends:   tractr5\n", "2:12", "no file {folder}/tractr5, and no bundled model 'tractr5'; did you mean 'tractor5'"),
+        ("extends: Bases.yaml\n", "1:10", "no file {folder}/Bases.yaml; did you mean 'base.yaml'?"),
         ("extends: [base.yaml]\n", "1:10", "`extends` names a file"),
         ("extends: 5\n", "1:10", "`extends` names a file"),
         ("extends:\n", "1:1", "`extends` names a file"),

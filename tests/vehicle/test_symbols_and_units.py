@@ -12,10 +12,10 @@ from vehgen.vehicle import load_vehicle
 
 FAULTS: list[Fault] = [
     # symbols
-    ("symbol of a body", "mass: mB", "mass: @mb1", "unknown symbol 'mb1'; did you mean 'b1'?"),
+    ("symbol of a body", "mass: mB", "mass: @mb1", "unknown symbol 'mb1'; did you mean 'mB' or 'b1'?"),
     ("symbol inside", "x: -b2", "x: -(b2 + 2*@b3)", "unknown symbol 'b3'; known: b1, b2, kF, mB"),
     ("symbol in quotes", "x: -b2", "x: '-(b2 + @b3)'", "unknown symbol 'b3'; known: b1, b2, kF, mB"),
-    ("symbol in equals", "3.46 m - b1", "3.46 m - @b", "unknown symbol 'b'; did you mean 'b2' or 'b1'?"),
+    ("symbol in equals", "3.46 m - b1", "3.46 m - @b", "unknown symbol 'b'; did you mean 'mB' or 'b2' or 'b1'?"),
     (
         "symbol in a value",
         "8000 kg, m",

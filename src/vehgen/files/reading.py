@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import codecs
-import difflib
 import io
 import os
 import stat
@@ -12,11 +11,13 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO, BinaryIO, TextIO
 
-from vehgen.errors import InputError, Position, escaped, shown
+from vehgen.errors import InputError, Position, escaped, nearest_names, shown
 from vehgen.files.inputs_seen import note_read
 
 LONGEST_LINE = 1_000_000
 """No line of a text is longer [characters]."""
+LIKE_A_FILE = 0.75
+"""A file whose name is so like a missing one's, 1 for the same, may have been meant."""
 _SHOWN = 200
 _BLOCK = 1 << 16
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_BINARY", 0)
@@ -59,7 +60,7 @@ def open_regular(path: Path, most: int, kind: str = "a file", *, state: bool = F
             os.close(handle)
             raise
     except FileNotFoundError as error:
-        raise InputError(f"no file {name}{_near(path)}") from error
+        raise InputError(f"no file {name}{near_file(path)}") from error
     except OSError as error:
         raise InputError(f"cannot read {name}: {error.strerror}; {kind} was expected") from error
     except ValueError as error:
@@ -67,12 +68,12 @@ def open_regular(path: Path, most: int, kind: str = "a file", *, state: bool = F
     return os.fdopen(handle, "rb")
 
 
-def _near(path: Path) -> str:
-    """Return a hint at the file whose name is nearest to that of a missing one."""
+def near_file(path: Path) -> str:
+    """Return a hint at the file whose name is nearest to that of a missing one, empty where none is near."""
     with suppress(OSError):
-        beside = [item.stem for item in path.parent.iterdir() if item.suffix == path.suffix]
-        for stem in difflib.get_close_matches(path.stem, beside, 1):
-            return f"; did you mean {shown(stem + path.suffix)}?"
+        beside = {item.stem: item.name for item in path.parent.iterdir() if item.suffix.casefold() == path.suffix.casefold()}
+        for stem in nearest_names(path.stem, beside, 1, LIKE_A_FILE):
+            return f"; did you mean {shown(beside[stem])}?"
     return ""
 
 

@@ -11,7 +11,7 @@ from vehgen.errors import ArgumentError, InputError, Position, did_you_mean, sho
 from vehgen.files.document import Located, read_document, read_text
 from vehgen.files.entry import NO_MAPPING
 from vehgen.files.names import as_name
-from vehgen.files.reading import short_path
+from vehgen.files.reading import near_file, short_path
 from vehgen.vehicle.changes import merge
 from vehgen.vehicle.model import Vehicle
 
@@ -64,7 +64,7 @@ def find_vehicle_file(name: str | Path, beside: Path | None = None) -> Path:
     Raises
     ------
     InputError
-        When there is none, with the nearest bundled names.
+        When there is none, with the nearest file beside it or the nearest bundled names.
     """
     path = Path(name)
     local = path if path.is_absolute() or beside is None else beside / path
@@ -76,7 +76,8 @@ def find_vehicle_file(name: str | Path, beside: Path | None = None) -> Path:
     try:
         return _find_bundled(path)
     except InputError as error:
-        raise InputError(f"no file {short_path(local)}, and {error.message}") from error
+        hint = near_file(local) if local.suffix else ""
+        raise InputError(f"no file {short_path(local)}{hint or f', and {error.message}'}") from error
 
 
 def _find_bundled(name: str | Path) -> Path:
