@@ -39,7 +39,7 @@ def test_a_heading_stays_on_its_line(text):
 
 def test_capitals_do_not_hide_the_nearest_name():
     assert did_you_mean("SPEED", ["speed", "step", "set"]) == "did you mean 'speed'?"
-    assert did_you_mean("kf", ["kF", "KF", "kr"]) == "did you mean 'kF' or 'KF' or 'kr'?"
+    assert did_you_mean("kf", ["kF", "KF", "kr"]) == "did you mean 'kF' or 'KF'?"
     assert did_you_mean("MASS", []) == "none is declared"
 
 

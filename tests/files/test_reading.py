@@ -9,7 +9,7 @@ import pytest
 
 from vehgen.errors import InputError
 from vehgen.files.document import read_document
-from vehgen.files.reading import LONGEST_LINE, open_regular, read_bytes, read_text
+from vehgen.files.reading import LONGEST_LINE, open_regular, read_bytes, read_lines, read_text
 from vehgen.files.tables import csv_table, read_columns
 from vehgen.phones.archive import read_members
 
@@ -95,9 +95,21 @@ def test_an_unreadable_folder_is_no_traceback(tmp_path, monkeypatch):
 def test_what_is_not_utf8_has_line_and_column(tmp_path, content, place):
     path = tmp_path / "a.csv"
     path.write_bytes(content)
-    for read in (lambda: read_text(path, 10**6), lambda: read_columns(path, ("a",))):
+    for read in (lambda: read_text(path, 10**6), lambda: list(read_lines(path, 10**6))):
         with pytest.raises(InputError, match=f"a.csv:{place}: not UTF-8 text"):
             read()
+
+
+def test_a_table_as_an_old_spreadsheet_writes_it_is_read(tmp_path):
+    """In Windows-1252, but for bytes that this has no signs for."""
+    path = tmp_path / "a.csv"
+    for encoding in ("utf-8", "cp1252", "utf-16"):
+        path.write_bytes("Zeit;Länge [m/s²];Güte\n0;1,5;schön\n1;2,5;€\n".encode(encoding))
+        found = read_columns(path, ("Zeit", "Länge"))
+        assert found.in_si(1, "m/s^2", "acceleration", None).values[1].tolist() == [1.5, 2.5]
+    path.write_bytes(b"t,az\n0,1\n1,\x81\n")
+    with pytest.raises(InputError, match=r"a\.csv:3:3: not UTF-8 text: the byte 0x81"):
+        read_columns(path, ("t", "az"))
 
 
 @pytest.mark.parametrize("first", ["sep=;", "\ufeffSEP=;", '"sep=;"', "# of a logger\nsep=;"])

@@ -24,7 +24,7 @@ CASES = [
     (POINTS, "t,v\n0,0\n1000,1e-5\n", "3:1: the length of a hump is 0.001 to 50 m in magnitude, found 1000 m"),
     (PROFILE, "t,v\n3,0\n2,1\n", "3:1: 't' must ascend; 2 comes after 3"),
     (FORCE, "t,v\n0,5\n1,6\n0.5,7\n", "4:1: 't' must ascend; 0.5 comes after 1"),
-    (FORCE, "t,v\n0,5\n1,\xff\n", "3:3: not UTF-8 text"),
+    (FORCE, "t,v\n0,5\n1,\xff\n", "3:2: 'ÿ' in column 'v' is not a finite number"),
     (FORCE, "t,w\n0,5\n", "1:1: no column 'v'"),
     (FORCE, "t,v,v\n0,5,6\n", "1:3: two columns are named 'v'"),
 ]

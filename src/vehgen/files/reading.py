@@ -16,6 +16,8 @@ from vehgen.files.inputs_seen import note_read
 
 LONGEST_LINE = 1_000_000
 """No line of a text is longer [characters]."""
+OLD_WINDOWS = "vehgen-windows-1252"
+"""How Python's decoders call that bytes which are not UTF-8 are Windows-1252."""
 LIKE_A_FILE = 0.75
 """A file whose name is so like a missing one's, 1 for the same, may have been meant."""
 _SHOWN = 200
@@ -119,8 +121,31 @@ def read_text(path: Path, most: int, kind: str = "a text file", *, state: bool =
         raise not_utf8(io.BytesIO(data), path) from error
 
 
-def read_lines(path: Path, most: int, kind: str = "a text file") -> Iterator[str]:
+def _as_windows_1252(error: UnicodeError) -> tuple[str, int]:
+    if not isinstance(error, UnicodeDecodeError) or error.encoding != "utf-8":
+        raise error
+    try:
+        return error.object[error.start : error.end].decode("cp1252"), error.end
+    except UnicodeDecodeError:
+        raise error from None
+
+
+codecs.register_error(OLD_WINDOWS, _as_windows_1252)
+
+
+def read_lines(path: Path, most: int, kind: str = "a text file", *, undecodable: str = "strict") -> Iterator[str]:
     r"""Yield the lines of a UTF-8 or marked UTF-16 file with the ends they have: `\n`, `\r\n` or `\r`; a byte order mark is left out.
+
+    Parameters
+    ----------
+    path
+        The file.
+    most
+        Its largest size [bytes].
+    kind
+        What was expected, as errors say it.
+    undecodable
+        What becomes of bytes that are not UTF-8: they are refused, or with OLD_WINDOWS taken for Windows-1252, as spreadsheets write it.
 
     Raises
     ------
@@ -132,7 +157,7 @@ def read_lines(path: Path, most: int, kind: str = "a text file") -> Iterator[str
         try:
             encoding = "utf-16" if stream.read(2) in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
             stream.seek(0)
-            text = io.TextIOWrapper(stream, encoding=encoding, newline="")
+            text = io.TextIOWrapper(stream, encoding=encoding, errors=undecodable, newline="")
             for line in split_lines(text, path):
                 total += len(line)
                 if total > most:

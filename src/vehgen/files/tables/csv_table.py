@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from vehgen.errors import InputError, Position
-from vehgen.files.reading import LONGEST_LINE, read_lines
+from vehgen.files.reading import LONGEST_LINE, OLD_WINDOWS, read_lines
 from vehgen.files.tables.columns import MAX_TABLE_BYTES, TableColumns
 from vehgen.files.tables.headings import name_and_unit
 from vehgen.files.tables.rows import read_rows
@@ -29,7 +29,7 @@ def read_csv(path: Path, names: tuple[str, ...]) -> TableColumns:
     InputError
         For a file that is missing, not regular or too large, and as :func:`vehgen.files.tables.rows.read_rows`.
     """
-    lines = without_comments(read_lines(path, MAX_TABLE_BYTES, "a CSV file"))
+    lines = without_comments(read_lines(path, MAX_TABLE_BYTES, "a CSV file", undecodable=OLD_WINDOWS))
     above, first = next(((above, line) for above, line in enumerate(lines) if line.strip()), (0, ""))
     separator = _separator(first, names)
     rows = csv_rows(itertools.chain(itertools.repeat("\n", above), [first], lines), path, separator)

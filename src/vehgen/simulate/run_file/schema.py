@@ -19,6 +19,7 @@ def run_schema() -> dict[str, Any]:
     schema = editor_schema(RunFile, "vehgen run file")
     definitions = schema["$defs"]
     schema["properties"]["vehicle"]["examples"] = list(bundled_models())
+    del schema["properties"]["speed"]["default"]  # it stands for rigs, on which no speed acts: a vehicle with wheels has none
     definitions["OutputEntry"]["properties"]["quantity"] = {**choice(ELEMENT_QUANTITIES), "description": _listed(ELEMENT_QUANTITIES)}
     definitions["AcquisitionEntry"]["properties"]["filter"] = choice(FILTER_KINDS)
     for holder in (schema, definitions["SensorEntry"], definitions["ChannelEntry"]):
