@@ -273,3 +273,15 @@ def test_the_command_writes_and_tells(tmp_path, capsys, monkeypatch):
     capsys.readouterr()
     assert main(["response", "sedan2", "--at", "seat:bdy=body"]) == 2
     assert capsys.readouterr().err.startswith("error: --at seat: unknown key")
+
+
+def test_a_link_is_told_by_its_travel_and_by_what_spring_and_damper_make_of_it():
+    """The seat lies under its driver: its travel is that of the two places it joins."""
+    found = road_response("tractor5_cab", speed=20.0, places=[Place("below", "cab", "xD")])
+    rows = dict(zip(outputs(found), found.amplitude, strict=True))
+    omega = 2 * np.pi * found.frequency
+    np.testing.assert_allclose(rows["link seat"], np.abs(8e3 + 500j * omega) * rows["link seat travel"], rtol=1e-4)
+    phases = {name: np.radians(phase) for name, phase in zip(outputs(found), found.phase, strict=True)}
+    apart = rows["driver"] * np.exp(1j * phases["driver"]) - rows["below"] * np.exp(1j * phases["below"])
+    near = found.frequency < 5.0  # beyond, two large numbers of six digits differ by little
+    np.testing.assert_allclose(rows["link seat travel"][near], (np.abs(apart) / omega**2)[near], rtol=1e-3)

@@ -124,7 +124,7 @@ def road_response(
     places: Iterable[Place] = (),
     parameter_set: str | None = None,
 ) -> RoadResponse:
-    """Return the linear response of bodies, axles, tyres and hinges to a rough road.
+    """Return the linear response of bodies, axles, tyres, hinges and links to a rough road.
 
     Parameters
     ----------
@@ -177,6 +177,8 @@ def _wanted(vehicle: Vehicle, places: tuple[Place, ...]) -> list[tuple[str, Outp
     found += [("suspension travel", ElementOutput(f"{name} travel", name, "suspension_travel")) for name in own]
     found += [("tyre force", ElementOutput(f"{name} tyre", name, "tyre_force")) for name in vehicle.axles]
     found += [("hinge force", ElementOutput(f"hinge {name}", name, "hinge_force")) for name in vehicle.hinges]
+    found += [("link travel", ElementOutput(f"link {name} travel", name, "link_travel")) for name in vehicle.links]
+    found += [("link force", ElementOutput(f"link {name}", name, "link_force")) for name in vehicle.links]
     return found
 
 
