@@ -47,7 +47,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--top", type=float, default=25.0, metavar="HZ", help="top of the band that matters; phones need twice that (default 25)"
     )
-    parser.add_argument("--columns", metavar="time=T,...", help="columns of a plain CSV; also time_unit=, pitch_rate=, ...")
+    parser.add_argument(
+        "--columns",
+        action="append",
+        metavar="time=T,...",
+        help="columns of plain CSVs, once for all or for each export in order; also time_unit=, pitch_rate=, ...",
+    )
     add_out(parser, "RUN", "the run file to write; its recording (RUN_recording.csv) and a plot go beside it", required=True)
     add_json(parser)
 
@@ -80,7 +85,7 @@ def run(options: argparse.Namespace) -> None:
         footprint=options.footprint,
         rate=options.rate,
         top=options.top,
-        columns=read_column_map(options.columns) if options.columns else None,
+        columns=[read_column_map(text) for text in options.columns] if options.columns else None,
     )
     save_figure(found.plot(), written[-1])
     if options.json:

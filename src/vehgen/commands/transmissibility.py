@@ -41,7 +41,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--forward", metavar="AXIS", help="the phones' axis that pointed forward, x, y (top edge), ...: adds pitch rates")
     parser.add_argument("--bands", metavar="A,B,C", help="edges of the bands [Hz] (default: 0.5,2,5,8,12,15,20)")
     parser.add_argument("--segment", type=float, default=8.0, metavar="S", help="length of the averaged segments (default 8)")
-    parser.add_argument("--columns", metavar="time=T,...", help="columns of a plain CSV; also time_unit=, pitch_rate=, ...")
+    parser.add_argument(
+        "--columns",
+        action="append",
+        metavar="time=T,...",
+        help="columns of plain CSVs, once for all or for each export in order; also time_unit=, pitch_rate=, ...",
+    )
     add_out(parser, "DIR", "folder for transmissibility.json and its figure (default: transmissibility)")
     add_json(parser)
 
@@ -67,7 +72,7 @@ def run(options: argparse.Namespace) -> None:
         forward=options.forward,
         bands=read_bands(options.bands) if options.bands else None,
         segment=options.segment,
-        columns=read_column_map(options.columns) if options.columns else None,
+        columns=[read_column_map(text) for text in options.columns] if options.columns else None,
     )
     write_text(files[0], json_text(found))
     files += save_transmissibility_figures(found, folder)

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from vehgen.errors import ArgumentError, InputError
 from vehgen.fit.recording import read_recording
 from vehgen.mechanics import EquationsOfMotion, derive
-from vehgen.phones import ColumnMap, PhoneSensor
+from vehgen.phones import PhoneSensor
+from vehgen.phones.csv_table import ColumnMaps
 from vehgen.phones.importing import with_forward
 from vehgen.phones.rough_road import read_drive
 from vehgen.simulate import Run, as_run, make_scenario
@@ -133,7 +134,7 @@ def drive_of_phones(
     forward: str | None,
     top: float,
     segment: float,
-    columns: ColumnMap | None,
+    columns: ColumnMaps,
 ) -> RoughDrive:
     """Return what phones recorded on one drive; raises InputError for exports that cannot be used, or give one channel alone."""
     own = None if vehicle is None else as_vehicle(vehicle)

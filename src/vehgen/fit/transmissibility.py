@@ -27,7 +27,8 @@ from vehgen.measure.transmissibility import (
     segment_transforms,
 )
 from vehgen.mechanics import EquationsOfMotion
-from vehgen.phones import ColumnMap, PhoneSensor
+from vehgen.phones import PhoneSensor
+from vehgen.phones.csv_table import ColumnMaps
 from vehgen.simulate import Modes, natural_modes
 from vehgen.simulate.rough_road import rough_road_spectra
 from vehgen.vehicle import VehicleLike
@@ -75,7 +76,7 @@ def transmissibility(
     forward: str | None = None,
     bands: Sequence[tuple[float, float]] | None = None,
     segment: float = 8.0,
-    columns: ColumnMap | None = None,
+    columns: ColumnMaps = None,
 ) -> Transmissibility:
     """Compare sensors in one vehicle with each other on a rough road, and a vehicle's model with both.
 
@@ -100,7 +101,7 @@ def transmissibility(
     segment
         Length of the averaged segments [s]; the lines are as far apart as its inverse.
     columns
-        Which columns of a plain CSV file hold what.
+        Which columns of plain CSV files hold what: of all, or of each export.
 
     Raises
     ------

@@ -10,7 +10,7 @@ from typing import Any
 from vehgen.errors import ArgumentError, did_you_mean, shown
 from vehgen.files.limits import FOOTPRINT, ROAD_POSITION, SPEED_LIMIT
 from vehgen.files.units import SPEED
-from vehgen.phones.csv_table import ColumnMap
+from vehgen.phones.csv_table import ColumnMap, ColumnMaps
 from vehgen.phones.importing import read_pass, with_forward
 from vehgen.phones.plan import PhoneSensor, Plan, RoadOption, check_limit, hump_road, number_of, profile_road
 from vehgen.phones.result import PhoneImport, summarise_import
@@ -36,7 +36,7 @@ def import_phones(
     footprint: float = 0.0,
     rate: float = 100.0,
     top: float = 25.0,
-    columns: ColumnMap | Mapping[str, str] | None = None,
+    columns: ColumnMap | Mapping[str, str] | Sequence[ColumnMap | Mapping[str, str]] | None = None,
 ) -> PhoneImport:
     """Turn phone exports of one pass into channels on one even clock, and into a run file with its recording.
 
@@ -67,7 +67,7 @@ def import_phones(
     rate, top
         Rate of the recording [Hz]; top of the band that matters [Hz]: phones need twice that.
     columns
-        Which columns of a plain CSV file hold what.
+        Which columns of plain CSV files hold what: of all, or a list, of each export.
 
     Raises
     ------
@@ -130,8 +130,14 @@ def _sensors(sensors: Sequence[PhoneSensor], vehicle: Vehicle, forward: str | No
     return with_forward(sensors, forward)
 
 
-def _columns(columns: ColumnMap | Mapping[str, str] | None) -> ColumnMap | None:
-    if columns is None or isinstance(columns, ColumnMap):
+def _columns(columns: ColumnMap | Mapping[str, str] | Sequence[ColumnMap | Mapping[str, str]] | None) -> ColumnMaps:
+    if columns is None or isinstance(columns, ColumnMap | Mapping):
+        return None if columns is None else _column_map(columns)
+    return [_column_map(each) for each in columns]
+
+
+def _column_map(columns: ColumnMap | Mapping[str, str]) -> ColumnMap:
+    if isinstance(columns, ColumnMap):
         return columns
     known = tuple(ColumnMap.__dataclass_fields__)
     for key in columns:

@@ -10,7 +10,7 @@ import itertools
 import math
 import re
 from array import array
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -216,6 +216,21 @@ class ColumnMap:
     acceleration_unit: str | None = None
     pitch_rate_unit: str | None = None
     speed_unit: str | None = None
+
+
+ColumnMaps = ColumnMap | Sequence[ColumnMap] | None
+"""Maps of one export or more: one for all of them, or one for each in their order; none where no export is a plain CSV."""
+
+
+def maps_of_exports(columns: ColumnMaps, n_exports: int) -> list[ColumnMap | None]:
+    """Return the map of each export; raises InputError where there are several, and not one for each."""
+    if columns is None or isinstance(columns, ColumnMap):
+        return [columns] * n_exports
+    if len(columns) not in (1, n_exports):
+        raise ArgumentError(
+            f"{len(columns)} maps of columns and {n_exports} exports: give one for all, or one for each in the same order", "columns"
+        )
+    return [*columns] * (n_exports // len(columns))
 
 
 def read_plain(table: Table, columns: ColumnMap | None) -> PhoneExport:

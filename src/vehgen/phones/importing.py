@@ -18,7 +18,7 @@ from vehgen.errors import ArgumentError, InputError
 from vehgen.files.units import STANDARD_GRAVITY
 from vehgen.measure.quality import FOREIGN_UNIT, NoiseFloor, find_clipping, in_foreign_unit, noise_floor
 from vehgen.phones.clocks import Match
-from vehgen.phones.csv_table import ColumnMap
+from vehgen.phones.csv_table import ColumnMaps, maps_of_exports
 from vehgen.phones.detect import read_export
 from vehgen.phones.export import Stream
 from vehgen.phones.hump_event import HumpEvent
@@ -119,9 +119,7 @@ def read_pass(exports: Sequence[str | os.PathLike[str]], plan: Plan) -> Imported
     return _assemble(phones, plan, speed, stood_out, matches, arrivals, distance, wheels)
 
 
-def read_phones(
-    exports: Sequence[str | os.PathLike[str]], sensors: Sequence[PhoneSensor], columns: ColumnMap | None, top: float
-) -> list[Phone]:
+def read_phones(exports: Sequence[str | os.PathLike[str]], sensors: Sequence[PhoneSensor], columns: ColumnMaps, top: float) -> list[Phone]:
     """Read the phones of one vehicle for a band up to `top` [Hz]; raises InputError, also where exports and sensors do not match."""
     if len(exports) != len(sensors) or not exports:
         count = f"{len(exports)} exports and {len(sensors)} sensors"
@@ -129,8 +127,10 @@ def read_phones(
     names = [sensor.name for sensor in sensors]
     if len(set(names)) < len(names):
         raise ArgumentError(f"`sensors`: two sensors have one name ({', '.join(names)}); each needs its own", "sensors")
+    maps = maps_of_exports(columns, len(exports))
     phones = [
-        make_phone(read_export(Path(path), columns), sensor, Path(path).name, top) for path, sensor in zip(exports, sensors, strict=True)
+        make_phone(read_export(Path(path), own), sensor, Path(path).name, top)
+        for path, sensor, own in zip(exports, sensors, maps, strict=True)
     ]
     for one, other in combinations(phones, 2):
         if np.array_equal(one.acceleration.values, other.acceleration.values):

@@ -18,7 +18,7 @@ from vehgen.files.limits import VEHICLE_LENGTH, Limit
 from vehgen.files.names import is_identifier
 from vehgen.files.units import LENGTH, NONE, Dimension
 from vehgen.mechanics import Place, PointOutput
-from vehgen.phones.csv_table import ColumnMap
+from vehgen.phones.csv_table import ColumnMaps
 from vehgen.road import Hump, MeasuredProfile, Profile
 from vehgen.simulate.measured_tables import hump_table, profile_table
 from vehgen.simulate.run_file.entries import HumpEntry, ProfileEntry
@@ -147,7 +147,7 @@ class Plan:
     top: float = 25.0
     after: float = 3.0
     footprint: float = 0.0
-    columns: ColumnMap | None = None
+    columns: ColumnMaps = None
 
 
 def number_of(value: float | str, dimension: Dimension, where: str, argument: str) -> float:

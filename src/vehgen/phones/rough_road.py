@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError
 from vehgen.measure.transmissibility import FEWEST_AVERAGES
-from vehgen.phones.csv_table import ColumnMap
+from vehgen.phones.csv_table import ColumnMaps
 from vehgen.phones.importing import clipping_warnings, read_phones
 from vehgen.phones.mutual_clocks import MAX_DRIFT, ClockMap, check_epochs, epoch_shift, find_drift, find_shift
 from vehgen.phones.phone import Phone, speed_stream
@@ -59,7 +59,7 @@ class RoughRoadDrive:
 
 
 def read_drive(
-    exports: Sequence[str | os.PathLike[str]], sensors: Sequence[PhoneSensor], top: float, segment: float, columns: ColumnMap | None = None
+    exports: Sequence[str | os.PathLike[str]], sensors: Sequence[PhoneSensor], top: float, segment: float, columns: ColumnMaps = None
 ) -> RoughRoadDrive:
     """Read the exports of the phones in one vehicle, on one drive.
 
@@ -74,7 +74,7 @@ def read_drive(
     segment
         Length of the half-overlapping segments that will be averaged [s]: the phones must have recorded together long enough for them.
     columns
-        Which columns of a plain CSV file hold what.
+        Which columns of plain CSV files hold what: of all, or of each export.
 
     Raises
     ------
