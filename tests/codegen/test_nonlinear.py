@@ -168,6 +168,7 @@ def test_unknown_laws_and_wrong_units_have_their_place():
         ("{dry_friction: {}}", "lacks its parameter 'force'"),
         ("{dry_friction: {force: 2 * (mH - 2500 kg) * 1 m/s^2}}", "force of dry_friction must not be below 0, found -2000"),
         ("{dry_friction: {force: -500 N}}", "force of dry_friction must not be below 0, found -500"),
+        ("{dry_friction: {force: kf * 1 mm - 30 N}}", "force of dry_friction must not be below 0, found -10 at the low end of kf"),
         ("{relaxation: {k: -500 kN/m, time: 0.1 s}}", "k of relaxation must not be below 0, found -500000"),
         ("{cubic_stiffness: {k3: 1 N/m}}", "k3 must be in"),
         ("{tyre_liftoff: {}}", "belongs on a tyre, not on a suspension"),

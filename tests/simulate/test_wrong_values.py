@@ -248,3 +248,36 @@ def test_modes_take_a_column_of_a_table():
 def test_modes_take_values_by_name_only():
     with pytest.raises(InputError, match="`values`: numbers in SI units by name were expected, found ndarray"):
         vehgen.natural_modes("quarter_car", np.ones(6))
+
+
+RUBBING = """\
+extends: sedan2
+name: rubbing
+parameters: {F0: {value: 200 N}, gap: {value: 10 mm}, kb: {value: 1 MN/m}}
+axles: {front: {suspension: {laws: [{dry_friction: {force: F0}}]}}, rear: {tyre: {laws: [{bump_stop: {k: kb, clearance: gap}}]}}}
+links: {stay: {ground: {}, body: {x: 0 m}, k: 1 N/m, laws: [{bump_stop: {k: 2*kb, clearance: gap}}]}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("parameter", "value", "said"),
+    [
+        ("F0", "-200 N", "force of dry_friction must not be below 0, found -200"),
+        ("kb", "-1 MN/m", "k of bump_stop must not be below 0, found -1e+06"),
+        ("F0", "0 N", ""),
+        ("gap", "-1 mm", ""),  # a stop that is pressed at rest
+    ],
+)
+def test_force_laws_of_a_run_and_of_an_individual_are_no_less_physical_than_a_files(tmp_path, parameter, value, said):
+    (tmp_path / "rubbing.yaml").write_text(RUBBING, encoding="utf-8")
+    run = f"vehicle: rubbing.yaml\nspeed: 3 m/s\nduration: 0.1 s\nroad: [{{iso8608: {{class: A}}}}]\nparameters: {{{parameter}: {value}}}\n"
+    (tmp_path / "run.yaml").write_text(run, encoding="utf-8")
+    vehicle = vehgen.load_vehicle(tmp_path / "rubbing.yaml")
+    number = {"-200 N": -200.0, "-1 MN/m": -1e6, "0 N": 0.0, "-1 mm": -1e-3}[value]
+    calls = (lambda: vehgen.load_run(tmp_path / "run.yaml"), lambda: vehgen.Simulator(vehicle, ()).parameters([{}, {parameter: number}]))
+    for call, where in zip(calls, (rf"run\.yaml:5:1: .*{said} in this run", f"`values`: {said} in individual 1"), strict=True):
+        if not said:
+            call()
+            continue
+        with pytest.raises(InputError, match=where.replace("1e+06", r"1e\+06")):
+            call()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
@@ -119,13 +119,54 @@ def _read(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], name: str, 
     return _with_origin(vehicle, path, given, LawTerm(law, values))
 
 
+def check_laws(vehicle: Vehicle, free: Mapping[str, float], where: str = "") -> None:
+    """Check that quantities of force laws are not negative, for these values of the free parameters [SI], but those that may be.
+
+    Raises
+    ------
+    InputError
+        At the first that is; `where` is added to its message.
+    """
+    known: dict[str, float] | None = None
+    for kind, name in _springs(vehicle):
+        path, spring = _find(vehicle, kind, name)
+        for index, entry in enumerate(spring.laws):
+            for law_name, given in entry.items():
+                for parameter in LAWS[law_name].parameters if law_name in LAWS else ():
+                    expression = given.get(parameter.name)
+                    if isinstance(expression, Expression) and not parameter.signed:
+                        known = vehicle.all_values(free) if known is None else known
+                        place = (*path, "laws", index, law_name, parameter.name)
+                        _check_sign_at(vehicle, known, where, expression, f"{parameter.name} of {law_name}", place)
+
+
+def _springs(vehicle: Vehicle) -> Iterator[tuple[Kind, str]]:
+    """Yield what may carry laws."""
+    for name, axle in vehicle.axles.items():
+        if axle.suspension is not None:
+            yield "suspension", name
+        yield "tyre", name
+    yield from (("link", name) for name in vehicle.links)
+    yield from (("hinge", name) for name in vehicle.hinges)
+
+
 def _check_sign(vehicle: Vehicle, expression: Expression, what: str, path: tuple[str | int, ...]) -> None:
-    """Refuse a quantity that is negative by the file's values or a set's; one without symbols has one value."""
-    for parameter_set in (None, *vehicle.sets) if expression.names else (None,):
-        known = vehicle.all_values(vehicle.values(parameter_set)) if expression.names else {}
-        if (value := value_of(expression, known, vehicle.document, *path)) < 0:
-            where = f" in the set {shown(parameter_set)}" if parameter_set else ""
-            raise InputError(f"{what} must not be below 0, found {value:g}{where}", vehicle.position(*path))
+    """Refuse a quantity that is negative by the file's values, a set's or a range's; one without symbols has one value."""
+    if not expression.names:
+        _check_sign_at(vehicle, {}, "", expression, what, path)
+        return
+    values, ranges = vehicle.values(), vehicle.ranges()
+    tried = [(values, "")] + [(vehicle.values(name), f" in the set {shown(name)}") for name in vehicle.sets]
+    tried += [({**values, name: ranges[name][0]}, f" at the low end of {name}") for name in sorted(expression.names) if name in ranges]
+    for free, where in tried:
+        _check_sign_at(vehicle, vehicle.all_values(free), where, expression, what, path)
+
+
+def _check_sign_at(
+    vehicle: Vehicle, known: Mapping[str, float], where: str, expression: Expression, what: str, path: tuple[str | int, ...]
+) -> None:
+    if (value := value_of(expression, known, vehicle.document, *path)) < 0:
+        raise InputError(f"{what} must not be below 0, found {value:g}{where}", vehicle.position(*path))
 
 
 def _with_origin(vehicle: Vehicle, path: tuple[str | int, ...], given: LawEntry, term: LawTerm) -> LawTerm:

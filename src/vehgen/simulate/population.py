@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError
 from vehgen.mechanics import EquationsOfMotion
+from vehgen.mechanics.law_terms import check_laws
 from vehgen.vehicle.checks import check_values
 
 Array = NDArray[np.float64]
@@ -61,7 +62,9 @@ def as_population(model: EquationsOfMotion, parameters: Any) -> Array:
 
 def _check_individual(model: EquationsOfMotion, row: Values, where: str) -> None:
     """Refuse one individual that is not physical."""
+    free = {name: row[name] for name in model.vehicle.free_parameters}
     try:
-        check_values(model.vehicle, {name: row[name] for name in model.vehicle.free_parameters}, where)
+        check_values(model.vehicle, free, where)
+        check_laws(model.vehicle, free, where)
     except InputError as error:
         raise ArgumentError(f"`values`: {error.message}", "values") from error

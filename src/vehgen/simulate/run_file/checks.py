@@ -76,6 +76,10 @@ def _check_vehicle(run: Run) -> None:
     file, document = run.file, run.document
     try:
         check_values(run.vehicle, run.values(), " in this run")
+        if file.parameters:
+            from vehgen.mechanics.law_terms import check_laws
+
+            check_laws(run.vehicle, run.values(), " in this run")
     except InputError as error:
         place = document.find(("parameters" if file.parameters else "set" if file.set else "vehicle",), key=True)
         raise InputError(f"{error.message} ({error.position})" if error.position else error.message, place) from error
