@@ -9,6 +9,8 @@ No acceleration is carried; at kept samples it follows from equilibrium, M a = F
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from vehgen.codegen.condensation import Condensation
 from vehgen.codegen.factorisation import Factor, Matrix, factorise
 from vehgen.codegen.nonlinear_element import ElementAtBegin, NonlinearElement, find_nonlinear, static_travels
@@ -36,15 +38,23 @@ def write_step(model: EquationsOfMotion, sweeps: int | None = None) -> StepProgr
     right = _right_sides(program, (M, K, loads), (u, v, drives), terms.two_h)
     middle = factor.solve(program, right)
     joints = find_nonlinear(terms, K)
-    laws, further = None, []
+    laws, further = None, list[tuple[Node, Node]]()
     if joints:
         reach = _reach(terms, factor, joints)
         laws = Condensation(terms, joints, [[_along(terms, joint, column) for column in reach] for joint in joints], sweeps)
-        begins = _begins(terms, joints, (u, v, drives), middle)
+        begins = [
+            replace(begin, moving=program.add(begin.moving, _ground_at_begin(program, joint, begin.ground)))
+            for joint, begin in zip(joints, _begins(terms, joints, (u, v, drives), middle), strict=True)
+        ]
         found = laws.solve(begins)
         for column, force in zip(reach, found.last, strict=True):
             middle = [program.subtract(node, program.multiply(item, force)) for node, item in zip(middle, column, strict=True)]
-        further = laws.states(found, begins, [_along(terms, joint, middle) for joint in joints])
+        rates = [_along(terms, joint, middle) for joint in joints]
+        further = laws.states(found, begins, rates)
+        for joint, begin, rate in zip(joints, begins, rates, strict=True):
+            if joint.is_moved:
+                twice = program.multiply(program.number(2.0), program.add(rate, begin.ground))
+                further += [(_ground_before(program, joint), begin.ground), (_slip(program, joint), program.subtract(twice, begin.moving))]
     middle = [program.label(node, f"vm{i}") for i, node in enumerate(middle)]
     next_v = [program.subtract(program.add(middle[i], middle[i]), v[i]) for i in range(n)]
     next_u = [program.add(u[i], program.multiply(h, middle[i])) for i in range(n)]
@@ -71,10 +81,30 @@ def _ground(terms: EquationTerms, joint: NonlinearElement, drives: list[Node]) -
     return terms.program.dot([(value, drives[i]) for i, value in sorted(joint.input_row.items())])
 
 
+def _ground_before(program: Program, joint: NonlinearElement) -> Node:
+    """Return the leaf of the ground's part of an element's rate, its mean over the step before."""
+    return program.leaf(f"b{joint.number}", STEP_PHASE)
+
+
+def _slip(program: Program, joint: NonlinearElement) -> Node:
+    """Return the leaf of an element's slip at a sample as the step before left it, zero where it stuck: no drive tells that so exactly."""
+    return program.leaf(f"m{joint.number}", STEP_PHASE)
+
+
+def _ground_at_begin(program: Program, joint: NonlinearElement, mean: Node) -> Node:
+    """Return the ground's part of the slip of an element with friction as a step begins, given its mean over the step.
+
+    It lies between this mean and that of the step before.
+    """
+    if not joint.is_moved:
+        return program.number(0.0)
+    return program.multiply(program.number(0.5), program.add(_ground_before(program, joint), mean))
+
+
 def _begins(
     terms: EquationTerms, joints: list[NonlinearElement], state: tuple[list[Node], list[Node], list[Node]], free: list[Node]
 ) -> list[ElementAtBegin]:
-    """Return the elements as a step begins that would reach the velocity `free` without the laws."""
+    """Return the elements as a step begins that would reach the velocity `free` without the laws, `moving` without the ground's part."""
     u, v, drives = state
     rates = drives[len(terms.model.inputs) :]
     return [
@@ -131,7 +161,8 @@ def _channels(
     if laws:
         begins = _begins(terms, laws.joints, state, v)
         rates = [program.add(begin.moving, begin.ground) for begin in begins]
-        now = laws.now([begin.travel for begin in begins], rates, [begin.moving for begin in begins])
+        slips = [_slip(program, joint) if joint.is_moved else begin.moving for joint, begin in zip(laws.joints, begins, strict=True)]
+        now = laws.now([begin.travel for begin in begins], rates, slips)
     pushes = laws.loads(now) if laws else {}
     if any(channel.acceleration for channel in model.channels):
         factor = factorise(program, model.n_dof, M, "M")

@@ -44,6 +44,11 @@ class NonlinearElement:
         return any(step.friction != 0 for step in self.steps)
 
     @property
+    def is_moved(self) -> bool:
+        """Whether it rubs, and the road or a moved ground end moves it."""
+        return self.friction and bool(self.input_row)
+
+    @property
     def asks_travel(self) -> bool:
         """Whether a law depends on the travel."""
         return any(TRAVEL in sp.Tuple(step.force, step.now, *step.states.values()).free_symbols for step in self.steps)
