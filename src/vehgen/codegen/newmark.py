@@ -49,12 +49,8 @@ def write_step(model: EquationsOfMotion, sweeps: int | None = None) -> StepProgr
         found = laws.solve(begins)
         for column, force in zip(reach, found.last, strict=True):
             middle = [program.subtract(node, program.multiply(item, force)) for node, item in zip(middle, column, strict=True)]
-        rates = [_along(terms, joint, middle) for joint in joints]
-        further = laws.states(found, begins, rates)
-        for joint, begin, rate in zip(joints, begins, rates, strict=True):
-            if joint.is_moved:
-                twice = program.multiply(program.number(2.0), program.add(rate, begin.ground))
-                further += [(_ground_before(program, joint), begin.ground), (_slip(program, joint), program.subtract(twice, begin.moving))]
+        further = laws.states(found, begins, [_along(terms, joint, middle) for joint in joints])
+        further += _ground_states(program, joints, begins)
     middle = [program.label(node, f"vm{i}") for i, node in enumerate(middle)]
     next_v = [program.subtract(program.add(middle[i], middle[i]), v[i]) for i in range(n)]
     next_u = [program.add(u[i], program.multiply(h, middle[i])) for i in range(n)]
@@ -86,9 +82,23 @@ def _ground_before(program: Program, joint: NonlinearElement) -> Node:
     return program.leaf(f"b{joint.number}", STEP_PHASE)
 
 
-def _slip(program: Program, joint: NonlinearElement) -> Node:
-    """Return the leaf of an element's slip at a sample as the step before left it, zero where it stuck: no drive tells that so exactly."""
+def _ground_after(program: Program, joint: NonlinearElement) -> Node:
+    """Return the leaf of the ground's part of an element's slip at a sample, as the step before ended: with it a slip that stuck is 0.
+
+    The drive's value there is another by the square of the step, and at a sample even tiny slips count.
+    """
     return program.leaf(f"m{joint.number}", STEP_PHASE)
+
+
+def _ground_states(program: Program, joints: list[NonlinearElement], begins: list[ElementAtBegin]) -> list[tuple[Node, Node]]:
+    """Return what is remembered of how the ground moves elements with friction, with its values after the step."""
+    found = []
+    for joint, begin in zip(joints, begins, strict=True):
+        if joint.is_moved:
+            twice = program.multiply(program.number(2.0), begin.ground)
+            after = program.subtract(twice, _ground_at_begin(program, joint, begin.ground))
+            found += [(_ground_before(program, joint), begin.ground), (_ground_after(program, joint), after)]
+    return found
 
 
 def _ground_at_begin(program: Program, joint: NonlinearElement, mean: Node) -> Node:
@@ -161,7 +171,10 @@ def _channels(
     if laws:
         begins = _begins(terms, laws.joints, state, v)
         rates = [program.add(begin.moving, begin.ground) for begin in begins]
-        slips = [_slip(program, joint) if joint.is_moved else begin.moving for joint, begin in zip(laws.joints, begins, strict=True)]
+        slips = [
+            program.add(begin.moving, _ground_after(program, joint)) if joint.is_moved else begin.moving
+            for joint, begin in zip(laws.joints, begins, strict=True)
+        ]
         now = laws.now([begin.travel for begin in begins], rates, slips)
     pushes = laws.loads(now) if laws else {}
     if any(channel.acceleration for channel in model.channels):
