@@ -33,7 +33,7 @@ def test_the_package_stays_small_and_needs_no_more():
             for path in folder.rglob("*"):
                 if path.is_file() and "__pycache__" not in path.parts:
                     wheel.write(path, path.relative_to(ROOT))
-    assert 500_000 < len(packed.getvalue()) < 1_075_000  # what tells of the package itself, 25 000 bytes of 1.1 MB, is not in it
+    assert 500_000 < len(packed.getvalue()) < 1_125_000  # what tells of the package itself, 25 000 bytes of 1.15 MB, is not in it
 
 
 def test_what_the_source_package_holds_is_there():
