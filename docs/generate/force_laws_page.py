@@ -68,7 +68,8 @@ It is an expression of d, v and its parameters:
 suspension: {k: k1, c: c1, laws: [{law: {force: k3*d**3, parameters: {k3: 5e7 N/m^3}}}]}
 ```
 
-`sqrt`, `abs`, `sign`, `min` and `max` may be used. Its units are checked like any other.
+`sqrt`, `abs`, `sign`, `min` and `max` may be used. Its units are checked like any other. A force that jumps, or is
+infinitely steep, where d or v passes 0 is refused: dry friction is the law `dry_friction`.
 """
 
 

@@ -168,11 +168,20 @@ def test_unknown_laws_and_wrong_units_have_their_place():
         ("{dry_friction: {}}", "lacks its parameter 'force'"),
         ("{dry_friction: {force: 2 * (mH - 2500 kg) * 1 m/s^2}}", "force of dry_friction must not be below 0, found -2000"),
         ("{dry_friction: {force: -500 N}}", "force of dry_friction must not be below 0, found -500"),
-        ("{dry_friction: {force: kf * 1 mm - 30 N}}", "force of dry_friction must not be below 0, found -10 at the low end of kf"),
+        ("{dry_friction: {force: kf * 1 mm - 30 N}}", "force of dry_friction must not be below 0, found -10 at the end of the range of kf"),
+        ("{relaxation: {k: 30 kN/m, time: 0 s}}", "time of relaxation must be above 0, found 0"),
+        ("{hysteresis: {force: 300 N, travel: 0 mm}}", "travel of hysteresis must be above 0, found 0"),
+        ("{asymmetric_damping: {c: 1 kN s/m, ratio: 0.3, relief: 1.5}}", "relief of asymmetric_damping must be at most 1, found 1.5"),
         ("{relaxation: {k: -500 kN/m, time: 0.1 s}}", "k of relaxation must not be below 0, found -500000"),
         ("{cubic_stiffness: {k3: 1 N/m}}", "k3 must be in"),
         ("{tyre_liftoff: {}}", "belongs on a tyre, not on a suspension"),
         ("{law: {force: a*d, parameters: {a: 1 N}}}", "force must be in N"),
+        ("{law: {force: F*sign(v), parameters: {F: 600 N}}}", "jumps, or is infinitely steep, where v passes 0: dry friction is the law"),
+        ("{law: {force: F*sign(v)*d/l, parameters: {F: 600 N, l: 1 m}}}", "infinitely steep, where v passes 0"),
+        ("{law: {force: F*sign(d), parameters: {F: 60 N}}}", "infinitely steep, where d passes 0"),
+        ("{law: {force: 'F*sqrt(max(v, 0 m/s)/u)', parameters: {F: 60 N, u: 1 m/s}}}", "infinitely steep, where v passes 0"),
+        ("{law: {force: k*d/abs(d)*1 m, parameters: {k: 60 N/m}}}", "the force has no value at d = 0, v = 0: "),
+        ("{law: {force: k*(d/l)**1.5, parameters: {k: 60 N, l: 1 m}}}", "the force has no value at d = -0.0001, v = 0: "),
         ("{law: {force: a*dd, parameters: {a: 1 N}}}", "unknown symbol 'dd'"),
     ):
         with pytest.raises(InputError, match=r":\d+:\d+: ") as caught:
@@ -193,3 +202,19 @@ def test_hinge_friction_locks_the_articulation():
         pitch = Kernel(model).run(np.array([list(model.values().values())]), excitation, 1).responses[0]
         apart.append(np.abs(pitch[:, 0] - pitch[:, 1]).max())
     assert apart[1] < 0.02 * apart[0]
+
+
+@pytest.mark.parametrize(
+    ("own", "same"),
+    [
+        ("c1*v*(1 + sign(v)/2)", "c1*(v + abs(v)/2)"),
+        ("c1*abs(v)*sign(v)", "c1*v"),
+        ("F*(1 - (l/(l - d))**1.4) - c1*v", "F*(1 - (l/(l - d))**1.4) - c1*v"),
+        ("sign(d - 1 m)*c1*v", "-c1*v"),
+    ],
+)
+def test_sign_may_stand_in_a_force_that_does_not_jump(own, same):
+    laws = [f"{{law: {{force: '{text}', parameters: {{c1: 600 N s/m, F: 500 N, l: 1 m}}}}}}" for text in (own, same)]
+    first, second = (run(sedan(text))[1].responses[0] for text in laws)
+    assert np.abs(first).max() > 0
+    np.testing.assert_allclose(first, second, rtol=0, atol=1e-9 * np.abs(second).max())

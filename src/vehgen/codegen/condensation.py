@@ -20,6 +20,7 @@ from vehgen.codegen.nonlinear_element import ElementAtBegin, LawForces, Nonlinea
 from vehgen.codegen.program import SAMPLE_PHASE, STEP_PHASE, Node
 from vehgen.codegen.step_program import EquationTerms
 from vehgen.mechanics.law_terms import RATE, TIME_STEP, TRAVEL
+from vehgen.mechanics.symbols import derivative
 
 
 class Condensation:
@@ -112,7 +113,7 @@ class Condensation:
         slope = sp.Add(*(step.slope for step in joint.steps if step.slope is not None)) / 2
         for step in joint.steps:
             if step.slope is None:
-                slope += sp.diff(step.force, TRAVEL) * TIME_STEP / 2 + sp.diff(step.force, RATE)
+                slope += derivative(step.force, TRAVEL) * TIME_STEP / 2 + derivative(step.force, RATE)
         return self._in_step(joint, smooth, begin, rate), self._in_step(joint, slope, begin, rate)
 
     def _relaxation(self, joint: NonlinearElement, slope: Node) -> Node:

@@ -10,7 +10,7 @@ from vehgen.codegen.factorisation import Matrix, factorise
 from vehgen.codegen.program import SETUP_PHASE, Node
 from vehgen.codegen.step_program import EquationTerms
 from vehgen.mechanics.energies import Element
-from vehgen.mechanics.law_terms import RATE, REST, STATIC, TIME_STEP, TRAVEL
+from vehgen.mechanics.law_terms import RATE, REST, STATIC, TIME_STEP, TRAVEL, element_steps
 from vehgen.mechanics.laws import LawStep
 
 
@@ -108,11 +108,10 @@ def _nonlinear(terms: EquationTerms, number: int, index: int, element: Element, 
     program, model = terms.program, terms.model
     row = {i: terms.convert(value) for i, value in element.row.items()}
     states: dict[sp.Symbol, str] = {}
-    steps = []
-    for place, term in enumerate(element.laws):
-        own = {name: _own(name, number, place) for name in term.law.states}
-        states |= {symbol: f"s{number}_{place}_{i}" for i, symbol in enumerate(own.values())}
-        steps.append(term.step(element.k, element.c, own))
+    own = [{name: _own(name, number, place) for name in term.law.states} for place, term in enumerate(element.laws)]
+    for place, named in enumerate(own):
+        states |= {symbol: f"s{number}_{place}_{i}" for i, symbol in enumerate(named.values())}
+    steps = element_steps(element.laws, element.k, element.c, own)
     force = rest = None
     if model.is_preloaded and any(term.origin == "unloaded" or term.asks_static for term in element.laws):
         rest = program.leaf(f"rest{number}", SETUP_PHASE)

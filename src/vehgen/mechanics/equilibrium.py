@@ -21,6 +21,7 @@ from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.evaluation import PopulationValues
 from vehgen.mechanics.law_terms import REST
 from vehgen.mechanics.rows import SparseMatrix
+from vehgen.mechanics.symbols import derivative
 
 Array = NDArray[np.float64]
 MAX_NEWTON = 60
@@ -98,7 +99,7 @@ class _Balance:
         mass = matrix({(i, i): model.mass_entries[i, i] for i in range(n_dof)}, n_dof, n_dof)
         self.scale = 1 / np.sqrt(np.einsum("nii->ni", mass))
         preloads = {i: sp.Add(*(term.preload() for term in item.laws)) for i, item in enumerate(elements)}
-        self.laws = {i: (force, sp.diff(force, REST)) for i, force in preloads.items() if force != 0}
+        self.laws = {i: (force, derivative(force, REST)) for i, force in preloads.items() if force != 0}
         self.heavy = np.linalg.norm(self.weight * self.scale, axis=1)
 
     def travels(self, q: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
@@ -12,7 +12,8 @@ from vehgen.errors import InputError, did_you_mean, shortened, shown
 from vehgen.files.checks import check_dimension, dimension_of, value_of
 from vehgen.files.expressions import Expression
 from vehgen.files.units import FORCE, LENGTH, MOMENT, NONE, TIME
-from vehgen.mechanics.laws import LAWS, Kind, Law, LawState, LawStep, custom_law
+from vehgen.mechanics.law_slopes import check_slopes
+from vehgen.mechanics.laws import LAWS, Kind, Law, LawParameter, LawState, LawStep, custom_law
 from vehgen.mechanics.symbols import number, to_sympy
 from vehgen.vehicle.model import Vehicle
 from vehgen.vehicle.parts import LawEntry, Spring
@@ -31,7 +32,13 @@ class LawTerm:
     parameters: Mapping[str, sp.Expr]
     origin: TravelOrigin = "static"
 
-    def step(self, k: sp.Expr = sp.S.Zero, c: sp.Expr = sp.S.Zero, states: Mapping[str, sp.Symbol] | None = None) -> LawStep:
+    def step(
+        self,
+        k: sp.Expr = sp.S.Zero,
+        c: sp.Expr = sp.S.Zero,
+        states: Mapping[str, sp.Symbol] | None = None,
+        beside: LawStep | None = None,
+    ) -> LawStep:
         """Return the law over a step as expressions of TRAVEL, RATE, TIME_STEP, STATIC, REST and its states.
 
         A law whose travel counts from the unloaded position adds to the static force: f(REST + TRAVEL) - f(REST).
@@ -42,10 +49,13 @@ class LawTerm:
             Stiffness [N/m] and damping [N s/m] of the element that carries it.
         states
             The symbols of the law's states (default: symbols of their names).
+        beside
+            What the element's other laws make of the step, where the law limits all of them (default: there are none).
         """
         states = states if states is not None else {name: sp.Symbol(f"_{name}", real=True) for name in self.law.states}
         if self.origin == "static":
-            return self.law.write(LawState(TRAVEL, RATE, TIME_STEP, k, c, STATIC, states), self.parameters)
+            others = {} if beside is None else {"beside": beside}
+            return self.law.write(LawState(TRAVEL, RATE, TIME_STEP, k, c, STATIC, states, **others), self.parameters)
         written = self.law.write(LawState(REST + TRAVEL, RATE, TIME_STEP, k, c, STATIC, states), self.parameters)
         return replace(written, force=written.force - self.preload(), now=written.now - self.preload())
 
@@ -59,6 +69,31 @@ class LawTerm:
     def asks_static(self) -> bool:
         """Whether the law depends on its element's static force."""
         return STATIC in self.step().force.free_symbols
+
+
+def element_steps(laws: Sequence[LawTerm], k: sp.Expr, c: sp.Expr, states: Sequence[Mapping[str, sp.Symbol]]) -> list[LawStep]:
+    """Return an element's laws over a step, in their order; one that limits the whole force acts on what the others make.
+
+    Parameters
+    ----------
+    laws
+        The element's.
+    k, c
+        Its stiffness [N/m] and damping [N s/m].
+    states
+        The symbols of each law's states, by name.
+    """
+    found: dict[int, LawStep] = {}
+    for i in sorted(range(len(laws)), key=lambda i: laws[i].law.limits_all):
+        others = list(found.values())
+        slopes = [step.slope for step in others if step.force != 0]
+        beside = LawStep(
+            force=sp.Add(*(step.force for step in others)),
+            now=sp.Add(*(step.now for step in others)),
+            slope=None if None in slopes else sp.Add(*slopes),
+        )
+        found[i] = laws[i].step(k, c, states[i], beside)
+    return [found[i] for i in range(len(laws))]
 
 
 def read_laws(vehicle: Vehicle, kind: Kind, name: str) -> tuple[LawTerm, ...]:
@@ -113,14 +148,13 @@ def _read(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], name: str, 
         if not isinstance(expression, Expression):
             raise InputError(f"{key} is a quantity, not a mapping", vehicle.position(*path, key))
         check_dimension(expression, parameter.dimension(kind), vehicle.dimensions, vehicle.document, *path, key)
-        if not parameter.signed:
-            _check_sign(vehicle, expression, f"{key} of {name}", (*path, key))
+        _check_range(vehicle, expression, name, parameter, (*path, key))
         values[key] = to_sympy(expression)
     return _with_origin(vehicle, path, given, LawTerm(law, values))
 
 
 def check_laws(vehicle: Vehicle, free: Mapping[str, float], where: str = "") -> None:
-    """Check that quantities of force laws are not negative, for these values of the free parameters [SI], but those that may be.
+    """Check that quantities of force laws are what they may be, mostly not negative, for these values of the free parameters [SI].
 
     Raises
     ------
@@ -134,10 +168,10 @@ def check_laws(vehicle: Vehicle, free: Mapping[str, float], where: str = "") -> 
             for law_name, given in entry.items():
                 for parameter in LAWS[law_name].parameters if law_name in LAWS else ():
                     expression = given.get(parameter.name)
-                    if isinstance(expression, Expression) and not parameter.signed:
+                    if isinstance(expression, Expression):
                         known = vehicle.all_values(free) if known is None else known
                         place = (*path, "laws", index, law_name, parameter.name)
-                        _check_sign_at(vehicle, known, where, expression, f"{parameter.name} of {law_name}", place)
+                        _check_at(vehicle, known, where, expression, law_name, parameter, place)
 
 
 def _springs(vehicle: Vehicle) -> Iterator[tuple[Kind, str]]:
@@ -150,23 +184,31 @@ def _springs(vehicle: Vehicle) -> Iterator[tuple[Kind, str]]:
     yield from (("hinge", name) for name in vehicle.hinges)
 
 
-def _check_sign(vehicle: Vehicle, expression: Expression, what: str, path: tuple[str | int, ...]) -> None:
-    """Refuse a quantity that is negative by the file's values, a set's or a range's; one without symbols has one value."""
+def _check_range(vehicle: Vehicle, expression: Expression, law: str, parameter: LawParameter, path: tuple[str | int, ...]) -> None:
+    """Refuse what cannot be by the file's values, a set's or at the ends of ranges; one without symbols has one value."""
     if not expression.names:
-        _check_sign_at(vehicle, {}, "", expression, what, path)
+        _check_at(vehicle, {}, "", expression, law, parameter, path)
         return
     values, ranges = vehicle.values(), vehicle.ranges()
     tried = [(values, "")] + [(vehicle.values(name), f" in the set {shown(name)}") for name in vehicle.sets]
-    tried += [({**values, name: ranges[name][0]}, f" at the low end of {name}") for name in sorted(expression.names) if name in ranges]
+    for name in sorted(expression.names & ranges.keys()):
+        tried += [({**values, name: end}, f" at the end of the range of {name}") for end in ranges[name]]
     for free, where in tried:
-        _check_sign_at(vehicle, vehicle.all_values(free), where, expression, what, path)
+        _check_at(vehicle, vehicle.all_values(free), where, expression, law, parameter, path)
 
 
-def _check_sign_at(
-    vehicle: Vehicle, known: Mapping[str, float], where: str, expression: Expression, what: str, path: tuple[str | int, ...]
+def _check_at(
+    vehicle: Vehicle,
+    known: Mapping[str, float],
+    where: str,
+    expression: Expression,
+    law: str,
+    parameter: LawParameter,
+    path: tuple[str | int, ...],
 ) -> None:
-    if (value := value_of(expression, known, vehicle.document, *path)) < 0:
-        raise InputError(f"{what} must not be below 0, found {value:g}{where}", vehicle.position(*path))
+    value = value_of(expression, known, vehicle.document, *path)
+    if (reason := parameter.refusal(value)) is not None:
+        raise InputError(f"{parameter.name} of {law} {reason}, found {value:g}{where}", vehicle.position(*path))
 
 
 def _with_origin(vehicle: Vehicle, path: tuple[str | int, ...], given: LawEntry, term: LawTerm) -> LawTerm:
@@ -210,5 +252,6 @@ def _read_custom(vehicle: Vehicle, kind: Kind, path: tuple[str | int, ...], give
     travel, moment = (NONE, MOMENT) if kind == "hinge" else (LENGTH, FORCE)
     dimensions |= {"d": travel, "v": travel / TIME}
     check_dimension(force, moment, dimensions, vehicle.document, *path, "force")
+    check_slopes(vehicle, force, own, path)
     law = custom_law(to_sympy(force), {key: to_sympy(value) for key, value in own.items()})
     return _with_origin(vehicle, path, given, LawTerm(law, {}))

@@ -38,6 +38,12 @@ _OF_SYMBOLS = {
 }
 
 
+def derivative(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
+    """Return the derivative of an expression by a symbol; where `sign` jumps it has none, and counts as level."""
+    found = sp.diff(expression, symbol)
+    return found.replace(sp.DiracDelta, lambda *_: sp.S.Zero) if found.has(sp.DiracDelta) else found
+
+
 def to_sympy(expression: Expression) -> sp.Expr:
     """Return an expression of a vehicle or run file in SI units as a sympy expression."""
     return expression.fold(number, parameter, _OF_SYMBOLS)

@@ -18,7 +18,7 @@ from vehgen.mechanics.energies import Element
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
 from vehgen.mechanics.evaluation import ExpressionSteps
-from vehgen.mechanics.law_terms import RATE, REST, STATIC, TIME_STEP, TRAVEL
+from vehgen.mechanics.law_terms import RATE, REST, STATIC, TIME_STEP, TRAVEL, element_steps
 from vehgen.simulate.last_used import LastUsed
 from vehgen.simulate.sensitivity import chain_of, total_derivative
 
@@ -185,9 +185,8 @@ def _written(element: Element) -> tuple[list[sp.Symbol], list[sp.Expr]]:
     """Return the states of an element's laws, and the force over a step with the states at its end; friction slips all along."""
     states: list[sp.Symbol] = []
     force, ends = sp.S.Zero, []
-    for place, term in enumerate(element.laws):
-        own = {name: sp.Symbol(f"_{name}_{place}", real=True) for name in term.law.states}
-        step = term.step(element.k, element.c, own)
+    named = [{name: sp.Symbol(f"_{name}_{place}", real=True) for name in term.law.states} for place, term in enumerate(element.laws)]
+    for step, own in zip(element_steps(element.laws, element.k, element.c, named), named, strict=True):
         states += own.values()
         force += step.force + step.friction_middle + step.friction * sp.sign(RATE)
         ends += [step.states[name] for name in own]

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from vehgen.codegen import Excitation
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
+from vehgen.mechanics.symbols import derivative
 from vehgen.simulate.exact import channel_values, newmark_states
 
 Array = NDArray[np.float64]
@@ -112,4 +113,4 @@ def chain_of(model: EquationsOfMotion, name: str) -> dict[sp.Symbol, sp.Expr]:
 
 def total_derivative(expression: sp.Expr, chain: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
     """Return an expression's derivative along the derivatives of its symbols."""
-    return sp.Add(*(sp.diff(expression, symbol) * rate for symbol, rate in chain.items() if expression.has(symbol)))
+    return sp.Add(*(derivative(expression, symbol) * rate for symbol, rate in chain.items() if expression.has(symbol)))

@@ -27,7 +27,7 @@ ASYMMETRIC_DAMPING = Law(
         LawParameter("c", (1, -1, 1), "damping in rebound", 0.0, 5.0e4),
         LawParameter("ratio", (0, 0, 0), "damping in bump over that in rebound", 0.1, 1.0),
         LawParameter("blow_off", (0, 1, -1), "rate at which the valves open (default: never)", 0.05, 10.0, 1.0e3),
-        LawParameter("relief", (0, 0, 0), "share of the damping lost beyond blow_off (0: no blow-off)", 0.0, 0.9, 0.0),
+        LawParameter("relief", (0, 0, 0), "share of the damping lost beyond blow_off (0: no blow-off)", 0.0, 0.9, 0.0, most=1.0),
     ),
     write=_write,
 )

@@ -7,6 +7,7 @@ from the unloaded position where the vehicle file says so).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
@@ -23,7 +24,8 @@ EVERYWHERE: tuple[Kind, ...] = ("suspension", "tyre", "link", "hinge")
 class LawParameter:
     """A parameter of a law; its dimension is force^a travel^b time^c, so that it fits vertical springs and hinges alike.
 
-    `low` and `high` bound what is physically usual for a heavy vehicle's suspension, in SI units; negative may be only what is `signed`.
+    `low` and `high` bound what is physically usual for a heavy vehicle's suspension, in SI units; negative may be only what is `signed`,
+    zero not what is `above_zero`, and nothing more than `most`.
     """
 
     name: str
@@ -33,6 +35,16 @@ class LawParameter:
     high: float
     default: float | None = None
     signed: bool = False
+    above_zero: bool = False
+    most: float = math.inf
+
+    def refusal(self, value: float) -> str | None:
+        """Say what a value must be that it is not; None where it may stand."""
+        if value > self.most:
+            return f"must be at most {self.most:g}"
+        if self.above_zero and value <= 0:
+            return "must be above 0"
+        return "must not be below 0" if value < 0 and not self.signed else None
 
     def dimension(self, kind: Kind) -> Dimension:
         """Return its dimension on a suspension, tyre, link (force and length) or hinge (moment and angle)."""
@@ -46,7 +58,10 @@ class LawParameter:
 
 @dataclass(frozen=True)
 class LawState:
-    """What a law may use: travel d [m] and rate v [m/s] in mid-step, step h [s], the element's k, c and static force, its states."""
+    """What a law may use: travel d [m] and rate v [m/s] in mid-step, step h [s], the element's k, c and static force, its states.
+
+    `beside` is what the element's other laws make of the step, without friction; only a law that limits the whole force asks for it.
+    """
 
     d: sp.Expr
     v: sp.Expr
@@ -55,6 +70,7 @@ class LawState:
     c: sp.Expr
     static: sp.Expr
     states: Mapping[str, sp.Symbol] = field(default_factory=dict)
+    beside: LawStep = field(default_factory=lambda: LawStep(slope=sp.S.Zero))
 
 
 @dataclass(frozen=True)
@@ -90,7 +106,8 @@ class Law:
     """A force law of the library: what it is in words, its parameters and states, and its step.
 
     `write(motion, parameters)` returns the LawStep; `equation` is plain text; `strength` names the parameter that switches the law off:
-    at `neutral` the law adds nothing, whatever its other parameters are.
+    at `neutral` the law adds nothing, whatever its other parameters are. With `limits_all` it acts on what
+    all other laws of its element make.
     """
 
     name: str
@@ -103,6 +120,7 @@ class Law:
     write: Callable[[LawState, Mapping[str, sp.Expr]], LawStep]
     states: tuple[str, ...] = ()
     attaches_to: tuple[Kind, ...] = EVERYWHERE
+    limits_all: bool = False
     neutral: float = 0.0
 
 

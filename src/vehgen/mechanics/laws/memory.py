@@ -34,7 +34,7 @@ HYSTERESIS = Law(
     strength="force",
     parameters=(
         LawParameter("force", (1, 0, 0), "force of the fully developed loop", 0.0, 2.0e4),
-        LawParameter("travel", (0, 1, 0), "travel over which the loop develops", 5.0e-4, 0.02),
+        LawParameter("travel", (0, 1, 0), "travel over which the loop develops", 5.0e-4, 0.02, above_zero=True),
         LawParameter("beta", (0, 0, 0), "share of the loss that follows |v| (0.5: straight unloading)", 0.3, 1.0, 0.5),
     ),
     write=_hysteresis,
@@ -58,7 +58,7 @@ RELAXATION = Law(
     strength="k",
     parameters=(
         LawParameter("k", (1, -1, 0), "stiffness of the series spring", 0.0, 5.0e6),
-        LawParameter("time", (0, 0, 1), "relaxation time, dashpot over spring", 1.0e-3, 2.0),
+        LawParameter("time", (0, 0, 1), "relaxation time, dashpot over spring", 1.0e-3, 2.0, above_zero=True),
     ),
     write=_relaxation,
     states=("s",),

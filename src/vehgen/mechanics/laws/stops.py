@@ -51,18 +51,22 @@ BUMP_STOP = Law(
 
 
 def _tyre_liftoff(motion: LawState, p: Mapping[str, sp.Expr]) -> LawStep:
-    force = p["share"] * positive(-(motion.static + motion.k * motion.d + motion.c * motion.v))
-    return LawStep(force=force, now=force, slope=p["share"] * (motion.k * motion.h / 2 + motion.c))
+    spring, beside = motion.static + motion.k * motion.d + motion.c * motion.v, motion.beside
+    force, now = (p["share"] * positive(-(spring + other)) for other in (beside.force, beside.now))
+    slope = None if beside.slope is None else p["share"] * (motion.k * motion.h / 2 + motion.c + beside.slope)
+    return LawStep(force=force, now=now, slope=slope)
 
 
 TYRE_LIFTOFF = Law(
     name="tyre_liftoff",
     title="Tyre that leaves the road",
-    equation="f = share*max(-(static load + k*d + c*v), 0), so that the whole contact force is never negative",
+    equation="f = share*max(-(static load + k*d + c*v + other laws of the tyre), 0), so that the whole contact force, "
+    "but for dry friction, is never negative",
     meaning="over a sharp hump the wheel loses contact; the static load decides when",
     source="D. Cebon, Handbook of Vehicle-Road Interaction, 1999",
     strength="share",
-    parameters=(LawParameter("share", (0, 0, 0), "1: the tyre cannot pull; 0: the linear tyre", 0.0, 1.0, 1.0),),
+    parameters=(LawParameter("share", (0, 0, 0), "1: the tyre cannot pull; 0: the linear tyre", 0.0, 1.0, 1.0, most=1.0),),
     write=_tyre_liftoff,
     attaches_to=("tyre",),
+    limits_all=True,
 )
