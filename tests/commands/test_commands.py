@@ -218,3 +218,12 @@ def test_a_title_in_another_script_prints_on_a_plain_terminal(work: Path):
     found = python("-m", "vehgen", "modes", "a.yaml", folder=work, PYTHONIOENCODING="ascii")
     assert (found.returncode, found.stderr) == (0, "")
     assert "??? : natural modes".replace(" ", "", 1) in found.stdout
+
+
+@pytest.mark.parametrize(("name", "told"), [("sedan2", False), ("stopped", True)])
+def test_modes_say_that_force_laws_are_left_out(tmp_path, capsys, monkeypatch, name, told):
+    monkeypatch.chdir(tmp_path)
+    laws = "axles: {front: {suspension: {laws: [{bump_stop: {k: 200 kN/m, clearance: 0.19 m, from: unloaded}}]}}}"
+    Path("stopped.yaml").write_text(f"extends: sedan2\nname: stopped\n{laws}\n", encoding="utf-8")
+    assert main(["modes", "sedan2" if name == "sedan2" else "stopped.yaml"]) == 0
+    assert ("the force laws of stopped are left out" in capsys.readouterr().err) == told

@@ -303,3 +303,13 @@ def test_a_recording_of_a_sensor_far_from_the_vehicle_is_doubted(tmp_path):
     path.write_text(path.read_text().replace("behind: rear,", "behind: rear, distance: 30 m,"))
     with pytest.warns(ModelWarning, match=r"hump: R is 30 m behind all axles, hinges and COGs of the vehicle, which span 2.8 m"):
         load_trials(path)
+
+
+def test_a_vehicle_that_deserves_a_second_look_is_doubted_where_it_is_simulated(tmp_path):
+    """With its rear axle ahead of the COG the front tyre would have to pull it down."""
+    text = "extends: sedan2\nname: nosed\nparameters: {{wheelbase: {{value: 1.05 m}}}}\n{silence}"
+    run = "vehicle: nosed.yaml\nspeed: 3 m/s\nduration: 0.5 s\nroad: [{iso8608: {class: A}}]\n"
+    for silence, told in (("", True), ("silence: [negative_load, gyration, body_mode, deflection]\n", False)):
+        (tmp_path / "nosed.yaml").write_text(text.format(silence=silence), encoding="utf-8")
+        warnings = simulate(run_of(tmp_path, run)).warnings
+        assert any("negative load on front" in text or "negative load on rear" in text for text in warnings) == told

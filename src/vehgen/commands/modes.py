@@ -23,6 +23,8 @@ def run(options: argparse.Namespace) -> None:
     from vehgen.simulate.modes import natural_modes
 
     modes = natural_modes(vehicle, values)
+    if vehicle.has_laws:
+        warn([f"the force laws of {vehicle.name} are left out: modes are those of its springs and dampers alone"])
     warn(f"no linear stiffness holds {item.name}: 0 Hz; a spring, a tyre or a link would" for item in modes if item.undamped_hz < FREE_HZ)
     if options.json:
         keys = ("name", "undamped_hz", "damped_hz", "damping_ratio")

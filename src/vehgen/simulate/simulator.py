@@ -16,6 +16,7 @@ from vehgen.mechanics import ElementOutput, EquationsOfMotion, Output, Place, de
 from vehgen.mechanics.quantities import WITH_STATIC
 from vehgen.simulate.acquired import acquire, kept_samples
 from vehgen.simulate.budgets import check_population
+from vehgen.simulate.lint import lint
 from vehgen.simulate.population import as_population, population_of
 from vehgen.simulate.profile_warnings import doubtful_profiles
 from vehgen.simulate.response import Response, ResponseChannel
@@ -253,6 +254,7 @@ def simulate(run: RunLike, *, vehicle: VehicleLike | None = None) -> Response:
         *doubtful_scenario(simulator.model, values, scenario, run.places()),
         *doubtful_profiles(simulator.model, values, scenario),
         *doubtful_tables(run, simulator.model, scenario),
+        *lint(simulator.model, values),
     ]
     time = np.arange(responses.shape[1], dtype=np.float64) * scenario.dt * scenario.decimation
     return Response(time, read, channels, tuple(messages))

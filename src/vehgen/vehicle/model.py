@@ -190,6 +190,12 @@ class Vehicle(FileModel):
 
         return {name: value(name) for name in self.parameters}
 
+    @property
+    def has_laws(self) -> bool:
+        """Whether a suspension, tyre, link or hinge carries a force law."""
+        axles = [spring for axle in self.axles.values() for spring in (axle.suspension, axle.tyre) if spring is not None]
+        return any(spring.laws for spring in (*axles, *self.links.values(), *self.hinges.values()))
+
     def ranges(self) -> dict[str, tuple[float, float]]:
         """Return what calibration may search, in SI units, by parameter name."""
         return {
