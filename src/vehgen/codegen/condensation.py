@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import sympy as sp
 
+from vehgen.codegen.coupling import sweeps_of
 from vehgen.codegen.friction import Slip, friction_now, mean_friction
 from vehgen.codegen.nonlinear_element import ElementAtBegin, LawForces, NonlinearElement
 from vehgen.codegen.program import SAMPLE_PHASE, STEP_PHASE, Node
@@ -36,14 +37,14 @@ class Condensation:
         G of these elements.
     sweeps
         Sweeps per step (default: two where every law is smooth with a bounded slope, whose error shrinks some hundredfold in each, else
-        three).
+        three, or more where light bodies stand between elements with friction: see coupling.py).
     """
 
     def __init__(self, terms: EquationTerms, joints: list[NonlinearElement], compliance: list[list[Node]], sweeps: int | None) -> None:
         self.terms, self.program, self.joints = terms, terms.program, joints
         program = self.program
         self.compliance = [[program.label(item, f"G{i}_{j}") for j, item in enumerate(row)] for i, row in enumerate(compliance)]
-        self.sweeps = sweeps or (2 if all(joint.bounded and not joint.friction for joint in joints) else 3)
+        self.sweeps = sweeps or (2 if all(joint.bounded and not joint.friction for joint in joints) else sweeps_of(terms.model, joints))
         self.inverse = [program.divide(program.number(1.0), self.compliance[i][i]) for i in range(len(joints))]
         self.normalised = [[program.multiply(self.inverse[i], item) for item in row] for i, row in enumerate(self.compliance)]
 

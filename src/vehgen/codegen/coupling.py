@@ -1,0 +1,52 @@
+"""How many sweeps links with friction need that push each other through light bodies: a seat on a cab on a frame."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from vehgen.codegen.nonlinear_element import NonlinearElement
+from vehgen.mechanics.equations_of_motion import EquationsOfMotion
+
+FEWEST, MOST = 3, 12
+ERROR_LEFT = 0.012
+"""After so many sweeps the force of a link may be off by this share of its bound, for all other forces' begin."""
+MORE = 4
+"""Where FEWEST are too few: every other sweep is damped, and at a sample a small slip counts much."""
+
+
+def sweeps_of(model: EquationsOfMotion, joints: Sequence[NonlinearElement]) -> int:
+    """Return how many sweeps a step takes, by the masses between the elements and their bounds, at the vehicle file's values.
+
+    In a short step a force of one element moves the ends of others by G = J M^-1 J^T. Sweeps shrink errors by G off its diagonal over its
+    diagonal, counted in bounds, or where one is zero in forces that move their own ends alike. Axles under one heavy body need no more
+    than FEWEST.
+
+    Parameters
+    ----------
+    model
+        Whose masses count.
+    joints
+        The elements with laws; only those with friction are looked at, and of them what is left of the links' errors.
+    """
+    rubbing = [joint for joint in joints if joint.friction]
+    links = [i for i, joint in enumerate(rubbing) if joint.element.kind == "link"]
+    if not links or len(rubbing) < 2:
+        return FEWEST
+    values = model.values()
+    entries = [joint.element.row.get(i, sp.S.Zero) for joint in rubbing for i in range(model.n_dof)]
+    J: NDArray[np.float64] = np.reshape(model.evaluate_list(entries, values), (len(rubbing), model.n_dof))
+    bounds = np.array(model.evaluate_list([sp.Add(*(step.friction for step in joint.steps)) for joint in rubbing], values))
+    G = J @ np.linalg.solve(model.numeric(values).M, J.T)
+    sizes = bounds if (bounds > 0).all() else 1 / np.sqrt(np.diag(G))
+    shrink = np.abs(G) / np.diag(G)[:, None] * sizes / sizes[:, None]
+    np.fill_diagonal(shrink, 0.0)
+    left = shrink
+    for count in range(1, MOST):
+        if left[links].sum(axis=1).max() <= ERROR_LEFT:
+            return FEWEST if count <= FEWEST else min(count + MORE, MOST)
+        left = left @ shrink
+    return MOST
