@@ -83,3 +83,20 @@ def test_a_load_that_presses_a_tyre_flat_is_told(tyre, said):
     text = SHORT_AXLES.replace("k: 1 MN/m", tyre) % ""
     assert [item for item in warnings(text) if "pressed in" in item and " one " in item] == said
     assert not [item for item in warnings(text + "silence: [deflection one]\n") if "of one is pressed in" in item]
+
+
+@pytest.mark.parametrize(
+    ("law", "newtons"),
+    [
+        ("{law: {force: 100 N + k3*d**3, parameters: {k3: 1 MN/m^3}}}", "law on the suspension front pushes with 100 N"),
+        ("{bump_stop: {k: 100 kN/m, clearance: -10 mm}}", "bump_stop on the suspension front pushes with 1000 N"),
+        ("{bump_stop: {k: 100 kN/m, clearance: -10 mm, from: unloaded}}", None),
+        ("{hysteresis: {force: 300 N, travel: 5 mm}}", None),
+        ("{dry_friction: {force: 300 N}}", None),
+    ],
+)
+def test_a_law_that_pushes_at_rest_is_doubted(law, newtons):
+    """Counted from static equilibrium it leaves the vehicle out of balance as a run begins."""
+    vehicle = parse_vehicle(f"extends: sedan2\naxles: {{front: {{suspension: {{laws: [{law}]}}}}}}")
+    found = [text for text in lint(derive(vehicle)) if "pushes" in text]
+    assert [text.partition(" at rest")[0] for text in found] == ([] if newtons is None else [newtons])

@@ -6,11 +6,13 @@ import itertools
 from collections.abc import Iterator, Mapping
 
 import numpy as np
+import sympy as sp
 
 from vehgen.errors import InputError
-from vehgen.files.number_text import kilonewtons, on_terminal
+from vehgen.files.number_text import five_digits, kilonewtons, on_terminal
 from vehgen.mechanics.energies import pitch_inertia
-from vehgen.mechanics.equations_of_motion import EquationsOfMotion
+from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
+from vehgen.mechanics.law_terms import RATE, STATIC, TRAVEL
 from vehgen.mechanics.static_loads import static_deflections, static_loads
 from vehgen.mechanics.symbols import to_sympy
 from vehgen.simulate.modes import natural_modes
@@ -23,6 +25,8 @@ GYRATION = (0.12, 0.75)
 """Radius of gyration over the span of what is attached to a body: a uniform rod has 0.29, two masses at its ends 0.5."""
 BODY_BAND = (0.5, 5.0)
 """Where body modes of road vehicles lie, Hz."""
+LEAST_PUSH = 1e-6
+"""A law that pushes at rest with less than this share of the weight does not."""
 AXLE_GAP = 0.6
 """Two axles closer than this [m] would share a wheel's space."""
 LINK_GAP = 0.1
@@ -42,7 +46,24 @@ def lint(model: EquationsOfMotion, values: Mapping[str, float] | None = None) ->
     except InputError as error:
         findings, found = [], [error.message]
     findings += (*_gyration(model, values), *_gaps(model, values), *_links(model, values), *_modes(model, values))
+    found += _acting_at_rest(model, values)
     return [*found, *(text for kind, part, text in findings if not is_silenced(model.vehicle, kind, part))]
+
+
+def _acting_at_rest(model: EquationsOfMotion, values: Mapping[str, float]) -> Iterator[str]:
+    """Warn of laws whose travel counts from static equilibrium, and that push there all the same."""
+    at_rest, pushes, where = dict.fromkeys((TRAVEL, RATE, STATIC), sp.S.Zero), list[sp.Expr](), list[str]()
+    for element in model.elements:
+        for term in element.laws:
+            if term.origin == "static" and not term.asks_static:
+                pushes.append(term.step().now.subs(at_rest).subs({sp.Symbol(f"_{name}", real=True): 0 for name in term.law.states}))
+                where.append(f"{term.law.name} on the {element.kind} {element.name}")
+    for text, push in zip(where, model.evaluate_list(pushes, values), strict=True):
+        if abs(push) > LEAST_PUSH * GRAVITY * model.total_mass(values):
+            yield (
+                f"{text} pushes with {five_digits(push)} N at rest, which static loads leave out: the vehicle starts out of balance; "
+                "with `from: unloaded` it counts"
+            )
 
 
 def _loads(loads: Mapping[str, float]) -> Iterator[Finding]:
