@@ -6,7 +6,7 @@ import numba
 import numpy as np
 import pytest
 
-from vehgen.codegen.coupling import FEWEST, MOST, sweeps_of
+from vehgen.codegen.coupling import FEWEST_SWEEPS, MOST_SWEEPS, sweeps_of
 from vehgen.codegen.nonlinear_element import find_nonlinear
 from vehgen.codegen.step_program import EquationTerms
 from vehgen.mechanics import derive
@@ -82,8 +82,8 @@ def count(text: str, tmp_path) -> int:
 
 def test_sweeps_are_as_many_as_light_bodies_between_links_ask_for(tmp_path):
     axles = ", ".join(f"axle{i}: {{suspension: {{laws: [{{dry_friction: {{force: 3 kN}}}}]}}}}" for i in range(1, 6))
-    assert count(f"extends: tractor5\nname: own\naxles: {{{axles}}}\n", tmp_path) == FEWEST
+    assert count(f"extends: tractor5\nname: own\naxles: {{{axles}}}\n", tmp_path) == FEWEST_SWEEPS
     light, heavy = (count(chain(seat, (3000.0, 300.0, 60.0)), tmp_path) for seat in (5.0, 80.0))
-    assert FEWEST < light < heavy < MOST
-    assert count(chain(80.0, (1e5, 300.0, 1.0)), tmp_path) == MOST
-    assert count(chain(0.001, (0.001, 300.0, 300.0)), tmp_path) == FEWEST
+    assert FEWEST_SWEEPS < light < heavy < MOST_SWEEPS
+    assert count(chain(80.0, (1e5, 300.0, 1.0)), tmp_path) == MOST_SWEEPS
+    assert count(chain(0.001, (0.001, 300.0, 300.0)), tmp_path) == FEWEST_SWEEPS

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from vehgen.codegen.nonlinear_element import NonlinearElement
 from vehgen.mechanics.equations_of_motion import EquationsOfMotion
 
-FEWEST, MOST = 3, 12
+FEWEST_SWEEPS, MOST_SWEEPS = 3, 12
 ERROR_LEFT = 0.012
 """After so many sweeps the force of a link may be off by this share of its bound, for all other forces' begin."""
-MORE = 4
-"""Where FEWEST are too few: every other sweep is damped, and at a sample a small slip counts much."""
+MORE_SWEEPS = 4
+"""Where FEWEST_SWEEPS are too few: every other sweep is damped, and at a sample a small slip counts much."""
 
 
 def sweeps_of(model: EquationsOfMotion, joints: Sequence[NonlinearElement]) -> int:
@@ -23,7 +23,7 @@ def sweeps_of(model: EquationsOfMotion, joints: Sequence[NonlinearElement]) -> i
 
     In a short step a force of one element moves the ends of others by G = J M^-1 J^T. Sweeps shrink errors by G off its diagonal over its
     diagonal, counted in bounds, or where one is zero in forces that move their own ends alike. Axles under one heavy body need no more
-    than FEWEST.
+    than FEWEST_SWEEPS.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def sweeps_of(model: EquationsOfMotion, joints: Sequence[NonlinearElement]) -> i
     rubbing = [joint for joint in joints if joint.friction]
     links = [i for i, joint in enumerate(rubbing) if joint.element.kind == "link"]
     if not links or len(rubbing) < 2:
-        return FEWEST
+        return FEWEST_SWEEPS
     values = model.values()
     entries = [joint.element.row.get(i, sp.S.Zero) for joint in rubbing for i in range(model.n_dof)]
     J: NDArray[np.float64] = np.reshape(model.evaluate_list(entries, values), (len(rubbing), model.n_dof))
@@ -45,8 +45,8 @@ def sweeps_of(model: EquationsOfMotion, joints: Sequence[NonlinearElement]) -> i
     shrink = np.abs(G) / np.diag(G)[:, None] * sizes / sizes[:, None]
     np.fill_diagonal(shrink, 0.0)
     left = shrink
-    for count in range(1, MOST):
+    for count in range(1, MOST_SWEEPS):
         if left[links].sum(axis=1).max() <= ERROR_LEFT:
-            return FEWEST if count <= FEWEST else min(count + MORE, MOST)
+            return FEWEST_SWEEPS if count <= FEWEST_SWEEPS else min(count + MORE_SWEEPS, MOST_SWEEPS)
         left = left @ shrink
-    return MOST
+    return MOST_SWEEPS
