@@ -313,3 +313,16 @@ def test_a_vehicle_that_deserves_a_second_look_is_doubted_where_it_is_simulated(
         (tmp_path / "nosed.yaml").write_text(text.format(silence=silence), encoding="utf-8")
         warnings = simulate(run_of(tmp_path, run)).warnings
         assert any("negative load on front" in text or "negative load on rear" in text for text in warnings) == told
+
+
+def test_a_response_that_grows_without_end_is_refused_with_what_may_feed_it(tmp_path):
+    """An own law feeds in more than the damper takes out."""
+    law = "{law: {force: -c1*v, parameters: {c1: 3 kN s/m}}}"
+    (tmp_path / "fed.yaml").write_text(
+        "name: fed\nbodies: {body: {mass: 400 kg, motions: [heave]}}\naxles: {axle: {body: body, x: 0 m, mass: 40 kg, "
+        f"suspension: {{k: 20 kN/m, c: 1.2 kN s/m, laws: [{law}]}}, tyre: {{k: 180 kN/m}}}}}}\n",
+        encoding="utf-8",
+    )
+    run = "vehicle: fed.yaml\nspeed: 5 m/s\nduration: 3 s\nroad: [{iso8608: {class: A}}]\n"
+    with pytest.raises(InputError, match=r"run.yaml:1:10: .* take a smaller step, or does a law push along with its motion\?$"):
+        simulate(run_of(tmp_path, run))

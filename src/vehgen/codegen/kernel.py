@@ -21,6 +21,8 @@ from vehgen.mechanics.equations_of_motion import GRAVITY, EquationsOfMotion
 from vehgen.mechanics.equilibrium import equilibria
 
 Array = NDArray[np.float64]
+GROWN = 1e3
+"""Laws that leave so many times the weight in a step have let a motion grow beyond what any has."""
 UNCONVERGED = 0.01
 """Residual of the force laws over the vehicle's weight above which an individual counts as failed."""
 
@@ -60,7 +62,7 @@ class Kernel:
     folder
         Where the compiled code is kept (default: the user's cache folder).
     sweeps
-        How often a step solves for the forces of the laws (default: 2 or 3, as the laws need).
+        How often a step solves for the forces of the laws (default: 2 to 12, as the laws need).
     precision
         `double`, or `single`: twice the individuals in a vector, with errors of about 1e-4 (docs/performance.md). Differences of
         nearly equal responses, such as derivatives by small steps, need double.
@@ -229,7 +231,10 @@ class Kernel:
         if self.source.nonlinear:
             limit = UNCONVERGED * self._force_scale
             for individual in np.flatnonzero(residuals > limit):
-                reason = f"its force laws did not converge: {residuals[individual]:.3g} N were left in the worst step; take a smaller step"
+                cure = "take a smaller step"
+                if residuals[individual] > self._force_scale * GROWN:
+                    cure += ", or does a law push along with its motion?"
+                reason = f"its force laws did not converge: {residuals[individual]:.3g} N were left in the worst step; {cure}"
                 failures.setdefault(int(individual), reason)
         return failures
 
