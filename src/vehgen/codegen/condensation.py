@@ -37,7 +37,7 @@ class Condensation:
         G of these elements.
     sweeps
         Sweeps per step (default: two where every law is smooth with a bounded slope, whose error shrinks some hundredfold in each, else
-        three, or more where light bodies stand between elements with friction: see coupling.py).
+        three, or more where elements with friction push each other much: see coupling.py).
     """
 
     def __init__(self, terms: EquationTerms, joints: list[NonlinearElement], compliance: list[list[Node]], sweeps: int | None) -> None:
