@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.calibrate.quarter import KNOWN_BODY, quarter_problem
 from tests.calibrate.trucks import truck_problem
 from tests.fit.recordings import sedan_truth, write_run
 from vehgen.calibrate.held_masses import find_held_masses
@@ -10,36 +11,10 @@ from vehgen.calibrate.identifiability import find_structure
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
 
-QUARTER = """name: quarter
-parameters:
-  mB: {value: 400 kg}
-  mL: {value: 0 kg, meaning: load}
-  mG: {value: 40 kg, range: [20 kg, 80 kg]}
-  kS: {value: 20 kN/m, range: [10 kN/m, 40 kN/m]}
-  cS: {value: 1.5 kN s/m, range: [0.5 kN s/m, 4 kN s/m]}
-  kT: {value: 180 kN/m, range: [90 kN/m, 360 kN/m]}
-bodies: {body: {mass: mB + mL, motions: [heave]}}
-axles: {axle1: {body: body, mass: mG, suspension: {k: kS, c: cS}, tyre: {k: kT}}}
-"""
-
 
 def held(problem):
     values = problem.space.start
     return find_held_masses(problem, find_structure(problem, values), values)
-
-
-def quarter_problem(folder, vehicle, loads=(0,)):
-    (folder / "quarter.yaml").write_text(vehicle, encoding="utf-8")
-    table = np.column_stack([np.arange(800) * 0.01, np.random.default_rng(0).standard_normal(800)])
-    np.savetxt(folder / "a.csv", table, delimiter=",", header="t,az", comments="")
-    for load in loads:
-        (folder / f"{load}.yaml").write_text(
-            f"vehicle: quarter.yaml\nspeed: 3 m/s\nparameters: {{mL: {load} kg}}\nrecording: a.csv\n"
-            "road: [{hump: {shape: half_sine, length: 0.5 m, height: 0.03 m, at: 4 m}}]\n"
-            "sensors: {B: {body: body, channels: {acceleration: az}}}\n",
-            encoding="utf-8",
-        )
-    return make_problem(load_trials([folder / f"{load}.yaml" for load in loads]))
 
 
 def test_what_hangs_on_the_body_mass_grows_with_it_and_the_car_moves_as_before(tmp_path):
@@ -56,23 +31,21 @@ def test_what_hangs_on_the_body_mass_grows_with_it_and_the_car_moves_as_before(t
 
 @pytest.mark.parametrize(("loads", "names"), [((0,), ("mB",)), ((50,), ("mB", "mL"))])
 def test_a_load_counts_as_mass_where_a_run_carries_one(tmp_path, loads, names):
-    found = held(quarter_problem(tmp_path, QUARTER, loads))
+    found = held(quarter_problem(tmp_path, loads, KNOWN_BODY))
     assert found.names == names
     assert found.follows == pytest.approx(dict.fromkeys(("mG", "kS", "cS", "kT"), 1.0))
 
 
 def test_known_loads_weigh_a_body_that_is_searched(tmp_path):
-    searched = QUARTER.replace("400 kg", "400 kg, range: [200 kg, 800 kg]")
-    found = held(quarter_problem(tmp_path, searched, (50, 250)))
+    found = held(quarter_problem(tmp_path, (50, 250)))
     assert found.names == ("mL",)
     assert found.follows == pytest.approx(dict.fromkeys(("mB", "mG", "kS", "cS", "kT"), 1.0))
 
 
 def test_a_stiffness_that_is_held_tells_the_mass(tmp_path):
-    assert held(quarter_problem(tmp_path, QUARTER.replace(", range: [90 kN/m, 360 kN/m]", ""))) is None
+    assert held(quarter_problem(tmp_path, (0,), KNOWN_BODY.replace(", range: [90 kN/m, 360 kN/m]", ""))) is None
 
 
 def test_nothing_is_said_to_follow_that_recordings_do_not_tell(tmp_path):
     assert held(truck_problem(tmp_path)) is None
-    searched = QUARTER.replace("400 kg", "400 kg, range: [200 kg, 800 kg]")
-    assert held(quarter_problem(tmp_path, searched)) is None
+    assert held(quarter_problem(tmp_path, (0,))) is None

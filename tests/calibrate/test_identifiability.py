@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.calibrate.quarter import quarter_problem
 from tests.calibrate.trucks import along_the_first_direction, fit_at, truck_problem
 from tests.fit.recordings import sedan_truth, write_run
 from vehgen.calibrate.identifiability import find_structure
@@ -75,28 +76,7 @@ def test_a_sedan_can_be_told_in_full(tmp_path):
     assert structure.is_identifiable(np.ones(10))
 
 
-QUARTER = """name: quarter
-parameters:
-  mB: {value: 400 kg, range: [200 kg, 800 kg]}
-  mL: {value: 0 kg, meaning: load}
-  mG: {value: 40 kg, range: [20 kg, 80 kg]}
-  kS: {value: 20 kN/m, range: [10 kN/m, 40 kN/m]}
-  cS: {value: 1.5 kN s/m, range: [0.5 kN s/m, 4 kN s/m]}
-  kT: {value: 180 kN/m, range: [90 kN/m, 360 kN/m]}
-bodies: {body: {mass: mB + mL, motions: [heave]}}
-axles: {axle1: {body: body, mass: mG, suspension: {k: kS, c: cS}, tyre: {k: kT}}}
-"""
-
-
 @pytest.mark.parametrize(("loads", "rank"), [((50, 50), 4), ((50, 250), 5)])
 def test_two_known_loads_weigh_a_vehicle_and_one_does_not(tmp_path, loads, rank):
-    (tmp_path / "quarter.yaml").write_text(QUARTER, encoding="utf-8")
-    table = np.column_stack([np.arange(800) * 0.01, np.random.default_rng(0).standard_normal(800)])
-    for name, load in zip("ab", loads, strict=True):
-        np.savetxt(tmp_path / f"{name}.csv", table, delimiter=",", header="t,az", comments="")
-        text = f"vehicle: quarter.yaml\nspeed: 3 m/s\nparameters: {{mL: {load} kg}}\nrecording: {name}.csv\n"
-        text += "road: [{hump: {shape: half_sine, length: 0.5 m, height: 0.03 m, at: 4 m}}]\n"
-        text += "sensors: {B: {body: body, channels: {acceleration: az}}}\n"
-        (tmp_path / f"{name}.yaml").write_text(text, encoding="utf-8")
-    problem = make_problem(load_trials([tmp_path / "a.yaml", tmp_path / "b.yaml"]))
+    problem = quarter_problem(tmp_path, loads)
     assert find_structure(problem, problem.space.start).rank == rank

@@ -59,7 +59,7 @@ def chain(seat: float, bounds: tuple[float, ...]) -> str:
 
 @pytest.mark.parametrize(("seat", "bounds"), [(80.0, (3000.0, 300.0, 60.0)), (80.0, (8000.0, 1500.0, 300.0)), (5.0, (3000.0, 300.0, 60.0))])
 def test_accelerations_between_rubbing_links_are_those_of_an_exact_solution(tmp_path, seat, bounds):
-    """They were wrong by up to seven times the peak of a light seat, where one sweep's error passed for a slip."""
+    """A light seat's peak was more than seven times the true one, where one sweep's error passed for a slip."""
     (tmp_path / "chain.yaml").write_text(chain(seat, bounds), encoding="utf-8")
     sensors = ", ".join(f"{name}: {{body: {name}, channels: {{acceleration: {name}_a}}}}" for name in ("frame", "cab", "seat"))
     (tmp_path / "run.yaml").write_text(

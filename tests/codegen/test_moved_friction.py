@@ -49,7 +49,7 @@ def shaken_mass(law: str) -> np.ndarray:
 
 @pytest.mark.parametrize("law", ["dry_friction", "asymmetric_friction"])
 def test_a_shaker_drags_a_mass_along_by_friction(tmp_path, law):
-    """Half of the time the mass sticks to the shaker: the friction is what its motion asks for."""
+    """Where the mass sticks to the shaker the friction is what the shaker's motion asks for."""
     (tmp_path / "rig.yaml").write_text(
         "name: rig\ngravity: false\nbodies: {m: {mass: 50 kg, motions: [heave]}}\n"
         f"links:\n  A: {{ground: {{}}, m: {{}}, k: 0 N/m, c: 0 N s/m, laws: [{friction(law)[0]}]}}\n"

@@ -15,7 +15,7 @@ from vehgen.fit.problem import Problem
 
 Array = NDArray[np.float64]
 MASSES_UNSEEN = 1e-6
-"""The responses do not see a change that leaves less than this share of what the masses alone change; exact derivatives leave 1e-12."""
+"""The responses do not see a change that leaves less than this share of what the masses alone change; exact derivatives leave 1e-14."""
 LEAST_FOLLOWING = 1e-3
 """A parameter follows the masses where it changes by more than this share of their relative change."""
 
