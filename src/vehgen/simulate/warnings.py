@@ -95,7 +95,7 @@ def far_places(model: EquationsOfMotion, values: Mapping[str, float], places: It
     """Warn of sensors and forces of a model that are farther from all axles, hinges and bodies' COGs than these are from each other."""
     layout = model.layout
     known = [*layout.axles.values(), *(x for x, _ in (*layout.bodies.values(), *layout.hinges.values()))]
-    named = {place.name: place for place in places if place.shift in model.parameters}.values()
+    named = {place.name: place for place in places}.values()
     wanted = [layout.bodies[place.body][0] + place.locate(model.vehicle, layout) for place in named]
     found = np.array(model.evaluate_list([*known, *wanted], values))
     last, first = found[: len(known)].min(), found[: len(known)].max()
