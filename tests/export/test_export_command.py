@@ -76,3 +76,6 @@ def test_laws_are_refused_in_one_line_and_may_be_left_out(work, capsys):
     assert main(["export", "own.yaml", "--to", "npz"]) == 2
     assert re.fullmatch("error: own: the force law dry_friction .* and --linear leaves it out\n", capsys.readouterr().err)
     assert main(["export", "own.yaml", "--to", "npz", "--linear"]) == 0
+    assert "the force laws of own are left out" in capsys.readouterr().err
+    assert main(["export", "own.yaml", "--to", "latex", "--linear"]) == 0  # describes them all the same
+    assert capsys.readouterr().err == ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from vehgen.commands.results import add_out, file_named, folder_named, tell_written
-from vehgen.commands.terminal import add_vehicle, print_json
+from vehgen.commands.terminal import add_vehicle, print_json, warn
 
 EXAMPLE = "vehgen export tractor5.yaml --to json --out tractor5.json"
 
@@ -42,6 +42,8 @@ def run(options: argparse.Namespace) -> None:
         linear=options.linear,
         step=options.step,
     )
+    if options.linear and vehicle.has_laws and not EXPORT_FORMATS[options.to].keeps_laws:
+        warn([f"the force laws of {vehicle.name} are left out: what only they hold, nothing holds in this export"])
     if options.json:
         print_json({"files": [str(path) for path in files]})
         return

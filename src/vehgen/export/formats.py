@@ -20,13 +20,15 @@ from vehgen.files.names import as_name
 class Format:
     """A format: what it is for in a few words, the suffix of its file (none for a folder), and what writes it.
 
-    `write` returns the bytes of every file by its name; those of a folder stand in it. `stem` names the file after a vehicle.
+    `write` returns the bytes of every file by its name; those of a folder stand in it. `stem` names the file after a vehicle. `keeps_laws`
+    tells whether force laws stay in it where `linear` leaves them out elsewhere.
     """
 
     meaning: str
     suffix: str
     write: Callable[[ExportSource], dict[str, bytes]]
     stem: Callable[[str], str] = as_name
+    keeps_laws: bool = False
 
 
 EXPORT_FORMATS: dict[str, Format] = {
@@ -34,12 +36,12 @@ EXPORT_FORMATS: dict[str, Format] = {
     "npz": Format("the same as NumPy arrays", ".npz", write_npz),
     "mat": Format("the same as a MAT-file", ".mat", write_mat),
     "m": Format("the same as a function file of MATLAB or GNU Octave, to be read", ".m", write_m, identifier),
-    "c": Format("the step that kernels run as C99: header, source, an example that drives over a hump", "", write_c),
+    "c": Format("the step that kernels run as C99: header, source, an example that drives over a hump", "", write_c, keeps_laws=True),
     "state-space": Format("A, B, C, D with the names and units of states, inputs and outputs, as a MAT-file", ".mat", write_state_space),
     "vbi2d": Format("the vehicle struct of VBI-2D and VEqMon2D", ".mat", write_vbi2d),
-    "fmu": Format("a co-simulation unit of FMI 2.0 with sources and, where a C compiler is, a binary", ".fmu", write_fmu2),
-    "fmu3": Format("the same of FMI 3.0", ".fmu", write_fmu3),
-    "latex": Format("the equations in symbols, to be read", ".tex", write_latex),
-    "markdown": Format("tables of the matrices in numbers, to be read", ".md", write_markdown),
+    "fmu": Format("a co-simulation unit of FMI 2.0 with sources and, where a C compiler is, a binary", ".fmu", write_fmu2, keeps_laws=True),
+    "fmu3": Format("the same of FMI 3.0", ".fmu", write_fmu3, keeps_laws=True),
+    "latex": Format("the equations in symbols, to be read", ".tex", write_latex, keeps_laws=True),
+    "markdown": Format("tables of the matrices in numbers, to be read", ".md", write_markdown, keeps_laws=True),
 }
 """Every format by the name that it is asked for."""
