@@ -20,8 +20,12 @@ from vehgen.fit.misfit import Misfit
 NAMES = ("cubic_stiffness", "quadratic_damping", "hysteresis", "progressive_stiffness", "sensor_gain")
 
 
+def list_candidates_of(detection, *names):
+    return list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS[name] for name in names])
+
+
 def settled(detection, names=NAMES, kept_at="", nowhere=False):
-    candidates = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS[name] for name in names])
+    candidates = list_candidates_of(detection, *names)
     places = [Place("channel", "az", channels=("az",))] if nowhere else [Place("body", "body", ({0: 1.0}, {1: 1.0}))]
     fitter = Fitter(detection, detection.base, [PlaceResult(place, 1.0, 2, detection.base.least_squares.x) for place in places])
     fits = []
@@ -43,7 +47,7 @@ def test_beside_what_settles_a_gap_only_what_leaves_next_to_nothing_is_refined(d
     detection = detection_of(CUBIC, runs=HUMPS)
     monkeypatch.setattr(early_end, "_settles", lambda fit: ends)
     fitter = Fitter(detection, detection.base, ())
-    candidates = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS["cubic_stiffness"]])
+    candidates = list_candidates_of(detection, "cubic_stiffness")
     settle(fitter, fitter.first_order_gains(), candidates, lambda fit: None)
     assert fitter.hopeless == hopeless
     refined = [fitter.fit(item, checked=True, slow_first=False) for item in candidates if item.place == "front"]
@@ -53,10 +57,23 @@ def test_beside_what_settles_a_gap_only_what_leaves_next_to_nothing_is_refined(d
     assert [np.isfinite(fit.validation) for fit in refined] == [True]
 
 
+@pytest.mark.parametrize(("left", "hopeless"), [(0.01, 0.1), (0.05, 0.1), (0.2, 0.4), (0.4, 0.5)])
+def test_what_leaves_about_as_much_as_what_settles_a_gap_is_refined_beside_it(detection_of, monkeypatch, left, hopeless):
+    detection = detection_of(CUBIC, runs=HUMPS)
+    base = detection.base
+    fitter = Fitter(detection, base, ())
+    found = replace(base, training=1 + left * (base.training - 1), effects=(list_candidates_of(detection, "cubic_stiffness")[0],))
+    monkeypatch.setattr(early_end, "_settles", lambda fit: True)
+    monkeypatch.setattr(early_end, "idle_instead", lambda fit, fit_without: None)
+    monkeypatch.setattr(fitter, "fit_all_begun", lambda begun, runner: iter([found]))
+    settle(fitter, fitter.first_order_gains(), list_candidates_of(detection, "cubic_stiffness"), lambda fit: None)
+    assert fitter.hopeless == pytest.approx(hopeless)
+
+
 @pytest.mark.thorough
 def test_what_was_fitted_until_ctrl_c_is_kept(detection_of, monkeypatch):
     detection = detection_of(CUBIC, runs=HUMPS)
-    candidates = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS[name] for name in NAMES])
+    candidates = list_candidates_of(detection, *NAMES)
     seen = []
 
     def stop(fit):
@@ -89,7 +106,7 @@ def test_laws_of_bodies_are_tried_at_once_where_no_single_force_explains_the_gap
 def test_special_cases_and_candidates_that_no_run_tells_apart_stay_rivals(detection_of):
     detection = detection_of(CUBIC, runs=HUMPS)
     names = ("sensor_delay", "dry_friction", "asymmetric_friction")
-    listed = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS[name] for name in names])
+    listed = list_candidates_of(detection, *names)
     known = {item.label: item for item in listed}
     pairs = [("sensor_delay at F", "sensor_delay at R"), ("asymmetric_friction at rear", "dry_friction at rear")]
     assert all(
@@ -124,7 +141,7 @@ def test_an_effect_at_an_end_of_its_range_settles_nothing(detection_of):
 def test_an_error_of_a_sensor_at_an_end_of_its_range_settles_nothing(detection_of):
     detection = detection_of(CUBIC, runs=HUMPS)
     fitter = Fitter(detection, detection.base, ())
-    listed = list_candidates(detection.trials[0].run.vehicle, detection.trials, [EFFECTS["sensor_tilt"]])
+    listed = list_candidates_of(detection, "sensor_tilt")
     fit = fitter.fit_at_once(next(item for item in listed if item.place == "F"))
     old = fit.least_squares
     shared = tuple(replace(item, high=float(value)) for item, value in zip(old.misfit.shared, old.misfit.adjusted(old.x), strict=True))

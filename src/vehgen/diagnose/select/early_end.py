@@ -9,8 +9,9 @@ import numpy as np
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.fits.candidate import Candidate
 from vehgen.diagnose.fits.model_fit import ModelFit
-from vehgen.diagnose.fits.multi_start import BESIDE_SETTLED
+from vehgen.diagnose.fits.multi_start import BESIDE_SETTLED, HOPELESS
 from vehgen.diagnose.fits.screening import FirstOrderGains, reaches_a_body
+from vehgen.diagnose.select.criteria import excess
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import idle_instead
 from vehgen.diagnose.select.ranking import numbers_at_ends
@@ -20,6 +21,8 @@ MOST_AT_ONCE = 4
 """So many candidates are fitted, all motions at once, until one settles a gap."""
 RIVAL = 0.3
 """Beside one that does, candidates are fitted whose first-order gain is this share of its own, or more."""
+AS_MUCH = 2.0
+"""Rough fits that leave so many times the excess that it leaves may end as low: its own special case did, and was not refined."""
 UNSTRAINED = 3.5
 """It supposes errors of runs and sensors of no more than so many standard deviations."""
 
@@ -36,7 +39,7 @@ def settle(
 
     Where a single force explains the gap at no place, they are followed by laws of bodies that are none. Every fit is handed to
     `each` as soon as it is made. Beside a base at its bounds none settles that does no more than what it set free. Where one settles the
-    gap, the fitter refines from then on only what leaves next to nothing, too.
+    gap, the fitter refines from then on only what leaves next to nothing, too, or about as much as that one.
 
     Returns
     -------
@@ -52,7 +55,8 @@ def settle(
         tried.add(fit.key[-1])
         if _settles(fit) and not (strained and idle_instead(fit, fitter.fit_without)):
             own = next(gain for gain, _, item in ranked if (item.effect.name, item.place) == fit.key[-1])
-            fitter.hopeless = BESIDE_SETTLED
+            share = excess(fit.training) / max(excess(fitter.base.training), 1e-9)
+            fitter.hopeless = min(HOPELESS, max(BESIDE_SETTLED, AS_MUCH * share))
             rest = [(gain, item) for gain, _, item in ranked if (item.effect.name, item.place) not in tried]
             return [item for gain, item in rest if gain >= RIVAL * own or item.place == kept_at or _is_inseparable(item, fit.last)]
     return list(candidates)
