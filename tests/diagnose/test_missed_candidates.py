@@ -45,9 +45,9 @@ def test_what_sets_free_the_parameter_at_its_bound_is_fitted_to_its_end(bound, e
     assert [item.name for item in _stuck(fits, SimpleNamespace(training=25.0))] == expected
 
 
-@pytest.mark.parametrize(("training", "expected"), [(9.3, ["dry"]), (0.9, [])])
-def test_a_special_case_that_does_worse_than_what_holds_it_is_fitted_again(training, expected):
-    fits = [fit("asymmetric", 0.8), fit("dry", training), fit("hysteresis", 2.0)]
+@pytest.mark.parametrize(("training", "refined", "expected"), [(9.3, True, ["dry"]), (0.9, True, []), (0.9, False, ["dry"])])
+def test_a_special_case_that_does_worse_than_what_holds_it_or_was_not_refined_is_fitted_again(training, refined, expected):
+    fits = [fit("asymmetric", 0.8), fit("dry", training, refined=refined), fit("hysteresis", 2.0)]
     for item in fits:
         item.last.holds = lambda other, own=item.last.name: (own, other.name) == ("asymmetric", "dry")
     assert [item.name for item in _missed_special_cases(fits, SimpleNamespace(training=11.5))] == expected

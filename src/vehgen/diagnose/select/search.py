@@ -175,12 +175,12 @@ def _stuck(fits: Sequence[ModelFit], base: ModelFit) -> list[Candidate]:
 
 
 def _missed_special_cases(fits: Sequence[ModelFit], base: ModelFit) -> list[Candidate]:
-    """Return special cases of the best fit's effect whose own fits do worse: perhaps in another minimum, of which friction makes many."""
+    """Return special cases of the best fit's effect whose own fits do worse, perhaps in another minimum, or were not refined."""
     if not fits:
         return []
     best, before = min(fits, key=merit), max(base.training - 1, 0.0)
     others = [fit for fit in fits if best.last.holds(fit.last)]
-    return [fit.last for fit in others if not does_as_well(fit.training, best.training, before)]
+    return [fit.last for fit in others if not (np.isfinite(fit.validation) and does_as_well(fit.training, best.training, before))]
 
 
 def _best_of_each(fits: Sequence[ModelFit]) -> list[ModelFit]:
