@@ -152,7 +152,7 @@ def test_ctrl_c_keeps_what_is_done(fleet, here):
         "second": "waiting",
         "bad_yaml": "failed",
         "empty": "failed",
-        "unlike": "waiting",
+        "unlike": "failed",  # told before the first diagnosis
     }
     again = diagnosed(fleet)
     assert here == ["first", "second"]

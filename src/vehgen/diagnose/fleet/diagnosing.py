@@ -113,22 +113,31 @@ class _State:
     kept: dict[str, FleetRow] = field(default_factory=dict)
 
     def works(self, folders: Sequence[Path]) -> Iterator[FleetWork]:
-        """Yield the vehicles that must be diagnosed; those that are kept or cannot be read become rows at once."""
+        """Yield the vehicles that must be diagnosed; those that are kept or cannot be read become rows before the first of them.
+
+        Each is read twice, so that faults are told at once and no more vehicles are in memory than are diagnosed.
+        """
         self.kept = _kept(self.target / FLEET_FILE)
-        for folder in folders:
-            try:
-                work = self.work(folder)
-            except InputError as error:
-                self.fail(writable(folder.name), str(error))
-                continue
-            except Exception as error:  # a fault of one vehicle must not take the others' results with it
-                self.fail(writable(folder.name), internal_fault(error))
-                continue
-            former = self.kept.get(work.name)
-            if former is not None and former.fingerprint == work.fingerprint and (work.folder / "diagnosis.json").is_file():
-                self.note(former)
-                continue
-            yield work
+        for folder in [folder for folder in folders if self.waiting(folder) is not None]:
+            work = self.waiting(folder)
+            if work is not None:
+                yield work
+
+    def waiting(self, folder: Path) -> FleetWork | None:
+        """Return a vehicle that must be diagnosed; one that is kept or cannot be read becomes a row, and None is returned."""
+        try:
+            work = self.work(folder)
+        except InputError as error:
+            self.fail(writable(folder.name), str(error))
+            return None
+        except Exception as error:  # a fault of one vehicle must not take the others' results with it
+            self.fail(writable(folder.name), internal_fault(error))
+            return None
+        former = self.kept.get(work.name)
+        if former is not None and former.fingerprint == work.fingerprint and (work.folder / "diagnosis.json").is_file():
+            self.note(former)
+            return None
+        return work
 
     def work(self, folder: Path) -> FleetWork:
         """Read a vehicle; raises InputError where that, or writing its results, is not possible."""
