@@ -126,6 +126,17 @@ def test_only_commands_speak_of_options_of_the_command_line():
     assert {place for place in found if not place.startswith("commands/")} <= WAITING_FLAGS
 
 
+def test_parts_of_scipy_are_loaded_when_they_are_first_used():
+    """`import scipy` loads none of them, and a simulation over a hump needs none."""
+    found = set()
+    for place, _, nodes in sources():
+        modules = [item.name for node in nodes[0].body if isinstance(node, ast.Import) for item in node.names]
+        modules += [node.module or "" for node in nodes[0].body if isinstance(node, ast.ImportFrom)]
+        if any(name.startswith("scipy.") for name in modules):
+            found.add(place)
+    assert found == set()
+
+
 def test_no_former_name_comes_back():
     found = [(place, Path(place).stem) for place, _, _ in sources() if Path(place).stem in FORMER_NAMES]
     for place, _, nodes in sources():

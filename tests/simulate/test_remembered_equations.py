@@ -142,3 +142,14 @@ def test_a_build_without_plots_loads_neither_numba_nor_matplotlib(folder, tmp_pa
     first, second = (python("-c", code, folder=tmp_path, VEHGEN_CACHE=str(folder)) for _ in range(2))
     assert first.stdout == second.stdout
     assert second.stderr == "[]\n"
+
+
+@pytest.mark.thorough
+def test_a_simulation_over_a_hump_loads_of_scipy_only_what_numba_does(folder, tmp_path):
+    (tmp_path / "run.yaml").write_text("vehicle: quarter_car\nspeed: 2 m/s\nduration: 1 s\n")
+    unused = {"matplotlib", "scipy.fft", "scipy.interpolate", "scipy.optimize", "scipy.signal", "scipy.stats"}
+    code = (
+        "import sys; from vehgen.commands import main; main(['simulate', 'run.yaml', '--json', '--force'])\n"
+        f"print(sorted({unused} & set(sys.modules)), file=sys.stderr)"
+    )
+    assert python("-c", code, folder=tmp_path, VEHGEN_CACHE=str(folder)).stderr == "[]\n"

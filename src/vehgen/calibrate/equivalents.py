@@ -10,8 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import scipy.linalg
-import scipy.optimize
+import scipy
 from numpy.typing import NDArray
 
 from vehgen.calibrate.identifiability import answer_derivatives, answers, distinct_trials, driven, null_space, remaining_directions

@@ -13,7 +13,7 @@ from itertools import combinations
 from typing import ClassVar
 
 import numpy as np
-import scipy.linalg
+import scipy
 from numpy.typing import NDArray
 
 from vehgen.calibrate.identifiability import null_space, stacked_derivatives

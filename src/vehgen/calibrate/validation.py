@@ -8,7 +8,7 @@ from itertools import combinations
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
-import scipy.stats
+import scipy
 from numpy.typing import NDArray
 from pydantic import Field
 

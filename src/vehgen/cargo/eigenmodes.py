@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh, splu
 
 from vehgen.cargo.box_mesh import Mesh
 from vehgen.cargo.elements import ElementMatrices, Sparse
@@ -128,25 +128,27 @@ def eigenmodes(matrices: ElementMatrices, held: NDArray[np.int64], count: int | 
         wanted *= 2
 
 
-def _factor(K: Sparse) -> LinearOperator:
+def _factor(K: Sparse) -> scipy.sparse.linalg.LinearOperator:
     """Factorise a symmetric positive definite matrix, with an ordering that keeps it sparse."""
     diagonal = K.diagonal()
     try:
         if diagonal.min() <= 1e-14 * diagonal.max():
             raise RuntimeError("a degree of freedom has no stiffness")
-        factor = splu(K, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        factor = scipy.sparse.linalg.splu(K, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     except RuntimeError as error:
         raise InputError("the structure is a mechanism: part of it can move without resistance; add members or panels") from error
-    return LinearOperator(K.shape, matvec=factor.solve, dtype=np.float64)
+    return scipy.sparse.linalg.LinearOperator(K.shape, matvec=factor.solve, dtype=np.float64)
 
 
-def _solve(K: Sparse, M: Sparse, solve: LinearOperator, count: int) -> tuple[Array, Array]:
+def _solve(K: Sparse, M: Sparse, solve: scipy.sparse.linalg.LinearOperator, count: int) -> tuple[Array, Array]:
     """Return (2 pi f)^2 `shape (count,)` in ascending order and vectors `shape (n_free, count)` of unit modal mass."""
     start = np.random.default_rng(1).standard_normal(K.shape[0])
     try:
         size = min(2 * count + ROOM, K.shape[0] - 1)
-        squares, vectors = eigsh(K, count, M=M, sigma=0.0, OPinv=solve, which="LM", v0=start, tol=1e-9, ncv=size, maxiter=MOST_RESTARTS)
-    except ArpackNoConvergence as error:
+        squares, vectors = scipy.sparse.linalg.eigsh(
+            K, count, M=M, sigma=0.0, OPinv=solve, which="LM", v0=start, tol=1e-9, ncv=size, maxiter=MOST_RESTARTS
+        )
+    except scipy.sparse.linalg.ArpackNoConvergence as error:
         raise InputError(f"only {len(error.eigenvalues)} of {count} eigenmodes were found; choose another mesh size") from error
     order = np.argsort(squares)
     vectors = vectors[:, order]

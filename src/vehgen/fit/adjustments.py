@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import scipy.integrate
+import scipy
 from numpy.typing import NDArray
 
 from vehgen.fit.trial import Trial

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import scipy.signal
+import scipy
 
 from vehgen.errors import InputError
 from vehgen.fit.trial import Trial

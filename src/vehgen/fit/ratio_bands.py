@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import scipy.optimize
+import scipy
 from numpy.typing import NDArray
-from scipy.stats import chi2
 
 from vehgen.files.result_fields import rounded
 from vehgen.fit.nuisances import Nuisances
@@ -113,6 +112,6 @@ def _band(
         return measured
     own = mean(np.sqrt(model[0] * model[1]))
     freedom = max(lines / NEIGHBOUR_INFLATION, 1.0)
-    limit = float(np.sqrt(chi2.isf(FALSE_ALARMS / n_comparisons, freedom) / freedom))
+    limit = float(np.sqrt(scipy.stats.chi2.isf(FALSE_ALARMS / n_comparisons, freedom) / freedom))
     distance = float(np.sqrt(squares_outside(estimate, model, used) * NEIGHBOUR_INFLATION / lines))
     return replace(measured, model=float(np.exp(own)) / measured.ratio, distance=distance, limit=limit)

@@ -13,7 +13,7 @@ from functools import lru_cache
 from typing import Literal, get_args
 
 import numpy as np
-import scipy.signal
+import scipy
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.signal
-import scipy.special
+import scipy
 from numpy.typing import NDArray
 
 from vehgen.measure.spectra import welch_psd

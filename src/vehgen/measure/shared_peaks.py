@@ -11,9 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.signal
+import scipy
 from numpy.typing import NDArray
-from scipy.stats import norm
 
 Array = NDArray[np.float64]
 CHANCE = 0.05
@@ -44,7 +43,7 @@ def shared_peaks(frequency: Array, densities: Array, averages: float) -> tuple[S
     """
     if len(frequency) < 3:
         return ()
-    least = float(norm.isf(CHANCE / len(frequency)) * np.sqrt(2 / averages))
+    least = float(scipy.stats.norm.isf(CHANCE / len(frequency)) * np.sqrt(2 / averages))
     level = np.log(np.maximum(densities, np.finfo(float).tiny))
     found = []
     for column in level.T:

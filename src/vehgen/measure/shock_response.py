@@ -7,7 +7,7 @@ the method of ISO 18431-4:2007. It is exact for accelerations that are straight 
 from __future__ import annotations
 
 import numpy as np
-import scipy.signal
+import scipy
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]

@@ -9,7 +9,7 @@ Audio Electroacoust. 15(2), 1967, doi:10.1109/TAU.1967.1161901).
 from __future__ import annotations
 
 import numpy as np
-import scipy.signal
+import scipy
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError

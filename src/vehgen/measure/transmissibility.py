@@ -14,9 +14,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.signal
+import scipy
 from numpy.typing import NDArray
-from scipy.stats import norm, t
 
 from vehgen.errors import InputError
 
@@ -163,7 +162,7 @@ def estimate_ratio(spectra: Complex, averages: float, reference: int, channel: i
     error = np.sqrt(np.maximum(1 - known, 1e-12) / (2 * known * (averages - 1)))
     h1, h2 = magnitude / own, other / magnitude
     quantile = _critical_value(-np.log(known) / error)
-    reach = error * t.isf(norm.sf(quantile), 2 * averages - 2)  # as the error itself is estimated
+    reach = error * scipy.stats.t.isf(scipy.stats.norm.sf(quantile), 2 * averages - 2)  # as the error itself is estimated
     return RatioEstimate(
         h1,
         h2,
@@ -184,9 +183,9 @@ def model_ratio(spectra: Complex, reference: int, channel: int) -> tuple[Array, 
 
 def _critical_value(gap: Array) -> Array:
     """Return c of Phi(c + gap) - Phi(-c) = CONFIDENCE: from 1.96 where both ends are one to 1.645 where they are far apart."""
-    low, high = np.full(gap.shape, norm.ppf(CONFIDENCE)), np.full(gap.shape, norm.ppf(0.5 + CONFIDENCE / 2))
+    low, high = np.full(gap.shape, scipy.stats.norm.ppf(CONFIDENCE)), np.full(gap.shape, scipy.stats.norm.ppf(0.5 + CONFIDENCE / 2))
     for _ in range(30):
         middle = (low + high) / 2
-        short = norm.cdf(middle + gap) - norm.cdf(-middle) < CONFIDENCE
+        short = scipy.stats.norm.cdf(middle + gap) - scipy.stats.norm.cdf(-middle) < CONFIDENCE
         low, high = np.where(short, middle, low), np.where(short, high, middle)
     return np.asarray((low + high) / 2)

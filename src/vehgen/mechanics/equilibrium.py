@@ -176,7 +176,7 @@ class _Balance:
 
     def _followed(self, x: Array, loads: Array, springs: Array) -> Array:
         """Return the scaled displacement that shares of the weight and springs to the ground [1/s^2], one after the other, lead to."""
-        import scipy.optimize
+        import scipy
 
         scale = self.scale[0]
 

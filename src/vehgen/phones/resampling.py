@@ -12,8 +12,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import scipy.linalg
-import scipy.signal
+import scipy
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.fft import next_fast_len
 
 from vehgen.errors import InputError, did_you_mean, shown
 
@@ -49,7 +49,7 @@ class Iso8608Road:
             raise InputError(f"a road needs a positive length, found {self.length} m")
         check_length(self.length)
         least = int(np.ceil(max(self.length, 1.0 / SPATIAL_BAND_CYCLES_PER_M[0]) / self.spacing)) + 1
-        n_points = next_fast_len(least, real=True) if least > _SLOW else least
+        n_points = scipy.fft.next_fast_len(least, real=True) if least > _SLOW else least
         period = n_points * self.spacing
         low, high = SPATIAL_BAND_CYCLES_PER_M
         n = np.arange(min(n_points // 2, int(np.ceil(high * period))) + 1) / period  # what lies beyond is zero and need not be held

@@ -7,8 +7,8 @@ from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from vehgen.errors import InputError
 
@@ -81,9 +81,9 @@ class Wander:
 
 
 @lru_cache(maxsize=64)
-def _hats(knots: tuple[float, ...]) -> CubicSpline:
+def _hats(knots: tuple[float, ...]) -> scipy.interpolate.CubicSpline:
     """Return the natural splines that are 1 at one knot and 0 at the others, one after another."""
-    return CubicSpline(knots, np.eye(len(knots)), bc_type="natural")
+    return scipy.interpolate.CubicSpline(knots, np.eye(len(knots)), bc_type="natural")
 
 
 @lru_cache(maxsize=64)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numba
 import numpy as np
-import scipy.signal
+import scipy
 from numpy.typing import NDArray
 
 from vehgen.codegen import Excitation, Kernel

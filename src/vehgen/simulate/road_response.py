@@ -12,7 +12,7 @@ from numbers import Real
 from typing import ClassVar
 
 import numpy as np
-import scipy.integrate
+import scipy
 from numpy.typing import NDArray
 
 from vehgen.errors import ArgumentError, InputError, did_you_mean, shown

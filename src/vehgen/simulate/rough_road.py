@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-import scipy.signal
+import scipy
 from numpy.typing import NDArray
 
 from vehgen.errors import InputError

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
-import scipy.optimize
+import scipy
 from numpy.typing import NDArray
 
 from vehgen.diagnose.fits.model_fit import ModelFit

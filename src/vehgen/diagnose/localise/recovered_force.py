@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import block_diag
 
 from vehgen.codegen import Kernel
 from vehgen.diagnose.detect.detection import Detection
@@ -148,7 +148,8 @@ def recover(detection: Detection, result: PlaceResult, component: int = 0) -> tu
         for item in score_locations(frozen, align(frozen, np.zeros(0)), [result.place]):
             own = Misfit(alone, misfit.noises, values, misfit.nuisances, misfit.band, known=known)
             moved = replace(item, x=np.concatenate([result.x[:n], item.x]))
-            found += _recover(own, moved, block_diag(directions[:n], np.linalg.cholesky(posterior(frozen, item))), component, True)
+            spread = scipy.linalg.block_diag(directions[:n], np.linalg.cholesky(posterior(frozen, item)))
+            found += _recover(own, moved, spread, component, True)
     return tuple(found)
 
 

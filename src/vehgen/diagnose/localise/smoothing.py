@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline
 
 from vehgen.diagnose.localise.recovered_force import RecoveredForce
 
@@ -75,7 +75,7 @@ def place_knots(x: Array, count: int) -> Array:
 def splines(x: Array, knots: Array) -> Array:
     """Return the cubic B-splines over knots at x, straight on beyond the ends, `shape (n, n_knots + 2)`."""
     count = len(knots) + 2
-    curve = BSpline(np.concatenate([[knots[0]] * 3, knots, [knots[-1]] * 3]), np.eye(count), 3)
+    curve = scipy.interpolate.BSpline(np.concatenate([[knots[0]] * 3, knots, [knots[-1]] * 3]), np.eye(count), 3)
     inside = np.clip(x, knots[0], knots[-1])
     return np.asarray(curve(inside) + curve.derivative()(inside) * (x - inside)[:, None])
 
