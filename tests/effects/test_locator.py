@@ -3,6 +3,7 @@
 import pytest
 
 from vehgen.effects import EffectLocator
+from vehgen.mechanics import derive, static_loads
 from vehgen.vehicle import load_vehicle, parse_vehicle
 
 BOX = """
@@ -44,3 +45,12 @@ def test_a_group_of_suspensions_is_sized_as_their_mean_and_axles_of_a_beam_as_th
     assert group.load == pytest.approx(sum(site.load for site in each) / 2)
     assert beam.k == pytest.approx(2 * group.k) == pytest.approx(sum(site.k for site in each))
     assert locator.site("all suspensions").c == pytest.approx(sum(locator.site(name).c for name in vehicle.axles) / 5)
+
+
+def test_a_hitch_that_carries_little_is_sized_by_the_lighter_body():
+    """A stabiliser on a caravan's ball slips at more than 0.4 of its nose load times 1 m."""
+    vehicle = load_vehicle("road_train")
+    locator, carried = EffectLocator(vehicle, vehicle.values()), static_loads(derive(vehicle), vehicle.values()).hinges
+    assert locator.site("fifth_wheel_1").load == pytest.approx(abs(carried["fifth_wheel_1"]))
+    assert abs(carried["drawbar_1"]) < 1100
+    assert locator.site("drawbar_1").load == pytest.approx(0.1 * 1600 * 9.81)  # of the dolly

@@ -16,6 +16,8 @@ from vehgen.vehicle.parts import Spring
 
 Size = Literal["k", "c", "kt", "m"]
 """Stiffness and damping of a suspension, link or hinge; stiffness of a tyre; mass of an axle."""
+LEAST_HINGE_LOAD = 0.1
+"""The load of a hinge counts as this share of the weight of the lighter of its bodies at least."""
 
 
 @dataclass(frozen=True)
@@ -30,10 +32,10 @@ class Occurring:
 class EffectSite:
     """A place of a vehicle with its sizes.
 
-    `load` [N] is the static load of the axle (of the hinge, the link, the body's weight); `k` [N/m], `c` [N s/m] its suspension's
-    or link's; `kt` [N/m] its tyre's; `mass` [kg] and `inertia` [kg m^2] its body's; `length` [m] the distance between the body's
-    outermost supports. On a rig without weight on axles `load` counts the largest force that occurs, too; `stroke` is the largest
-    travel on any rig [m].
+    `load` [N] is the static load of the axle (of the link, the body's weight); of a hinge, that or a tenth of the weight of the lighter of
+    its bodies, as the hitch of a balanced trailer carries next to nothing. `k` [N/m], `c` [N s/m] are its suspension's or link's; `kt`
+    [N/m] its tyre's; `mass` [kg] and `inertia` [kg m^2] its body's; `length` [m] the distance between the body's outermost supports. On a
+    rig without weight on axles `load` counts the largest force that occurs, too; `stroke` is the largest travel on any rig [m].
     """
 
     vehicle: Vehicle
@@ -163,7 +165,10 @@ class EffectLocator:
                 k += link.k.evaluate(known)
                 c += link.c.evaluate(known)
             elif name in vehicle.hinges:
-                load += abs(self._loads.hinges[name])
+                joined = [
+                    vehicle.bodies[end].mass.evaluate(known) * GRAVITY for end, _ in vehicle.hinges[name].ends if end in vehicle.bodies
+                ]
+                load += max(abs(self._loads.hinges[name]), LEAST_HINGE_LOAD * min(joined))
                 body = vehicle.hinges[name].ends[1][0]
         occurs = [self._occurring[name] for name in names if name in self._occurring]
         load += sum(item.force for item in occurs)

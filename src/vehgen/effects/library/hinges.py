@@ -25,7 +25,7 @@ HINGE_FRICTION_EFFECT = hinge_law(
             high=0.4,
             starts=(0.02, 0.1),
             scale=attrgetter("load"),
-            of="the hinge's static load times 1 m",
+            of="the hinge's static load, or a tenth of the lighter body's weight, times 1 m",
         ),
     ),
 )
@@ -53,7 +53,7 @@ HINGE_STIFFNESS_EFFECT = VehicleEffect(
             high=100.0,
             starts=(1.0, 10.0),
             scale=attrgetter("load"),
-            of="the hinge's static load times 1 m",
+            of="the hinge's static load, or a tenth of the lighter body's weight, times 1 m",
         ),
     ),
     edit=_edit,
