@@ -8,9 +8,11 @@ import pytest
 from tests.fit.recordings import sedan_truth, write_run
 from vehgen.errors import InputError
 from vehgen.fit.least_squares import fit_least_squares
-from vehgen.fit.prior_data import load_prior_data
+from vehgen.fit.prior_data import axle_load, kerb_mass, load_prior_data
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
+from vehgen.mechanics import derive
+from vehgen.vehicle import load_vehicle
 
 
 @pytest.fixture(scope="module")
@@ -109,3 +111,12 @@ def test_the_kerb_mass_is_that_of_bodies_and_axles(problem, tmp_path):
     residual = load_prior_data(path, problem).residuals(problem.space.start)[0]
     start = dict(zip(problem.space.names, problem.space.start, strict=True))
     assert residual == pytest.approx((start["mf"] + start["mr"]) / 10, rel=1e-9)
+
+
+def test_the_kerb_mass_counts_what_a_link_to_the_ground_carries():
+    """A trailer on its jockey wheel: its axle carries less than its mass weighs."""
+    trailer = load_vehicle("sedan2").with_changes({"links": {"jockey": {"body": {"x": "1 m"}, "ground": {"x": "1 m"}, "k": "60 kN/m"}}})
+    model, values = derive(trailer), {name: np.full(2, value) for name, value in trailer.values().items()}
+    values["mf"] = np.array([80.0, 95.0])
+    assert axle_load(model, "front")(values)[0] + axle_load(model, "rear")(values)[0] < 0.8 * 9.81 * kerb_mass(model)(values)[0]
+    assert kerb_mass(model)(values) == pytest.approx(model.total_mass() - model.values()["mf"] + values["mf"])

@@ -16,7 +16,7 @@ from vehgen.calibrate.result import FactAdvice
 from vehgen.errors import InputError
 from vehgen.files.units import LENGTH
 from vehgen.fit.prior_data import KERB_MASS, Fact, PriorData, axle_load, kerb_mass, parameter_value, uncouple
-from vehgen.mechanics import GRAVITY, EquationsOfMotion, derive, static_loads
+from vehgen.mechanics import EquationsOfMotion, derive, static_loads
 from vehgen.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -113,7 +113,7 @@ def _candidates(known: Uncertainty) -> Iterator[tuple[Fact, str]]:
         if min(loads.values()) <= 0:
             continue
         if part is vehicle:
-            total = sum(loads.values()) / GRAVITY
+            total = model.total_mass({name: values[name] for name in model.parameters})
             yield Fact(KERB_MASS, kerb_mass(model), total, WEIGHING_ERROR * total), "kerb_mass: ..."
         for axle, load in loads.items():
             yield Fact(f"load of {axle}{suffix}", axle_load(model, axle), load, WEIGHING_ERROR * load), entry.format(axle)

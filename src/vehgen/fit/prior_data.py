@@ -3,7 +3,7 @@
 A facts file:
 
     parameters:   {mS: {value: 22 t, uncertainty: 0.5 t}}
-    kerb_mass:    {value: 62.4 t, uncertainty: 0.3 t}                    # all axles together
+    kerb_mass:    {value: 62.4 t, uncertainty: 0.3 t}                    # bodies and axles, all together
     axle_weights: {axle1: {value: 71 kN, uncertainty: 0.5 kN}}           # on a scale, all coupled
     uncoupled:    {tractor: {axle1: {value: 50 kN, uncertainty: 0.5 kN}}}  # the body alone, its hinges opened
 
@@ -29,7 +29,8 @@ from vehgen.files.expressions import Expression
 from vehgen.files.names import Name
 from vehgen.files.quantities import Mass, PositiveForce
 from vehgen.fit.problem import Problem
-from vehgen.mechanics import GRAVITY, EquationsOfMotion, derive
+from vehgen.mechanics import EquationsOfMotion, derive
+from vehgen.mechanics.evaluation import PopulationValues
 from vehgen.mechanics.static_loads import axle_loads
 from vehgen.vehicle import Vehicle
 from vehgen.vehicle.parts import GROUND
@@ -222,17 +223,19 @@ def axle_load(model: EquationsOfMotion, axle: str) -> FactModel:
 
 
 def _axle_load(model: EquationsOfMotion, axle: str, values: Mapping[str, Array]) -> Array:
-    return _axle_loads(model, values)[axle]
+    return axle_loads(model, _population(model, values))[axle]
 
 
 def kerb_mass(model: EquationsOfMotion) -> FactModel:
-    """Return how the mass that all axles carry together [kg] follows from the parameters."""
+    """Return how the mass of all bodies and axles [kg] follows from the parameters, whatever they stand on."""
     return partial(_kerb_mass, model)
 
 
 def _kerb_mass(model: EquationsOfMotion, values: Mapping[str, Array]) -> Array:
-    return np.asarray(sum(_axle_loads(model, values).values()) / GRAVITY)
+    columns = PopulationValues(model, _population(model, values))
+    return np.asarray(sum(columns.value(term.inertia) for term in model.energies.weights))
 
 
-def _axle_loads(model: EquationsOfMotion, values: Mapping[str, Array]) -> dict[str, Array]:
-    return axle_loads(model, np.column_stack([values[name] for name in model.parameters]))
+def _population(model: EquationsOfMotion, values: Mapping[str, Array]) -> Array:
+    """Return the model's parameters, `shape (n, n_parameters)`."""
+    return np.column_stack([values[name] for name in model.parameters])
