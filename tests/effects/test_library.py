@@ -13,8 +13,9 @@ from tests.bundled import few
 from vehgen.effects import EFFECTS, Effect, EffectLocator
 from vehgen.effects.base import one
 from vehgen.files.yaml_writer import yaml_document
-from vehgen.mechanics import derive
-from vehgen.simulate import natural_modes
+from vehgen.fit.trial import load_trials
+from vehgen.mechanics import Place, PointOutput, derive
+from vehgen.simulate import SimulatorPool, natural_modes
 from vehgen.vehicle import load_vehicle, parse_vehicle
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -156,3 +157,50 @@ def test_every_scaled_parameter_says_what_its_range_is_a_multiple_of():
         for item in effect.parameters:
             assert bool(item.of) == (item.scale is not one), (effect.name, item.name)
     assert EFFECTS["dry_friction"].parameters[0].searched == "0.002 to 0.4 times the static load"
+
+
+TANDEM_RUN = """
+vehicle: tractor5.yaml
+speed: 2 m/s
+road:
+  - hump: {shape: half_sine, length: 0.5 m, height: 0.03 m, at: 3 m}
+sensors:
+  A4: {axle: axle4, channels: {acceleration: A4_az}}
+recording: run.csv
+"""
+
+
+def trials_of_a_tandem(folder, text):
+    columns = sorted(set(re.findall(r"A\d_\w+", text)))
+    time = np.arange(0.0, 12.0, 0.01)
+    table = np.column_stack([time, *(np.sin(9.0 * time + i) for i in range(len(columns)))])
+    np.savetxt(folder / "run.csv", table, delimiter=",", header=",".join(["t", *columns]), comments="")
+    (folder / "run.yaml").write_text(text, encoding="utf-8")
+    return load_trials([folder / "run.yaml"])
+
+
+def test_a_sensor_on_an_axle_moves_with_the_beam_that_a_tandem_may_have(tmp_path):
+    """A diagnosis with a sensor on an axle of a tandem ended with a refusal of that sensor."""
+    trials = trials_of_a_tandem(tmp_path, TANDEM_RUN)
+    vehicle, beam = trials[0].run.vehicle, EFFECTS["walking_beam"]
+    assert beam.places(vehicle, trials) == ("axle2+axle3", "axle4+axle5")
+    (changed,) = beam.change_trials(trials, "axle4+axle5", EffectLocator(vehicle, vehicle.values()), SimulatorPool())
+    end = PointOutput("end", Place("end", "beam_axle4_axle5", behind="axle4"), "acceleration")
+    found, expected = (
+        dict(zip((row := model.channels[0].acceleration), model.evaluate_list(row.values(), model.values()), strict=True))
+        for model in (changed.simulator.model, derive(changed.run.vehicle, [end]))
+    )
+    assert found == pytest.approx(expected)
+    assert len(found) > 1
+
+
+@pytest.mark.parametrize(
+    ("was", "becomes"),
+    [
+        ("acceleration: A4_az}", "acceleration: A4_az, suspension_travel: A4_d}"),
+        ("sensors:", "initial: {axle5: {displacement: 5 mm}}\nsensors:"),
+    ],
+)
+def test_a_tandem_has_no_beam_whose_suspension_was_recorded_or_that_a_run_lifts(tmp_path, was, becomes):
+    trials = trials_of_a_tandem(tmp_path, TANDEM_RUN.replace(was, becomes))
+    assert EFFECTS["walking_beam"].places(trials[0].run.vehicle, trials) == ("axle2+axle3",)

@@ -81,12 +81,6 @@ CASES = [
         "rear has no suspension of its own: it is fixed to 'frame'",
     ),
     (
-        "motion of a mass that there is not",
-        "L3: {body: frame}",
-        "L3: {axle: rear, channels: {acceleration: @a}}",
-        "rear has no mass of its own, and moves with 'frame'",
-    ),
-    (
         "sensor some way behind nothing",
         "L3: {body: frame}",
         "L3: @{body: frame, distance: 2 m}",

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 from vehgen.fit.trial import Trial
-from vehgen.mechanics import PointOutput
+from vehgen.mechanics import ElementOutput, PointOutput
 from vehgen.vehicle import Vehicle
 
 Places = Callable[[Vehicle, Sequence[Trial]], tuple[str, ...]]
@@ -119,9 +119,17 @@ def long_bodies(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
 
 
 def tandems(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
-    """Return pairs of neighbouring axles of one body behind the first axle, whose suspensions are linear, as `first+second`."""
+    """Return pairs of neighbouring axles of one body behind the first axle, whose suspensions are linear, as `first+second`.
+
+    Not those of which a suspension's travel or force was recorded, or that a run lifts as it begins: on a beam they have no suspension
+    and no hop.
+    """
+    outputs = [channel.output for trial in trials for channel in trial.recording.channels]
+    own = {item.owner for item in outputs if isinstance(item, ElementOutput) and item.quantity.startswith("suspension_")}
+    own |= {name for trial in trials for name in trial.run.file.initial}
     names = [name for name, axle in vehicle.axles.items() if axle.suspension is not None and not axle.suspension.laws][1:]
-    return tuple(f"{one}+{two}" for one, two in pairwise(names) if vehicle.axles[one].body == vehicle.axles[two].body)
+    pairs = [pair for pair in pairwise(names) if own.isdisjoint(pair)]
+    return tuple(f"{one}+{two}" for one, two in pairs if vehicle.axles[one].body == vehicle.axles[two].body)
 
 
 def sensors(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:

@@ -69,7 +69,7 @@ def derive(vehicle: VehicleLike, outputs: Iterable[Output] = (), forces: Iterabl
     channels = tuple(
         point_channel(output, vehicle, layout, motion, energies)
         if isinstance(output, PointOutput)
-        else element_channel(output, vehicle, motion, energies, forces)
+        else element_channel(output, vehicle, layout, motion, energies, forces)
         for output in outputs
     )
     return EquationsOfMotion(

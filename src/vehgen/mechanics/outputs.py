@@ -125,11 +125,13 @@ def fore_aft_row(place: Place, x: sp.Expr, motion: Kinematics, energies: Energie
     return combine((sp.S.One, energies.eliminated(motion.groups[place.body])), (sp.S.One, own))
 
 
-def element_channel(output: ElementOutput, vehicle: Vehicle, motion: Kinematics, energies: Energies, forces: tuple[Place, ...]) -> Channel:
+def element_channel(
+    output: ElementOutput, vehicle: Vehicle, layout: Layout, motion: Kinematics, energies: Energies, forces: tuple[Place, ...]
+) -> Channel:
     """Return the row of a travel or force of a suspension, tyre, link or hinge (compression positive), or of an axle's motion."""
     quantity = output.quantity
     if quantity in AXLE_MOTIONS:
-        return _axle_motion(output, motion)
+        return _axle_motion(output, vehicle, layout, motion)
     if quantity not in ELEMENT_QUANTITIES:
         known = did_you_mean(quantity, ELEMENT_QUANTITIES)
         raise InputError(f"{output.name}: unknown quantity {shown(quantity)} of an axle, link or hinge; {known}")
@@ -155,13 +157,16 @@ def element_channel(output: ElementOutput, vehicle: Vehicle, motion: Kinematics,
     return Channel(output.name, quantity, unit, output.owner, **scaled)
 
 
-def _axle_motion(output: ElementOutput, motion: Kinematics) -> Channel:
-    """Return the row of an axle's own motion."""
-    names = [item.owner for item in motion.coordinates if item.motion == "hop"]
-    if output.owner not in names:
-        hint = did_you_mean(output.owner, names) if names else "none of the vehicle's axles has"
-        raise InputError(f"{output.name}: {shown(output.owner)} is no axle with a mass of its own; {hint}")
-    row: Row = {motion.index(f"hop.{output.owner}"): sp.S.One}
+def _axle_motion(output: ElementOutput, vehicle: Vehicle, layout: Layout, motion: Kinematics) -> Channel:
+    """Return the row of an axle's own motion: that of its body where its wheel sits on it, as on a tandem's beam."""
+    axle = vehicle.axles.get(output.owner)
+    if axle is None:
+        hint = did_you_mean(output.owner, vehicle.axles) if vehicle.axles else f"{vehicle.name} has none"
+        raise InputError(f"{output.name}: {shown(output.owner)} is no axle; {hint}")
+    if axle.mass is None:
+        row = motion.rise(axle.body, layout.axles[output.owner] - layout.bodies[axle.body][0])
+    else:
+        row = {motion.index(f"hop.{output.owner}"): sp.S.One}
     return Channel(output.name, output.quantity, AXLE_MOTIONS[output.quantity], output.owner, **{output.quantity: row})
 
 

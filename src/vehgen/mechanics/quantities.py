@@ -11,7 +11,7 @@ POINT_QUANTITIES = {
 }
 AXLE_QUANTITIES = {"suspension_travel": "m", "suspension_force": "N", "tyre_force": "N", "tyre_load": "N"}
 AXLE_MOTIONS = {name: POINT_QUANTITIES[name] for name in ("acceleration", "velocity", "displacement")}
-"""Vertical motions of an axle of its own mass."""
+"""Vertical motions of an axle; where its wheel sits on its body, of that body there."""
 LINK_QUANTITIES = {"link_travel": "m", "link_force": "N"}
 HINGE_QUANTITIES = {"hinge_force": "N", "hinge_load": "N", "hinge_angle": "rad", "hinge_moment": "N m"}
 """Of a pin: the vertical force that the first-named body presses upwards on the second, and the second's pitch against the first."""

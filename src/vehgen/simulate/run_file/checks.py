@@ -9,7 +9,6 @@ from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files.checks import check_dimension, check_known, plain_quantity, unit_factor, value_of
 from vehgen.files.limits import MOST_CHANNELS, VEHICLE_LENGTH
 from vehgen.files.units import LENGTH
-from vehgen.mechanics.quantities import AXLE_MOTIONS
 from vehgen.simulate.run_file.acquisition import check_acquisition
 from vehgen.simulate.run_file.entries import DisplacementEntry, ForceEntry
 from vehgen.simulate.run_file.sensors import OfElement, OutputEntry, PlaceEntry
@@ -177,7 +176,7 @@ def _check_output(run: Run, name: str, output: OutputEntry) -> None:
 
 
 def _check_axle_has(run: Run, entry: OfElement, quantity: str, *path: str) -> None:
-    """Check that an axle whose quantity is asked for has the suspension, or the mass, that it is of."""
+    """Check that an axle whose quantity is asked for has the suspension that it is of."""
     assert entry.element is not None
     group, name = entry.element
     if group != "axles":
@@ -185,8 +184,6 @@ def _check_axle_has(run: Run, entry: OfElement, quantity: str, *path: str) -> No
     axle, at = run.vehicle.axles[name], run.document.find(path)
     if quantity.startswith("suspension_") and axle.suspension is None:
         raise InputError(f"{name} has no suspension of its own: it is fixed to {shown(axle.body)}", at)
-    if quantity in AXLE_MOTIONS and axle.mass is None:
-        raise InputError(f"{name} has no mass of its own, and moves with {shown(axle.body)}", at)
 
 
 def _check_channel_names(run: Run) -> None:
