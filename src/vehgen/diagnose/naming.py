@@ -16,7 +16,8 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.phrases import candidate_words
 from vehgen.diagnose.select.alternatives import Alternative, alternatives_beside
 from vehgen.diagnose.select.criteria import excess, p_value_of, tied
-from vehgen.diagnose.select.estimates import estimate, unstable, untold
+from vehgen.diagnose.select.estimates import estimate, unstable
+from vehgen.diagnose.select.open_ends import told_alone, told_numbers
 from vehgen.diagnose.select.ranking import SearchRound, holding
 from vehgen.diagnose.select.search import DiagnosisProgress
 from vehgen.diagnose.select.validation import gain_interval, validation_gain
@@ -117,7 +118,7 @@ class Naming:
         """Return the effect `number` of a fit, judged by what it closed in its own round."""
         own = next((item for item in step.fits if item.key == fit.key[: number + 1]), fit)
         candidate = fit.effects[number]
-        parameters = estimate(fit, candidate)
+        parameters, hidden = told_numbers(fit, candidate)
         return NamedEffect(
             candidate.effect.name,
             candidate.place,
@@ -126,14 +127,14 @@ class Naming:
             validation_gain(step.current, own),
             gain_interval(step.current, own, self.validation_runs),
             tuple(item.candidate.label for item in others),
-            self._words(candidate, parameters),
+            self._words(candidate, told_alone(parameters, hidden)),
         )
 
     def _notes(self, fit: ModelFit) -> tuple[str, ...]:
         told = []
         for candidate in fit.effects:
             told += [f"{candidate.label}: {text}" for text in unstable(fit, candidate)]
-            if candidate.effect.changes_vehicle and (names := untold(estimate(fit, candidate))):
+            if names := told_numbers(fit, candidate)[1]:
                 told.append(f"{candidate.label}: {wording.not_told(names)}")
         if fit.least_squares.on_bound:
             told.append(f"on the bound of its range: {', '.join(fit.least_squares.on_bound)}")

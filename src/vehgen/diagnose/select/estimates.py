@@ -60,12 +60,12 @@ def estimate(fit: ModelFit, candidate: Candidate | None = None) -> dict[str, Nam
     candidate = candidate or fit.last
     misfit = fit.least_squares.misfit
     covariance = np.asarray(
-        np.linalg.pinv(_normal(fit)[1], hermitian=True) * max(fit.training, 1.0) / _seen(misfit),
+        np.linalg.pinv(normal_equations(fit)[1], hermitian=True) * max(fit.training, 1.0) / share_seen(misfit),
         dtype=np.float64,
     )
     alone = estimates_by_run(fit, candidate)
     found: dict[str, NamedParameter] = {}
-    for parameter, column, value, scale in _columns(fit, candidate):
+    for parameter, column, value, scale in parameter_columns(fit, candidate):
         noise = NINETY * abs(scale) * float(np.sqrt(max(covariance[column, column], 0.0)))
         minima = (
             NINETY * abs(scale) * float(np.std([own[column] for own in fit.equivalent_minima], ddof=1))
@@ -98,13 +98,13 @@ def disagreement(alone: Sequence[RunEstimate]) -> float:
     return float(scipy.stats.t.ppf(0.95, len(sure) - 1) * np.sqrt(max(variance, 0.0) * (1 + 1 / len(sure))))
 
 
-def _normal(fit: ModelFit) -> Normal:
+def normal_equations(fit: ModelFit) -> Normal:
     """Return the Jacobians of trials `shape (n_residuals, n_unknowns)` by number, and the information they and the priors add up to."""
     return _NORMALS.find(id(fit.least_squares), fit.least_squares, lambda: _normal_anew(fit))
 
 
 def _normal_anew(fit: ModelFit) -> Normal:
-    """Return what :func:`_normal` remembers.
+    """Return what :func:`normal_equations` remembers.
 
     Trials whose response jumps are left out where the others tell of all effects: what
     jumps across a difference quotient is no derivative.
@@ -136,13 +136,13 @@ def _moved(jacobians: Iterable[Array], n_unknowns: int) -> Array:
     return np.sqrt(sum(((item**2).sum(axis=0) for item in jacobians), np.zeros(n_unknowns)))
 
 
-def _seen(misfit: Misfit) -> float:
+def share_seen(misfit: Misfit) -> float:
     """Return the share of the records that their tapers let through: neighbouring lines of tapered records are not independent."""
     trials = misfit.problem.trials
     return float(np.mean([seen_share(len(item.recording.time), item.recording.dt, item.fade_in) for item in trials]))
 
 
-def _columns(fit: ModelFit, candidate: Candidate) -> list[tuple[EffectParameter, int, float, float]]:
+def parameter_columns(fit: ModelFit, candidate: Candidate) -> list[tuple[EffectParameter, int, float, float]]:
     """Return an effect's parameters with their column among the unknowns, their value and their unit per unit of the unknown."""
     misfit, x = fit.least_squares.misfit, fit.least_squares.x
     space = misfit.problem.space
@@ -159,7 +159,7 @@ def _columns(fit: ModelFit, candidate: Candidate) -> list[tuple[EffectParameter,
 
 def fitted_numbers(fit: ModelFit, candidate: Candidate) -> tuple[float, ...]:
     """Return the numbers of an effect's parameters in a fit, those of the vehicle first; what is solved for is not among them."""
-    return tuple(value for _, _, value, _ in _columns(fit, candidate))
+    return tuple(value for _, _, value, _ in parameter_columns(fit, candidate))
 
 
 def _index(misfit: Misfit, adjustment: Adjustment) -> int:
@@ -220,14 +220,14 @@ def estimates_by_run(fit: ModelFit, candidate: Candidate | None = None) -> list[
     """
     candidate = candidate or fit.last
     misfit, x = fit.least_squares.misfit, fit.least_squares.x
-    columns = _columns(fit, candidate)
+    columns = parameter_columns(fit, candidate)
     own = [column for _, column, _, _ in columns]
     lines = misfit.whitened_spectrum(x)
-    jacobians, whole = _normal(fit)
+    jacobians, whole = normal_equations(fit)
     pulls = {t: jacobian.T @ flatten(lines[t]) for t, jacobian in jacobians.items()}
     blocks = misfit.n_parameters + len(misfit.shared)
     gradient = np.concatenate([np.zeros(blocks), x[blocks:]]) + sum(pulls.values())
-    seen, shared = _seen(misfit), blocks + len(misfit.common)
+    seen, shared = share_seen(misfit), blocks + len(misfit.common)
     found = []
     for t, jacobian in jacobians.items():
         trial, slope = misfit.problem.trials[t], pulls[t]
