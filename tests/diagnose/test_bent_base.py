@@ -2,6 +2,7 @@
 
 import re
 import shutil
+import textwrap
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -24,7 +25,7 @@ from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.fit.trial import load_trials
 from vehgen.measure.acquisition import POINT_SAMPLES, AcquisitionChain
 from vehgen.simulate import Simulator
-from vehgen.vehicle import load_vehicle
+from vehgen.vehicle import load_vehicle, parse_vehicle
 from vehgen.vehicle.loading import bundled_models
 
 BAND = (0.5, 25.0)
@@ -124,7 +125,9 @@ def test_a_distance_that_the_file_says_in_numbers_is_fitted(record, monkeypatch,
     (found,) = axle_hypotheses(case)
     fit, left = case.judge(found)
     (fault,) = found.describe(fit.misfit.adjusted(fit.x))
-    assert left < found.limit
+    (distance,) = axles._distances(case)
+    later, _ = (case.judge(item)[1] for item in distance.hypotheses(case.trials, distance.value + 0.42))
+    assert left < min(found.limit, 0.5 * later)  # the lever arms change, too
     assert fault.value == pytest.approx(0.15 * 2.8, abs=0.03)
     assert "rear seems to run" in fault.message
     assert "not 2.80 m" in fault.message
@@ -140,8 +143,20 @@ def test_axles_are_moved_alone_and_with_all_behind_where_no_parameter_says_where
     road = SimpleNamespace(track=SimpleNamespace(parts=("hump",)))
     simulator = Simulator(vehicle, [])
     trial = SimpleNamespace(values=vehicle.values(), fixed=(), simulator=simulator, run=SimpleNamespace(vehicle=vehicle), scenario=road)
+    trial.with_vehicle = lambda changed, simulators: SimpleNamespace(vehicle=changed)
     case = SimpleNamespace(trials=[trial], problem=SimpleNamespace(space=SimpleNamespace(names=tuple(vehicle.ranges()))))
-    found = {distance.axles: (distance.parameter, round(distance.value, 6)) for distance in axles._distances(case)}
+    distances = axles._distances(case)
+    found = {distance.axles: (distance.parameter, round(distance.value, 6)) for distance in distances}
+    supposed = {
+        distance.axles: list(distance.hypotheses(case.trials, distance.value + 0.5)) for distance in distances if not distance.parameter
+    }
+    assert {names: len(items) for names, items in supposed.items()} == {
+        ("axle3",): 2,
+        ("axle3", "axle4", "axle5"): 1,
+        ("axle4",): 2,
+    }
+    known, moved = vehicle.all_values(vehicle.values()), supposed[("axle3",)][1].trials[0].vehicle
+    assert moved.axles["axle3"].x.evaluate(known) == pytest.approx(vehicle.axles["axle3"].x.evaluate(known) - 0.5)
     assert found == {
         ("axle2",): ("L12", 3.46),
         ("axle4", "axle5"): ("L1h", 3.75),
@@ -150,6 +165,25 @@ def test_axles_are_moved_alone_and_with_all_behind_where_no_parameter_says_where
         ("axle3", "axle4", "axle5"): ("", 4.8),
         ("axle4",): ("", 12.25),
     }
+
+
+def test_an_axle_is_moved_where_a_searched_place_of_a_cog_takes_part_in_its_distance():
+    """A caravan's axle, whose hitch stands so far behind the car's COG: a file with a wrong one was told as eleven wrong parameters."""
+    text = """
+        parameters: {a: {value: 1.2 m, range: [0.8 m, 1.6 m]}}
+        bodies: {car: {mass: 1300 kg, pitch_inertia: 2000 kg m^2}, caravan: {mass: 1100 kg, pitch_inertia: 2000 kg m^2}}
+        hinges: {ball: {car: {x: -2.6 m}, caravan: {x: 3.6 m}}}
+        axles:
+          front: {body: car, x: a, tyre: {k: 40 kN/m}}
+          rear: {body: car, x: a - 2.7 m, tyre: {k: 40 kN/m}}
+          van: {body: caravan, x: 0 m, tyre: {k: 40 kN/m}}
+        """
+    vehicle = parse_vehicle(textwrap.dedent(text))
+    trial = SimpleNamespace(values=vehicle.values(), fixed=(), simulator=Simulator(vehicle, []), run=SimpleNamespace(vehicle=vehicle))
+    trial.scenario = SimpleNamespace(track=SimpleNamespace(parts=("hump",)))
+    case = SimpleNamespace(trials=[trial], problem=SimpleNamespace(space=SimpleNamespace(names=("a",))))
+    found = {distance.axles: round(distance.value, 6) for distance in axles._distances(case)}
+    assert found == {("rear",): 2.7, ("rear", "van"): 2.7, ("van",): 7.4}
 
 
 @pytest.mark.thorough

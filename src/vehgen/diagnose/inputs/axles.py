@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +14,11 @@ from vehgen.diagnose.inputs.comparison import Comparison, compare
 from vehgen.diagnose.inputs.fault import Hypothesis, MeasurementFault, always
 from vehgen.diagnose.inputs.recorders import other_rate
 from vehgen.diagnose.inputs.refits import BaseRefits
+from vehgen.files.expressions import parse
 from vehgen.fit.adjustments import SpeedScale
 from vehgen.fit.least_squares import LeastSquaresFit
-from vehgen.fit.nuisances import stated_axles
 from vehgen.fit.trial import Trial
+from vehgen.simulate import SimulatorPool
 
 Array = NDArray[np.float64]
 MOVED = 0.25
@@ -40,7 +42,7 @@ with which -2 ln L is higher by so much: errors beyond belief make up for it."""
 class _Distance:
     """How far behind the first axle some axles run [m]: what a parameter of the vehicle file says, or, without one, its numbers.
 
-    Where numbers say it, the road comes later to the axles that are `moved`; what lever arms the body has is left to the fit.
+    Where numbers say it, the road comes later to the axles that are `moved`; of axles of one body the lever arms change, too.
     """
 
     axles: tuple[str, ...]
@@ -54,16 +56,27 @@ class _Distance:
         own = AXLE_SHIFT_SHARE * self.value
         return own if self.parameter else min(own, LONGEST_SHIFT_M)
 
-    def hypothesis(self, trials: Sequence[Trial], value: float) -> Hypothesis:
-        """Return that the distance is another [m]; where numbers say it, how long it is is fitted."""
+    def hypothesis(self, trials: Sequence[Trial], value: float, stated: float | None = None) -> Hypothesis:
+        """Return that the distance is another [m] than is `stated` (default: than in the trials); where numbers say it, it is fitted."""
         if self.parameter:
             others = tuple(replace(trial, values=trial.values | {self.parameter: value}) for trial in trials)
             return Hypothesis(others, always(self.fault(value)), MOVED)
         shift = AxleShift(" and ".join(self.axles), AXLE_SHIFT_STEP_M, moved=self.moved)
-        return Hypothesis(tuple(trials), self._told, MOVED, (shift,), (value - self.value,))
+        told = partial(self._told, stated=self.value if stated is None else stated)
+        return Hypothesis(tuple(trials), told, MOVED, (shift,), (value - self.value,))
 
-    def _told(self, numbers: Array) -> tuple[MeasurementFault, ...]:
-        return (self.fault(self.value + float(numbers[-1])),)
+    def hypotheses(self, trials: Sequence[Trial], value: float) -> Iterator[Hypothesis]:
+        """Yield that the distance is another [m] and, where numbers say it of axles of one body, that these sit elsewhere on it, too."""
+        yield self.hypothesis(trials, value)
+        vehicle, by = trials[0].run.vehicle, value - self.value
+        if not self.parameter and len({vehicle.axles[name].body for name in self.axles}) == 1:
+            moved = {name: {"x": vehicle.axles[name].x - parse(f"{by!r} m")} for name in self.axles}
+            changed, simulators = vehicle.with_changes({"axles": moved}), SimulatorPool()
+            elsewhere = [trial.with_vehicle(changed, simulators) for trial in trials]
+            yield replace(self, value=value).hypothesis(elsewhere, value, self.value)
+
+    def _told(self, numbers: Array, stated: float) -> tuple[MeasurementFault, ...]:
+        return (replace(self, value=stated).fault(self.value + float(numbers[-1])),)
 
     def fault(self, value: float) -> MeasurementFault:
         """Return that the distance is another [m]."""
@@ -89,8 +102,8 @@ def axle_hypotheses(case: BaseRefits) -> Iterator[Hypothesis]:
     if score < _mean(case.comparisons) + NOTICED:
         return
     value = _best(case, distance, [value + i * FINE_STEP for i in range(-5, 6)])[1]
-    hypothesis = distance.hypothesis(case.trials, value)
-    moved, left = case.judge(hypothesis)
+    judged = [(*case.judge(item), item) for item in distance.hypotheses(case.trials, value)]
+    moved, left, hypothesis = min(judged, key=lambda item: item[1])
     if left <= MOVED and not _speed_does_as_well(case, moved, left):
         yield hypothesis
 
@@ -123,7 +136,7 @@ def _by_numbers(trial: Trial, named: Sequence[_Distance]) -> list[_Distance]:
     offsets = dict(zip(trial.simulator.model.layout.axles, trial.simulator.model.wheel_offsets(trial.values).tolist(), strict=True))
     known = [set(distance.axles) for distance in named]
     groups: dict[tuple[str, ...], float] = {}
-    for axle in stated_axles(trial):
+    for axle in (axle for axle, offset in offsets.items() if offset > 0 and trial.scenario.track.parts):
         if {axle} not in known:
             behind = sorted((other for other in offsets if offsets[other] >= offsets[axle]), key=offsets.__getitem__)
             groups |= {(axle,): offsets[axle], tuple(behind): offsets[axle]}
