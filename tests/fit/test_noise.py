@@ -118,6 +118,17 @@ def test_level_and_sigma_come_out_of_noise_that_was_drawn_with_them():
     assert np.median(found.level(answer.wavenumber[inside])) == pytest.approx(2e-3, rel=0.15)
 
 
+def test_a_rig_has_no_road_whose_roughness_could_be_told():
+    """A shaker's runs were warned of a road rougher than class D."""
+    random = np.random.default_rng(8)
+    answer, sigma = make_answer(random), np.array([0.01, 0.1, 0.02, 0.2])
+    answer = replace(answer, gain=np.zeros_like(answer.gain))
+    lines = draw(Noise(EVEN, sigma), answer, random)
+    (found,) = estimate_noise([(lines, answer)], Noise(EVEN, 3 * sigma))
+    assert found.levels == pytest.approx(EVEN)
+    np.testing.assert_allclose(found.sigma, sigma, rtol=0.1)
+
+
 def test_each_trial_has_a_road_of_its_own_roughness_and_all_have_the_same_sensors():
     random = np.random.default_rng(4)
     answer, sigma = make_answer(random, n=800), np.array([0.05, 0.2, 0.1, 0.3])

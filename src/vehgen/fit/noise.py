@@ -169,7 +169,7 @@ def estimate_noise(residuals: Sequence[tuple[Complex, RoadAnswer]], start: Noise
     """Return the most likely noise of trials with the same channels, from residuals, lines `shape (n, n_channels)`: a noise a trial.
 
     Sensors are as loud in all trials. Roads are of one kind, but not equally rough: a vehicle never takes the same track twice, and the
-    roughness beneath one pass differs from the next by a factor of its own.
+    roughness beneath one pass differs from the next by a factor of its own. A road that reaches no channel, as of a rig, is even.
 
     Parameters
     ----------
@@ -217,4 +217,6 @@ def estimate_noise(residuals: Sequence[tuple[Complex, RoadAnswer]], start: Noise
             levels, sigma = np.clip(first.levels, SMALLEST_LEVEL, LARGEST_LEVEL), np.maximum(first.sigma, floor)
             begun = np.concatenate([np.log(levels), np.zeros(spread), np.log(sigma)])
             found.append(scipy.optimize.minimize(loss, begun, jac=True, method="L-BFGS-B", bounds=bounds))
-    return read(min(found, key=lambda item: float(item.fun)).x)
+    noises = read(min(found, key=lambda item: float(item.fun)).x)
+    is_reached = any(np.any(answer.gain) for _, answer in residuals)
+    return noises if is_reached else tuple(replace(noise, levels=EVEN) for noise in noises)
