@@ -3,7 +3,7 @@
 import pytest
 
 from vehgen.diagnose import wording
-from vehgen.diagnose.phrases import effect_words, force_words, place_words
+from vehgen.diagnose.phrases import effect_words, force_words, interval_words, place_words
 from vehgen.diagnose.verdict import NamedParameter
 from vehgen.effects import EFFECTS
 from vehgen.fit.nuisances import Condition
@@ -20,6 +20,19 @@ def test_a_named_effect_reads_as_a_sentence():
     assert wording.named([found("dry_friction", "rear", force=446.2)], 1.0) == (
         "Dry friction of about 446 N in the rear suspension: it explains all of what the model missed on runs that it was not fitted to"
     )
+
+
+@pytest.mark.parametrize(
+    ("interval", "expected"),
+    [
+        ((199_980.0, 200_020.0), "1.9998e+05 to 2.0002e+05"),
+        ((1.23456, 2.0), "1.235 to 2"),
+        ((3.0, 3.0), "3 to 3"),
+        ((-0.5, 0.25), "-0.5 to 0.25"),
+    ],
+)
+def test_the_ends_of_an_interval_differ_where_they_do(interval, expected):
+    assert interval_words(interval) == expected
 
 
 @pytest.mark.parametrize(

@@ -101,6 +101,7 @@ FAULTS: list[Fault] = [
     ),
     ("text", "3.46 m - b1", "\"b1 + @'m'\"", "only numbers, units, parameter names"),
     ("comment", "3.46 m - b1", '"b1 @# b2"', "only numbers, units, parameter names"),
+    ("decimal comma", "3.46 m - b1", "'3@,46 m - b1'", "found a comma; decimals are written with a point"),
     ("underscore", "3.46 m - b1", "3.46 m - @__import__", "a name may not start with an underscore: '__import__'"),
     ("power of a symbol", "3.46 m - b1", "@b1**b1", "an exponent must be a plain number between -10 and 10"),
     ("a list for a number", "mass: 5 t", "mass: @[5 t]", "expected a number with its unit or an expression, such as '3.46 m - b1'"),

@@ -82,6 +82,8 @@ def run(options: argparse.Namespace) -> int | None:
 
 
 def _show(found: Diagnosis) -> None:
+    from vehgen.diagnose.phrases import interval_words
+
     verdict = found.verdict
     say("", heading=f"{verdict.reason}.")
     effect_rows = [
@@ -90,7 +92,7 @@ def _show(found: Diagnosis) -> None:
             effect.place,
             name,
             f"{item.value:.4g} {item.unit}",
-            "" if item.interval is None else f"{item.interval[0]:.4g} to {item.interval[1]:.4g}",
+            "" if item.interval is None else interval_words(item.interval),
         )
         for effect in verdict.effects
         for name, item in effect.parameters.items()

@@ -17,6 +17,7 @@ from vehgen.files.units import NONE, Dimension, nearest_unit, read_unit
 MAX_LENGTH = 1000
 MAX_EXPRESSION_DEPTH = 100
 _NUMBER_TOKEN = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+_COMMA_IN_NUMBER = re.compile(r"(?<=\d),(?=\d)", re.ASCII)
 _SYMBOL = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 _SIGN_CHARACTERS = "+-*/^(),"
 _OPERATORS: dict[type[ast.operator], str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
@@ -86,6 +87,8 @@ def _replace_quantities(text: str) -> tuple[str, list[tuple[float, Dimension]], 
             quantities.append((value, dimension))
         elif text[position].isspace():
             piece, end = " ", position + 1
+        elif _COMMA_IN_NUMBER.match(text, position) and pieces.count("(") == pieces.count(")"):
+            raise ExpressionError("found a comma; decimals are written with a point: 10.8 km/h", position)
         elif text[position] in _SIGN_CHARACTERS:
             piece, end = ("**" if text[position] == "^" else text[position]), position + 1
         else:

@@ -145,7 +145,7 @@ def _other_speeds(case: BaseRefits, found: Mapping[int, tuple[float, Trial]]) ->
             "measure it by the time between the axles' arrivals at the hump, or by GPS, and put it right",
             factor,
         )
-        for run, factor in ((case.trials[i].name, factor) for i, (factor, _) in found.items())
+        for run, factor in ((case.trials[i].name, found[i][0]) for i in sorted(found))
     )
     return Hypothesis(tuple(trials), always(*faults), WRONG_SPEED_LEFT)
 

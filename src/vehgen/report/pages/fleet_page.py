@@ -8,6 +8,7 @@ from urllib.parse import quote
 from markupsafe import Markup
 
 from vehgen.diagnose.fleet import Fleet, FleetRow
+from vehgen.diagnose.phrases import interval_words
 from vehgen.diagnose.verdict import NamedParameter
 from vehgen.files import write_text
 from vehgen.report.figure_files import figure_svg, inline_svg
@@ -54,7 +55,7 @@ def _shown_row(row: FleetRow) -> dict[str, object]:
 
 def _number(name: str, item: NamedParameter) -> str:
     told = f"{name} {item.value:.4g} {item.unit}".strip()
-    return told if item.interval is None else f"{told} ({item.interval[0]:.4g} to {item.interval[1]:.4g})"
+    return told if item.interval is None else f"{told} ({interval_words(item.interval)})"
 
 
 def _todo(row: FleetRow) -> list[str]:
