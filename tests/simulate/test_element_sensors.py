@@ -94,3 +94,18 @@ def test_sensors_that_cannot_be_are_refused_at_their_place(dyno, sensor, words, 
     with pytest.raises(InputError, match=words) as caught:
         load_run(dyno(RUN.replace("cell: {link: load_cell, channels: {link_force: F}}", sensor)))
     assert caught.value.position.line == line
+
+
+def test_the_hub_of_a_wheel_that_sits_on_its_body_moves_as_that_does(tmp_path):
+    """A forklift has no suspension: its front wheels heave as the frame does there."""
+    (tmp_path / "lift.yaml").write_text(
+        "name: lift\nbodies: {frame: {mass: 3 t, pitch_inertia: 2 t m^2}}\n"
+        "axles:\n  front: {body: frame, x: 0.8 m, tyre: {k: 1 MN/m, c: 2 kN s/m}}\n  rear: {body: frame, x: -0.9 m, tyre: {k: 1 MN/m}}\n",
+        encoding="utf-8",
+    )
+    sensors = "sensors: {hub: {axle: front, channels: {acceleration: a}}, place: {body: frame, x: 0.8 m, channels: {acceleration: b}}}\n"
+    run = "vehicle: lift.yaml\nspeed: 2 m/s\nduration: 3 s\nroad: [{hump: {shape: half_sine, length: 0.5 m, height: 30 mm, at: 1 m}}]\n"
+    (tmp_path / "run.yaml").write_text(run + sensors, encoding="utf-8")
+    found = simulate(load_run(tmp_path / "run.yaml")).values[0]
+    assert np.abs(found[:, 0]).max() > 1.0
+    assert found[:, 0] == pytest.approx(found[:, 1], abs=1e-9)

@@ -20,7 +20,7 @@ from vehgen.fit.window import flatten
 
 Array = NDArray[np.float64]
 Interval = tuple[float, float]
-FAR_BEYOND = 0.2
+FAR_BEYOND = 0.2, 0.4
 """So far beyond an end of its range, in the unit cube, a number is moved that stands there."""
 
 
@@ -59,7 +59,8 @@ def _at_an_end(fit: ModelFit, column: int, scale: float, interval: Interval) -> 
     """Return the interval of a number at an end of its range, and whether it may as well lie far beyond: it has no interval then."""
     x, step = fit.least_squares.x, _unbounded_step(fit)
     side = 1.0 if x[column] > 0.5 else -1.0
-    if _rise(fit, _moved(x, column, x[column] + side * FAR_BEYOND)) <= 1.0:
+    far, farther = (_rise(fit, _moved(x, column, x[column] + side * beyond)) for beyond in FAR_BEYOND)
+    if far <= 1.0 and abs(farther - far) <= 1.0:
         return None, True
     stepped, pushed = x + step, 0.0
     if side * step[column] > 0 and _rise(fit, _moved(stepped, column, x[column])) - _rise(fit, stepped) > 1.0:
