@@ -114,3 +114,14 @@ def test_parts_of_a_gap_are_told_with_what_each_leaves():
 @pytest.mark.parametrize(("share", "words"), [(-0.78, "none"), (0.0, "none"), (0.42, "42 %"), (0.996, "all")])
 def test_a_law_that_makes_it_worse_explains_none(share: float, words: str):
     assert wording.best_random_law(8, share).endswith(f"explains {words} of what the model missed")
+
+
+def test_what_several_suppositions_have_in_common_is_said_once():
+    """A note listed fourteen errors, each with the same words behind it."""
+    far = " (4 standard deviations of what was thought possible)"
+    told = wording.supposed([f"CF_az reads 4 % more{far}", "R was low-passed at 8 Hz", f"CV sits 0.08 m off{far}"]).partition(": ")[2]
+    assert (
+        told
+        == "CF_az reads 4 % more; CV sits 0.08 m off (each 4 standard deviations of what was thought possible); R was low-passed at 8 Hz"
+    )
+    assert wording.supposed([f"CF_az reads 4 % more{far}"]).endswith(f"CF_az reads 4 % more{far}")

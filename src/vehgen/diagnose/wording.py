@@ -182,8 +182,16 @@ def mistaken(faults: Sequence[str]) -> str:
 
 
 def supposed(messages: Sequence[str]) -> str:
-    """Return the note on what fits suppose of the measurement beyond belief, where a missing effect may have bent them to it."""
-    return f"The refit supposes more than can be believed, for want of the effect or because it is so: {'; '.join(messages)}"
+    """Return the note on what fits suppose of the measurement beyond belief, where a missing effect may have bent them to it.
+
+    What stands in brackets at the end of several messages alike, such as how many standard deviations they are off, is said once.
+    """
+    alike: dict[str, list[str]] = {}
+    for message in messages:
+        what, _, how = message.rpartition(" (") if message.endswith(")") else (message, "", "")
+        alike.setdefault(how.removesuffix(")"), []).append(what)
+    told = ["; ".join(items) + (f" ({'each ' if len(items) > 1 else ''}{how})" if how else "") for how, items in alike.items()]
+    return f"The refit supposes more than can be believed, for want of the effect or because it is so: {'; '.join(told)}"
 
 
 def at_the_edge(names: Sequence[str], tyres: Sequence[str] = ()) -> str:
