@@ -23,6 +23,7 @@ from vehgen.diagnose.select.search import DiagnosisProgress
 from vehgen.diagnose.select.validation import gain_interval, validation_gain
 from vehgen.diagnose.verdict import Gap, NamedEffect, NamedParameter, Verdict
 from vehgen.fit.nuisances import Condition
+from vehgen.simulate.last_used import LastUsed
 
 
 class Naming:
@@ -46,6 +47,7 @@ class Naming:
         self.detection, self.base, self.rounds = detection, detection.base, rounds
         self.tried, self.progress, self.interrupted = tried, progress, interrupted
         self.validation_runs = [trial.name for trial in detection.validation_runs]
+        self._numbers = LastUsed[tuple[dict[str, NamedParameter], list[str]]](lambda item: 0)
 
     def verdict(self, chain: Sequence[ModelFit]) -> Verdict:
         """Return the verdict `named` or `ambiguous`, without gap and places."""
@@ -118,7 +120,7 @@ class Naming:
         """Return the effect `number` of a fit, judged by what it closed in its own round."""
         own = next((item for item in step.fits if item.key == fit.key[: number + 1]), fit)
         candidate = fit.effects[number]
-        parameters, hidden = told_numbers(fit, candidate)
+        parameters, hidden = self._told(fit, candidate)
         return NamedEffect(
             candidate.effect.name,
             candidate.place,
@@ -130,11 +132,15 @@ class Naming:
             self._words(candidate, told_alone(parameters, hidden)),
         )
 
+    def _told(self, fit: ModelFit, candidate: Candidate) -> tuple[dict[str, NamedParameter], list[str]]:
+        """Return what :func:`told_numbers` does, which simulates: once of each effect."""
+        return self._numbers.find((id(fit), candidate.label), fit, lambda: told_numbers(fit, candidate))
+
     def _notes(self, fit: ModelFit) -> tuple[str, ...]:
         told = []
         for candidate in fit.effects:
             told += [f"{candidate.label}: {text}" for text in unstable(fit, candidate)]
-            if names := told_numbers(fit, candidate)[1]:
+            if names := self._told(fit, candidate)[1]:
                 told.append(f"{candidate.label}: {wording.not_told(names)}")
         if fit.least_squares.on_bound:
             told.append(f"on the bound of its range: {', '.join(fit.least_squares.on_bound)}")

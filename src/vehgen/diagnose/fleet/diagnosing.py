@@ -118,7 +118,8 @@ class _State:
         Each is read twice, so that faults are told at once and no more vehicles are in memory than are diagnosed.
         """
         self.kept = _kept(self.target / FLEET_FILE)
-        for folder in [folder for folder in folders if self.waiting(folder) is not None]:
+        unfinished = [folder for folder in folders if self.waiting(folder) is not None]
+        for folder in unfinished:
             work = self.waiting(folder)
             if work is not None:
                 yield work

@@ -56,14 +56,12 @@ class _Distance:
         own = AXLE_SHIFT_SHARE * self.value
         return own if self.parameter else min(own, LONGEST_SHIFT_M)
 
-    def hypothesis(self, trials: Sequence[Trial], value: float, stated: float | None = None) -> Hypothesis:
-        """Return that the distance is another [m] than is `stated` (default: than in the trials); where numbers say it, it is fitted."""
+    def hypothesis(self, trials: Sequence[Trial], value: float) -> Hypothesis:
+        """Return that the distance is another [m]; where numbers say it, how long it is is fitted."""
         if self.parameter:
             others = tuple(replace(trial, values=trial.values | {self.parameter: value}) for trial in trials)
             return Hypothesis(others, always(self.fault(value)), MOVED)
-        shift = AxleShift(" and ".join(self.axles), AXLE_SHIFT_STEP_M, moved=self.moved)
-        told = partial(self._told, stated=self.value if stated is None else stated)
-        return Hypothesis(tuple(trials), told, MOVED, (shift,), (value - self.value,))
+        return self._further(trials, value - self.value)
 
     def hypotheses(self, trials: Sequence[Trial], value: float) -> Iterator[Hypothesis]:
         """Yield that the distance is another [m] and, where numbers say it of axles of one body, that these sit elsewhere on it, too."""
@@ -73,10 +71,15 @@ class _Distance:
             moved = {name: {"x": vehicle.axles[name].x - parse(f"{by!r} m")} for name in self.axles}
             changed, simulators = vehicle.with_changes({"axles": moved}), SimulatorPool()
             elsewhere = [trial.with_vehicle(changed, simulators) for trial in trials]
-            yield replace(self, value=value).hypothesis(elsewhere, value, self.value)
+            yield self._further(elsewhere, 0.0, by)
 
-    def _told(self, numbers: Array, stated: float) -> tuple[MeasurementFault, ...]:
-        return (replace(self, value=stated).fault(self.value + float(numbers[-1])),)
+    def _further(self, trials: Sequence[Trial], begin: float, known: float = 0.0) -> Hypothesis:
+        """Return that the axles run further behind [m], by what the trials' vehicle has already, and by what is fitted from `begin` on."""
+        shift = AxleShift(" and ".join(self.axles), AXLE_SHIFT_STEP_M, moved=self.moved)
+        return Hypothesis(tuple(trials), partial(self._told, known), MOVED, (shift,), (begin,))
+
+    def _told(self, known: float, numbers: Array) -> tuple[MeasurementFault, ...]:
+        return (self.fault(self.value + known + float(numbers[-1])),)
 
     def fault(self, value: float) -> MeasurementFault:
         """Return that the distance is another [m]."""
