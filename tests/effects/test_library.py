@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import sympy as sp
 
 from tests.bundled import few
 from vehgen.effects import EFFECTS, Effect, EffectLocator
@@ -133,6 +134,20 @@ def test_a_stiff_frame_is_a_rigid_one():
     change = {"bodies": {"semitrailer": {"bending": {"length": "12 m", "frequency": "3000 Hz"}}}}
     vehicle = load_vehicle("tractor5.yaml")
     assert frequencies(vehicle.with_changes(change))[:-1] == pytest.approx(frequencies(vehicle), rel=1e-5)
+
+
+def test_a_bending_frame_leaves_its_pin_where_it_is_fore_and_aft():
+    """A trailer hangs by its frame: what bends the frame turns the pin, and pushes no tractor."""
+    vehicle = load_vehicle("tractor5.yaml")
+    site = EffectLocator(vehicle, vehicle.values()).site("semitrailer")
+    motion = derive(vehicle.with_changes(EFFECTS["frame_bending"].change(site))).motion
+    x, z = (sp.Symbol(name, real=True) for name in ("b6", "a2"))
+    bending = motion.index("bending.semitrailer")
+    pin, above = motion.forward("semitrailer", x, z), motion.forward("semitrailer", x, z + 1)
+    assert pin.get(bending, 0) == 0
+    assert sp.simplify(above[bending] - motion.turn("semitrailer", x)[bending]) == 0
+    assert bending not in motion.fore_aft["tractor"]
+    assert bending not in motion.fore_aft["semitrailer"]
 
 
 def test_the_page_shows_the_library_as_it_is():

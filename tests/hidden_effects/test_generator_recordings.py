@@ -156,6 +156,10 @@ TRACTOR_HINGE = """\
 extends: tractor5.yaml
 hinges: {fifth_wheel: {k: 2 MN m/rad}}
 """
+TRACTOR_FRAME = """\
+extends: tractor5.yaml
+bodies: {semitrailer: {bending: {length: sqrt(12*IS/mS), frequency: 5.5 Hz, damping_ratio: 0.02, z: a2}}}
+"""
 
 
 @pytest.mark.thorough
@@ -178,8 +182,15 @@ hinges: {fifth_wheel: {k: 2 MN m/rad}}
             ),
             RunSpec((Hump(0.5, 0.03, 2.0),), 2.0, 10.0),
         ),
+        (
+            "tractor5", TRACTOR_FRAME,
+            (
+                Effect("frame_bending", "semitrailer", {"frequency": 5.5, "damping": 0.02, "modal_mass_share": 0.8, "participation": 1.0}),
+            ),
+            RunSpec((Hump(0.5, 0.03, 2.0),), 2.0, 10.0),
+        ),
     ],
-    ids=["sedan2", "tractor5"],
+    ids=["sedan2", "hinge", "frame"],
 )  # fmt: skip
 def test_vehgen_reads_the_files_and_computes_the_same(tmp_path, vehicle, text, effects, run):
     path = write_case(Case(vehicle, nominal(vehicle), effects, (run,), noise=SILENT), tmp_path)[0]

@@ -1,9 +1,9 @@
 """How every body and axle moves, as rows over the independent coordinates.
 
 Small motions in the pitch plane (ISO 8855: x forward, z up, pitch nose-down positive): a point (x, z) of a body rises by
-heave - x*pitch and moves forward by fore_aft + z*pitch. A body that bends turns by more or less than its pitch from place to place:
-what it carries, and pins above or below its axis, follow the turn at their place. Hinges are constraints and are eliminated here: the
-first-declared body of a hinged group keeps its heave, every other body's heave follows from the pins.
+heave - x*pitch and moves forward by fore_aft + z*pitch. A body that bends turns by more or less than its pitch from place to place,
+about its neutral axis: what it carries, and pins above or below that axis, follow the turn at their place. Hinges are constraints and
+are eliminated here: the first-declared body of a hinged group keeps its heave, every other body's heave follows from the pins.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from vehgen.vehicle.parts import GROUND, Point
 class Kinematics:
     """Rows of heave, pitch and bending per body, hop per axle, and fore-aft motion per body relative to its group.
 
-    `bending[body]` is its coordinate's row and the length over which it bends.
+    `bending[body]` is its coordinate's row, the length over which it bends and the height of its neutral axis above the COG.
     `groups[body]` names the body whose fore-aft motion all bodies of its group share; `fore_aft[body]` is what the body moves
     ahead of it.
     """
@@ -35,7 +35,7 @@ class Kinematics:
     hop: dict[str, Row]
     fore_aft: dict[str, Row] = field(default_factory=dict)
     groups: dict[str, str] = field(default_factory=dict)
-    bending: dict[str, tuple[Row, sp.Expr]] = field(default_factory=dict)
+    bending: dict[str, tuple[Row, sp.Expr, sp.Expr]] = field(default_factory=dict)
 
     def rise(self, body: str, x: sp.Expr) -> Row:
         """Return the vertical motion of the point x ahead of a body's COG; the ground does not move."""
@@ -49,11 +49,16 @@ class Kinematics:
             return {}
         return combine((sp.S.One, self.pitch[body]), *self._bent(body, (-12 * x, sp.S.Zero)))
 
+    def forward(self, body: str, x: sp.Expr, z: sp.Expr) -> Row:
+        """Return how far the point (x, z) of a body moves ahead of its group; on its neutral axis bending moves none."""
+        bent = self._bent(body, (-12 * x * (z - self.bending[body][2]), sp.S.Zero)) if body in self.bending else []
+        return combine((sp.S.One, self.fore_aft[body]), (z, self.pitch[body]), *bent)
+
     def _bent(self, body: str, shape: tuple[sp.Expr, sp.Expr]) -> list[tuple[sp.Expr, Row]]:
         """Return what bending adds: with shape (a, b) it is (a/length^2 - b/2) of its coordinate; s = 2 x/length in (3 s^2 - 1)/2."""
         if body not in self.bending:
             return []
-        row, length = self.bending[body]
+        row, length, _ = self.bending[body]
         return [(shape[0] / length**2 - shape[1] / 2, row)]
 
     def index(self, name: str) -> int:
@@ -83,7 +88,7 @@ def derive_kinematics(vehicle: Vehicle) -> Kinematics:
 
     for name, body in vehicle.bodies.items():
         if body.bending is not None:
-            motion.bending[name] = (unit(index[f"bending.{name}"]), to_sympy(body.bending.length))
+            motion.bending[name] = (unit(index[f"bending.{name}"]), to_sympy(body.bending.length), to_sympy(body.bending.z))
     for name in _carrier_order(vehicle):
         body = vehicle.bodies[name]
         carrier = body.carried_by
@@ -98,8 +103,7 @@ def derive_kinematics(vehicle: Vehicle) -> Kinematics:
         if carrier is None and name not in followers:
             motion.fore_aft[name], motion.groups[name] = {}, name
         elif carrier is not None:
-            turned = motion.turn(carrier.body, to_sympy(carrier.x))
-            motion.fore_aft[name] = combine((sp.S.One, motion.fore_aft[carrier.body]), (to_sympy(carrier.z), turned))
+            motion.fore_aft[name] = motion.forward(carrier.body, to_sympy(carrier.x), to_sympy(carrier.z))
             motion.groups[name] = motion.groups[carrier.body]
         for follower, (parent, parent_point, point) in followers.items():
             if parent in motion.heave and follower not in motion.heave:
@@ -113,11 +117,10 @@ def _follow(motion: Kinematics, index: dict[str, int], body: str, parent: str, p
     motion.heave[body] = {}
     own = motion.rise(body, to_sympy(point.x))
     motion.heave[body] = combine((sp.S.One, motion.rise(parent, to_sympy(parent_point.x))), (sp.S.NegativeOne, own))
-    motion.fore_aft[body] = combine(
-        (sp.S.One, motion.fore_aft[parent]),
-        (to_sympy(parent_point.z), motion.turn(parent, to_sympy(parent_point.x))),
-        (-to_sympy(point.z), motion.turn(body, to_sympy(point.x))),
-    )
+    motion.fore_aft[body] = {}
+    own = motion.forward(body, to_sympy(point.x), to_sympy(point.z))
+    pin = motion.forward(parent, to_sympy(parent_point.x), to_sympy(parent_point.z))
+    motion.fore_aft[body] = combine((sp.S.One, pin), (sp.S.NegativeOne, own))
     motion.groups[body] = motion.groups[parent]
 
 

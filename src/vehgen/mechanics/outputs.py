@@ -121,7 +121,7 @@ def point_channel(output: PointOutput, vehicle: Vehicle, layout: Layout, motion:
 
 def fore_aft_row(place: Place, x: sp.Expr, motion: Kinematics, energies: Energies) -> Row:
     """Return how far forward a place `x` ahead of its body's COG moves: with its group of bodies, with its body, and as it pitches."""
-    own = combine((sp.S.One, motion.fore_aft[place.body]), (number(place.height), motion.turn(place.body, x)))
+    own = motion.forward(place.body, x, number(place.height))
     return combine((sp.S.One, energies.eliminated(motion.groups[place.body])), (sp.S.One, own))
 
 

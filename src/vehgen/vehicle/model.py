@@ -221,6 +221,7 @@ class Vehicle(FileModel):
                 yield (*path, "bending", "length"), body.bending.length, LENGTH
                 yield (*path, "bending", "frequency"), body.bending.frequency, FREQUENCY
                 yield (*path, "bending", "damping_ratio"), body.bending.damping_ratio, NONE
+                yield (*path, "bending", "z"), body.bending.z, LENGTH
             if body.at is not None:
                 yield (*path, "at"), body.at, LENGTH
         for kind, joints, stiffness, damping in (

@@ -63,11 +63,13 @@ class Bending(FileModel):
     """The first bending mode of a long body, as of a uniform free beam about its COG.
 
     Its shape is the parabola (3 s^2 - 1)/2 with s = 1 at both ends: free of heave and pitch, with the modal mass of a fifth of the body's.
+    Points on its neutral axis, `z` above the COG, move fore-aft as if it were rigid; a loaded frame's lies below the COG.
     """
 
     length: Expression
     frequency: Expression = Field(description="natural frequency of the free body")
     damping_ratio: Expression = ZERO
+    z: Expression = Field(ZERO, description="height of its neutral axis above the COG")
 
 
 class Body(FileModel):

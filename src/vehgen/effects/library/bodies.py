@@ -14,20 +14,17 @@ SHAPE_ERROR = 0.0015
 
 
 def _edit(site: EffectSite, symbols: Symbols) -> Change:
-    return {
-        "bodies": {
-            site.place: {
-                "bending": {"length": symbols["length"], "frequency": symbols["frequency"], "damping_ratio": symbols["damping_ratio"]}
-            }
-        }
-    }
+    """Bend a body about its pin's height, where its frame is; one without a pin about its COG."""
+    bending = {name: symbols[name] for name in ("length", "frequency", "damping_ratio")}
+    pins = [hinge.points[site.place].z for hinge in site.vehicle.hinges.values() if site.place in hinge.points]
+    return {"bodies": {site.place: {"bending": bending | ({"z": pins[0]} if pins else {})}}}
 
 
 FRAME_BENDING_EFFECT = VehicleEffect(
     name="frame_bending",
     title="Frame bending",
     equation="(m/5)*(eta'' + 2 zeta omega eta' + omega^2 eta) = force along (3 s^2 - 1)/2",
-    meaning="a long frame bends between its supports",
+    meaning="a long frame bends between its supports, about the height of its pin if it has one",
     signature="a lightly damped resonance between body and hop frequencies; its ends move against its middle",
     source="R. D. Blevins, Formulas for Natural Frequency and Mode Shape, 1979, ISBN 9780442207106",
     attaches="body",

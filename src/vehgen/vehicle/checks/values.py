@@ -117,7 +117,7 @@ def _refusal(path: tuple[str, ...], number: float, dimension: Dimension, where: 
         return f"negative {path[-1]}: {what} is {number:g}{where}; it must not be below 0"
     if "size" in path and number < 0:
         return f"{what} must not be below 0, found {number:g}{where}"
-    if "bending" in path and path[-1] != "damping_ratio" and number <= 0:
+    if "bending" in path and path[-1] not in ("damping_ratio", "z") and number <= 0:
         return f"{what} must be above 0, found {number:g}{where}"
     return None
 
