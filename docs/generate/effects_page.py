@@ -119,7 +119,9 @@ that take part in arithmetic: `{"c": site.spring.c + 2*symbols["c"]}`. A `RunEff
 `looked_for`; what is neither is a class of your own with the methods of [`Effect`](../src/vehgen/effects/base.py). Each may set
 `is_global`, and name in `special_case` the effect that it is at some value of its parameters: where both do as well, that one is named."""
 SHOWN_HZ = (0.5, 25.0)
-SHOWN = {"hinge_friction": "L2_q", "hinge_stiffness": "L2_q", "walking_beam": "L2_az", "cargo_module": "L2_az", "sensor_delay": "L2_az"}
+SHOWN = {"hinge_friction": "L2_q", "hinge_stiffness": "L2_q"} | dict.fromkeys(
+    ("walking_beam", "cargo_module", "frame_bending", "sensor_delay"), "L2_az"
+)
 """The channel that shows an effect best; L1_az otherwise."""
 FREED = {"k": "the stiffness", "c": "the damping", "kt": "the tyre's stiffness"}
 """What an effect frees, in words."""
