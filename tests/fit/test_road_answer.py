@@ -7,7 +7,7 @@ import pytest
 
 from tests.fit.profile_world import FINE, RATE, fine_channels, read_run, rough_road
 from vehgen.fit import road_answer as module
-from vehgen.fit.adjustments import SpeedScale
+from vehgen.fit.adjustments import Gain, SensorDelay, SpeedScale
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import Noise
 from vehgen.fit.nuisances import Nuisances
@@ -40,9 +40,10 @@ def driven(tmp_path_factory):
 NOISE = Noise(np.full(len(KNOT_WAVENUMBERS), 2 * PER_METRE / (2 * np.pi * 0.1) ** 2), SIGMA)
 
 
-def whitened_powers(driven, answer=None):
+def whitened_powers(driven, answer=None, lines=None):
     """Return the mean square of the channels' whitened lines by band: 0.5 to 1.5, 1.5 to 3 and 3 to 6 Hz, `shape (3, 4)`."""
-    trial, frequency, lines = driven
+    trial, frequency, on_time = driven
+    lines = on_time if lines is None else lines
     white = np.einsum("nij,pnj->pni", NOISE.whitener(answer or road_answer(trial, frequency, trial.values)), lines)
     bands = [(0.5, 1.5), (1.5, 3.0), (3.0, 6.1)]
     return np.array([(np.abs(white[:, (frequency >= low) & (frequency < high)]) ** 2).mean(axis=(0, 1)) for low, high in bands])
@@ -58,16 +59,32 @@ def test_a_road_is_met_at_the_speed_that_a_fit_of_all_speeds_begins_at(driven):
     """Axles follow one another 5 % sooner than the file says: by its speed noise seems up to several times as large as it is."""
     trial, frequency, _ = driven
     stated = replace(trial, scenario=replace(trial.scenario, speed=ConstantSpeed(SPEED / 1.05)))
-    problem = make_problem([stated], ["kf"])
+    told, untold = (answer_at(stated, frequency, SpeedScale("runs", 0.01, 1.0), begun) for begun in (5.0, 0.0))
+    powers = whitened_powers(driven, told)
+    np.testing.assert_allclose(powers, whitened_powers(driven), rtol=0.02)
+    assert whitened_powers(driven, untold).max() > 1.5 * powers.max()
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("is_late", [True, False], ids=["late", "gain"])
+def test_a_sensor_that_reads_wrong_in_all_runs_reads_the_rough_road_so_too(driven, is_late):
+    """Two sensors feel the same road; read 30 ms too late or by 0.7 too low, it is no noise by the way that it should come."""
+    trial, frequency, lines = driven
+    error, begun = (SensorDelay("R", 0.01), 3.0) if is_late else (Gain("R_az", 0.05, 1.0), -6.0)
+    late = np.exp(-2j * np.pi * frequency[:, None] * [0.0, 0.0, 0.03, 0.03])  # under a window that is as late
+    read = lines * (late if is_late else [1.0, 1.0, 0.7, 1.0])
+    powers = whitened_powers(driven, answer_at(trial, frequency, error, begun), read)
+    np.testing.assert_allclose(powers, whitened_powers(driven), rtol=0.1)
+    assert whitened_powers(driven, lines=read).max() > 1.5 * powers.max()
+
+
+def answer_at(trial, frequency, adjustment, begun):
+    """Return the road's answer of a misfit that begins at an adjustment's number, in its unit."""
+    problem = make_problem([trial], ["kf"])
     none = Nuisances(**dict.fromkeys((item.name for item in fields(Nuisances) if item.name != "asked"), 0.0))
-    powers = []
-    for begun in (5.0, 0.0):
-        scale = SpeedScale("runs", 0.01, 1.0)
-        misfit = Misfit(problem, {stated.name: NOISE}, problem.space.start, none, (0.5, 6.0), (scale,), begun=(begun,))
-        assert misfit.frequency(0) == pytest.approx(frequency)
-        powers.append(whitened_powers(driven, misfit.residual_spectrum(np.array([0.5, 5.0]))[0][1]))
-    np.testing.assert_allclose(powers[0], whitened_powers(driven), rtol=0.02)
-    assert powers[1].max() > 1.5 * powers[0].max()
+    misfit = Misfit(problem, {trial.name: NOISE}, problem.space.start, none, (0.5, 6.0), (adjustment,), begun=(begun,))
+    assert misfit.frequency(0) == pytest.approx(frequency)
+    return misfit.residual_spectrum(np.array([0.5, begun]))[0][1]
 
 
 @pytest.mark.thorough

@@ -18,6 +18,7 @@ from vehgen.mechanics.outputs import fore_aft_row
 from vehgen.simulate import Scenario
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -53,6 +54,13 @@ class Adjustment:
         """
         return response
 
+    def factors(self, trial: Trial, frequency: Array, number: float) -> Complex | None:
+        """Return by what the sensors multiply spectral lines at frequencies `shape (n,)` [Hz], `shape (n, n_channels)`; None: by 1.
+
+        It is for noise that comes by the road, so that what hardly changes its size and phase counts as 1.
+        """
+        return None
+
 
 class SpeedScale(Adjustment):
     """The true speed over that of the run files."""
@@ -75,8 +83,14 @@ class Gain(Adjustment):
 
     def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
         """Return the readings with the channel times its number."""
-        factors = np.array([numbers[0] if name == self.place else 1.0 for name in trial.channels])
-        return np.asarray(response * factors)
+        return np.asarray(response * self._gains(trial, numbers[0]))
+
+    def factors(self, trial: Trial, frequency: Array, number: float) -> Complex | None:
+        """Return the channel's gain at every line."""
+        return np.ones((len(frequency), 1), dtype=np.complex128) * self._gains(trial, number)
+
+    def _gains(self, trial: Trial, number: float) -> Array:
+        return np.array([number if name == self.place else 1.0 for name in trial.channels])
 
 
 class SensorDelay(Adjustment):
@@ -84,13 +98,21 @@ class SensorDelay(Adjustment):
 
     def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
         """Return the readings with the sensor's channels `numbers[0]` [s] later, by the phase of their Fourier transform."""
-        late = np.array([channel.sensor == self.place for channel in trial.recording.channels])
         n, dt = response.shape[-2], trial.recording.dt
         pad = np.zeros((*response.shape[:-2], n, response.shape[-1]))
-        frequency = np.fft.rfftfreq(2 * n, dt)
-        turned = np.fft.rfft(np.concatenate([response, pad], axis=-2), axis=-2) * np.exp(-2j * np.pi * frequency * numbers[0])[:, None]
-        shifted = np.fft.irfft(turned, 2 * n, axis=-2)[..., :n, :]
-        return np.where(late, shifted, response)
+        phases = self._phases(trial, np.asarray(np.fft.rfftfreq(2 * n, dt), dtype=np.float64), numbers[0])
+        shifted = np.fft.irfft(np.fft.rfft(np.concatenate([response, pad], axis=-2), axis=-2) * phases, 2 * n, axis=-2)[..., :n, :]
+        return np.where(self._late(trial), shifted, response)
+
+    def factors(self, trial: Trial, frequency: Array, number: float) -> Complex | None:
+        """Return the phases by which the sensor's channels are late."""
+        return self._phases(trial, frequency, number)
+
+    def _phases(self, trial: Trial, frequency: Array, number: float) -> Complex:
+        return np.asarray(np.where(self._late(trial), np.exp(-2j * np.pi * frequency * number)[:, None], 1.0))
+
+    def _late(self, trial: Trial) -> NDArray[np.bool_]:
+        return np.array([channel.sensor == self.place for channel in trial.recording.channels])
 
 
 @dataclass(frozen=True)

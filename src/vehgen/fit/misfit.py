@@ -19,7 +19,7 @@ from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.noise import Noise
 from vehgen.fit.nuisances import Condition, Nuisances
 from vehgen.fit.problem import Problem
-from vehgen.fit.road_answer import RoadAnswer, as_read, road_answer
+from vehgen.fit.road_answer import RoadAnswer, as_adjusted, as_read, road_answer
 from vehgen.fit.run_errors import RunErrors
 from vehgen.fit.trial import Trial
 from vehgen.fit.window import flatten, transform
@@ -112,9 +112,9 @@ class Misfit:
         trial = self.problem.trials[number]
         own = {name: value for name, value in reference.items() if name not in trial.fixed}
         reading = self.errors[number].reading(frequency, self.errors_of(x, number))
-        spread = self.nuisances.speed_spread(trial)
         driven = replace(trial, scenario=self._with_adjustments(trial.scenario, self.adjusted(x)))
-        return as_read(road_answer(driven, frequency, trial.values | own, spread, windowed=windowed), reading)
+        found = road_answer(driven, frequency, trial.values | own, self.nuisances.speed_spread(trial), windowed=windowed)
+        return as_adjusted(as_read(found, reading), trial, self.shared, self.adjusted(x))
 
     @property
     def n_parameters(self) -> int:

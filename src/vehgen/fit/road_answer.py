@@ -13,8 +13,9 @@ the line, and two axles share only the road that both have passed while it was r
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,6 +27,7 @@ from vehgen.road.iso8608 import REFERENCE_CYCLES_PER_M
 from vehgen.simulate.frequency import maxwell_branches, transfer_functions
 
 if TYPE_CHECKING:
+    from vehgen.fit.adjustments import Adjustment
     from vehgen.fit.trial import Trial
 
 Array = NDArray[np.float64]
@@ -87,9 +89,21 @@ def road_answer(
 
 def as_read(answer: RoadAnswer, reading: Reading | None) -> RoadAnswer:
     """Return what sensors that are not as they should be read of a road's answer; None changes nothing."""
-    if reading is None:
-        return answer
-    return replace(answer, gain=np.moveaxis(reading.apply(np.moveaxis(answer.gain, 2, 0)), 0, 2))
+    return answer if reading is None else _each(answer, lambda part: np.moveaxis(reading.apply(np.moveaxis(part, 2, 0)), 0, 2))
+
+
+def as_adjusted(answer: RoadAnswer, trial: Trial, shared: Sequence[Adjustment], numbers: Array) -> RoadAnswer:
+    """Return what sensors read of a road's answer with what is wrong with them in all runs, at its `numbers shape (len(shared),)`."""
+    for item, number in zip(shared, numbers, strict=True):
+        factors = item.factors(trial, answer.frequency, float(number))
+        answer = answer if factors is None else _each(answer, partial(np.multiply, factors[:, :, None]))
+    return answer
+
+
+def _each(answer: RoadAnswer, read: Callable[[Complex], Complex]) -> RoadAnswer:
+    """Return an answer of which each part, `shape (n, n_channels, n_sources)`, is read so."""
+    forced, unstated = (None if part is None else read(part) for part in (answer.forced, answer.unstated))
+    return replace(answer, gain=read(answer.gain), forced=forced, unstated=unstated)
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from vehgen.road.track import Profile
 from vehgen.simulate import Scenario
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 FILTER_ORDER = 4
 
 
@@ -29,6 +30,10 @@ class RunGain(Gain):
         """Return the readings with the channel times its number, in its run."""
         return super().response(trial, response, numbers, late) if trial.name == self.run else response
 
+    def factors(self, trial: Trial, frequency: Array, number: float) -> Complex | None:
+        """Return the channel's gain at every line, in its run."""
+        return super().factors(trial, frequency, number) if trial.name == self.run else None
+
 
 @dataclass(frozen=True)
 class RunLevel(Adjustment):
@@ -40,6 +45,10 @@ class RunLevel(Adjustment):
         """Return the readings times its number, in its run."""
         return np.asarray(response * numbers[0]) if trial.name == self.run else response
 
+    def factors(self, trial: Trial, frequency: Array, number: float) -> Complex | None:
+        """Return its number for all lines, in its run."""
+        return np.full((len(frequency), 1), number, dtype=np.complex128) if trial.name == self.run else None
+
 
 @dataclass(frozen=True)
 class RunDelay(SensorDelay):
@@ -50,6 +59,10 @@ class RunDelay(SensorDelay):
     def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
         """Return the readings with the sensor's channels later, in its run."""
         return super().response(trial, response, numbers, late) if trial.name == self.run else response
+
+    def factors(self, trial: Trial, frequency: Array, number: float) -> Complex | None:
+        """Return the phases by which the sensor's channels are late, in its run."""
+        return super().factors(trial, frequency, number) if trial.name == self.run else None
 
 
 @dataclass(frozen=True)
@@ -63,11 +76,23 @@ class RecorderFilter(Adjustment):
         """Return the readings filtered, in its runs and channels."""
         if trial.name not in self.runs:
             return response
-        highest = 0.49 / trial.recording.dt
-        cutoff = float(np.clip(np.exp(numbers[0]), 0.5, highest))
-        sections = scipy.signal.butter(FILTER_ORDER, cutoff, fs=1 / trial.recording.dt, output="sos")
-        slow = np.array([name in self.channels for name in trial.channels])
-        return np.where(slow, scipy.signal.sosfilt(sections, response, axis=-2), response)
+        return np.where(self._slow(trial), scipy.signal.sosfilt(_sections(trial, numbers[0]), response, axis=-2), response)
+
+    def factors(self, trial: Trial, frequency: Array, number: float) -> Complex | None:
+        """Return the filter's response at every line, in its runs and channels."""
+        if trial.name not in self.runs:
+            return None
+        passed = scipy.signal.sosfreqz(_sections(trial, number), frequency, fs=1 / trial.recording.dt)[1]
+        return np.asarray(np.where(self._slow(trial), passed[:, None], 1.0))
+
+    def _slow(self, trial: Trial) -> NDArray[np.bool_]:
+        return np.array([name in self.channels for name in trial.channels])
+
+
+def _sections(trial: Trial, number: float) -> Array:
+    """Return the second-order sections of the low-pass of a logarithmic cut-off."""
+    cutoff = float(np.clip(np.exp(number), 0.5, 0.49 / trial.recording.dt))
+    return np.asarray(scipy.signal.butter(FILTER_ORDER, cutoff, fs=1 / trial.recording.dt, output="sos"))
 
 
 @dataclass(frozen=True)
