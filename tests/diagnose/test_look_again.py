@@ -122,9 +122,9 @@ def test_ctrl_c_in_the_second_search_is_told(monkeypatch, detection_of):
     monkeypatch.setattr(decision, "noise_by_its_law", lambda detection, first: detection)
     for stopped in (True, False):
         ended = SimpleNamespace(stopped=stopped, verdict=SimpleNamespace(effects=()))
-        monkeypatch.setattr(Decision, "_explain_gap", lambda self, by_law, ended=ended: ended)
+        monkeypatch.setattr(Decision, "_explain_gap", lambda self, anew, ended=ended: ended)
         first = Decision(detection, [], False, lambda stage, done, total, best: None)
-        assert first._by_its_law(SimpleNamespace()) is None
+        assert first._otherwise(SimpleNamespace()) is None
         assert first.interrupted == stopped
 
 

@@ -1,6 +1,7 @@
 """Sensors behind recorders of their own, and behind others than run files say: neither is a missing effect, nor taken for one."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ import scipy.signal
 from tests.diagnose.conftest import CUBIC, HUMPS, edited
 from vehgen.diagnose import decision, without_gap
 from vehgen.diagnose.decision import Decision
-from vehgen.diagnose.detect.detection import detect, with_one_recorder
+from vehgen.diagnose.detect.detection import detect, with_usual_recorder
 from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.recorders import wrongly_declared
 from vehgen.diagnose.pipeline import with_evidence
@@ -46,7 +47,7 @@ def test_a_healthy_vehicle_behind_two_recorders_lacks_nothing(trials_of, monkeyp
     assert found.chi < 1.03
     (note,) = with_evidence(Decision(found, [], False, lambda *_: None)._nothing(), lambda *_: None).verdict.notes
     assert note.startswith("the recorders' low-passes are not stated, and differ")
-    one = with_one_recorder(found)
+    one = with_usual_recorder(found)
     assert one is not None
     assert one.recorder is not None
     assert one.recorder.apart == ()
@@ -72,17 +73,18 @@ def test_a_missing_effect_is_not_taken_for_low_passes_of_the_sensors(trials_of):
 @pytest.mark.parametrize("told", [None, "told"])
 def test_one_recorder_and_an_effect_stand_in_place_of_each_sensors_own_where_they_explain_far_more(detection_of, monkeypatch, fallen, told):
     """By the fall that tells an effect; else all is as it was before."""
-    known = detection_of(CUBIC, runs=HUMPS)
+    stated = detection_of(CUBIC, runs=HUMPS)
+    known = replace(stated, recorder=SimpleNamespace(apart=("F", "R")))
     one = replace(known)
     found = SearchRound(one.base, (), (), (one.base,))
-    monkeypatch.setattr(without_gap, "with_one_recorder", lambda detection: one)
+    monkeypatch.setattr(without_gap, "with_usual_recorder", lambda detection: one)
     monkeypatch.setattr(without_gap, "faint_round", lambda detection, candidates, runner: found)
     monkeypatch.setattr(without_gap, "merit", lambda fit: known.base.squares - fallen)
     made = Decision(known, [], False, lambda *_: None)
     monkeypatch.setattr(made, "_faint", lambda found: told)
     assert made._by_one_recorder() == (told if fallen > 150 else None)
     assert made.detection is (one if told and fallen > 150 else known)
-    assert with_one_recorder(known) is None, "run files declare them"
+    assert with_usual_recorder(stated) is None, "run files declare them"
 
 
 SLOW = AcquisitionChain("butterworth", 4, 12.0)

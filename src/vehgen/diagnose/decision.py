@@ -8,7 +8,7 @@ from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose import wording
 from vehgen.diagnose.combining import Combiner
 from vehgen.diagnose.design.experiment import VISIBLE
-from vehgen.diagnose.detect.detection import BELIEVED_SIGMAS, FREE_SIGMAS, look_again, run_gaps, supposing
+from vehgen.diagnose.detect.detection import BELIEVED_SIGMAS, FREE_SIGMAS, Detection, look_again, run_gaps, supposing, with_usual_recorder
 from vehgen.diagnose.detect.odd_run import OddChannel, OddRun, disagreement
 from vehgen.diagnose.fits.begun_again import is_strained
 from vehgen.diagnose.fits.model_fit import ModelFit
@@ -114,7 +114,7 @@ class Decision(WithoutGap):
             return self._mistaken((odd_mistake(odd),))
         return self._faint() or self._disagreeing(odd) or self._nothing()
 
-    def _explain_gap(self, by_law: bool = True) -> Decided:
+    def _explain_gap(self, anew: bool = True) -> Decided:
         detection = self.detection
         if not detection.validation_runs:
             return self._unchecked(wording.a_gap(detection.chi))
@@ -139,15 +139,26 @@ class Decision(WithoutGap):
             return self._name(self.chain) if self.chain else self._stopped()
         if ended := self._other_mistakes(first) or weak or (self._name(self.chain) if self.chain else None):
             return ended
-        return (self._by_its_law(first) if by_law else None) or self._unknown(first)
+        return (self._otherwise(first) if anew else None) or self._unknown(first)
 
-    def _by_its_law(self, first: SearchRound) -> Decided | None:
-        """Return the verdict by the noise of a vehicle with the law that a gap's place asks for; None where that names nothing."""
-        if (detection := noise_by_its_law(self.detection, first)) is None:
+    def _otherwise(self, first: SearchRound) -> Decided | None:
+        """Return the verdict by the noise of a vehicle with the law that a gap's place asks for, or through a usual recorder.
+
+        None where neither names anything. Through a recorder as no other is, an effect that smooths looks like none; it leaves noise.
+        """
+        found = self._anew(noise_by_its_law(self.detection, first))
+        if found is not None or self.interrupted:
+            return found
+        found = self._anew(with_usual_recorder(self.detection))
+        return found if found is not None and found.verdict.gap.after <= limit.WEAK else None
+
+    def _anew(self, detection: Detection | None) -> Decided | None:
+        """Return the verdict on another detection of the same runs; None where that names nothing."""
+        if detection is None:
             return None
         other = Decision(detection, self.effects, self.everything, self.progress, self.runner)
         other.notes += self.notes
-        found = other._explain_gap(by_law=False)
+        found = other._explain_gap(anew=False)
         self.interrupted = found.stopped
         return found if found.verdict.effects else None
 

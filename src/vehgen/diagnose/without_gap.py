@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose import wording
-from vehgen.diagnose.detect.detection import with_one_recorder
+from vehgen.diagnose.detect.detection import with_usual_recorder
 from vehgen.diagnose.ending import Ending
 from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.recorders import wrongly_declared
@@ -35,7 +35,8 @@ class WithoutGap(Ending):
 
     def _by_one_recorder(self) -> Decided | None:
         """Return the verdict where one recorder and an effect explain far more than recorders that each sensor has for itself."""
-        if (one := with_one_recorder(self.detection)) is None:
+        recorder = self.detection.recorder
+        if recorder is None or not recorder.apart or (one := with_usual_recorder(self.detection)) is None:
             return None
         known, found = self.detection, faint_round(one, self._candidates(one.base), self.runner)
         if not found.fits or known.base.squares - merit(found.fits[0]) < limit.FAINT_FALL:

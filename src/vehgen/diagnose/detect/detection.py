@@ -197,11 +197,12 @@ def supposing(detection: Detection, most_sigmas: float) -> Detection:
     return _detection(detection.problem, detection.validation_runs, detection.floor, base, detection.recorder, detection.asked_band)
 
 
-def with_one_recorder(detection: Detection) -> Detection | None:
-    """Return a detection with one usual low-pass, that leaves least, for sensors that seem to have their own; None where none has."""
-    if (recorder := detection.recorder) is None or not recorder.apart:
+def with_usual_recorder(detection: Detection) -> Detection | None:
+    """Return a detection with the usual low-pass that leaves least, not a rare one or each sensor's own; None where it has one."""
+    recorder, rate = detection.recorder, slowest_rate(detection.trials)
+    if recorder is None or (not recorder.apart and recorder.is_usual(rate)):
         return None
-    rate, runs, noises = slowest_rate(detection.trials), list(detection.validation_runs), detection.floor.noises
+    runs, noises = list(detection.validation_runs), detection.floor.noises
     usual = [item for item in replace(recorder, apart=()).with_usual(rate) if item.is_usual(rate)]
     tried = [(*_recorded(item, detection.problem, runs, noises, detection.base), item) for item in usual]
     problem, runs, base, one = min(tried, key=lambda item: item[2].squares)
