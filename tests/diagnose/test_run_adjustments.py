@@ -54,8 +54,8 @@ def amplitudes(response):
 def test_a_tone_is_changed_as_its_line_is(adjustment, number, expected):
     tone = np.cos(2 * np.pi * HZ * np.arange(N) / RATE)[None, :, None] * np.ones(2)
     found = amplitudes(adjustment.response(Run("one"), tone, np.array([number])))
-    factors = np.broadcast_to(adjustment.factors(Run("one"), np.array([HZ]), number), (1, 2))[0]
-    np.testing.assert_allclose(factors, found, atol=1e-4)
+    line = adjustment.read_lines(Run("one"), np.array([HZ]), np.array([number]), np.ones((1, 2), dtype=complex))
+    np.testing.assert_allclose(line[0], found, atol=1e-4)
     for channel, value in zip(found, expected, strict=True):
         if value is None:
             assert abs(channel) == pytest.approx(0.5**0.5, abs=1e-3)  # a low-pass at its cut-off
@@ -71,4 +71,5 @@ def test_a_tone_is_changed_as_its_line_is(adjustment, number, expected):
 def test_another_run_is_as_it_was(adjustment):
     tone = np.cos(2 * np.pi * HZ * np.arange(N) / RATE)[None, :, None] * np.ones(2)
     assert adjustment.response(Run("two"), tone, np.array([0.5])) is tone
-    assert adjustment.factors(Run("two"), np.array([HZ]), 0.5) is None
+    line = np.ones((1, 2), dtype=complex)
+    assert adjustment.read_lines(Run("two"), np.array([HZ]), np.array([0.5]), line) is line

@@ -54,12 +54,12 @@ class Adjustment:
         """
         return response
 
-    def factors(self, trial: Trial, frequency: Array, number: float) -> Complex | None:
-        """Return by what the sensors multiply spectral lines at frequencies `shape (n,)` [Hz], `shape (n, n_channels)`; None: by 1.
+    def read_lines(self, trial: Trial, frequency: Array, numbers: Array, lines: Complex) -> Complex:
+        """Return what the sensors would have read of spectral lines `shape (..., n, n_channels)` at frequencies `shape (n,)` [Hz].
 
-        It is for noise that comes by the road, so that what hardly changes its size and phase counts as 1.
+        `numbers` as for :meth:`response`. What reaches sensors without being simulated, as roughness does, is read so, too.
         """
-        return None
+        return lines
 
 
 class SpeedScale(Adjustment):
@@ -85,9 +85,9 @@ class Gain(Adjustment):
         """Return the readings with the channel times its number."""
         return np.asarray(response * self._gains(trial, numbers[0]))
 
-    def factors(self, trial: Trial, frequency: Array, number: float) -> Complex | None:
-        """Return the channel's gain at every line."""
-        return np.ones((len(frequency), 1), dtype=np.complex128) * self._gains(trial, number)
+    def read_lines(self, trial: Trial, frequency: Array, numbers: Array, lines: Complex) -> Complex:
+        """Return the lines with the channel's times its number."""
+        return np.asarray(lines * self._gains(trial, numbers[0]))
 
     def _gains(self, trial: Trial, number: float) -> Array:
         return np.array([number if name == self.place else 1.0 for name in trial.channels])
@@ -104,9 +104,9 @@ class SensorDelay(Adjustment):
         shifted = np.fft.irfft(np.fft.rfft(np.concatenate([response, pad], axis=-2), axis=-2) * phases, 2 * n, axis=-2)[..., :n, :]
         return np.where(self._late(trial), shifted, response)
 
-    def factors(self, trial: Trial, frequency: Array, number: float) -> Complex | None:
-        """Return the phases by which the sensor's channels are late."""
-        return self._phases(trial, frequency, number)
+    def read_lines(self, trial: Trial, frequency: Array, numbers: Array, lines: Complex) -> Complex:
+        """Return the lines with the phases by which the sensor's channels are late."""
+        return np.asarray(lines * self._phases(trial, frequency, numbers[0]))
 
     def _phases(self, trial: Trial, frequency: Array, number: float) -> Complex:
         return np.asarray(np.where(self._late(trial), np.exp(-2j * np.pi * frequency * number)[:, None], 1.0))
@@ -128,23 +128,38 @@ class Tilt(Adjustment):
 
     def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
         """Return the readings with the sensor tilted by `numbers[0]` [rad] and `numbers[1]` [m] higher."""
-        columns = {channel.quantity: i for i, channel in enumerate(trial.recording.channels) if channel.sensor == self.place}
-        if "acceleration" not in columns or "pitch_rate" not in columns:
+        if (columns := self._columns(trial)) is None:
             return response
-        dt, column, own = trial.recording.dt, columns["acceleration"], columns["pitch_rate"]
+        (column, own), dt = columns, trial.recording.dt
         pitch = scipy.integrate.cumulative_trapezoid(response[..., own], dx=dt, axis=-1, initial=0.0)
-        shares = self._shares(trial).copy()
-        shares[own] += numbers[1]
-        forward = _derivative(response @ shares, dt)
+        forward = _derivative(response @ self._shares(trial, own, numbers[1]), dt)
         changed = response.copy()
         changed[..., column] = response[..., column] * np.cos(numbers[0]) + (forward - GRAVITY * pitch) * np.sin(numbers[0])
         return changed
 
-    def _shares(self, trial: Trial) -> Array:
-        """Return the sensor's fore-aft acceleration per rate of change of every channel, `shape (n_channels,)` [m]; found once a trial."""
+    def read_lines(self, trial: Trial, frequency: Array, numbers: Array, lines: Complex) -> Complex:
+        """Return the lines as a sensor that is tilted so reads them."""
+        if (columns := self._columns(trial)) is None:
+            return lines
+        (column, own), turning = columns, 2j * np.pi * frequency
+        pitch = np.divide(lines[..., own], turning, out=np.zeros_like(lines[..., own]), where=frequency > 0)
+        forward = turning * (lines @ self._shares(trial, own, numbers[1]))
+        changed = lines.copy()
+        changed[..., column] = lines[..., column] * np.cos(numbers[0]) + (forward - GRAVITY * pitch) * np.sin(numbers[0])
+        return changed
+
+    def _columns(self, trial: Trial) -> tuple[int, int] | None:
+        """Return the columns of the sensor's acceleration and pitch rate; None where it has not both."""
+        found = {channel.quantity: i for i, channel in enumerate(trial.recording.channels) if channel.sensor == self.place}
+        return (found["acceleration"], found["pitch_rate"]) if {"acceleration", "pitch_rate"} <= set(found) else None
+
+    def _shares(self, trial: Trial, own: int, higher: float) -> Array:
+        """Return the fore-aft acceleration of a sensor so much higher [m] per rate of every channel's change, `shape (n_channels,)` [m]."""
         if id(trial) not in self._known:
             self._known[id(trial)] = trial, fore_aft_shares(trial, self.place)  # with the trial, whose number no other one then takes
-        return self._known[id(trial)][1]
+        shares = self._known[id(trial)][1].copy()
+        shares[own] += higher
+        return shares
 
 
 def fore_aft_shares(trial: Trial, sensor: str) -> Array:

@@ -89,21 +89,22 @@ def road_answer(
 
 def as_read(answer: RoadAnswer, reading: Reading | None) -> RoadAnswer:
     """Return what sensors that are not as they should be read of a road's answer; None changes nothing."""
-    return answer if reading is None else _each(answer, lambda part: np.moveaxis(reading.apply(np.moveaxis(part, 2, 0)), 0, 2))
+    return answer if reading is None else _each(answer, reading.apply)
 
 
 def as_adjusted(answer: RoadAnswer, trial: Trial, shared: Sequence[Adjustment], numbers: Array) -> RoadAnswer:
     """Return what sensors read of a road's answer with what is wrong with them in all runs, at its `numbers shape (len(shared),)`."""
-    for item, number in zip(shared, numbers, strict=True):
-        factors = item.factors(trial, answer.frequency, float(number))
-        answer = answer if factors is None else _each(answer, partial(np.multiply, factors[:, :, None]))
+    for i, item in enumerate(shared):
+        answer = _each(answer, partial(item.read_lines, trial, answer.frequency, numbers[i:]))
     return answer
 
 
 def _each(answer: RoadAnswer, read: Callable[[Complex], Complex]) -> RoadAnswer:
-    """Return an answer of which each part, `shape (n, n_channels, n_sources)`, is read so."""
-    forced, unstated = (None if part is None else read(part) for part in (answer.forced, answer.unstated))
-    return replace(answer, gain=read(answer.gain), forced=forced, unstated=unstated)
+    """Return an answer of which each part is read so, as lines `shape (n_sources, n, n_channels)`."""
+    parts = (answer.gain, answer.forced, answer.unstated)
+    gain, forced, unstated = (None if part is None else np.moveaxis(read(np.moveaxis(part, 2, 0)), 0, 2) for part in parts)
+    assert gain is not None
+    return replace(answer, gain=gain, forced=forced, unstated=unstated)
 
 
 @dataclass(frozen=True)

@@ -30,9 +30,9 @@ class RunGain(Gain):
         """Return the readings with the channel times its number, in its run."""
         return super().response(trial, response, numbers, late) if trial.name == self.run else response
 
-    def factors(self, trial: Trial, frequency: Array, number: float) -> Complex | None:
-        """Return the channel's gain at every line, in its run."""
-        return super().factors(trial, frequency, number) if trial.name == self.run else None
+    def read_lines(self, trial: Trial, frequency: Array, numbers: Array, lines: Complex) -> Complex:
+        """Return the lines with the channel's times its number, in its run."""
+        return super().read_lines(trial, frequency, numbers, lines) if trial.name == self.run else lines
 
 
 @dataclass(frozen=True)
@@ -45,9 +45,9 @@ class RunLevel(Adjustment):
         """Return the readings times its number, in its run."""
         return np.asarray(response * numbers[0]) if trial.name == self.run else response
 
-    def factors(self, trial: Trial, frequency: Array, number: float) -> Complex | None:
-        """Return its number for all lines, in its run."""
-        return np.full((len(frequency), 1), number, dtype=np.complex128) if trial.name == self.run else None
+    def read_lines(self, trial: Trial, frequency: Array, numbers: Array, lines: Complex) -> Complex:
+        """Return the lines times its number, in its run."""
+        return np.asarray(lines * numbers[0]) if trial.name == self.run else lines
 
 
 @dataclass(frozen=True)
@@ -60,9 +60,9 @@ class RunDelay(SensorDelay):
         """Return the readings with the sensor's channels later, in its run."""
         return super().response(trial, response, numbers, late) if trial.name == self.run else response
 
-    def factors(self, trial: Trial, frequency: Array, number: float) -> Complex | None:
-        """Return the phases by which the sensor's channels are late, in its run."""
-        return super().factors(trial, frequency, number) if trial.name == self.run else None
+    def read_lines(self, trial: Trial, frequency: Array, numbers: Array, lines: Complex) -> Complex:
+        """Return the lines with the phases by which the sensor's channels are late, in its run."""
+        return super().read_lines(trial, frequency, numbers, lines) if trial.name == self.run else lines
 
 
 @dataclass(frozen=True)
@@ -78,12 +78,12 @@ class RecorderFilter(Adjustment):
             return response
         return np.where(self._slow(trial), scipy.signal.sosfilt(_sections(trial, numbers[0]), response, axis=-2), response)
 
-    def factors(self, trial: Trial, frequency: Array, number: float) -> Complex | None:
-        """Return the filter's response at every line, in its runs and channels."""
+    def read_lines(self, trial: Trial, frequency: Array, numbers: Array, lines: Complex) -> Complex:
+        """Return the lines filtered, in its runs and channels."""
         if trial.name not in self.runs:
-            return None
-        passed = scipy.signal.sosfreqz(_sections(trial, number), frequency, fs=1 / trial.recording.dt)[1]
-        return np.asarray(np.where(self._slow(trial), passed[:, None], 1.0))
+            return lines
+        passed = scipy.signal.sosfreqz(_sections(trial, numbers[0]), frequency, fs=1 / trial.recording.dt)[1]
+        return np.asarray(lines * np.where(self._slow(trial), passed[:, None], 1.0))
 
     def _slow(self, trial: Trial) -> NDArray[np.bool_]:
         return np.array([name in self.channels for name in trial.channels])
