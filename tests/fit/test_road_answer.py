@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.fit.profile_world import FINE, RATE, fine_channels, read_run, rough_road
+from vehgen.diagnose.inputs.adjustments import AxleShift
 from vehgen.fit import road_answer as module
 from vehgen.fit.adjustments import Gain, SensorDelay, SpeedScale
 from vehgen.fit.misfit import Misfit
@@ -60,6 +61,17 @@ def test_a_road_is_met_at_the_speed_that_a_fit_of_all_speeds_begins_at(driven):
     trial, frequency, _ = driven
     stated = replace(trial, scenario=replace(trial.scenario, speed=ConstantSpeed(SPEED / 1.05)))
     told, untold = (answer_at(stated, frequency, SpeedScale("runs", 0.01, 1.0), begun) for begun in (5.0, 0.0))
+    powers = whitened_powers(driven, told)
+    np.testing.assert_allclose(powers, whitened_powers(driven), rtol=0.02)
+    assert whitened_powers(driven, untold).max() > 1.5 * powers.max()
+
+
+@pytest.mark.thorough
+def test_a_road_is_met_by_axles_where_a_fit_of_their_places_begins(driven):
+    """Where a file has the rear axle 0.3 m too far ahead, what it meets 0.12 s later than stated is no gap."""
+    trial, frequency, _ = driven
+    stated = replace(trial, scenario=trial.scenario.adjusted(farther=(0.0, -0.3)))
+    told, untold = (answer_at(stated, frequency, AxleShift("", 0.02, moved=(0.0, 1.0)), begun) for begun in (15.0, 0.0))
     powers = whitened_powers(driven, told)
     np.testing.assert_allclose(powers, whitened_powers(driven), rtol=0.02)
     assert whitened_powers(driven, untold).max() > 1.5 * powers.max()

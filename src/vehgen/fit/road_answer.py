@@ -70,7 +70,7 @@ def road_answer(
     model, speed, dt = trial.simulator.model, trial.scenario.top_speed, trial.recording.dt
     spread = _WindowSpread.of(trial, frequency) if windowed else _WindowSpread(frequency, np.arange(len(frequency)), np.ones(1))
     branches = maxwell_branches(model, values)
-    late = model.wheel_offsets(values) / speed
+    late = trial.scenario.axle_offsets(model.wheel_offsets(values)) / speed
     between = np.abs(late[:, None] - late[None, :])
     agree = np.exp(-((2 * np.pi * speed_spread * spread.frequency[:, None, None] * between) ** 2) / 2)
     delayed = np.exp(-2j * np.pi * spread.frequency[:, None] * late)
