@@ -3,9 +3,10 @@
 import pytest
 
 from vehgen.diagnose import wording
-from vehgen.diagnose.phrases import effect_words, force_words, interval_words, place_words
+from vehgen.diagnose.phrases import effect_words, force_words, place_words
 from vehgen.diagnose.verdict import NamedParameter
 from vehgen.effects import EFFECTS
+from vehgen.files.number_text import interval_words
 from vehgen.fit.nuisances import Condition
 
 

@@ -10,6 +10,7 @@ from pydantic import Field
 
 from vehgen.calibrate.calibration import Calibration
 from vehgen.errors import InputError
+from vehgen.files.number_text import interval_words
 from vehgen.files.result_fields import IN_MEMORY, Array1D, Number
 from vehgen.files.results import Result, Table
 from vehgen.measure.curves import ChannelCurves
@@ -255,8 +256,7 @@ class CalibrationSummary(Result):
     def _note(self, name: str, item: ParameterSummary) -> str:
         """Return what a parameter's comment in a vehicle file says."""
         if item.interval is not None:
-            return f"{item.status} {item.interval[0]:.4g} to {item.interval[1]:.4g}"
+            return f"{item.status} {interval_words(item.interval)}"
         if item.interval_given_pivots is None or name in self.pivots:
             return item.status
-        low, high = item.interval_given_pivots
-        return f"{item.status}; {low:.4g} to {high:.4g} if {' and '.join(self.pivots)} were known"
+        return f"{item.status}; {interval_words(item.interval_given_pivots)} if {' and '.join(self.pivots)} were known"

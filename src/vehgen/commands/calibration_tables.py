@@ -6,6 +6,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from vehgen.commands.terminal import print_table, say, warn
+from vehgen.files.number_text import interval_words
 
 if TYPE_CHECKING:
     from vehgen.calibrate.result import CalibrationSummary, ConditionSummary, FactAdvice, HeldMasses
@@ -41,9 +42,9 @@ def show_calibration(outcome: CalibrationSummary) -> None:
             (
                 mode.name,
                 f"{mode.undamped_hz:.3f}",
-                _to(mode.interval, ".3f"),
+                _to_three_decimals(mode.interval),
                 f"{mode.damping_ratio:.3f}",
-                _to(mode.damping_interval, ".3f"),
+                _to_three_decimals(mode.damping_interval),
             )
             for mode in outcome.modes
         ]
@@ -51,7 +52,7 @@ def show_calibration(outcome: CalibrationSummary) -> None:
         print_table(f"{outcome.vehicle}: natural modes", columns, modes, right=(1, 3))
     if outcome.combinations:
         rows = [
-            (name, f"{item.value:.5g}", item.unit, "unidentifiable" if item.interval is None else _to(item.interval, ".4g"))
+            (name, f"{item.value:.5g}", item.unit, "unidentifiable" if item.interval is None else interval_words(item.interval))
             for name, item in outcome.combinations.items()
         ]
         print_table("combinations of parameters", ("combination", "value", "unit", f"{level} interval"), rows, right=(1,))
@@ -75,9 +76,9 @@ def _show_parameters(outcome: CalibrationSummary, level: str) -> None:
         columns.insert(4, f"if {' and '.join(outcome.pivots)} were known")
     rows = []
     for name, item in outcome.parameters.items():
-        row = [name, f"{item.value:.5g}", item.unit, _to(item.interval, ".4g"), item.status]
+        row = [name, f"{item.value:.5g}", item.unit, _interval(item.interval), item.status]
         if given:
-            row.insert(4, "held" if name in outcome.pivots else _to(item.interval_given_pivots, ".4g"))
+            row.insert(4, "held" if name in outcome.pivots else _interval(item.interval_given_pivots))
         rows.append(row)
     print_table(f"{outcome.vehicle}: parameters, {outcome.method}", columns, rows, right=(1,))
 
@@ -107,8 +108,12 @@ def _size(item: ConditionSummary, value: float, sign: str = "") -> str:
     return f"{100 * value:{sign}.2f} %" if not item.unit else f"{value:{sign}.4f} {item.unit}"
 
 
-def _to(interval: tuple[float, float] | None, digits: str) -> str:
-    return "" if interval is None else f"{interval[0]:{digits}} to {interval[1]:{digits}}"
+def _interval(interval: tuple[float, float] | None) -> str:
+    return "" if interval is None else interval_words(interval)
+
+
+def _to_three_decimals(interval: tuple[float, float] | None) -> str:
+    return "" if interval is None else f"{interval[0]:.3f} to {interval[1]:.3f}"
 
 
 def _listed(names: list[str]) -> str:

@@ -82,7 +82,7 @@ def run(options: argparse.Namespace) -> int | None:
 
 
 def _show(found: Diagnosis) -> None:
-    from vehgen.diagnose.phrases import interval_words
+    from vehgen.files.number_text import interval_words
 
     verdict = found.verdict
     say("", heading=f"{verdict.reason}.")

@@ -74,12 +74,6 @@ def amount(value: float) -> str:
     return f"{value:.3g}" if not 999.5 <= abs(value) < 1e6 else f"{float(f'{value:.3g}'):.0f}"
 
 
-def interval_words(interval: tuple[float, float]) -> str:
-    """Return an interval's ends with four digits that count, or so many that they differ."""
-    told = [tuple(f"{end:.{digits}g}" for end in interval) for digits in range(4, 13)]
-    return " to ".join(next((ends for ends in told if ends[0] != ends[1]), told[0]))
-
-
 def share_words(share: float) -> str:
     """Return a share of what the model missed: all, a percentage, or none, also where a law makes it worse."""
     if share <= 1 - SHARE_CALLED_ALL:

@@ -18,6 +18,12 @@ def five_digits(value: float) -> str:
     return f"{float(f'{value:.5g}'):.9g}"
 
 
+def interval_words(interval: tuple[float, float]) -> str:
+    """Return an interval's ends with four digits that count, or so many that they differ."""
+    told = [tuple(f"{end:.{digits}g}" for end in interval) for digits in range(4, 13)]
+    return " to ".join(next((ends for ends in told if ends[0] != ends[1]), told[0]))
+
+
 def kilonewtons(force: float) -> str:
     """Return a force [N] in kN, to the newton."""
     text = f"{force / 1e3:,.3f}"

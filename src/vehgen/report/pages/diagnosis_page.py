@@ -15,6 +15,7 @@ from vehgen.effects import EFFECTS
 from vehgen.errors import InputError
 from vehgen.files import write_text
 from vehgen.files.document import MAX_DOCUMENT_BYTES
+from vehgen.files.number_text import interval_words
 from vehgen.report.curve_values import inline_figure
 from vehgen.report.drawing.vehicle import draw_vehicle
 from vehgen.report.pages.assets import page_environment, template_text
@@ -61,6 +62,7 @@ def diagnosis_page(diagnosis: Diagnosis) -> str:
         version=evidence.made_by,
         origin=evidence.origin,
         marked=_marked(diagnosis),
+        interval_words=interval_words,
     )
 
 

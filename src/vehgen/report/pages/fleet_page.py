@@ -8,9 +8,9 @@ from urllib.parse import quote
 from markupsafe import Markup
 
 from vehgen.diagnose.fleet import Fleet, FleetRow
-from vehgen.diagnose.phrases import interval_words
 from vehgen.diagnose.verdict import NamedParameter
 from vehgen.files import write_text
+from vehgen.files.number_text import interval_words
 from vehgen.report.figure_files import figure_svg, inline_svg
 from vehgen.report.pages.assets import page_environment, template_text
 from vehgen.report.plots.fleet_plot import plot_fleet
