@@ -100,3 +100,24 @@ def test_a_law_that_pushes_at_rest_is_doubted(law, newtons):
     vehicle = parse_vehicle(f"extends: sedan2\naxles: {{front: {{suspension: {{laws: [{law}]}}}}}}")
     found = [text for text in lint(derive(vehicle)) if "pushes" in text]
     assert [text.partition(" at rest")[0] for text in found] == ([] if newtons is None else [newtons])
+
+
+CARAVAN = """
+bodies: {car: {mass: 1400 kg, pitch_inertia: 2300 kg m^2}, caravan: {mass: 1000 kg, pitch_inertia: 2000 kg m^2}}
+hinges: {ball: {%s}}
+axles:
+  front: {body: car, x: 1.2 m, mass: 80 kg, suspension: {k: 50 kN/m, c: 3 kN s/m}, tyre: {k: 400 kN/m}}
+  rear: {body: car, x: -1.5 m, mass: 80 kg, suspension: {k: 60 kN/m, c: 3 kN s/m}, tyre: {k: 400 kN/m}}
+  van: {body: caravan, x: %s m, mass: 80 kg, suspension: {k: 70 kN/m, c: 3 kN s/m}, tyre: {k: 400 kN/m}}
+"""
+ENDS = ("car: {x: -2.6 m}", "caravan: {x: 4 m}")
+
+
+@pytest.mark.parametrize("ends", [ENDS, ENDS[::-1]], ids=["car first", "caravan first"])
+@pytest.mark.parametrize(("axle", "lifted"), [(-0.2, None), (0.1, None), (0.2, "0.516"), (0.4, "1.090")])
+def test_a_trailer_that_lifts_what_pulls_it_is_warned_of(ends, axle, lifted):
+    """Levers about its axle: m g times the COG's distance behind it over the ball's ahead of it; next to nothing may be meant so."""
+    text = CARAVAN % (", ".join(ends), axle)
+    found = [item for item in warnings(text) if "lifts" in item]
+    assert [item.partition(":")[0] for item in found] == ([f"at ball, caravan lifts car by {lifted} kN"] if lifted else [])
+    assert not [item for item in warnings(text + "silence: [lift ball]\n") if "lifts" in item]

@@ -21,6 +21,8 @@ from vehgen.vehicle.parts import GROUND
 
 DEFLECTION = {"suspension": 0.35, "tyre": 0.15}
 """Suspensions and tyres that weight presses in by more [m] would long stand on their stops and rims."""
+LIFT = 0.03
+"""What follows may lift what pulls it by this share of its own weight: a full trailer's drawbar carries next to nothing."""
 GYRATION = (0.12, 0.75)
 """Radius of gyration over the span of what is attached to a body: a uniform rod has 0.29, two masses at its ends 0.5."""
 BODY_BAND = (0.5, 5.0)
@@ -43,6 +45,7 @@ def lint(model: EquationsOfMotion, values: Mapping[str, float] | None = None) ->
     try:
         rest = static_loads(model, values)
         findings, found = [*_loads(rest.axles), *_deflections(static_deflections(model, values, rest))], list[str]()
+        findings += _lifts(model, values, rest.hinges)
     except InputError as error:
         findings, found = [], [error.message]
     findings += (*_gyration(model, values), *_gaps(model, values), *_links(model, values), *_modes(model, values))
@@ -71,6 +74,20 @@ def _loads(loads: Mapping[str, float]) -> Iterator[Finding]:
         if force < 0:
             text = f"negative load on {name}: {on_terminal(kilonewtons(force))} kN; its tyre would have to pull the vehicle down"
             yield "negative_load", name, text
+
+
+def _lifts(model: EquationsOfMotion, values: Mapping[str, float], hinges: Mapping[str, float]) -> Iterator[Finding]:
+    """Find hinges at which the body behind lifts the one ahead."""
+    bodies, vehicle = model.layout.bodies, model.vehicle
+    ends = [tuple(hinge.points) for hinge in vehicle.hinges.values()]
+    sizes = [item for pair in ends for name in pair for item in (bodies[name][0], to_sympy(vehicle.bodies[name].mass))]
+    found = np.reshape(model.evaluate_list(sizes, values), (-1, 2, 2))
+    for (name, force), pair, ((x, mass), (other_x, other_mass)) in zip(hinges.items(), ends, found, strict=True):
+        ahead, behind = pair if x > other_x else pair[::-1]
+        carried, weight = (force, GRAVITY * other_mass) if x > other_x else (-force, GRAVITY * mass)
+        if carried < -LIFT * weight:
+            kn = on_terminal(kilonewtons(-carried))
+            yield "lift", name, f"at {name}, {behind} lifts {ahead} by {kn} kN: its COG is behind its axles; is a sign of its places wrong?"
 
 
 def _deflections(deflections: Mapping[tuple[str, str], float]) -> Iterator[Finding]:

@@ -7,6 +7,7 @@ from vehgen.vehicle.model import Vehicle
 
 WARNINGS = {
     "negative_load": "axles",
+    "lift": "hinges",
     "deflection": "axles",
     "gyration": "bodies",
     "axle_gap": "axles",
