@@ -191,3 +191,7 @@ def test_rounding_keeps_shape_and_what_counts():
 def test_a_strangers_name_in_a_table_steers_neither_terminal_nor_spreadsheet():
     text = csv_text((("vehicle", "chi"), [("a\x1b[2Jb", 1.0), ("=1+1", 2.0), ("plain", 3.0)]), ("vehicle",))
     assert text == "vehicle,chi\na\\x1b[2Jb,1\n'=1+1,2\nplain,3\n"
+
+
+def test_zeros_of_a_table_have_no_sign():
+    assert csv_text((("t", "a"), [(0.0, -0.0), (1.0, -1e-12)])) == "t,a\n0,0\n1,-1e-12\n"

@@ -193,7 +193,7 @@ def csv_text(table: Table, names: Sequence[str] = ()) -> str:
 
 def _csv_cell(cell: Cell, harmless: bool) -> Cell:
     if isinstance(cell, float):
-        return f"{cell:.9g}"
+        return f"{cell + 0.0:.9g}"  # no -0
     if not (harmless and isinstance(cell, str)):
         return cell
     return f"'{printable(cell)}" if cell.startswith(FORMULA_SIGNS) else printable(cell)

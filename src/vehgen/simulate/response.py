@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
@@ -14,7 +12,7 @@ from numpy.typing import NDArray
 from vehgen.errors import InputError, did_you_mean, shown
 from vehgen.files import write_text
 from vehgen.files.result_fields import Array1D, Array3D
-from vehgen.files.results import Cell, Result, Table
+from vehgen.files.results import Cell, Result, Table, csv_text
 
 Array = NDArray[np.float64]
 
@@ -62,9 +60,4 @@ class Response(Result):
 
 def write_csv(path: Path, response: Response) -> None:
     """Write the first individual's response: a column t [s] and one per channel, in its unit."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["t", *(channel.name for channel in response.channels)])
-    for t, row in zip(response.time, response.values[0], strict=True):
-        writer.writerow([f"{t:.9g}", *(f"{value:.9g}" for value in row)])
-    write_text(path, text.getvalue())
+    write_text(path, csv_text(response.table()))
