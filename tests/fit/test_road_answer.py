@@ -38,6 +38,7 @@ def driven(tmp_path_factory):
     return trial, frequency[inside], lines
 
 
+NONE = Nuisances(**dict.fromkeys((item.name for item in fields(Nuisances) if item.name != "asked"), 0.0))
 NOISE = Noise(np.full(len(KNOT_WAVENUMBERS), 2 * PER_METRE / (2 * np.pi * 0.1) ** 2), SIGMA)
 
 
@@ -67,6 +68,26 @@ def test_a_road_is_met_at_the_speed_that_a_fit_of_all_speeds_begins_at(driven):
 
 
 @pytest.mark.thorough
+def test_a_road_is_met_at_the_speed_that_is_supposed_of_a_run(driven):
+    """As at that of a fit of all speeds; how the driver strays about it is no other speed."""
+    trial, frequency, _ = driven
+    stated = replace(trial, scenario=replace(trial.scenario, speed=ConstantSpeed(SPEED / 1.05)))
+    problem = make_problem([stated], ["kf"])
+    own = replace(NONE, speed=0.01, wander=0.01)
+    powers = []
+    for speed in (5.0, 0.0):
+        kinds = [item.name for item in Misfit(problem, {stated.name: NOISE}, problem.space.start, own).errors[0].items]
+        supposed = np.array([speed if kind == "speed" else 5.0 * (-1) ** place for place, kind in enumerate(kinds)])
+        misfit = Misfit(problem, {stated.name: NOISE}, problem.space.start, own, (0.5, 6.0), supposed=supposed)
+        answer = misfit.residual_spectrum(np.concatenate([[0.5], supposed]))[0][1]
+        assert misfit.frequency(0) == pytest.approx(frequency)
+        powers.append(whitened_powers(driven, answer))
+    exact = road_answer(trial, frequency, trial.values, own.speed_spread(trial))
+    np.testing.assert_allclose(powers[0], whitened_powers(driven, exact), rtol=0.02)
+    assert powers[1].max() > 1.2 * powers[0].max()
+
+
+@pytest.mark.thorough
 def test_a_road_is_met_by_axles_where_a_fit_of_their_places_begins(driven):
     """Where a file has the rear axle 0.3 m too far ahead, what it meets 0.12 s later than stated is no gap."""
     trial, frequency, _ = driven
@@ -93,8 +114,7 @@ def test_a_sensor_that_reads_wrong_in_all_runs_reads_the_rough_road_so_too(drive
 def answer_at(trial, frequency, adjustment, begun):
     """Return the road's answer of a misfit that begins at an adjustment's number, in its unit."""
     problem = make_problem([trial], ["kf"])
-    none = Nuisances(**dict.fromkeys((item.name for item in fields(Nuisances) if item.name != "asked"), 0.0))
-    misfit = Misfit(problem, {trial.name: NOISE}, problem.space.start, none, (0.5, 6.0), (adjustment,), begun=(begun,))
+    misfit = Misfit(problem, {trial.name: NOISE}, problem.space.start, NONE, (0.5, 6.0), (adjustment,), begun=(begun,))
     assert misfit.frequency(0) == pytest.approx(frequency)
     return misfit.residual_spectrum(np.array([0.5, begun]))[0][1]
 

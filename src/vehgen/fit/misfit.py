@@ -111,10 +111,10 @@ class Misfit:
         """Return how roughness comes into trial `number`'s channels, at reference values [SI] and errors of x; not `windowed`: as it is."""
         trial = self.problem.trials[number]
         own = {name: value for name, value in reference.items() if name not in trial.fixed}
-        reading = self.errors[number].reading(frequency, self.errors_of(x, number))
-        driven = replace(trial, scenario=self._with_adjustments(trial.scenario, self.adjusted(x)))
+        errors, error = self.errors[number], self.errors_of(x, number)
+        driven = replace(trial, scenario=self._with_adjustments(errors.steady(trial.scenario, error), self.adjusted(x)))
         found = road_answer(driven, frequency, trial.values | own, self.nuisances.speed_spread(trial), windowed=windowed)
-        return as_adjusted(as_read(found, reading), trial, self.shared, self.adjusted(x))
+        return as_adjusted(as_read(found, errors.reading(frequency, error)), trial, self.shared, self.adjusted(x))
 
     @property
     def n_parameters(self) -> int:

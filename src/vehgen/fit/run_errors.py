@@ -81,6 +81,10 @@ class RunErrors:
             farther=self._farther(numbers),
         )
 
+    def steady(self, scenario: Scenario, numbers: Array) -> Scenario:
+        """Return the scenario with the errors but for how the driver strays: at the run's mean speed."""
+        return self.scenario(scenario, np.where([item.name == "wander" for item in self.items], 0.0, numbers))
+
     def _farther(self, numbers: Array) -> tuple[float, ...]:
         """Return how much farther behind the first each axle runs, by the road's odometer [m]; nothing where all run as the file says."""
         values = self._values(numbers)
