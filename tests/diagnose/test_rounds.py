@@ -1,17 +1,19 @@
 """Diagnoses that need more than one look: pairs of effects, lines of engines, and work that is stopped or renamed."""
 
 import shutil
+from types import SimpleNamespace
 
 import pytest
 from benchmarks.hidden_effects.generator import Effect
 
 from tests.diagnose.conftest import CUBIC, HUMPS
+from vehgen.diagnose.decision import Decision
 from vehgen.diagnose.detect.detection import band_gaps, run_gaps
 from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.select import early_end
 from vehgen.diagnose.select.estimates import estimates_by_run
 from vehgen.diagnose.writing import effect_file
-from vehgen.effects import EFFECTS
+from vehgen.effects import EFFECTS, EffectLocator
 from vehgen.fit.trial import load_trials
 from vehgen.vehicle import load_vehicle
 
@@ -122,3 +124,18 @@ def test_one_sensor_late_is_the_other_one_early(trials_of):
     assert found.verdict.verdict == "ambiguous"
     assert delays == {"F": pytest.approx(0.06, abs=0.025), "R": pytest.approx(-0.06, abs=0.025)}  # any clock may be 10 ms off
     assert "clock" in (found.verdict.next_experiment or "")
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize(("name", "place"), [("cargo_module", "body"), (None, None)])
+def test_nothing_lives_on_what_an_effect_has_added(detection_of, name, place):
+    """The mount of a load that is supposed is no place for a further effect."""
+    detection = detection_of(CUBIC, runs=HUMPS)
+    vehicle = detection.trials[0].run.vehicle
+    changed = vehicle if name is None else vehicle.with_changes(EFFECTS[name].change(EffectLocator(vehicle, vehicle.values()).site(place)))
+    trial = SimpleNamespace(run=SimpleNamespace(vehicle=changed))
+    fit = SimpleNamespace(least_squares=SimpleNamespace(misfit=SimpleNamespace(problem=SimpleNamespace(trials=[trial]))))
+    library = [EFFECTS["dry_friction"], EFFECTS["damper_mount"], EFFECTS["sensor_gain"]]
+    found = Decision(detection, library, False, lambda *_: None)._candidates(fit)
+    assert {item.place for item in found} == {"front", "rear", "all suspensions", "F_az", "F_q", "R_az", "R_q"}
+    assert (set(changed.links) > set(vehicle.links)) == (name is not None)

@@ -60,9 +60,14 @@ class Ending:
         return [trial.name for trial in self.detection.validation_runs]
 
     def _candidates(self, current: ModelFit) -> list[Candidate]:
-        """Return what may live on the vehicle of a fit: a walking beam leaves its axles no suspension."""
-        vehicle = current.least_squares.misfit.problem.trials[0].run.vehicle
-        return list_candidates(vehicle, self.detection.trials, self.effects, self.detection.floor.noises)
+        """Return what may live on the vehicle of a fit: a walking beam leaves its axles no suspension.
+
+        Nothing lives on what an effect has added, as on the mount of a load that is itself supposed.
+        """
+        vehicle, known = current.least_squares.misfit.problem.trials[0].run.vehicle, self.detection.trials[0].run.vehicle
+        added = {name for kind in ("bodies", "hinges", "links") for name in set(getattr(vehicle, kind)) - set(getattr(known, kind))}
+        found = list_candidates(vehicle, self.detection.trials, self.effects, self.detection.floor.noises)
+        return [item for item in found if added.isdisjoint(item.members)]
 
     def _gap(self, fit: ModelFit | None = None) -> Gap:
         last = fit or self.base
