@@ -3,7 +3,7 @@
 import pytest
 
 from vehgen.errors import InputError
-from vehgen.mechanics import derive
+from vehgen.mechanics import derive, static_loads
 from vehgen.simulate import lint
 from vehgen.vehicle import parse_vehicle
 
@@ -121,3 +121,29 @@ def test_a_trailer_that_lifts_what_pulls_it_is_warned_of(ends, axle, lifted):
     found = [item for item in warnings(text) if "lifts" in item]
     assert [item.partition(":")[0] for item in found] == ([f"at ball, caravan lifts car by {lifted} kN"] if lifted else [])
     assert not [item for item in warnings(text + "silence: [lift ball]\n") if "lifts" in item]
+
+
+BOGIE = """
+bodies: {frame: {mass: 9 t, pitch_inertia: 20 t m^2}, bogie: {mass: 900 kg, pitch_inertia: 400 kg m^2}}
+hinges: {pivot: {frame: {x: -1.8 m}, bogie: {x: 0.1 m}}}
+axles:
+  front: {body: frame, x: 2.4 m, mass: 500 kg, suspension: {k: 300 kN/m, c: 9 kN s/m}, tyre: {k: 1.5 MN/m}}
+  two: {body: bogie, x: 0.7 m, tyre: {k: 1.5 MN/m, c: 5 kN s/m}}
+  three: {body: bogie, x: -0.7 m, tyre: {k: 1.5 MN/m, c: 5 kN s/m}}
+"""
+ARM = """
+bodies: {frame: {mass: 200 kg, pitch_inertia: 30 kg m^2}, arm: {mass: 12 kg, pitch_inertia: 1 kg m^2}}
+hinges: {pivot: {frame: {x: -0.2 m}, arm: {x: 0.25 m}}}
+links: {shock: {frame: {x: -0.95 m}, arm: {x: -0.5 m}, k: 40 kN/m, c: 1 kN s/m}}
+axles:
+  front: {body: frame, x: 0.7 m, mass: 16 kg, suspension: {k: 18 kN/m, c: 900 N s/m}, tyre: {k: 170 kN/m}}
+  rear: {body: arm, x: -0.25 m, tyre: {k: 180 kN/m, c: 200 N s/m}}
+"""
+
+
+@pytest.mark.parametrize("text", [BOGIE, ARM], ids=["bogie", "arm"])
+def test_a_bogie_and_a_sprung_arm_carry_what_is_ahead_of_them(text):
+    """Both lift it at their pivots, as they are meant to."""
+    model = derive(parse_vehicle(text))
+    assert static_loads(model).hinges["pivot"] < 0
+    assert not [item for item in lint(model) if "lifts" in item]

@@ -77,17 +77,18 @@ def _loads(loads: Mapping[str, float]) -> Iterator[Finding]:
 
 
 def _lifts(model: EquationsOfMotion, values: Mapping[str, float], hinges: Mapping[str, float]) -> Iterator[Finding]:
-    """Find hinges at which the body behind lifts the one ahead."""
-    bodies, vehicle = model.layout.bodies, model.vehicle
-    ends = [tuple(hinge.points) for hinge in vehicle.hinges.values()]
-    sizes = [item for pair in ends for name in pair for item in (bodies[name][0], to_sympy(vehicle.bodies[name].mass))]
-    found = np.reshape(model.evaluate_list(sizes, values), (-1, 2, 2))
-    for (name, force), pair, ((x, mass), (other_x, other_mass)) in zip(hinges.items(), ends, found, strict=True):
-        ahead, behind = pair if x > other_x else pair[::-1]
-        carried, weight = (force, GRAVITY * other_mass) if x > other_x else (-force, GRAVITY * mass)
-        if carried < -LIFT * weight:
-            kn = on_terminal(kilonewtons(-carried))
-            yield "lift", name, f"at {name}, {behind} lifts {ahead} by {kn} kN: its COG is behind its axles; is a sign of its places wrong?"
+    """Find hinges at which a body lifts the one that pulls it, all its axles being behind: not a bogie under a frame, nor a sprung arm."""
+    layout, vehicle = model.layout, model.vehicle
+    linked = [set(link.points) for link in vehicle.links.values()]
+    for name, hinge in vehicle.hinges.items():
+        (first, second), force = hinge.points, hinges[name]
+        for ahead, behind, carried in ((first, second, force), (second, first, -force)):
+            axles = [layout.axles[axle] for axle, item in vehicle.axles.items() if item.body == behind]
+            mass, pin, *places = model.evaluate_list([to_sympy(vehicle.bodies[behind].mass), layout.hinges[name][0], *axles], values)
+            pulled = pin > max(places, default=np.inf) and {ahead, behind} not in linked
+            if pulled and carried < -LIFT * GRAVITY * mass:
+                lifts = f"{behind} lifts {ahead} by {on_terminal(kilonewtons(-carried))} kN"
+                yield "lift", name, f"at {name}, {lifts}: its COG is behind its axles; is a sign of its places wrong?"
 
 
 def _deflections(deflections: Mapping[tuple[str, str], float]) -> Iterator[Finding]:
