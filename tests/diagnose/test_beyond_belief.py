@@ -18,11 +18,11 @@ from vehgen.effects import EFFECTS
 FAULT = MeasurementFault("hump_height", ("high",), (), "the road in high is 12 % higher than stated", "measure it")
 
 
-def verdict_of(monkeypatch, detection, believed, effects, faults_of_believed=()):
-    """Return the verdict on a detection taken for quiet, with a mistake told of it, and another one where errors can be believed."""
+def verdict_of(monkeypatch, detection, believed, effects, faults_of_believed=(), faults=(FAULT,)):
+    """Return the verdict on a detection taken for quiet, with mistakes told of it, and another one where errors can be believed."""
     monkeypatch.setattr(Detection, "is_quiet", property(lambda self: self is quiet or self.base.training < 1.2))
     quiet = replace(detection)
-    monkeypatch.setattr(decision, "supposed_mistakes", lambda item: (FAULT,) if item is quiet else faults_of_believed)
+    monkeypatch.setattr(decision, "supposed_mistakes", lambda item: faults if item is quiet else faults_of_believed)
     monkeypatch.setattr(decision, "supposing", lambda item, most: believed if most == BELIEVED_SIGMAS else item)
     chosen = [EFFECTS[name] for name in effects]
     return Decision(quiet, chosen, False, lambda stage, done, total, best: None).decide().verdict
@@ -106,6 +106,22 @@ def test_what_runs_insist_on_is_told_though_believable_errors_leave_noise(monkey
     found = verdict_of(monkeypatch, detection, replace(believed, base=replace(believed.base, mean_squares=squares)), ["cubic_stiffness"])
     assert found.verdict == verdict
     assert found.faults == ((FAULT,) if verdict == "measurement_fault" else ())
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize(
+    ("mistakes", "single", "verdict"), [(1, True, "measurement_fault"), (2, True, "one"), (2, False, "measurement_fault")]
+)
+def test_one_error_is_told_in_place_of_several_mistakes_on_which_runs_insist(monkeypatch, detection_of, mistakes, single, verdict):
+    """A sensor that leaned by 0.35 rad was told as one that leans by 0.08 rad and sits 0.13 m elsewhere."""
+    detection = detection_of(runs=HUMPS)
+    one = SimpleNamespace(verdict="one")
+    monkeypatch.setattr(Decision, "_one_mistake", lambda self: None)
+    monkeypatch.setattr(Decision, "_instead", lambda self, strained: None)
+    monkeypatch.setattr(Decision, "_by_one_error", lambda self, believed: SimpleNamespace(verdict=one) if single else None)
+    monkeypatch.setattr(decision, "BELIEF_TOO_DEAR", -1e9)
+    found = verdict_of(monkeypatch, detection, supposing(detection, BELIEVED_SIGMAS), ["cubic_stiffness"], (), (FAULT,) * mistakes)
+    assert found.verdict == verdict
 
 
 @pytest.mark.slow

@@ -91,7 +91,8 @@ class Decision(WithoutGap):
         other.notes += self.notes
         if believed.is_quiet:
             if price_of_belief(self.base, believed.base) > BELIEF_TOO_DEAR:
-                return other._one_mistake() or other._instead(self.base) or self._mistaken(mistakes)
+                single = other._one_mistake() or other._instead(self.base)
+                return single or (self._by_one_error(believed) if len(mistakes) > 1 else None) or self._mistaken(mistakes)
             if left := supposed_mistakes(believed):
                 return self._mistaken(left)
             other.notes.append(wording.supposed([item.message for item in mistakes]))
@@ -99,14 +100,20 @@ class Decision(WithoutGap):
         if mistaken := other._one_mistake():
             return mistaken
         found = other._explain_gap()
-        single = one_error(self.detection, believed, found, self._candidates(believed.base), self.runner)
-        self.interrupted = single.stopped
-        if single.fits:
-            other = Decision(believed, self.effects, self.everything, self.progress, self.runner)
-            other.notes, other.rounds = list(self.notes), [single]
-            return other._name([single.fits[0]])
+        if single := self._by_one_error(believed, found):
+            return single
         simpler = 0 < len(found.verdict.faults) < len(mistakes) and other.undone is not None and other.undone[1].at_once
         return found if simpler or explains_easily(found) else self._mistaken(mistakes)
+
+    def _by_one_error(self, believed: Detection, found: Decided | None = None) -> Decided | None:
+        """Return the verdict where one error of all runs, or of a sensor, explains what the base supposes many for."""
+        single = one_error(self.detection, believed, found, self._candidates(believed.base), self.runner)
+        self.interrupted = single.stopped
+        if not single.fits:
+            return None
+        other = Decision(believed, self.effects, self.everything, self.progress, self.runner)
+        other.notes, other.rounds = list(self.notes), [single]
+        return other._name([single.fits[0]])
 
     def _quiet(self) -> Decided:
         """Return the verdict where chi shows no gap: a faint effect, runs that disagree, or nothing."""

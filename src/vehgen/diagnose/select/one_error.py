@@ -60,7 +60,7 @@ def explains_easily(found: Decided) -> bool:
 
 
 def one_error(
-    strained: Detection, believed: Detection, found: Decided, candidates: Sequence[Candidate], runner: Runner = HERE
+    strained: Detection, believed: Detection, found: Decided | None, candidates: Sequence[Candidate], runner: Runner = HERE
 ) -> SearchRound:
     """Try each error of all runs, or of a sensor, alone; return those that explain the runs, the likeliest first.
 
@@ -76,17 +76,17 @@ def one_error(
     strained
         Its base explains the runs, but supposes more of them than can be believed.
     believed
-        The same with a base that supposes no more, and does not explain them.
+        The same with a base that supposes no more, and explains them far worse.
     found
-        What the search for effects beside that base found.
+        What the search for effects beside that base found; None where it left no gap to be searched.
     candidates
         Every effect at every place; those of the vehicle are passed over.
     runner
         Where they are fitted.
     """
     current = believed.base
-    nothing = SearchRound(current, (), (), (), (), found.stopped)
-    if found.stopped or explains_easily(found):
+    nothing = SearchRound(current, (), (), (), (), found is not None and found.stopped)
+    if found is not None and (found.stopped or explains_easily(found)):
         return nothing
     alone = [item for item in candidates if isinstance(item.effect, RunEffect)]
     fitter = Fitter(believed, current, ())
