@@ -83,8 +83,8 @@ def write_energies(vehicle: Vehicle, motion: Kinematics) -> tuple[Energies, tupl
         inertias.append(Inertia(name, pitch_inertia(body), motion.pitch[name]))
         fore_aft.setdefault(motion.groups[name], []).append(Inertia(name, mass, motion.fore_aft[name]))
     weights = list(inertias[::2])
-    for name, (row, *_) in motion.bending.items():
-        inertias.append(Inertia(name, bending_mass(vehicle.bodies[name]), row))
+    for name, mode in motion.bending.items():
+        inertias.append(Inertia(name, bending_mass(vehicle.bodies[name]), mode.row))
     for name, axle in vehicle.axles.items():
         if axle.mass is not None:
             hop = Inertia(name, to_sympy(axle.mass), motion.hop[name])
@@ -129,9 +129,9 @@ def _elements(vehicle: Vehicle, motion: Kinematics) -> tuple[tuple[Element, ...]
         (first, first_point), (second, second_point) = hinge.ends
         row = combine((one, motion.turn(second, to_sympy(second_point.x))), (down, motion.turn(first, to_sympy(first_point.x))))
         elements.append(Element(name, "hinge", to_sympy(hinge.k), to_sympy(hinge.c), row, {}, read_laws(vehicle, "hinge", name)))
-    for name, (row, *_) in motion.bending.items():
+    for name, mode in motion.bending.items():
         bending = vehicle.bodies[name].bending
         assert bending is not None
         omega, mass = 2 * sp.Float(math.pi) * to_sympy(bending.frequency), bending_mass(vehicle.bodies[name])
-        elements.append(Element(name, "bending", mass * omega**2, 2 * to_sympy(bending.damping_ratio) * mass * omega, row, {}))
+        elements.append(Element(name, "bending", mass * omega**2, 2 * to_sympy(bending.damping_ratio) * mass * omega, mode.row, {}))
     return tuple(elements), inputs

@@ -21,10 +21,18 @@ from vehgen.vehicle.parts import GROUND, Point
 
 
 @dataclass(frozen=True)
+class BendingMotion:
+    """The row of a body's bending coordinate, the length over which it bends, and the height of its neutral axis above the COG."""
+
+    row: Row
+    length: sp.Expr
+    axis: sp.Expr
+
+
+@dataclass(frozen=True)
 class Kinematics:
     """Rows of heave, pitch and bending per body, hop per axle, and fore-aft motion per body relative to its group.
 
-    `bending[body]` is its coordinate's row, the length over which it bends and the height of its neutral axis above the COG.
     `groups[body]` names the body whose fore-aft motion all bodies of its group share; `fore_aft[body]` is what the body moves
     ahead of it.
     """
@@ -35,7 +43,7 @@ class Kinematics:
     hop: dict[str, Row]
     fore_aft: dict[str, Row] = field(default_factory=dict)
     groups: dict[str, str] = field(default_factory=dict)
-    bending: dict[str, tuple[Row, sp.Expr, sp.Expr]] = field(default_factory=dict)
+    bending: dict[str, BendingMotion] = field(default_factory=dict)
 
     def rise(self, body: str, x: sp.Expr) -> Row:
         """Return the vertical motion of the point x ahead of a body's COG; the ground does not move."""
@@ -51,15 +59,15 @@ class Kinematics:
 
     def forward(self, body: str, x: sp.Expr, z: sp.Expr) -> Row:
         """Return how far the point (x, z) of a body moves ahead of its group; on its neutral axis bending moves none."""
-        bent = self._bent(body, (-12 * x * (z - self.bending[body][2]), sp.S.Zero)) if body in self.bending else []
-        return combine((sp.S.One, self.fore_aft[body]), (z, self.pitch[body]), *bent)
+        above = z - self.bending[body].axis if body in self.bending else sp.S.Zero
+        return combine((sp.S.One, self.fore_aft[body]), (z, self.pitch[body]), *self._bent(body, (-12 * x * above, sp.S.Zero)))
 
     def _bent(self, body: str, shape: tuple[sp.Expr, sp.Expr]) -> list[tuple[sp.Expr, Row]]:
         """Return what bending adds: with shape (a, b) it is (a/length^2 - b/2) of its coordinate; s = 2 x/length in (3 s^2 - 1)/2."""
         if body not in self.bending:
             return []
-        row, length, _ = self.bending[body]
-        return [(shape[0] / length**2 - shape[1] / 2, row)]
+        mode = self.bending[body]
+        return [(shape[0] / mode.length**2 - shape[1] / 2, mode.row)]
 
     def index(self, name: str) -> int:
         """Return the place of a coordinate by name."""
@@ -88,7 +96,8 @@ def derive_kinematics(vehicle: Vehicle) -> Kinematics:
 
     for name, body in vehicle.bodies.items():
         if body.bending is not None:
-            motion.bending[name] = (unit(index[f"bending.{name}"]), to_sympy(body.bending.length), to_sympy(body.bending.z))
+            row = unit(index[f"bending.{name}"])
+            motion.bending[name] = BendingMotion(row, to_sympy(body.bending.length), to_sympy(body.bending.z))
     for name in _carrier_order(vehicle):
         body = vehicle.bodies[name]
         carrier = body.carried_by

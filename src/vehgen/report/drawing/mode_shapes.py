@@ -52,7 +52,7 @@ def mode_movements(model: EquationsOfMotion, modes: Sequence[Mode], values: Mapp
         rows.append(model.motion.hop[name] if name in model.motion.hop else model.motion.rise(axle.body, to_sympy(axle.x)))
     bent, everything = model.motion.bending, model.vehicle.all_values({name: values[name] for name in model.vehicle.free_parameters})
     lengths = {name: bending.length.evaluate(everything) for name in bent if (bending := model.vehicle.bodies[name].bending) is not None}
-    rows += [bent[name][0] for name in lengths]
+    rows += [bent[name].row for name in lengths]
     masses = [term.inertia for group in model.energies.fore_aft.values() for term in group]
     entries: SparseMatrix = {(i, j): value for i, row in enumerate(rows) for j, value in row.items()}
     matrix = model.evaluate_matrix(entries, (len(rows), n), values)
