@@ -50,6 +50,14 @@ def test_one_error_has_its_size_where_it_may_be_as_large_as_it_will(trials_of, c
     assert 1 + told.value == pytest.approx(1 / factor, abs=0.01)
 
 
+@pytest.mark.thorough
+def test_a_plain_mistake_is_told_in_place_of_all_that_a_base_supposes(monkeypatch, trials_of):
+    """The road of a run that was stated in km/h, for m/s, had been told as 38 % less high, and 4.5 m further along."""
+    detection = restated(trials_of(runs=HUMPS), speed=3.6)
+    (fault,) = verdict_of(monkeypatch, detection, detection, ["cubic_stiffness"]).faults
+    assert (fault.kind, fault.runs, fault.value) == ("speed_unit", ("fast",), pytest.approx(1 / 3.6))
+
+
 @pytest.mark.slow
 def test_one_error_makes_no_others(trials_of):
     """Held at four standard deviations, a height 18 % off was told as 12 %, beside four gains of 4 %."""

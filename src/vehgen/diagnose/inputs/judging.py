@@ -194,6 +194,16 @@ def supposed_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
     return (*found, *unlike, *moved, *_slow(detection))
 
 
+def one_instead(detection: Detection) -> tuple[MeasurementFault, ...]:
+    """Return the plain mistake that explains the runs better than all that a base supposes of them; nothing where there is none.
+
+    A base may bend a road and its place so far that noise is left of a run which was driven at another speed altogether.
+    """
+    case = base_refits(detection)
+    best = _least(_judge(case, PLAIN), case.excess)
+    return best.faults if best is not None and best.explains(case.excess) else ()
+
+
 def _mislabelled(detection: Detection) -> tuple[MeasurementFault, ...]:
     """Return the wrong labels that leave least once they are put right, where recordings are no stranger's then."""
     case = base_refits(detection)
