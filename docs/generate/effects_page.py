@@ -116,7 +116,7 @@ hinge_damping = "my_package:HINGE_DAMPING"
 `edit` returns what a vehicle file that extends the base would say; the symbols, and what the vehicle says at the place, are expressions
 that take part in arithmetic: `{"c": site.spring.c + 2*symbols["c"]}`. A `RunEffect` names an `adjustment`, a class of
 [vehgen.fit.adjustments](../src/vehgen/fit/adjustments.py) or one of your own; a `LineEffect` says between which frequencies lines are
-`looked_for`; what is neither is a class of your own with the methods of [`Effect`](../src/vehgen/effects/base.py). Each may set
+`looked_for`; what is none of these is a class of your own with the methods of [`Effect`](../src/vehgen/effects/base.py). Each may set
 `is_global`, and name in `special_case` the effect that it is at some value of its parameters: where both do as well, that one is named."""
 SHOWN_HZ = (0.5, 25.0)
 SHOWN = {"hinge_friction": "L2_q", "hinge_stiffness": "L2_q"} | dict.fromkeys(
@@ -127,6 +127,8 @@ FREED = {"k": "the stiffness", "c": "the damping", "kt": "the tyre's stiffness"}
 """What an effect frees, in words."""
 PLACES = {"walking_beam": "axle4+axle5", "cargo_module": "semitrailer", "frame_bending": "semitrailer", "sensor_delay": "L2"}
 
+SHAKEN = {"engine_harmonic": ((17.8, 0.01), (0,)), "wheel_runout": ((0.5,), (0, 2, 4))}
+"""What shakes the vehicle all the time: at these numbers, with these parts."""
 UNDRAWN = ("added_stiffness",)
 """Effects that have no place on tractor5."""
 
@@ -166,10 +168,11 @@ def draw() -> None:
     """Draw every effect."""
     from vehgen.diagnose.fits.candidate import build_problem, list_candidates
     from vehgen.effects import EffectLocator
-    from vehgen.fit.harmonic import Harmonic
+    from vehgen.fit.adjustments import RunState
     from vehgen.fit.misfit import Misfit
     from vehgen.fit.noise import EVEN, Noise
     from vehgen.fit.problem import make_problem
+    from vehgen.fit.shaking import Shaking
     from vehgen.fit.trial import load_trials
     from vehgen.report import save_figure
 
@@ -197,10 +200,12 @@ def draw() -> None:
             values[problem.space.size :] = combination[: len(candidate.parameters)]
         noises = {trial.name: Noise(EVEN, np.ones(4))}
         misfit = Misfit(posed, noises, values, shared=candidate.shared)
-        line = candidate.shared[0] if candidate.shared else None
-        if isinstance(line, Harmonic):
-            size = surveyor.site(candidate.place).load
-            changed = base + 0.02 * size * line.columns(trial, 17.8, 0.01, trial.values)[0]
+        shaking = candidate.shared[0] if candidate.shared else None
+        if isinstance(shaking, Shaking):
+            numbers, shown = SHAKEN[effect.name]
+            size = effect.solved_parameters[0].first(surveyor.site(candidate.place))[0]
+            columns = shaking.columns(trial, np.array(numbers), trial.values, RunState(trial.scenario))
+            changed = base + size * columns[list(shown)].sum(axis=0)
         else:
             numbers = np.array(combination[: len(candidate.shared)]) if candidate.shared else np.zeros(0)
             changed = misfit.respond(0, values[None], numbers, np.zeros(len(misfit.errors[0].items)))[0]

@@ -88,6 +88,19 @@ def test_an_engine_is_found_by_its_line(trials_of):
 
 
 @pytest.mark.slow
+def test_an_untrue_wheel_is_found_by_its_turns(trials_of):
+    wheel = Effect("wheel_runout", "rear", {"amplitude": 0.004, "radius": 0.31})
+    found = diagnose_trials(trials_of(wheel, runs=HUMPS), [EFFECTS[name] for name in ("wheel_runout", "engine_harmonic", "relaxation")])
+    assert found.verdict.verdict == "named"
+    effect = found.verdict.effects[0]
+    assert (effect.name, effect.place) == ("wheel_runout", "rear")
+    for name, truth in wheel.values.items():
+        low, high = effect.parameters[name].interval
+        assert low <= truth <= high
+        assert high - low < 0.5 * truth
+
+
+@pytest.mark.slow
 def test_ctrl_c_leaves_what_was_found(trials_of, monkeypatch):
     monkeypatch.setattr(early_end, "MOST_AT_ONCE", 0)
 

@@ -6,30 +6,33 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vehgen.effects import EFFECTS, EffectLocator, LineEffect, RunEffect, VehicleEffect, registry
+from vehgen.effects import EFFECTS, EffectLocator, LineEffect, RunEffect, VehicleEffect, WheelEffect, registry
 from vehgen.effects.evidence import Origins, PlaceEvidence
 from vehgen.errors import InputError
 from vehgen.fit.adjustments import Adjustment
 from vehgen.vehicle import load_vehicle
 
-FRICTION, GAIN, SPEED, ENGINE = (EFFECTS[name] for name in ("dry_friction", "sensor_gain", "speed_error", "engine_harmonic"))
+FRICTION, GAIN, SPEED, ENGINE, WHEEL = (
+    EFFECTS[name] for name in ("dry_friction", "sensor_gain", "speed_error", "engine_harmonic", "wheel_runout")
+)
 
 
 def point(number):
     return np.array([number]), np.zeros(0)
 
 
-def found(parts=(), kinds=(), one_force=True, sensors=()):
-    return PlaceEvidence(frozenset(parts), frozenset(kinds), one_force, frozenset(sensors))
+def found(parts=(), kinds=(), one_force=True, sensors=(), steady_lines=False):
+    return PlaceEvidence(frozenset(parts), frozenset(kinds), one_force, frozenset(sensors), steady_lines)
 
 
-def test_the_library_has_all_three_kinds_and_each_costs_its_numbers():
-    kinds = [VehicleEffect, RunEffect, LineEffect]
-    assert [sum(isinstance(effect, kind) for effect in EFFECTS.values()) for kind in kinds] == [19, 6, 1]
+def test_the_library_has_all_kinds_and_each_costs_its_numbers():
+    kinds = [VehicleEffect, RunEffect, LineEffect, WheelEffect]
+    assert [sum(isinstance(effect, kind) for effect in EFFECTS.values()) for kind in kinds] == [19, 6, 1, 1]
     assert FRICTION.n_numbers(3) == FRICTION.n_numbers(9) == 1
     assert EFFECTS["tyre_liftoff"].n_numbers(3) == 0
     assert GAIN.n_numbers(3) == 1
     assert ENGINE.n_numbers(3) == 2 + 3 * 4
+    assert WHEEL.n_numbers(3) == 1 + 3 * 6
 
 
 def test_only_effects_of_the_vehicle_add_to_its_file():
@@ -47,6 +50,7 @@ def test_fits_begin_where_what_they_add_was_not_absorbed():
     assert GAIN.origins(origins) == [placed, fitted]
     assert SPEED.origins(origins) == [filed, fitted]
     assert ENGINE.origins(origins) == [fitted]
+    assert WHEEL.origins(origins) == [placed, fitted]
     assert FRICTION.origins(Origins(fitted, fitted, fitted)) == [fitted]
 
 
@@ -71,10 +75,20 @@ def test_fits_begin_where_what_they_add_was_not_absorbed():
         ("sensor_gain", "F_az", found(sensors=["F", "F_az"]), True),
         ("sensor_gain", "F_az", found(parts=["F_az"], one_force=False, sensors=["F_q"]), False),
         ("engine_harmonic", "body", found(parts=["rear"], one_force=False), False),
+        ("wheel_runout", "rear", found(parts=["rear"], kinds=["suspension"]), True),
+        ("wheel_runout", "rear", found(parts=["front"], one_force=False), False),
+        ("wheel_runout", "rear", found(parts=["front"], steady_lines=True), True),
     ],
 )
 def test_a_place_test_speaks_for_the_effects_that_it_can_see(name, place, evidence, likely):
     assert EFFECTS[name].is_likely(place, evidence) == likely
+
+
+def test_wheels_turn_on_roads_alone():
+    vehicle = load_vehicle("tractor5")
+    rolling, standing = (SimpleNamespace(scenario=SimpleNamespace(top_speed=speed)) for speed in (2.0, 0.0))
+    assert WHEEL.places(vehicle, [standing, rolling]) == tuple(vehicle.axles)
+    assert WHEEL.places(vehicle, [standing]) == ()
 
 
 def test_an_effect_made_global_is_tried_wherever_one_force_does_not_suffice():
@@ -94,7 +108,7 @@ def test_a_sensor_of_an_axle_has_no_position_to_be_wrong_about():
 def test_wrong_parameters_are_refused_when_an_effect_is_made():
     with pytest.raises(ValueError, match="has a parameter, found none"):
         replace(GAIN, parameters=())
-    with pytest.raises(ValueError, match="frequency, drift and amplitude"):
+    with pytest.raises(ValueError, match="frequency, drift, amplitude"):
         replace(ENGINE, parameters=ENGINE.parameters[:1])
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from vehgen.fit.adjustments import RunState
 from vehgen.fit.harmonic import Harmonic, find_line, harmonic_adjustments
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import EVEN, Noise
@@ -60,7 +61,7 @@ def shaken(tmp_path_factory):
 def test_the_columns_are_what_the_kernel_answers_to_a_harmonic_force(shaken):
     alone, (trial,) = shaken
     alone = alone[: len(trial.recording.time)]
-    columns = Harmonic("body", sigma={trial.name: SIGMA}).columns(trial, 21.0, 0.0, trial.values)
+    columns = Harmonic("body", sigma={trial.name: SIGMA}).columns(trial, np.array([21.0, 0.0]), trial.values, RunState(trial.scenario))
     late = slice(300, None)  # the start of the force has died away
     factors = np.linalg.lstsq(columns[:2, late].reshape(2, -1).T, alone[late].ravel(), rcond=None)[0]
     assert np.hypot(*factors) == pytest.approx(300.0, rel=0.01)
@@ -88,7 +89,8 @@ def test_a_line_is_found_where_it_is_and_taken_out(shaken):
 def test_a_line_drifts_from_where_the_recording_begins(shaken):
     _, (trial,) = shaken
     later = replace(trial, recording=replace(trial.recording, time=trial.recording.time + 20.0))
-    here, there = (Harmonic("body", sigma={trial.name: SIGMA}).columns(item, 21.0, 0.02, trial.values) for item in (trial, later))
+    line, state = Harmonic("body", sigma={trial.name: SIGMA}), RunState(trial.scenario)
+    here, there = (line.columns(item, np.array([21.0, 0.02]), trial.values, state) for item in (trial, later))
     np.testing.assert_allclose(there, here, atol=1e-9 * np.abs(here).max())
 
 

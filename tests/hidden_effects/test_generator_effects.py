@@ -73,8 +73,8 @@ def test_menu_is_complete():
     listed = {
         "dry_friction", "cubic_stiffness", "progressive_stiffness", "bump_stop", "asymmetric_damping", "quadratic_damping", "hysteresis",
         "relaxation", "damper_mount",
-        "tyre_liftoff", "tyre_damping", "tyre_footprint", "hinge_friction", "hinge_stiffness", "suspended_cab", "frame_bending",
-        "walking_beam",
+        "tyre_liftoff", "tyre_damping", "tyre_footprint", "wheel_runout", "hinge_friction", "hinge_stiffness",
+        "suspended_cab", "frame_bending", "walking_beam",
         "cargo_module", "engine_harmonic", "sensor_gain", "sensor_position", "sensor_tilt", "sensor_delay", "speed_error",
     }  # fmt: skip
     assert {name for name, kind in EFFECTS.items() if kind.listed} == listed

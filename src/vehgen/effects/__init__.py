@@ -1,11 +1,11 @@
-"""What could be missing? Effects of the vehicle, of runs and sensors, and of spectral lines.
+"""What could be missing? Effects of the vehicle, of runs and sensors, of spectral lines, and of wheels.
 
 Each tells where it attaches, what it changes and how many numbers it costs; other packages and files may add more.
 """
 
 from vehgen.effects.base import Change, Effect, EffectParameter
 from vehgen.effects.entry import effects, effects_named, load_effects
-from vehgen.effects.kinds import LineEffect, RunEffect, VehicleEffect
+from vehgen.effects.kinds import LineEffect, RunEffect, VehicleEffect, WheelEffect
 from vehgen.effects.locator import EffectLocator, EffectSite
 from vehgen.effects.registry import EFFECTS, library
 
@@ -19,6 +19,7 @@ __all__ = [
     "LineEffect",
     "RunEffect",
     "VehicleEffect",
+    "WheelEffect",
     "effects",
     "effects_named",
     "library",

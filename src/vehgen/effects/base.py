@@ -1,6 +1,6 @@
 """What an effect is: where it lives, what it changes, what it costs, where its fits begin, and how to say so.
 
-Of the vehicle, of its runs and sensors, or a line of the spectrum: for the three kinds see :mod:`vehgen.effects.kinds`.
+Of the vehicle, of its runs and sensors, or what shakes it: for the kinds see :mod:`vehgen.effects.kinds`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from vehgen.effects.evidence import Origins, PlaceEvidence, Residual, StartingPo
 from vehgen.effects.locator import EffectLocator, EffectSite, Size, base_parameters
 from vehgen.effects.places import ALIKE, ALL_SUSPENSIONS, EVERY_TYRE, Places
 from vehgen.files.expressions import Expression
-from vehgen.fit.adjustments import Adjustment
+from vehgen.fit.adjustments import Adjustment, RunState
 from vehgen.fit.trial import Trial
 from vehgen.simulate import SimulatorPool
 from vehgen.vehicle import Vehicle
@@ -206,7 +206,7 @@ class Effect(ABC):
         return touches or (self.is_global and not evidence.one_force)
 
     def solve(
-        self, place: str, adjustments: Sequence[Adjustment], trial: Trial, response: Array, values: Mapping[str, float], late: Array
+        self, place: str, adjustments: Sequence[Adjustment], trial: Trial, response: Array, values: Mapping[str, float], state: RunState
     ) -> Array:
         """Return its `solved_parameters` in a run, `shape (n_solved,)`.
 
@@ -220,8 +220,8 @@ class Effect(ABC):
             What the sensors would read without it, `shape (n_samples, n_channels)`.
         values
             The vehicle's parameters [SI].
-        late
-            How late every channel's clock is [s], `shape (n_channels,)`.
+        state
+            What is supposed of the run.
         """
         return np.zeros(0)
 

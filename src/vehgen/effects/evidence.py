@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from vehgen.fit.harmonic import find_line
 from vehgen.fit.misfit import Misfit
+from vehgen.fit.wheel_orders import find_rolling_radii
 
 Array = NDArray[np.float64]
 StartingPoint = tuple[Array, Array]
@@ -52,9 +53,16 @@ class Residual:
     def __init__(self, misfit: Misfit, x: Array) -> None:
         self._misfit, self._x = misfit, x
         self._lines: dict[tuple[float, float], list[tuple[float, float]]] = {}
+        self._radii: dict[tuple[float, float], list[float]] = {}
 
     def spectral_lines(self, lowest: float, highest: float) -> list[tuple[float, float]]:
         """Return frequency [Hz] and drift of the strongest lines between two frequencies [Hz]; looked for once."""
         if (lowest, highest) not in self._lines:
             self._lines[lowest, highest] = find_line(self._misfit, self._x, lowest=lowest, highest=highest)
         return self._lines[lowest, highest]
+
+    def rolling_radii(self, lowest: float, highest: float) -> list[float]:
+        """Return the likeliest rolling radii [m] of a wheel that shakes the runs, between two; looked for once."""
+        if (lowest, highest) not in self._radii:
+            self._radii[lowest, highest] = find_rolling_radii(self._misfit, self._x, lowest, highest)
+        return self._radii[lowest, highest]

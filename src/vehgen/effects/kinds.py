@@ -1,4 +1,4 @@
-"""The three kinds of effect: of the vehicle, of its runs and sensors, and lines of the spectrum."""
+"""The kinds of effect: of the vehicle, of its runs and sensors, and of what shakes it: lines of the spectrum, and wheels."""
 
 from __future__ import annotations
 
@@ -17,12 +17,16 @@ from vehgen.effects.places import alike
 from vehgen.errors import InputError
 from vehgen.files.expressions import Expression
 from vehgen.files.names import MAX_TEXT, joined_name
-from vehgen.fit.adjustments import Adjustment
-from vehgen.fit.harmonic import Harmonic, harmonic_adjustments
+from vehgen.fit.adjustments import Adjustment, RunState
+from vehgen.fit.harmonic import harmonic_adjustments
+from vehgen.fit.shaking import Shaking
 from vehgen.fit.trial import Trial
+from vehgen.fit.wheel_orders import ORDERS, WheelOrders
 from vehgen.simulate import SimulatorPool
 
 Array = NDArray[np.float64]
+RADIUS_SCALE = 0.001
+"""The size of a typical change of a rolling radius [m]: over a hundred turns it moves a wheel by a third of one."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,7 +154,50 @@ class RunEffect(Effect):
 
 
 @dataclass(frozen=True, kw_only=True)
-class LineEffect(Effect):
+class ShakingEffect(Effect):
+    """What shakes the vehicle at phases that no run knows: its first parameters are searched, the last, an amplitude, is solved for.
+
+    Attributes
+    ----------
+    NAMES
+        The names of its parameters.
+    NUMBERS_PER_RUN
+        So many amplitudes and phases follow linearly in every run.
+    """
+
+    NAMES: ClassVar[tuple[str, ...]]
+    NUMBERS_PER_RUN: ClassVar[int]
+
+    def __post_init__(self) -> None:
+        """Refuse other parameters."""
+        if tuple(names := [parameter.name for parameter in self.parameters]) != self.NAMES:
+            raise ValueError(f"{self.name}: it has the parameters {', '.join(self.NAMES)}, found {names}")
+
+    @property
+    def solved_parameters(self) -> tuple[EffectParameter, ...]:
+        """Return the amplitude."""
+        return self.parameters[-1:]
+
+    def is_likely(self, place: str, evidence: PlaceEvidence) -> bool:
+        """Return whether it is worth fitting at a place: as other effects, or where runs show a line, which the base may have bent to."""
+        return evidence.steady_lines or super().is_likely(place, evidence)
+
+    def n_numbers(self, n_runs: int) -> int:
+        """Return what is searched, and in every run two phases of each part."""
+        return len(self.NAMES) - 1 + self.NUMBERS_PER_RUN * n_runs
+
+    def solve(
+        self, place: str, adjustments: Sequence[Adjustment], trial: Trial, response: Array, values: Mapping[str, float], state: RunState
+    ) -> Array:
+        """Return the amplitude in a run, `shape (1,)`."""
+        shaking = adjustments[0]
+        assert isinstance(shaking, Shaking)
+        numbers = np.array([item.neutral for item in adjustments])
+        return np.array([shaking.amplitude(trial, response, numbers, values, state)])
+
+
+@dataclass(frozen=True, kw_only=True)
+class LineEffect(ShakingEffect):
     """A line in the spectrum that a force at a body drives: its frequency and drift are searched, the rest follows linearly in every run.
 
     Its parameters are the frequency [Hz], the drift over a run, and the force's amplitude [N] (see :mod:`vehgen.fit.harmonic`).
@@ -161,33 +208,14 @@ class LineEffect(Effect):
         The frequencies between which lines are looked for in what a fit leaves [Hz]; the fit may leave them within the parameter's range.
     """
 
-    SEARCHED: ClassVar[int] = 2
+    NAMES: ClassVar[tuple[str, ...]] = ("frequency", "drift", "amplitude")
     NUMBERS_PER_RUN: ClassVar[int] = 4
     looked_for: tuple[float, float]
-
-    def __post_init__(self) -> None:
-        """Refuse other parameters."""
-        names = [parameter.name for parameter in self.parameters]
-        if names != ["frequency", "drift", "amplitude"]:
-            raise ValueError(f"{self.name}: a line has the parameters frequency, drift and amplitude, found {names}")
-
-    @property
-    def solved_parameters(self) -> tuple[EffectParameter, ...]:
-        """Return the amplitude."""
-        return self.parameters[self.SEARCHED :]
 
     @property
     def shows_in_slow_motions(self) -> bool:
         """Whether a fit to slow motions alone tells something of it: its line is a fast one."""
         return False
-
-    def is_likely(self, place: str, evidence: PlaceEvidence) -> bool:
-        """Return whether it is worth fitting at a place: as other effects, or where runs show a line, which the base may have bent to."""
-        return evidence.steady_lines or super().is_likely(place, evidence)
-
-    def n_numbers(self, n_runs: int) -> int:
-        """Return its frequency and drift, and in every run two phases each of a force and a moment."""
-        return self.SEARCHED + self.NUMBERS_PER_RUN * n_runs
 
     def adjustments(self, place: str, noise_sigma: Mapping[str, Array]) -> tuple[Adjustment, ...]:
         """Return the line and its drift."""
@@ -202,11 +230,24 @@ class LineEffect(Effect):
         """Return where the last fit ended: the base parameters cannot have absorbed a line."""
         return [origins.fitted]
 
-    def solve(
-        self, place: str, adjustments: Sequence[Adjustment], trial: Trial, response: Array, values: Mapping[str, float], late: Array
-    ) -> Array:
-        """Return the amplitude of the vertical force in a run [N], `shape (1,)`."""
-        line = adjustments[0]
-        assert isinstance(line, Harmonic)
-        numbers = np.array([item.neutral for item in adjustments])
-        return np.array([line.amplitude(trial, response, numbers, values, late)])
+
+@dataclass(frozen=True, kw_only=True)
+class WheelEffect(ShakingEffect):
+    """What turns with the wheels of an axle: their rolling radius is searched, the rest follows linearly in every run.
+
+    Its parameters are the radius [m] and the amplitude of the first order [m] (see :mod:`vehgen.fit.wheel_orders`).
+    """
+
+    NAMES: ClassVar[tuple[str, ...]] = ("radius", "amplitude")
+    NUMBERS_PER_RUN: ClassVar[int] = 2 * len(ORDERS)
+
+    def adjustments(self, place: str, noise_sigma: Mapping[str, Array]) -> tuple[Adjustment, ...]:
+        """Return what turns with the wheels."""
+        radius = self.parameters[0]
+        return (WheelOrders(place, RADIUS_SCALE, radius.starts[0], radius.low, radius.high, dict(noise_sigma)),)
+
+    def starts(self, place: str, locator: EffectLocator, residual: Residual | None = None) -> list[tuple[float, ...]]:
+        """Return the likeliest radii by what the fit leaves; without it as other effects."""
+        if residual is None:
+            return super().starts(place, locator)
+        return [(radius,) for radius in residual.rolling_radii(self.parameters[0].low, self.parameters[0].high)]

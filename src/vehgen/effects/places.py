@@ -48,6 +48,11 @@ def _groups(vehicle: Vehicle, suspended: Sequence[str]) -> tuple[str, ...]:
     return (ALL_SUSPENSIONS, *(ALIKE.join(names) for names in rear if len(names) > 1))
 
 
+def wheels(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
+    """Return every axle, where a run moves along a road: on a rig no wheel turns."""
+    return tuple(vehicle.axles) if any(trial.scenario.top_speed > 0 for trial in trials) else ()
+
+
 def nowhere(vehicle: Vehicle, trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return no place."""
     return ()

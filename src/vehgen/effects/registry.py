@@ -21,6 +21,7 @@ from vehgen.effects.library.nonlinear_dampers import ASYMMETRIC_DAMPING_EFFECT, 
 from vehgen.effects.library.stiffening_springs import BUMP_STOP_EFFECT, CUBIC_STIFFNESS_EFFECT, PROGRESSIVE_STIFFNESS_EFFECT
 from vehgen.effects.library.tyres import TYRE_DAMPING_EFFECT, TYRE_FOOTPRINT_EFFECT, TYRE_LIFTOFF_EFFECT
 from vehgen.effects.library.walking_beam import WALKING_BEAM_EFFECT
+from vehgen.effects.library.wheels import WHEEL_RUNOUT_EFFECT
 from vehgen.errors import InputError, shown
 from vehgen.files.names import is_identifier
 
@@ -51,6 +52,7 @@ EFFECTS: dict[str, Effect] = {
         WALKING_BEAM_EFFECT,
         CARGO_MODULE_EFFECT,
         ENGINE_HARMONIC_EFFECT,
+        WHEEL_RUNOUT_EFFECT,
         SENSOR_GAIN_EFFECT,
         SENSOR_POSITION_EFFECT,
         SENSOR_TILT_EFFECT,

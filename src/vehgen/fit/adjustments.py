@@ -6,6 +6,7 @@ A fit carries an adjustment's number along with the vehicle's parameters, in uni
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -19,6 +20,19 @@ from vehgen.simulate import Scenario
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class RunState:
+    """What a fit supposes of a run beside its adjustments: the `scenario` that it drives through, clocks, vehicles.
+
+    `late` is how late every channel's clock is [s], `shape (n_channels,)`, by which the recording is, and the response not yet (default:
+    none is); `vehicles` are the parameters [SI] behind each response (default: those of the vehicle file).
+    """
+
+    scenario: Scenario
+    late: Array | None = None
+    vehicles: tuple[Mapping[str, float], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -46,11 +60,11 @@ class Adjustment:
         """Return the scenario as it was, at the number `value`."""
         return scenario
 
-    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
+    def response(self, trial: Trial, response: Array, numbers: Array, state: RunState | None = None) -> Array:
         """Return what the sensors would have read, `shape (n, n_samples, n_channels)`.
 
-        `numbers` holds its own number, then those of the adjustments after it: one that needs two is followed by a plain one. `late` is how
-        late every channel's clock is [s], `shape (n_channels,)`, by which the recording is, and the response not yet (default: none is).
+        `numbers` holds its own number, then those of the adjustments after it: one that needs two is followed by a plain one. `state` is
+        what is supposed of the run besides (default: that it went as stated).
         """
         return response
 
@@ -60,6 +74,13 @@ class Adjustment:
         `numbers` as for :meth:`response`. What reaches sensors without being simulated, as roughness does, is read so, too.
         """
         return lines
+
+
+def adjust(items: Sequence[Adjustment], trial: Trial, response: Array, numbers: Array, state: RunState | None = None) -> Array:
+    """Return what the sensors would have read with all of some adjustments, one after the other, at `numbers shape (len(items),)`."""
+    for i, item in enumerate(items):
+        response = item.response(trial, response, numbers[i:], state)
+    return response
 
 
 class SpeedScale(Adjustment):
@@ -81,7 +102,7 @@ class Footprint(Adjustment):
 class Gain(Adjustment):
     """A channel's reading over the truth."""
 
-    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
+    def response(self, trial: Trial, response: Array, numbers: Array, state: RunState | None = None) -> Array:
         """Return the readings with the channel times its number."""
         return np.asarray(response * self._gains(trial, numbers[0]))
 
@@ -96,7 +117,7 @@ class Gain(Adjustment):
 class SensorDelay(Adjustment):
     """How late all channels of a sensor are [s]."""
 
-    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
+    def response(self, trial: Trial, response: Array, numbers: Array, state: RunState | None = None) -> Array:
         """Return the readings with the sensor's channels `numbers[0]` [s] later, by the phase of their Fourier transform."""
         n, dt = response.shape[-2], trial.recording.dt
         pad = np.zeros((*response.shape[:-2], n, response.shape[-1]))
@@ -126,7 +147,7 @@ class Tilt(Adjustment):
 
     _known: dict[int, tuple[Trial, Array]] = field(default_factory=dict, repr=False, compare=False)
 
-    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
+    def response(self, trial: Trial, response: Array, numbers: Array, state: RunState | None = None) -> Array:
         """Return the readings with the sensor tilted by `numbers[0]` [rad] and `numbers[1]` [m] higher."""
         if (columns := self._columns(trial)) is None:
             return response

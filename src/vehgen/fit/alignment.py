@@ -9,6 +9,7 @@ at once, too, and the better of both stands: there the few lines of slow motions
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -67,7 +68,7 @@ def align(misfit: Misfit, unit: Array, begun: Sequence[float] = (), bands: Seque
 def _laid_over(misfit: Misfit, x: Array, number: int, bands: Sequence[float]) -> Array:
     """Return the own errors of one run, `shape (n_own,)`."""
     trial = misfit.problem.trials[number]
-    alone = misfit.alone(number, x)
+    alone = _alone(misfit, number, x)
     names = [item.name for item in alone.errors[0].own]
     sigma = alone.errors[0].own[names.index("delay")].sigma
     low, high = misfit.band
@@ -89,11 +90,19 @@ def _laid_over(misfit: Misfit, x: Array, number: int, bands: Sequence[float]) ->
         return start
     found, reached = start, [highest for highest in bands if WIDER * low < highest < high]
     for highest in reached:
-        found = _fitted(misfit.alone(number, x, (low, highest)), found)
+        found = _fitted(_alone(misfit, number, x, (low, highest)), found)
     if not trial.scenario.over_measured_road or len(reached) < 2:
         return found
-    fast = misfit.alone(number, x, (low, reached[-1]))
+    fast = _alone(misfit, number, x, (low, reached[-1]))
     return min(found, _fitted(fast, start), key=lambda errors: _loss(fast, errors))
+
+
+def _alone(misfit: Misfit, number: int, x: Array, band: tuple[float, float] | None = None) -> Misfit:
+    """Return the misfit of one trial by its own errors only, all else as the unknowns x have it, within another band [Hz]."""
+    values = misfit.problem.best_values(misfit.problem.space.values(misfit.split(x)[0]))
+    problem = misfit.problem.with_trials([misfit.problem.trials[number]]).searching((), values)
+    shared = [replace(item, neutral=float(value), scale=0.0) for item, value in zip(misfit.shared, misfit.adjusted(x), strict=True)]
+    return Misfit(problem, misfit.noises, np.zeros(0), misfit.nuisances, band or misfit.band, shared, misfit.common_errors(x))
 
 
 def error_bounds(misfit: Misfit, most: float = MOST_SIGMAS) -> tuple[Array, Array]:

@@ -15,6 +15,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from vehgen.fit.adjustments import RunState, adjust
 from vehgen.fit.fine_response import FineResponse, fine_response
 from vehgen.fit.least_squares import WEAK_PRIOR_SIGMA
 from vehgen.fit.linearisation import linearise
@@ -189,22 +190,24 @@ class ChainSearch:
 
     def loss(self, known: Mapping[str, AcquisitionChain]) -> float:
         """Return the sum of squares that chains leave, by channel; those of other channels are as runs declare them."""
-        residuals, slopes = [], []
-        for t, trial in enumerate(self.misfit.problem.trials):
+        misfit, residuals, slopes = self.misfit, [], []
+        for t, trial in enumerate(misfit.problem.trials):
             stated = [trial.scenario.chain(name).assumed(1 / trial.recording.dt) for name in trial.channels]
             chains = [_as_late(known[name], own) if name in known else own for name, own in zip(trial.channels, stated, strict=True)]
-            response = self.responses[t].acquired(chains)[None]
-            for i, item in enumerate(self.misfit.shared):
-                response = item.response(trial, response, self.misfit.adjusted(self.x)[i:])
-            frequency = self.misfit.frequency(t)
+            response = adjust(misfit.shared, trial, self.responses[t].acquired(chains)[None], misfit.adjusted(self.x), self._state(t))
+            frequency = misfit.frequency(t)
             factors = np.column_stack([item.response(frequency) for item in chains])
-            left = self.misfit.measured(t) - self.misfit.channel_lines(t, response[0], self.misfit.errors_of(self.x, t))
+            left = misfit.measured(t) - misfit.channel_lines(t, response[0], misfit.errors_of(self.x, t))
             left, factors = left * self._compared(t)[:, None], factors * self._compared(t)[:, None]
-            residuals.append(flatten(self.misfit.whiten(t, left)))
-            slopes.append(flatten(self.misfit.whiten(t, self.slopes[t] * factors), first=1).T)
-        errors = self.misfit.split(self.x)[1]
+            residuals.append(flatten(misfit.whiten(t, left)))
+            slopes.append(flatten(misfit.whiten(t, self.slopes[t] * factors), first=1).T)
+        errors = misfit.split(self.x)[1]
         supposed = np.concatenate([np.zeros(len(self.x) - len(errors)), errors])  # errors are held about none, not about the fit's
         return _projected(np.concatenate([*residuals, supposed[self.free]]), np.vstack([*slopes, self.priors]))
+
+    def _state(self, number: int) -> RunState:
+        values = self.misfit.problem.space.values(self.misfit.split(self.x)[0])[None]
+        return self.misfit.state(number, values, self.misfit.errors_of(self.x, number), self.misfit.scenario(self.x, number))
 
     def _compared(self, number: int) -> NDArray[np.bool_]:
         """Return which spectral lines of a trial tell of its chains: not those of an engine, which no chain explains."""

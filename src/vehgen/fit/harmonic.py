@@ -9,13 +9,14 @@ frequency of the moment: the drift is slow.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.fit.adjustments import Adjustment, shifted
+from vehgen.fit.adjustments import Adjustment, RunState
 from vehgen.fit.misfit import Misfit
+from vehgen.fit.shaking import Shaking, in_two_phases
 from vehgen.fit.trial import Trial
 from vehgen.mechanics.rows import Row
 from vehgen.simulate.frequency import force_response
@@ -30,56 +31,22 @@ SMOOTH_CYCLES = 0.5
 
 
 @dataclass(frozen=True)
-class Harmonic(Adjustment):
+class Harmonic(Shaking):
     """An engine's line at the body `place`: its number is the frequency [Hz], the next one the drift (see the head of this file).
 
-    `sigma` is the standard deviation of every channel's noise by trial, `shape (n_channels,)`, by which channels are weighed.
+    Its amplitude is that of the vertical force [N], at the vehicle's parameters: a heavier body needs a larger force.
     """
 
-    sigma: Mapping[str, Array] = field(default_factory=dict)
-
-    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
-        """Return the readings with the line that suits them best added; without it for a trial whose noise is not known."""
-        if trial.name not in self.sigma:
-            return response
-        columns = self.columns(trial, float(numbers[0]), float(numbers[1]), trial.values)
-        coefficients = self._solve(trial, columns, response, late)
-        return np.asarray(response + np.einsum("knc,...k->...nc", columns, coefficients))
-
-    def amplitude(self, trial: Trial, response: Array, numbers: Array, values: Mapping[str, float], late: Array) -> float:
-        """Return the amplitude of the vertical force in a run [N], from the readings without it `shape (n_samples, n_channels)`.
-
-        `values` are the vehicle's parameters [SI]: a heavier body needs a larger force. `late` as for :meth:`response`.
-        """
-        columns = self.columns(trial, float(numbers[0]), float(numbers[1]), values)
-        coefficients = self._solve(trial, columns, response, late)
-        return float(np.hypot(coefficients[0], coefficients[1]))
-
-    def columns(self, trial: Trial, frequency: float, drift: float, values: Mapping[str, float]) -> Array:
+    def columns(self, trial: Trial, numbers: Array, values: Mapping[str, float], state: RunState) -> Array:
         """Return what the sensors read of unit forces, `shape (2 n_forces, n_samples, n_channels)`: heave in two phases, then pitch."""
+        frequency, drift = float(numbers[0]), float(numbers[1])
         time = trial.recording.time - trial.recording.time[0]
         duration = max(float(time[-1]), 1e-9)
         ends = np.array([frequency, frequency * (1.0 + drift)])
         answers = force_response(trial.simulator.model, values, _rows(trial, self.place), ends) * trial.channel_factors(ends)[:, :, None]
         share = (time / duration)[:, None, None]
         answer = answers[0] * (1 - share) + answers[1] * share
-        turning = answer * np.exp(1j * _phase(time, frequency, drift))[:, None, None]
-        parts = [part for j in range(turning.shape[2]) for part in (turning[:, :, j].real, -turning[:, :, j].imag)]
-        return np.array(parts)
-
-    def _solve(self, trial: Trial, columns: Array, response: Array, late: Array | None) -> Array:
-        left = (_on_time(trial, late) - response) / self.sigma[trial.name]
-        weighed = (columns / self.sigma[trial.name]).reshape(len(columns), -1)
-        normal = weighed @ weighed.T
-        ridge = 1e-9 * np.trace(normal) / len(normal) * np.eye(len(normal))
-        projected = np.einsum("km,...m->...k", weighed, left.reshape(*left.shape[:-2], -1))
-        return np.asarray(np.linalg.solve(normal + ridge, projected[..., None])[..., 0])
-
-
-def _on_time(trial: Trial, late: Array | None) -> Array:
-    """Return a recording with every channel so much earlier as its clock is late [s], `shape (n_samples, n_channels)`."""
-    values = trial.recording.values
-    return values if late is None or not np.any(late) else shifted(values, trial.recording.dt, -late)
+        return in_two_phases(answer * np.exp(1j * _phase(time, frequency, drift))[:, None, None])
 
 
 def _rows(trial: Trial, body: str) -> list[Row]:

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vehgen.fit.adjustments import Adjustment
+from vehgen.fit.adjustments import Adjustment, RunState, adjust
 from vehgen.fit.band import CALIBRATION_BAND_HZ
 from vehgen.fit.noise import Noise
 from vehgen.fit.nuisances import Condition, Nuisances
@@ -91,13 +91,6 @@ class Misfit:
         self.begun = np.array(begun) if len(begun) else np.zeros(len(self.shared))
         at = np.concatenate([np.zeros(self.n_parameters), self.begun, np.zeros(self.n_errors) if supposed is None else supposed])
         self._weights = [self._weight(t, problem.best_values(reference), at) for t in range(len(problem.trials))]
-
-    def alone(self, number: int, x: Array, band: tuple[float, float] | None = None) -> Misfit:
-        """Return the misfit of one trial by its own errors only, all else as the unknowns x have it, within another band [Hz]."""
-        values = self.problem.best_values(self.problem.space.values(self.split(x)[0]))
-        problem = self.problem.with_trials([self.problem.trials[number]]).searching((), values)
-        shared = [replace(item, neutral=float(value), scale=0.0) for item, value in zip(self.shared, self.adjusted(x), strict=True)]
-        return Misfit(problem, self.noises, np.zeros(0), self.nuisances, band or self.band, shared, self.common_errors(x))
 
     def _weight(self, number: int, reference: Mapping[str, float], x: Array) -> _Weight:
         trial, dt = self.problem.trials[number], self.problem.trials[number].recording.dt
@@ -195,8 +188,9 @@ class Misfit:
         left to :meth:`channel_lines`. `trial` stands in for the trial itself, with another step, `scenario` for what it drives through.
         """
         trial = trial or self.problem.trials[number]
-        response = self.problem.respond(values, trial, scenario or self._driven(number, trial, numbers, error))[0]
-        return self._adjust(number, trial, response, numbers, error)
+        scenario = scenario or self._driven(number, trial, numbers, error)
+        response = self.problem.respond(values, trial, scenario)[0]
+        return adjust(self.shared, trial, response, numbers, self.state(number, values, error, scenario))
 
     def respond_nearby(self, number: int, values: Array, numbers: Array, errors: Array) -> Array:
         """Return how the places of trial `number`'s sensors move in drives that hardly differ, `shape (n, n_samples, n_channels)`.
@@ -204,10 +198,11 @@ class Misfit:
         As :meth:`respond` at searched values `shape (n, n_parameters)` [SI], each with its adjustments `shape (n, n_adjustments)` and
         errors of the trial `shape (n, n_errors)`; differences from the first are right to the first order.
         """
-        trial, pairs = self.problem.trials[number], list(zip(numbers, errors, strict=True))
-        first, *others = (self._driven(number, trial, *pair) for pair in pairs)
-        found = self.problem.respond_nearby(values, trial, first, others)
-        return np.stack([self._adjust(number, trial, own[None], *pair)[0] for own, pair in zip(found, pairs, strict=True)])
+        trial = self.problem.trials[number]
+        driven = [self._driven(number, trial, *pair) for pair in zip(numbers, errors, strict=True)]
+        found = self.problem.respond_nearby(values, trial, driven[0], driven[1:])
+        states = [self.state(number, values[i : i + 1], errors[i], one) for i, one in enumerate(driven)]
+        return np.concatenate([adjust(self.shared, trial, *one) for one in zip(found[:, None], numbers, states, strict=True)])
 
     def _driven(self, number: int, trial: Trial, numbers: Array, error: Array) -> Scenario:
         """Return what a trial drives through, at adjustments and errors."""
@@ -218,10 +213,10 @@ class Misfit:
             scenario = item.scenario(scenario, float(value))
         return scenario
 
-    def _adjust(self, number: int, trial: Trial, response: Array, numbers: Array, error: Array) -> Array:
-        for i, item in enumerate(self.shared):
-            response = item.response(trial, response, numbers[i:], self.errors[number].clocks(error))
-        return response
+    def state(self, number: int, values: Array, error: Array, scenario: Scenario) -> RunState:
+        """Return what is supposed of trial `number` at values `shape (n, n_parameters)` [SI], its errors, and what it drives through."""
+        vehicles = tuple(self.problem.values_of(own, self.problem.trials[number]) for own in values) if self.shared else ()
+        return RunState(scenario, self.errors[number].clocks(error), vehicles)
 
     def channel_lines(self, number: int, response: Array, error: Array) -> Complex:
         """Return the spectral lines of what trial `number`'s sensors read of motions `shape (..., n_samples, n_channels)`."""

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
+from numpy.typing import NDArray
+
 from benchmarks.hidden_effects.generator import laws
-from benchmarks.hidden_effects.generator.effects.kind import EffectKind, Value, Values, axles_and_all, everywhere, pins
+from benchmarks.hidden_effects.generator.effects.kind import EffectKind, Value, Values, axles_and_all, everywhere, pins, suspensions
 from benchmarks.hidden_effects.generator.setup import Setup
 from benchmarks.hidden_effects.generator.system import Law
+
+Array = NDArray[np.float64]
 
 
 def _liftoff(setup: Setup, place: str, p: Values) -> None:
@@ -32,6 +37,17 @@ def _hinge_stiffness(setup: Setup, place: str, p: Values) -> None:
     setup.hinge(place).k += p["k"]
 
 
+def _runout(setup: Setup, place: str, p: Values) -> None:
+    setup.settle = max(setup.settle, 3.0)
+    phases = setup.rng.uniform(0.0, 2.0 * np.pi, 2)
+
+    def height(s: Array) -> Array:
+        turn = s / p["radius"]
+        return np.asarray(p["amplitude"] * (np.sin(turn + phases[0]) + 0.5 * np.sin(3.0 * turn + phases[1])))
+
+    setup.runouts.append((place, height))
+
+
 TYRE_AND_HINGE = (
     EffectKind(
         "tyre_liftoff", "the tyre cannot pull: f = share max(-(N0 + kt d + ct v), 0), N0 the static load from gravity on the "
@@ -45,6 +61,14 @@ TYRE_AND_HINGE = (
     EffectKind(
         "tyre_footprint", "the tyre sees the mean of the road over the contact length, centred under the axle", everywhere,
         (Value("length", "m", "contact length", (0.06, 0.1), (0.18, 0.28), neutral=0.0),), _footprint,
+    ),
+    EffectKind(
+        "wheel_runout", "an untrue wheel adds amplitude (sin(s/radius + phase) + sin(3 s/radius + phase)/2) to its road, s the "
+        "distance travelled", suspensions,
+        (
+            Value("amplitude", "m", "of the first harmonic", (0.0004, 0.001), (0.0025, 0.006), neutral=0.0),
+            Value("radius", "m", "rolling radius", (0.48, 0.52), (0.48, 0.52), "wheel"),
+        ), _runout,
     ),
     EffectKind(
         "hinge_friction", "moment M = moment sign(turning rate) while slipping; any abs(M) <= moment that holds it while sticking", pins,

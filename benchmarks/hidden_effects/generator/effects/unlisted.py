@@ -65,17 +65,6 @@ def _hanger(setup: Setup, place: str, p: Values) -> None:
     setup.system.elements[name] = Element([Term("coordinate", place), Term("coordinate", name, factor=-1.0)], k, c)
 
 
-def _runout(setup: Setup, place: str, p: Values) -> None:
-    setup.settle = max(setup.settle, 3.0)
-    phases = setup.rng.uniform(0.0, 2.0 * np.pi, 2)
-
-    def height(s: Array) -> Array:
-        turn = s / p["radius"]
-        return np.asarray(p["amplitude"] * (np.sin(turn + phases[0]) + 0.5 * np.sin(3.0 * turn + phases[1])))
-
-    setup.runouts.append((place, height))
-
-
 def _hinge_compliance(setup: Setup, place: str, p: Values) -> None:
     if p["compliance"] == 0.0:
         return
@@ -137,14 +126,6 @@ UNLISTED = (
             Value("frequency", "Hz", "on the held axle", (7.0, 16.0), (7.0, 16.0)),
             Value("damping", "-", "damping ratio", (0.02, 0.06), (0.02, 0.06)),
         ), _hanger, listed=False,
-    ),
-    EffectKind(
-        "wheel_runout", "an untrue wheel adds amplitude (sin(s/radius + phase) + sin(3 s/radius + phase)/2) to its road, s the "
-        "distance travelled", suspensions,
-        (
-            Value("amplitude", "m", "of the first harmonic", (0.0004, 0.001), (0.0025, 0.006), neutral=0.0),
-            Value("radius", "m", "rolling radius", (0.48, 0.52), (0.48, 0.52), "wheel"),
-        ), _runout, listed=False,
     ),
     EffectKind(
         "hinge_compliance", "the pin gives vertically: a spring 1/compliance and a damper time/compliance in place of the rigid "

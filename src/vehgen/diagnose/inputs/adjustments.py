@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from vehgen.fit.adjustments import Adjustment, Gain, SensorDelay
+from vehgen.fit.adjustments import Adjustment, Gain, RunState, SensorDelay
 from vehgen.fit.trial import Trial
 from vehgen.road import Hump
 from vehgen.road.track import Profile
@@ -26,9 +26,9 @@ class RunGain(Gain):
 
     run: str = ""
 
-    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
+    def response(self, trial: Trial, response: Array, numbers: Array, state: RunState | None = None) -> Array:
         """Return the readings with the channel times its number, in its run."""
-        return super().response(trial, response, numbers, late) if trial.name == self.run else response
+        return super().response(trial, response, numbers, state) if trial.name == self.run else response
 
     def read_lines(self, trial: Trial, frequency: Array, numbers: Array, lines: Complex) -> Complex:
         """Return the lines with the channel's times its number, in its run."""
@@ -41,7 +41,7 @@ class RunLevel(Adjustment):
 
     run: str = ""
 
-    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
+    def response(self, trial: Trial, response: Array, numbers: Array, state: RunState | None = None) -> Array:
         """Return the readings times its number, in its run."""
         return np.asarray(response * numbers[0]) if trial.name == self.run else response
 
@@ -56,9 +56,9 @@ class RunDelay(SensorDelay):
 
     run: str = ""
 
-    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
+    def response(self, trial: Trial, response: Array, numbers: Array, state: RunState | None = None) -> Array:
         """Return the readings with the sensor's channels later, in its run."""
-        return super().response(trial, response, numbers, late) if trial.name == self.run else response
+        return super().response(trial, response, numbers, state) if trial.name == self.run else response
 
     def read_lines(self, trial: Trial, frequency: Array, numbers: Array, lines: Complex) -> Complex:
         """Return the lines with the phases by which the sensor's channels are late, in its run."""
@@ -72,7 +72,7 @@ class RecorderFilter(Adjustment):
     runs: tuple[str, ...] = ()
     channels: tuple[str, ...] = ()
 
-    def response(self, trial: Trial, response: Array, numbers: Array, late: Array | None = None) -> Array:
+    def response(self, trial: Trial, response: Array, numbers: Array, state: RunState | None = None) -> Array:
         """Return the readings filtered, in its runs and channels."""
         if trial.name not in self.runs:
             return response

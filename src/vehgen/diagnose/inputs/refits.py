@@ -15,7 +15,7 @@ from vehgen.diagnose.fits.model_fit import BASE_PRIOR_SIGMA, JACOBIAN_REFRESH, N
 from vehgen.diagnose.inputs.comparison import Comparison, compare
 from vehgen.diagnose.inputs.fault import Hypothesis
 from vehgen.diagnose.thresholds import NOISE_FLOOR
-from vehgen.fit.adjustments import Adjustment
+from vehgen.fit.adjustments import Adjustment, RunState, adjust
 from vehgen.fit.least_squares import COARSE_TOLERANCE, WEAK_PRIOR_SIGMA, FitOptions, LeastSquaresFit, fit_least_squares
 from vehgen.fit.misfit import Noises
 from vehgen.fit.noise import Noise
@@ -130,9 +130,7 @@ class BaseRefits:
             scenario = item.scenario(scenario, float(value))
         vehicle = trial.values | {name: value for name, value in self.known.items() if name not in trial.fixed}
         response = np.asarray(trial.simulator.run(trial.simulator.parameters(vehicle), scenario).responses)
-        for i, item in enumerate(adjustments):
-            response = item.response(trial, response, values[i:])
-        return np.asarray(response[0])
+        return np.asarray(adjust(adjustments, trial, response, values, RunState(scenario, vehicles=(vehicle,)))[0])
 
     def accept(self, hypothesis: Hypothesis, fit: LeastSquaresFit, left: float) -> None:
         """Undo a mistake for all that follows, given its refit and the share of the excess that it leaves."""

@@ -182,9 +182,9 @@ def _solved(fit: ModelFit, candidate: Candidate, covariance: Array) -> dict[str,
         found = []
         for t, trial in enumerate(misfit.problem.trials):
             errors, error = misfit.errors[t], misfit.errors_of(x, t)
-            without = misfit.problem.respond(values[None], trial, errors.scenario(trial.scenario, error))[0][0]
-            known = misfit.problem.values_of(values, trial)
-            found.append(effect.solve(candidate.place, adjustments, trial, without, known, errors.clocks(error)))
+            state = misfit.state(t, values[None], error, errors.scenario(trial.scenario, error))
+            without = misfit.problem.respond(values[None], trial, state.scenario)[0][0]
+            found.append(effect.solve(candidate.place, adjustments, trial, without, state.vehicles[0], state))
         return np.array(found)
 
     runs = by_run(unit)
