@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.measured_world.page import read, table
-from vehgen.effects import library
+from benchmarks.measured_world.telling.table import is_listed
 
 Data = dict[str, Any]
 RIGHT, TIED = "named right", "ambiguous, truth among them"
@@ -45,9 +45,8 @@ def glance(paths: Sequence[Path]) -> str:
 
 
 def _row(records: Sequence[Data]) -> list[str]:
-    known = set(library())
-    inside = [record["judged"] for record in records if record["effects"][0]["name"] in known]
-    others = [record["judged"] for record in records if record["effects"][0]["name"] not in known]
+    inside = [record["judged"] for record in records if is_listed(record)]
+    others = [record["judged"] for record in records if not is_listed(record)]
     held = [low <= truth <= high for record in records for _, low, high, truth in intervals(record)]
     first = [_count(inside, (RIGHT,)), _count(inside, (TIED,)), _count(inside, WRONG), _count(inside, UNTOLD)]
     second = [_count(others, ("not_in_library",)), _count(others, (*WRONG, RIGHT, TIED)), _count(others, UNTOLD)]

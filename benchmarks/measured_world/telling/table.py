@@ -15,8 +15,8 @@ MISSED = ("too_weak", "no_missing_effect", "insufficient_data")
 
 
 def is_listed(record: Data) -> bool:
-    """Return whether a scored case hides an effect of the library."""
-    return bool(record["effects"]) and record["effects"][0]["name"] in library()
+    """Return whether a scored case hides an effect that the library had when it was scored; older records say where it had not."""
+    return bool(record["effects"]) and bool(record["effects"][0].get("listed", record["effects"][0]["name"] in library()))
 
 
 def missed(scored: Sequence[Data]) -> list[str]:
