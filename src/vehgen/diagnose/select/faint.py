@@ -118,8 +118,8 @@ def faintly_told(found: SearchRound, detection: Detection) -> ModelFit | None:
     """Return the best fit of a round if the recordings ask for its effect; None where they do not.
 
     -2 ln L falls by FAINT_FALL on the training runs, beyond the price of its numbers, and by FAINT_VALIDATION on the validation runs, on
-    which the squares surely fall unless it is of a few lines; not by what its freed base parameters alone do, nor as with one of many random
-    laws at its place. The runs tell its size, and it leaves noise, with no parameter at a bound.
+    which the squares surely fall unless it is of a few lines; not by what its freed base parameters alone do, nor as with one of many
+    random laws at its place. The runs tell its size, and it leaves noise, with no parameter at a bound.
     """
     best = next(iter(found.fits), None)
     runs = [trial.name for trial in detection.validation_runs]
