@@ -176,6 +176,7 @@ NONLINEAR_BASELINE = {
     "asymmetric_friction": 553,
     "bump_stop": 448,
     "cubic_stiffness": 548,
+    "damper_free_play": 523,
     "dry_friction": 533,
     "elasto_plastic": 458,
     "hysteresis": 818,

@@ -19,6 +19,7 @@ OUTPUTS = (
 )
 VALUES = {
     "clearance": "5 mm",
+    "play": "2 mm",
     "rebound": "5 mm",
     "start": "2 mm",
     "time": "20 ms",

@@ -21,6 +21,7 @@ STRENGTHS = {
     "bump_stop": 1e6,
     "asymmetric_damping": 4e3,
     "quadratic_damping": 9e3,
+    "damper_free_play": 4e3,
     "relaxation": 1e5,
     "hysteresis": 500,
     "tyre_liftoff": 1,

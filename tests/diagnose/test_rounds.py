@@ -101,6 +101,17 @@ def test_an_untrue_wheel_is_found_by_its_turns(trials_of):
 
 
 @pytest.mark.slow
+def test_a_loose_damper_is_told_with_its_play(trials_of):
+    """Its knocks are read as they come about, not a sample sooner or later: else no fit would find the way to the play."""
+    loose = Effect("damper_free_play", "front", {"play": 0.005})
+    library = [EFFECTS[name] for name in ("damper_free_play", "dry_friction", "relaxation", "quadratic_damping")]
+    (effect,) = diagnose_trials(trials_of(loose, runs=HUMPS), library).verdict.effects
+    assert (effect.name, effect.place) == ("damper_free_play", "front")
+    low, high = effect.parameters["play"].interval
+    assert low <= 0.005 <= high < low + 0.0005
+
+
+@pytest.mark.slow
 def test_ctrl_c_leaves_what_was_found(trials_of, monkeypatch):
     monkeypatch.setattr(early_end, "MOST_AT_ONCE", 0)
 

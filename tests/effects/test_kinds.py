@@ -27,7 +27,7 @@ def found(parts=(), kinds=(), one_force=True, sensors=(), steady_lines=False):
 
 def test_the_library_has_all_kinds_and_each_costs_its_numbers():
     kinds = [VehicleEffect, RunEffect, LineEffect, WheelEffect]
-    assert [sum(isinstance(effect, kind) for effect in EFFECTS.values()) for kind in kinds] == [19, 6, 1, 1]
+    assert [sum(isinstance(effect, kind) for effect in EFFECTS.values()) for kind in kinds] == [20, 6, 1, 1]
     assert FRICTION.n_numbers(3) == FRICTION.n_numbers(9) == 1
     assert EFFECTS["tyre_liftoff"].n_numbers(3) == 0
     assert GAIN.n_numbers(3) == 1

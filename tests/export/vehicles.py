@@ -31,6 +31,7 @@ LAWS = {
     "bump_stop": ("suspension", "{k: 450 kN/m, clearance: 10 mm, rebound: 12 mm}"),
     "asymmetric_damping": ("suspension", "{c: 4.5 kN s/m, ratio: 0.4, blow_off: 0.1 m/s, relief: 0.5}"),
     "quadratic_damping": ("suspension", "{c2: 9 kN s^2/m^2}"),
+    "damper_free_play": ("suspension", "{c: 4.5 kN s/m, play: 6 mm}"),
     "relaxation": ("suspension", "{k: 45 kN/m, time: 30 ms}"),
     "hysteresis": ("suspension", "{force: 900 N, travel: 3 mm, beta: 0.6}"),
     "tyre_liftoff": ("tyre", "{}"),

@@ -72,7 +72,7 @@ def test_neutral_is_absent_and_visible_is_seen(vehicle, option):
 def test_menu_is_complete():
     listed = {
         "dry_friction", "cubic_stiffness", "progressive_stiffness", "bump_stop", "asymmetric_damping", "quadratic_damping", "hysteresis",
-        "relaxation", "damper_mount",
+        "relaxation", "damper_mount", "damper_free_play",
         "tyre_liftoff", "tyre_damping", "tyre_footprint", "wheel_runout", "hinge_friction", "hinge_stiffness",
         "suspended_cab", "frame_bending", "walking_beam",
         "cargo_module", "engine_harmonic", "sensor_gain", "sensor_position", "sensor_tilt", "sensor_delay", "speed_error",

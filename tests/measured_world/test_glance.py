@@ -7,7 +7,9 @@ import pytest
 from benchmarks.measured_world.telling.glance import glance, intervals, kinds, misses
 
 FRICTION = {"name": "dry_friction", "place": "rear", "values": {"force": 500.0}}
-PLAY = {"name": "damper_free_play", "place": "rear", "values": {"play": 0.002}}
+PLAY = {"name": "damper_free_play", "listed": False, "place": "rear", "values": {"play": 0.002}}
+"""Outside the library when it was scored; what has always been outside says nothing of it."""
+HANGER = {"name": "axle_hanger", "place": "rear", "values": {"frequency": 9.0}}
 
 
 def record(judged, effect=FRICTION, interval=None):
@@ -28,7 +30,7 @@ def scored(tmp_path):
         record("not_in_library", PLAY),
         {"case": "healthy_000", "kind": "healthy", "effects": [], "fault": None, "judged": "no_missing_effect", "answer": {}},
     ]
-    second = [record("several_effects"), record("measurement_fault", PLAY), record("import_refused", PLAY)]
+    second = [record("several_effects"), record("measurement_fault", PLAY), record("import_refused", HANGER)]
     paths = [tmp_path / "one.jsonl", tmp_path / "two.jsonl"]
     for path, records in zip(paths, (first, second), strict=True):
         path.write_text("".join(json.dumps(item) + "\n" for item in records), encoding="utf-8")
@@ -51,7 +53,8 @@ def test_each_thing_hidden_has_a_row(scored, tmp_path):
     path = tmp_path / "faults.jsonl"
     path.write_text("".join(json.dumps(item) + "\n" for item in faults), encoding="utf-8")
     assert kinds([*scored, path]).splitlines()[2:] == [
-        "| damper_free_play | 3 | 0 | 0 | 1 | 0 | 2 |",
+        "| axle_hanger | 1 | 0 | 0 | 0 | 0 | 1 |",
+        "| damper_free_play | 2 | 0 | 0 | 1 | 0 | 1 |",
         "| dry_friction | 6 | 3 | 1 | 0 | 1 | 1 |",
         "| low_passed | 4 | 2 | 0 | 1 | 0 | 1 |",
         "| nothing | 1 | 1 | 0 | 0 | 0 | 0 |",

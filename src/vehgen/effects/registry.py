@@ -17,7 +17,7 @@ from vehgen.effects.library.measuring import (
 )
 from vehgen.effects.library.memory import ASYMMETRIC_FRICTION_EFFECT, DRY_FRICTION_EFFECT, HYSTERESIS_EFFECT, RELAXATION_EFFECT
 from vehgen.effects.library.mounted_masses import CARGO_MODULE_EFFECT, SUSPENDED_CAB_EFFECT
-from vehgen.effects.library.nonlinear_dampers import ASYMMETRIC_DAMPING_EFFECT, QUADRATIC_DAMPING_EFFECT
+from vehgen.effects.library.nonlinear_dampers import ASYMMETRIC_DAMPING_EFFECT, DAMPER_FREE_PLAY_EFFECT, QUADRATIC_DAMPING_EFFECT
 from vehgen.effects.library.stiffening_springs import BUMP_STOP_EFFECT, CUBIC_STIFFNESS_EFFECT, PROGRESSIVE_STIFFNESS_EFFECT
 from vehgen.effects.library.tyres import TYRE_DAMPING_EFFECT, TYRE_FOOTPRINT_EFFECT, TYRE_LIFTOFF_EFFECT
 from vehgen.effects.library.walking_beam import WALKING_BEAM_EFFECT
@@ -42,6 +42,7 @@ EFFECTS: dict[str, Effect] = {
         HYSTERESIS_EFFECT,
         RELAXATION_EFFECT,
         DAMPER_MOUNT_EFFECT,
+        DAMPER_FREE_PLAY_EFFECT,
         TYRE_LIFTOFF_EFFECT,
         TYRE_DAMPING_EFFECT,
         TYRE_FOOTPRINT_EFFECT,

@@ -48,6 +48,11 @@ def _damper_mount(setup: Setup, place: str, p: Values) -> None:
     element.c = 0.0
 
 
+def _free_play(setup: Setup, place: str, p: Values) -> None:
+    if p["play"] > 0.0:
+        setup.add_law(place, laws.FREE_PLAY, setup.suspension(place).c, p["play"], states=(0.0,))
+
+
 SUSPENSION = (
     EffectKind(
         "dry_friction", "f = force sign(v) while slipping; any abs(f) <= force that keeps v = 0 while sticking", suspensions,
@@ -99,5 +104,10 @@ SUSPENSION = (
     EffectKind(
         "damper_mount", "f = c y' = k (d - y) in place of c v, k = c/time: the dashpot stands on a spring", suspensions,
         (Value("time", "s", "damping over the stiffness of the mount", (0.001, 0.002), (0.006, 0.03), neutral=0.0),), _damper_mount,
+    ),
+    EffectKind(
+        "damper_free_play", "the damper sits in worn eyes: its force c v acts only while the play is closed in the direction of "
+        "motion; in between it does not move", suspensions,
+        (Value("play", "m", "whole free play of the damper", (0.01, 0.04), (0.15, 0.5), "d", 0.0),), _free_play,
     ),
 )  # fmt: skip

@@ -16,11 +16,6 @@ Array = NDArray[np.float64]
 AIR_PRESSURE = 6e5
 
 
-def _free_play(setup: Setup, place: str, p: Values) -> None:
-    if p["play"] > 0.0:
-        setup.add_law(place, laws.FREE_PLAY, setup.suspension(place).c, p["play"], states=(0.0,))
-
-
 def _fluid_mount(setup: Setup, place: str, p: Values) -> None:
     if p["inertance"] == 0.0:
         return
@@ -74,11 +69,6 @@ def _hinge_compliance(setup: Setup, place: str, p: Values) -> None:
 
 
 UNLISTED = (
-    EffectKind(
-        "damper_free_play", "the damper sits in worn eyes: its force c v acts only while the play is closed in the direction of "
-        "motion; in between it does not move", suspensions,
-        (Value("play", "m", "whole free play of the damper", (0.01, 0.04), (0.15, 0.5), "d", 0.0),), _free_play, listed=False,
-    ),
     EffectKind(
         "fluid_mount", "a spring kb in series with fluid in a channel: f = kb (d - y), inertance y'' + r y' = kb (d - y); kb, r "
         "from frequency and damping ratio", suspensions,

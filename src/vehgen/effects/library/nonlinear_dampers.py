@@ -1,12 +1,15 @@
-"""A damper that is softer in bump than in rebound, and one whose force grows with the square of its rate."""
+"""Dampers that are softer in bump than in rebound, grow with the square of their rate, or sit loose in worn eyes."""
 
 from __future__ import annotations
+
+from operator import attrgetter
 
 from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.library.law_effect import on_spring, suspension_law
 from vehgen.effects.locator import EffectSite
-from vehgen.effects.places import suspensions
+from vehgen.effects.places import dampers, suspensions
+from vehgen.files.expressions import Expression
 from vehgen.mechanics.laws import LAWS
 
 
@@ -55,4 +58,36 @@ QUADRATIC_DAMPING_EFFECT = suspension_law(
             of="the damping there over 0.2 m/s",
         ),
     ),
+)
+
+
+def _loosen(site: EffectSite, symbols: Symbols) -> Change:
+    """Return the dashpot moved into one of the same c with play: nothing stands beside it."""
+    law = {"damper_free_play": {"c": site.spring.c, "play": symbols["play"]}}
+    return on_spring(site, {"c": Expression.quantity(0, "N s/m"), "laws": [*site.laws(site.kind, site.place), law]})
+
+
+DAMPER_FREE_PLAY_EFFECT = VehicleEffect(
+    name="damper_free_play",
+    title=LAWS["damper_free_play"].title,
+    equation="f = c*dy/dt in place of c*v, y carried along by d where |d - y| would be more than play/2",
+    meaning=LAWS["damper_free_play"].meaning,
+    signature="small motions are hardly damped, large ones as before; a knock each time the motion turns",
+    source=LAWS["damper_free_play"].source,
+    attaches="suspension",
+    places=dampers,
+    parameters=(
+        EffectParameter(
+            "play",
+            "m",
+            "from one end of the play to the other",
+            low=0.01,
+            high=3.0,
+            starts=(0.15, 0.5),
+            scale=attrgetter("travel"),
+            of="a typical travel",
+        ),
+    ),
+    frees=("c",),
+    edit=_loosen,
 )

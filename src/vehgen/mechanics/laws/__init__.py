@@ -2,6 +2,7 @@
 
 from vehgen.mechanics.laws.asymmetric_damping import ASYMMETRIC_DAMPING
 from vehgen.mechanics.laws.base import Kind, Law, LawParameter, LawState, LawStep, custom_law
+from vehgen.mechanics.laws.free_play import DAMPER_FREE_PLAY
 from vehgen.mechanics.laws.friction import ASYMMETRIC_FRICTION, DRY_FRICTION, ELASTO_PLASTIC
 from vehgen.mechanics.laws.memory import HYSTERESIS, RELAXATION
 from vehgen.mechanics.laws.powers import CUBIC_STIFFNESS, QUADRATIC_DAMPING, QUADRATIC_STIFFNESS
@@ -19,6 +20,7 @@ LAWS: dict[str, Law] = {
         BUMP_STOP,
         ASYMMETRIC_DAMPING,
         QUADRATIC_DAMPING,
+        DAMPER_FREE_PLAY,
         RELAXATION,
         HYSTERESIS,
         TYRE_LIFTOFF,
