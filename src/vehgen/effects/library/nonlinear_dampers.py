@@ -60,6 +60,10 @@ QUADRATIC_DAMPING_EFFECT = suspension_law(
     ),
 )
 
+WORN_ENDS = 0.02
+"""No worn eye ends its play quite sharply, and recorders smooth its knocks: in five cases whose play was known it strayed by 1 % mostly, in
+one by 8 %."""
+
 
 def _loosen(site: EffectSite, symbols: Symbols) -> Change:
     """Return the dashpot moved into one of the same c with play: nothing stands beside it."""
@@ -86,6 +90,7 @@ DAMPER_FREE_PLAY_EFFECT = VehicleEffect(
             starts=(0.15, 0.5),
             scale=attrgetter("travel"),
             of="a typical travel",
+            form=WORN_ENDS,
         ),
     ),
     frees=("c",),
