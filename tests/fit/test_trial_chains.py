@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.fit.test_harmonic import CHANNELS, FORCE, RUN, SIGMA, record, trial_of
+from vehgen.fit.adjustments import RunState
 from vehgen.fit.harmonic import Harmonic
 from vehgen.fit.road_answer import road_answer
 from vehgen.fit.trial import load_trials
@@ -36,7 +37,8 @@ def test_a_run_files_chain_reaches_the_trial(trial):
 def test_the_columns_of_a_line_are_what_filtered_channels_show_of_a_harmonic_force(trial, tmp_path):
     _, filtered = trial
     shaken = record(tmp_path, RUN + FORCE + DECLARED, road=False)
-    columns = Harmonic("body", sigma={filtered.name: SIGMA}).columns(filtered, 21.0, 0.0, filtered.values)
+    line, state = Harmonic("body", sigma={filtered.name: SIGMA}), RunState(filtered.scenario)
+    columns = line.columns(filtered, np.array([21.0, 0.0]), filtered.values, state)
     late = slice(300, 560)  # the start-up has died away
     coefficients = np.linalg.lstsq((columns[:2, late] / SIGMA).reshape(2, -1).T, (shaken[late] / SIGMA).ravel(), rcond=None)[0]
     np.testing.assert_allclose(coefficients, [0.0, -300.0], atol=6.0)

@@ -106,7 +106,8 @@ def slowest_rate(trials: Sequence[Trial]) -> float:
 
 @dataclass(frozen=True)
 class ChainSearch:
-    """What the trial of a chain needs: stored responses, derivatives by the `free` unknowns without whitening, and these unknowns' priors.
+    """What the trial of a chain needs: stored responses, what is supposed of the runs, derivatives by the `free` unknowns without whitening,
+    and these unknowns' priors.
 
     What stands for an unknown low-pass is not free: another chain is tried in its place.
     """
@@ -114,6 +115,7 @@ class ChainSearch:
     misfit: Misfit
     x: Array
     responses: tuple[FineResponse, ...]
+    states: tuple[RunState, ...]
     slopes: tuple[Complex, ...]
     free: NDArray[np.bool_]
     priors: Array
@@ -133,8 +135,10 @@ class ChainSearch:
             assumed = trial.channel_factors(misfit.frequency(t))
             gain = np.where(np.abs(assumed) > SAME_GAIN, assumed, 1.0)
             slopes.append(np.asarray((inverse @ white[free][..., None])[..., 0] / gain))
-        responses = tuple(fine_response(misfit, x, t) for t in range(len(misfit.problem.trials)))
-        return cls(misfit, x, responses, tuple(slopes), free, np.diag(weights[free]))
+        numbers = range(len(misfit.problem.trials))
+        values, responses = misfit.problem.space.values(misfit.split(x)[0])[None], tuple(fine_response(misfit, x, t) for t in numbers)
+        states = tuple(misfit.state(t, values, misfit.errors_of(x, t), misfit.scenario(x, t)) for t in numbers)
+        return cls(misfit, x, responses, states, tuple(slopes), free, np.diag(weights[free]))
 
     @property
     def size(self) -> int:
@@ -194,7 +198,7 @@ class ChainSearch:
         for t, trial in enumerate(misfit.problem.trials):
             stated = [trial.scenario.chain(name).assumed(1 / trial.recording.dt) for name in trial.channels]
             chains = [_as_late(known[name], own) if name in known else own for name, own in zip(trial.channels, stated, strict=True)]
-            response = adjust(misfit.shared, trial, self.responses[t].acquired(chains)[None], misfit.adjusted(self.x), self._state(t))
+            response = adjust(misfit.shared, trial, self.responses[t].acquired(chains)[None], misfit.adjusted(self.x), self.states[t])
             frequency = misfit.frequency(t)
             factors = np.column_stack([item.response(frequency) for item in chains])
             left = misfit.measured(t) - misfit.channel_lines(t, response[0], misfit.errors_of(self.x, t))
@@ -204,10 +208,6 @@ class ChainSearch:
         errors = misfit.split(self.x)[1]
         supposed = np.concatenate([np.zeros(len(self.x) - len(errors)), errors])  # errors are held about none, not about the fit's
         return _projected(np.concatenate([*residuals, supposed[self.free]]), np.vstack([*slopes, self.priors]))
-
-    def _state(self, number: int) -> RunState:
-        values = self.misfit.problem.space.values(self.misfit.split(self.x)[0])[None]
-        return self.misfit.state(number, values, self.misfit.errors_of(self.x, number), self.misfit.scenario(self.x, number))
 
     def _compared(self, number: int) -> NDArray[np.bool_]:
         """Return which spectral lines of a trial tell of its chains: not those of an engine, which no chain explains."""

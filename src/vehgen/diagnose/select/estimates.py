@@ -181,8 +181,7 @@ def _solved(fit: ModelFit, candidate: Candidate, covariance: Array) -> dict[str,
         values = misfit.problem.space.values(at)
         found = []
         for t, trial in enumerate(misfit.problem.trials):
-            errors, error = misfit.errors[t], misfit.errors_of(x, t)
-            state = misfit.state(t, values[None], error, errors.scenario(trial.scenario, error))
+            state = misfit.state(t, values[None], misfit.errors_of(x, t), misfit.scenario(x, t))
             without = misfit.problem.respond(values[None], trial, state.scenario)[0][0]
             found.append(effect.solve(candidate.place, adjustments, trial, without, state.vehicles[0], state))
         return np.array(found)

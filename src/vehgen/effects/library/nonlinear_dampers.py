@@ -61,8 +61,8 @@ QUADRATIC_DAMPING_EFFECT = suspension_law(
 )
 
 WORN_ENDS = 0.02
-"""No worn eye ends its play quite sharply, and recorders smooth its knocks: in five cases whose play was known it strayed by 1 % mostly, in
-one by 8 %."""
+"""No worn eye ends its play quite sharply, and recorders smooth its knocks: of seven cases whose play was known six strayed by 0.6 to 3.5 %
+and one by 8 %."""
 
 
 def _loosen(site: EffectSite, symbols: Symbols) -> Change:
