@@ -106,10 +106,9 @@ def slowest_rate(trials: Sequence[Trial]) -> float:
 
 @dataclass(frozen=True)
 class ChainSearch:
-    """What the trial of a chain needs: stored responses, what is supposed of the runs, derivatives by the `free` unknowns without whitening,
-    and these unknowns' priors.
+    """What the trial of a chain needs of every run: its stored response, its state, derivatives by the `free` unknowns without whitening.
 
-    What stands for an unknown low-pass is not free: another chain is tried in its place.
+    `priors` are those of these unknowns. What stands for an unknown low-pass is not free: another chain is tried in its place.
     """
 
     misfit: Misfit
