@@ -88,7 +88,7 @@ def test_an_engine_is_found_by_its_line(trials_of):
 
 
 @pytest.mark.slow
-def test_an_untrue_wheel_is_found_by_its_turns(trials_of):
+def test_an_untrue_wheel_is_found_by_its_turns(trials_of, tmp_path):
     wheel = Effect("wheel_runout", "rear", {"amplitude": 0.004, "radius": 0.31})
     found = diagnose_trials(trials_of(wheel, runs=HUMPS), [EFFECTS[name] for name in ("wheel_runout", "engine_harmonic", "relaxation")])
     assert found.verdict.verdict == "named"
@@ -98,6 +98,8 @@ def test_an_untrue_wheel_is_found_by_its_turns(trials_of):
         low, high = effect.parameters[name].interval
         assert low <= truth <= high
         assert high - low < 0.5 * truth
+    text = effect_file(found.chosen[-1], found.detection.problem, found.verdict, tmp_path, "untrue")
+    assert "wheel_runout at rear shakes the vehicle, which no vehicle file says" in text
 
 
 @pytest.mark.slow

@@ -37,7 +37,9 @@ def effect_file(fit: ModelFit, base: Problem, verdict: Verdict, folder: Path, na
     for candidate in fit.effects:
         if not candidate.effect.changes_vehicle:
             told = ", ".join(f"{key} = {item.value:.5g} {item.unit}".strip() for key, item in estimate(fit, candidate).items())
-            comments.append(f"{candidate.label} is an effect of the runs, to be corrected there: {told}")
+            shakes = "shakes the vehicle, which no vehicle file says: put it right there"
+            kind = shakes if candidate.effect.solved_parameters else "is an effect of the runs, to be corrected there"
+            comments.append(f"{candidate.label} {kind}: {told}")
             continue
         site = EffectLocator(extended, dict(trial.values), occurring(fit)).site(candidate.place)
         own = {parameter.name: values[symbol] for parameter, symbol in zip(candidate.effect.parameters, candidate.parameters, strict=True)}
