@@ -87,7 +87,7 @@ def test_an_engine_is_found_by_its_line(trials_of):
     assert effect.parameters["amplitude"].value == pytest.approx(450.0, rel=0.1)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_an_untrue_wheel_is_found_by_its_turns(trials_of, tmp_path):
     wheel = Effect("wheel_runout", "rear", {"amplitude": 0.004, "radius": 0.31})
     found = diagnose_trials(trials_of(wheel, runs=HUMPS), [EFFECTS[name] for name in ("wheel_runout", "engine_harmonic", "relaxation")])
@@ -102,7 +102,7 @@ def test_an_untrue_wheel_is_found_by_its_turns(trials_of, tmp_path):
     assert "wheel_runout at rear shakes the vehicle, which no vehicle file says" in text
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_loose_damper_is_told_with_its_play(trials_of):
     """Its knocks are read as they come about, not a sample sooner or later: else no fit would find the way to the play."""
     loose = Effect("damper_free_play", "front", {"play": 0.005})

@@ -7,6 +7,7 @@ import pytest
 from benchmarks.hidden_effects.generator import Case, Effect, Hump, RunSpec, write_case
 
 from vehgen.fit.adjustments import RunState
+from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.noise import EVEN, Noise
 from vehgen.fit.problem import make_problem
@@ -96,6 +97,32 @@ def test_a_wheel_turns_as_fast_as_the_fit_supposes_the_run_to_be(untrue):
     there = wheel.columns(trial, np.array([RADIUS / 1.02]), trial.values, RunState(trial.scenario))
     spans = [np.linalg.qr(part[:2].reshape(2, -1).T)[0] for part in (here, there)]  # but for where the turn begins
     assert np.linalg.svd(spans[0].T @ spans[1])[1].min() > 0.9999
+
+
+def test_a_misfit_tells_a_wheel_how_fast_its_run_was(untrue, monkeypatch):
+    misfit, x = misfit_of(untrue, [wheel_at("rear", untrue)])
+    speed = x[: misfit.n_unknowns - misfit.n_errors].size + misfit.error_position(0, "speed")
+    x[speed] = 1.0
+    first, seen, columns = untrue[0], [], WheelOrders.columns
+    monkeypatch.setattr(WheelOrders, "columns", lambda self, *known: seen.append(known[-1]) or columns(self, *known))
+    misfit.motions(x)
+    (sigma,) = {item.sigma for item in misfit.conditions(x) if item.name == "speed" and item.run == first.name}
+    spans = [np.ptp(scenario.speed.distance(first.recording.time)) for scenario in (seen[0].scenario, first.scenario)]
+    assert spans[0] / spans[1] == pytest.approx(1 + sigma)
+    assert [len(state.vehicles) for state in seen] == [1, 1]
+
+
+def test_derivatives_by_the_speed_hold_what_it_does_to_the_wheel(untrue):
+    misfit, x = misfit_of(untrue, [wheel_at("rear", untrue)])
+    speed, step = misfit.n_unknowns - misfit.n_errors + misfit.error_position(0, "speed"), 1e-3
+    (block, *_), columns = linearise(misfit, x).spectra, list(misfit.columns(0))
+    there, back = (misfit.whitened_spectrum(x + sign * step * np.eye(len(x))[speed])[0] for sign in (1, -1))
+    np.testing.assert_allclose(
+        block[columns.index(speed)], (there - back) / (2 * step), atol=0.02 * np.abs(there - back).max() / (2 * step)
+    )
+    still, y = misfit_of(untrue)
+    other = linearise(still, y).spectra[0][list(still.columns(0)).index(speed - 1)]
+    assert np.abs(block[columns.index(speed)] - other).max() > 0.2 * np.abs(other).max()
 
 
 def test_the_vehicles_of_a_population_are_shaken_each_as_it_is(untrue):
