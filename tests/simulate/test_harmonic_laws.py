@@ -74,6 +74,17 @@ def test_relaxation_is_a_maxwell_branch(fine):
         assert found == pytest.approx(8e4 * turned / (1 + turned), rel=5e-3)  # after one cycle
 
 
+@pytest.mark.thorough
+def test_a_damper_with_play_moves_as_a_backlash_does(fine):
+    """A. Gelb, W. E. Vander Velde, Multiple-Input Describing Functions, 1968: backlash."""
+    for found, travel in zip(only(car("[{damper_free_play: {c: 3 kN s/m, play: short}}]")), TRAVELS, strict=True):
+        share = min(2 * 0.0015 / travel, 2.0)
+        in_phase = 0.5 + (np.arcsin(1 - share) + (1 - share) * np.sqrt(share * (2 - share))) / np.pi
+        behind = share * (2 - share) / np.pi
+        expected = 3e3 * 2j * np.pi * FREQUENCY * (in_phase - 1j * behind)
+        assert found == pytest.approx(expected, rel=5e-3, abs=1e-6)
+
+
 LAWS = {
     "friction": ("[{dry_friction: {force: friction}}, {cubic_stiffness: {k3: k3}}]", "[]", "[]"),
     "memories": (
