@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from benchmarks.hidden_effects.generator import Case, Effect, Hump, RunSpec, write_case
 
+from vehgen.fit import wheel_orders
 from vehgen.fit.adjustments import RunState
 from vehgen.fit.linearisation import linearise
 from vehgen.fit.misfit import Misfit
@@ -77,6 +78,13 @@ def test_the_radius_is_found_and_the_wheel_taken_out(untrue, sound):
     before, after, least = (np.mean(one.residuals(at) ** 2) for one, at in ((plain, x), turned, healthy))
     assert before > 10 * least
     assert after < 1.1 * least
+
+
+def test_a_radius_is_looked_for_in_parts_that_memory_holds(untrue, monkeypatch):
+    plain, x = misfit_of(untrue)
+    whole = find_rolling_radii(plain, x, 0.15, 0.9)
+    monkeypatch.setattr(wheel_orders, "NUMBERS_AT_ONCE", 50_000)
+    assert find_rolling_radii(plain, x, 0.15, 0.9) == whole
 
 
 def test_another_axle_or_radius_explains_less(untrue):

@@ -7,6 +7,7 @@ rest of the model leaves, run by run. What the sensors show of them follows from
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -26,6 +27,9 @@ FREQUENCY_STEP_HZ, MOST_FREQUENCIES = 0.1, 400
 """Frequency responses are computed so far apart, so many of them at most, and interpolated as the speed changes."""
 FINENESS, APART = 0.001, 0.02
 """Radii are tried at steps of such a share; the second likeliest differs from the first by another one at least."""
+
+NUMBERS_AT_ONCE = 1_000_000
+"""So many complex numbers are held at once where radii are looked for: 16 MB."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +81,8 @@ def find_rolling_radii(misfit: Misfit, x: Array, lowest: float, highest: float, 
         trial = misfit.problem.trials[number]
         way = misfit.scenario(x, number).speed.distance(trial.recording.time)
         white = _in_time(misfit.frequency(number), lines, len(trial.recording.time), trial.recording.dt)
-        power += (np.abs(np.exp(-1j * np.outer(per_metre, way)) @ white) ** 2).sum(axis=1)
+        parts = np.array_split(per_metre, math.ceil(len(per_metre) * len(way) / NUMBERS_AT_ONCE))  # a long run would fill the memory
+        power += np.concatenate([(np.abs(np.exp(-1j * np.outer(part, way)) @ white) ** 2).sum(axis=1) for part in parts])
     held = np.sum([np.interp(order / radii, per_metre, power) for order in ORDERS], axis=0)
     found = []
     for _ in range(most):
