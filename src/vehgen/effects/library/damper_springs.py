@@ -7,10 +7,9 @@ from operator import attrgetter
 
 from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.kinds import VehicleEffect
-from vehgen.effects.library.law_effect import on_spring
+from vehgen.effects.library.law_effect import in_place_of_dashpot, on_spring
 from vehgen.effects.locator import EffectSite
 from vehgen.effects.places import dampers, springless
-from vehgen.files.expressions import Expression
 
 
 def _size(site: EffectSite) -> float:
@@ -18,10 +17,9 @@ def _size(site: EffectSite) -> float:
 
 
 def _mount(site: EffectSite, symbols: Symbols) -> Change:
-    """Return the dashpot moved into a Maxwell branch of the same c: nothing stands beside it."""
+    """Return the dashpot moved into a Maxwell branch of the same c."""
     k, c = symbols["k"], site.spring.c
-    law = {"relaxation": {"k": k, "time": c / k}}
-    return on_spring(site, {"c": Expression.quantity(0, "N s/m"), "laws": [*site.laws(site.kind, site.place), law]})
+    return in_place_of_dashpot(site, {"relaxation": {"k": k, "time": c / k}})
 
 
 DAMPER_MOUNT_EFFECT = VehicleEffect(

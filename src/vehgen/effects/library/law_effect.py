@@ -9,6 +9,7 @@ from vehgen.effects.base import Change, EffectParameter, Symbols
 from vehgen.effects.kinds import VehicleEffect
 from vehgen.effects.locator import EffectSite, Size
 from vehgen.effects.places import EVERY_TYRE, hinges, suspensions
+from vehgen.files.expressions import Expression
 from vehgen.mechanics.laws import LAWS
 
 
@@ -44,6 +45,11 @@ class LawEdit:
 def on_spring(site: EffectSite, change: Change) -> Change:
     """Return a change of the suspension or link at a site, in the form of a vehicle file."""
     return {"links": {site.place: change}} if site.kind == "link" else {"axles": {site.place: {"suspension": change}}}
+
+
+def in_place_of_dashpot(site: EffectSite, law: Change) -> Change:
+    """Return a change of the suspension or link at a site that moves its dashpot into a law: nothing stands beside it."""
+    return on_spring(site, {"c": Expression.quantity(0, "N s/m"), "laws": [*site.laws(site.kind, site.place), law]})
 
 
 def suspension_law(
