@@ -15,7 +15,14 @@ from vehgen.diagnose.fits.model_fit import ModelFit
 from vehgen.diagnose.inputs.checks import variety_notes
 from vehgen.diagnose.inputs.fault import MeasurementFault
 from vehgen.diagnose.inputs.humps import exchanged_humps
-from vehgen.diagnose.inputs.judging import odd_mistake, one_instead, plain_mistakes, recorded_mistakes, supposed_mistakes, timing_mistakes
+from vehgen.diagnose.inputs.judging import (
+    odd_mistake,
+    plain_mistake_instead,
+    plain_mistakes,
+    recorded_mistakes,
+    supposed_mistakes,
+    timing_mistakes,
+)
 from vehgen.diagnose.inputs.recorders import wrongly_declared
 from vehgen.diagnose.localise.localisation import localise
 from vehgen.diagnose.result import Decided
@@ -84,7 +91,7 @@ class Decision(WithoutGap):
 
     def _strained(self, mistakes: tuple[MeasurementFault, ...]) -> Decided:
         """Return the verdict where the base explains the runs, but supposes more of them than can be believed: an effect or a mistake."""
-        if instead := one_instead(self.detection):
+        if instead := plain_mistake_instead(self.detection):
             return self._mistaken(instead)
         believed, free = (supposing(self.detection, most) for most in (BELIEVED_SIGMAS, FREE_SIGMAS))
         if free.is_quiet and price_of_belief(free.base, self.base) > 0 and (sized := supposed_mistakes(free)):  # held ones make others

@@ -12,6 +12,7 @@ from vehgen.diagnose.select.estimates import estimate
 from vehgen.diagnose.verdict import Verdict
 from vehgen.effects import EffectLocator
 from vehgen.effects.base import merge
+from vehgen.effects.kinds import ShakingEffect
 from vehgen.files.names import MAX_TEXT, joined_name
 from vehgen.files.yaml_writer import yaml_document
 from vehgen.fit.problem import Problem
@@ -38,7 +39,7 @@ def effect_file(fit: ModelFit, base: Problem, verdict: Verdict, folder: Path, na
         if not candidate.effect.changes_vehicle:
             told = ", ".join(f"{key} = {item.value:.5g} {item.unit}".strip() for key, item in estimate(fit, candidate).items())
             shakes = "shakes the vehicle, which no vehicle file says: put it right there"
-            kind = shakes if candidate.effect.solved_parameters else "is an effect of the runs, to be corrected there"
+            kind = shakes if isinstance(candidate.effect, ShakingEffect) else "is an effect of the runs, to be corrected there"
             comments.append(f"{candidate.label} {kind}: {told}")
             continue
         site = EffectLocator(extended, dict(trial.values), occurring(fit)).site(candidate.place)

@@ -164,6 +164,12 @@ def _least(judged: Sequence[_Judged], excess: float) -> _Judged | None:
     return min([item for item in kept if item.explains(excess)] or kept, key=lambda item: item.left, default=None)
 
 
+def _explaining(case: BaseRefits, judged: Sequence[_Judged]) -> tuple[MeasurementFault, ...]:
+    """Return the faults of what alone leaves noise, and supposes nothing else; nothing where none does."""
+    best = _least(judged, case.excess)
+    return best.faults if best is not None and best.explains(case.excess) else ()
+
+
 def _pair(case: BaseRefits, judged: Sequence[_Judged]) -> tuple[_Judged, ...]:
     """Return a mistake that does not explain enough by itself, with a second one that does beside it."""
     first = min(judged, key=lambda item: item.left, default=None)
@@ -194,14 +200,13 @@ def supposed_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
     return (*found, *unlike, *moved, *_slow(detection))
 
 
-def one_instead(detection: Detection) -> tuple[MeasurementFault, ...]:
+def plain_mistake_instead(detection: Detection) -> tuple[MeasurementFault, ...]:
     """Return the plain mistake that explains the runs better than all that a base supposes of them; nothing where there is none.
 
     A base may bend a road and its place so far that noise is left of a run which was driven at another speed altogether.
     """
     case = base_refits(detection)
-    best = _least(_judge(case, PLAIN), case.excess)
-    return best.faults if best is not None and best.explains(case.excess) else ()
+    return _explaining(case, _judge(case, PLAIN))
 
 
 def _mislabelled(detection: Detection) -> tuple[MeasurementFault, ...]:
@@ -234,8 +239,7 @@ def plain_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
 def timing_mistakes(detection: Detection) -> tuple[MeasurementFault, ...]:
     """Return that axles are elsewhere than the vehicle file says, or a clock runs fast or slow, where that alone leaves noise."""
     case = base_refits(detection)
-    best = _least([*_judge(case, (axle_hypotheses,)), *_judge(case, (rate_hypotheses,))], case.excess)
-    return best.faults if best is not None and best.explains(case.excess) else ()
+    return _explaining(case, [*_judge(case, (axle_hypotheses,)), *_judge(case, (rate_hypotheses,))])
 
 
 def explain_gap(

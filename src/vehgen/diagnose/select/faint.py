@@ -25,6 +25,7 @@ from vehgen.diagnose.select.ranking import SearchRound, goes_before, merit
 from vehgen.diagnose.select.reaching_runs import with_checking_run
 from vehgen.diagnose.select.search import LOOKS_AGAIN, fit_leading_again
 from vehgen.diagnose.select.validation import surely_falls, validation_fall
+from vehgen.effects.kinds import ShakingEffect
 from vehgen.fit.parallel import HERE, Runner
 
 FIRST_ORDER, MOST_LAWS, MOST_OTHERS = 60.0, 4, 3
@@ -125,7 +126,7 @@ def faintly_told(found: SearchRound, detection: Detection) -> ModelFit | None:
     runs = [trial.name for trial in detection.validation_runs]
     if best is None or not _falls(found, best) or not is_told(best):
         return None
-    of_lines = bool(best.last.effect.solved_parameters)  # what it takes off lies in few lines, of which a draw may miss all
+    of_lines = isinstance(best.last.effect, ShakingEffect)  # what it takes off lies in few lines, of which a draw may miss all
     if not (of_lines or surely_falls(found.current, best, runs)):
         return None
     if _ends_at_a_bound(best) or not replace(detection, base=best).is_quiet or not _beats_freed_base(found, best, detection):
