@@ -31,8 +31,9 @@ from vehgen.fit.parallel import HERE, Runner
 FIRST_ORDER, MOST_LAWS, MOST_OTHERS = 60.0, 4, 3
 """Laws of the vehicle are fitted that gain so much to the first order, and so many of them at most, the largest gains first; then so many
 of other kinds, each at its best place, as the first ones may all be one law at several places ..."""
-FIRST_ORDER_OF_ERRORS, MOST_ERRORS = 25.0, 4
-"""... and errors of all runs or of a sensor, of which the base's own errors take in the most."""
+FIRST_ORDER_OF_ERRORS, BY_CHANCE, MOST_ERRORS = 25.0, 2.0, 4
+"""... and errors of all runs or of a sensor, of which the base's own errors take in the most; they gain so much beyond what chance takes off
+for each of their numbers: a wheel's lines have six in every run, which noise alone suits by 30 in three runs."""
 
 Begun = tuple[Candidate, tuple[float, ...]]
 """A candidate, and the numbers at which its fit begins."""
@@ -53,7 +54,12 @@ def faint_round(detection: Detection, candidates: Sequence[Candidate], runner: R
     laws = [(item, begin) for gain, begin, item in ranked if item.effect.changes_vehicle and gain > FIRST_ORDER]
     held = set(base.least_squares.on_bound)
     behind = [(item, begin) for gain, begin, item in ranked if gain <= FIRST_ORDER and hides_behind(item, held, fitter.locator.vehicle)]
-    errors = [(item, begin) for gain, begin, item in ranked if not item.effect.changes_vehicle and gain > FIRST_ORDER_OF_ERRORS]
+    n_runs = len(fitter.current.problem.trials)
+    errors = [
+        (item, begin)
+        for gain, begin, item in ranked
+        if not item.effect.changes_vehicle and gain > FIRST_ORDER_OF_ERRORS + BY_CHANCE * item.effect.n_numbers(n_runs)
+    ]
     fits = list(fitter.fit_all_begun([*_of_many_kinds(laws), *behind[:MOST_BEHIND], *errors[:MOST_ERRORS]], runner))
     found = SearchRound(base, (), (), (), faint=True)
     clear = [fit for fit in fits if fall(found, fit) >= limit.FAINT_FALL]
