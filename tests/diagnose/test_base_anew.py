@@ -11,7 +11,8 @@ from vehgen.diagnose.detect import detection as detecting
 from vehgen.diagnose.fits import base_anew as module
 from vehgen.diagnose.fits.base_anew import base_anew
 from vehgen.diagnose.fits.model_fit import evaluate_fit
-from vehgen.fit.chain_estimate import ChainEstimate, ChainFit
+from vehgen.fit.chain_estimate import ChainEstimate
+from vehgen.fit.chain_losses import ChainFit
 from vehgen.fit.recorders import FoundRecorder
 from vehgen.measure.acquisition import AcquisitionChain
 

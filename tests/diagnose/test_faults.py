@@ -19,7 +19,8 @@ from vehgen.diagnose.inputs.refits import BaseRefits
 from vehgen.diagnose.inputs.vehicle import strange_run_hypotheses
 from vehgen.diagnose.pipeline import diagnose_trials
 from vehgen.diagnose.thresholds import NOISE_FLOOR
-from vehgen.fit.chain_estimate import ChainEstimate, ChainFit
+from vehgen.fit.chain_estimate import ChainEstimate
+from vehgen.fit.chain_losses import ChainFit
 from vehgen.fit.nuisances import Condition
 from vehgen.fit.recorders import FoundRecorder
 from vehgen.measure.acquisition import AcquisitionChain

@@ -16,7 +16,8 @@ from vehgen.diagnose.fits.model_fit import fit_base
 from vehgen.diagnose.pipeline import with_evidence
 from vehgen.diagnose.select import search
 from vehgen.effects import EFFECTS
-from vehgen.fit.chain_estimate import ChainEstimate, ChainFit
+from vehgen.fit.chain_estimate import ChainEstimate
+from vehgen.fit.chain_losses import ChainFit
 from vehgen.fit.noise import LARGEST_LEVEL
 from vehgen.fit.recorders import FoundRecorder
 from vehgen.measure.acquisition import AcquisitionChain

@@ -16,7 +16,8 @@ from vehgen.diagnose.inputs.recorders import wrongly_declared
 from vehgen.diagnose.pipeline import with_evidence
 from vehgen.diagnose.select.ranking import SearchRound
 from vehgen.fit import chain_estimate
-from vehgen.fit.chain_estimate import ChainEstimate, ChainFit, ChainSearch
+from vehgen.fit.chain_estimate import ChainEstimate, ChainSearch
+from vehgen.fit.chain_losses import ChainFit
 from vehgen.fit.recorders import FoundRecorder
 from vehgen.measure.acquisition import POINT_SAMPLES, UNKNOWN, AcquisitionChain
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from tests.fit.profile_world import FINE, SIGMA, fine_channels, low_passed, misfit_of, read_run, rough_road
-from vehgen.fit.chain_estimate import ChainEstimate, ChainFit, estimate_chain, group_delay
+from vehgen.fit.chain_estimate import ChainEstimate, estimate_chain
+from vehgen.fit.chain_losses import ChainFit, group_delay
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.nuisances import Nuisances
 from vehgen.fit.recorders import FoundRecorder, clearest, find_recorder, has_unknown

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vehgen.fit.chain_estimate import ChainEstimate, ChainSearch, group_delay
+from vehgen.fit.chain_estimate import ChainEstimate, ChainSearch
+from vehgen.fit.chain_losses import group_delay
 from vehgen.fit.fine_response import fine_response, trusted_band
 from vehgen.fit.misfit import Array, Misfit
 from vehgen.fit.trial import LINE_WIDTH, Trial

@@ -95,7 +95,7 @@ def wrongly_declared(detection: Detection) -> tuple[MeasurementFault, ...]:
     if not declared:
         return ()
     search = ChainSearch.of(detection.base.least_squares.misfit, detection.base.least_squares.x)
-    stated = search.loss({})
+    stated = search.stated_loss()
     sets = dict.fromkeys((declared, *by_sensor(detection.trials, declared)))
     if not any(search.is_far_better(search.rough_loss(channels, {}), stated) for channels in sets):
         return ()
@@ -103,10 +103,10 @@ def wrongly_declared(detection: Detection) -> tuple[MeasurementFault, ...]:
     if anew.recorder is None or not anew.is_quiet or is_strained(anew.base.least_squares):
         return ()
     search = ChainSearch.of(anew.base.least_squares.misfit, anew.base.least_squares.x)
-    least, found = search.loss({}), []
+    least, found = search.stated_loss(), []
     for part, known in anew.recorder.parts:
         for chain, names in _declared_chains(detection, [name for name in part if name in declared]).items():
-            if search.fit(chain, names, {}).loss < least + FAR_BETTER:
+            if search.fit(chain, names).loss < least + FAR_BETTER:
                 continue
             message = (
                 f"{', '.join(names)}: `acquisition` says {low_pass_words(chain)}, but the recordings look as if made through "

@@ -32,8 +32,8 @@ FIRST_ORDER, MOST_LAWS, MOST_OTHERS = 60.0, 4, 3
 """Laws of the vehicle are fitted that gain so much to the first order, and so many of them at most, the largest gains first; then so many
 of other kinds, each at its best place, as the first ones may all be one law at several places ..."""
 FIRST_ORDER_OF_ERRORS, BY_CHANCE, MOST_ERRORS = 25.0, 2.0, 4
-"""... and errors of all runs or of a sensor, of which the base's own errors take in the most; they gain so much beyond what chance takes off
-for each of their numbers: a wheel's lines have six in every run, which noise alone suits by 30 in three runs."""
+"""... and errors of all runs or of a sensor, of which the base's own errors take in the most; they gain so much beyond what chance takes
+off for each of their numbers: a wheel's lines have six in every run, which noise alone suits by 30 in three runs."""
 
 Begun = tuple[Candidate, tuple[float, ...]]
 """A candidate, and the numbers at which its fit begins."""
