@@ -8,6 +8,7 @@ import pytest
 from tests.diagnose.conftest import CUBIC, HUMPS
 from vehgen.diagnose.fits.candidate import list_candidates
 from vehgen.diagnose.fits.multi_start import BESIDE_SETTLED, HOPELESS
+from vehgen.diagnose.fits.screening import FirstOrderGains
 from vehgen.diagnose.localise.unknown_force import Place, PlaceResult
 from vehgen.diagnose.select import early_end
 from vehgen.diagnose.select.early_end import settle
@@ -91,6 +92,20 @@ def test_laws_at_a_place_that_is_kept_stay_rivals(detection_of):
     candidates, fits, rivals = settled(detection_of(CUBIC, runs=HUMPS), kept_at="front")
     assert {item.label for item in candidates if item.place == "front"} <= {item.label for item in rivals}
     assert fits[-1].last.place == "rear"
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize(("share", "stays"), [(0.68, False), (0.72, True)])
+def test_what_shakes_the_vehicle_is_no_rival_of_what_gained_far_more_even_at_a_place_that_is_kept(detection_of, monkeypatch, share, stays):
+    """What it gains is known to the first order."""
+    detection = detection_of(CUBIC, runs=HUMPS)
+    took = detection.base.squares - settled(detection)[1][-1].squares
+    gains = {"cubic_stiffness at rear": took, "wheel_runout at front": share * took}
+    monkeypatch.setattr(FirstOrderGains, "of", lambda self, item: (gains.get(item.label, 0.0), ()))
+    monkeypatch.setattr(early_end, "MOST_AT_ONCE", 1)
+    _, fits, rivals = settled(detection, ("cubic_stiffness", "wheel_runout"), kept_at="front")
+    assert [fit.last.label for fit in fits] == ["cubic_stiffness at rear"]
+    assert ("wheel_runout at front" in [item.label for item in rivals]) == stays
 
 
 @pytest.mark.thorough

@@ -9,7 +9,7 @@ from benchmarks.hidden_effects.generator import Effect
 
 from tests.diagnose.conftest import HUMPS
 from vehgen.diagnose.fits import screening
-from vehgen.diagnose.fits.candidate import list_candidates
+from vehgen.diagnose.fits.candidate import Candidate, list_candidates
 from vehgen.diagnose.fits.model_fit import CurrentModel
 from vehgen.diagnose.localise.unknown_force import Place, PlaceResult
 from vehgen.diagnose.select import search
@@ -99,6 +99,21 @@ def test_a_place_is_kept_only_where_the_base_fit_is_strained():
     assert search._strained_place(current(()), places) == ""
     assert search._strained_place(current(("kf",), ("an effect",)), places) == ""
     assert search._strained_place(current(("kf",)), places[:2]) == ""
+
+
+def test_untrue_wheels_are_worth_a_fit_where_they_gain_more_than_chance_and_than_other_wheels():
+    """Over three runs a wheel has a radius and 18 amplitudes and phases, an engine 14 numbers."""
+
+    def kept(**known):
+        places = {f"axle{i}": "wheel_runout" for i in range(1, 4)} | {"body": "engine_harmonic", "rear": "dry_friction"}
+        candidates = [Candidate(EFFECTS[effect], place, (), ()) for place, effect in places.items()]
+        problem = SimpleNamespace(trials=(1, 2, 3))
+        gains = SimpleNamespace(of=lambda item: (known.get(item.place, 0.0), ()), misfit=SimpleNamespace(problem=problem))
+        return [item.place for item in screening.shaking_in_earnest(candidates, gains)]
+
+    assert kept() == ["rear"]
+    assert kept(axle1=37.0, axle2=39.0, body=27.0) == ["axle2", "rear"]
+    assert kept(axle1=99.0, axle2=101.0, axle3=400.0, body=29.0) == ["axle2", "axle3", "body", "rear"]
 
 
 def test_the_start_beside_the_others_is_smaller_than_all_of_them():

@@ -20,6 +20,7 @@ from vehgen.diagnose.fits.model_fit import NUISANCES, CurrentModel, ModelFit
 from vehgen.diagnose.fits.projection import Projection
 from vehgen.effects import EffectLocator, RunEffect
 from vehgen.effects.evidence import Residual
+from vehgen.effects.kinds import ShakingEffect
 from vehgen.effects.locator import base_parameters
 from vehgen.fit.misfit import Misfit
 from vehgen.fit.problem import Problem
@@ -32,6 +33,9 @@ MAX_CANDIDATES, MAX_BESIDE = 14, 8
 """So many candidates that are forces are kept; so many beside effects that were found before."""
 MOST_BEHIND = 8
 """So many laws of tyres at most are fitted that an axle's parameters at their bounds may stand in for."""
+LEAST_BY_CHANCE, LEAST_SHARE = 2.0, 0.25
+"""What shakes the vehicle is fitted where it gains so much for each of its numbers, twice what chance takes off, and such a share of
+what it gains at the best place."""
 INSIDE = 0.01
 """A number begins so far within its range, of 1."""
 
@@ -62,6 +66,22 @@ def screen(candidates: Sequence[Candidate], gains: FirstOrderGains, kept_at: str
     held = () if gains.base.effects else gains.base.least_squares.on_bound
     behind = [item for item in ranked[most:] if hides_behind(item, set(held), gains.locator.vehicle)]
     return chosen_with_holders(candidates, [*always, *placed, *ranked[:most], *behind[:MOST_BEHIND]])
+
+
+def shaking_in_earnest(candidates: Sequence[Candidate], gains: FirstOrderGains) -> list[Candidate]:
+    """Return candidates without what shakes the vehicle by no more than chance, or far less than the same effect does at another place.
+
+    Its amplitudes follow linearly from what the rest leaves, so that the first order says what it gains; and it takes long to fit.
+    """
+    n_runs = len(gains.misfit.problem.trials)
+    shaking = [item for item in candidates if isinstance(item.effect, ShakingEffect)]
+    best = {item.effect.name: max(gains.of(own)[0] for own in shaking if own.effect.name == item.effect.name) for item in shaking}
+
+    def gains_enough(item: Candidate) -> bool:
+        least = max(LEAST_BY_CHANCE * item.effect.n_numbers(n_runs), LEAST_SHARE * best[item.effect.name])
+        return gains.of(item)[0] >= least
+
+    return [item for item in candidates if not isinstance(item.effect, ShakingEffect) or gains_enough(item)]
 
 
 def reaches_a_body(item: Candidate) -> bool:

@@ -15,12 +15,15 @@ from vehgen.diagnose.select.criteria import excess
 from vehgen.diagnose.select.fitter import Fitter
 from vehgen.diagnose.select.freed_base import idle_instead
 from vehgen.diagnose.select.ranking import numbers_at_ends
+from vehgen.effects.kinds import ShakingEffect
 from vehgen.fit.parallel import HERE, Runner
 
 MOST_AT_ONCE = 4
 """So many candidates are fitted, all motions at once, until one settles a gap."""
 RIVAL = 0.3
 """Beside one that does, candidates are fitted whose first-order gain is this share of its own, or more."""
+AS_FAR = 0.7
+"""What shakes the vehicle is fitted beside it where its first order, which tells what it gains, is this share of what that one gained."""
 AS_MUCH = 2.0
 """Rough fits that leave so many times the excess that it leaves may end as low: its own special case did, and was not refined."""
 UNSTRAINED = 3.5
@@ -58,6 +61,8 @@ def settle(
             share = excess(fit.training) / max(excess(fitter.base.training), 1e-9)
             fitter.hopeless = min(HOPELESS, max(BESIDE_SETTLED, AS_MUCH * share))
             rest = [(gain, item) for gain, _, item in ranked if (item.effect.name, item.place) not in tried]
+            fallen = fitter.base.squares - fit.squares
+            rest = [(gain, item) for gain, item in rest if gain >= AS_FAR * fallen or not isinstance(item.effect, ShakingEffect)]
             return [item for gain, item in rest if gain >= RIVAL * own or item.place == kept_at or _is_inseparable(item, fit.last)]
     return list(candidates)
 

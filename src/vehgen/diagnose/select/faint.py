@@ -15,7 +15,7 @@ from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.detect.detection import Detection, look_again
 from vehgen.diagnose.fits.candidate import Candidate, has_room
 from vehgen.diagnose.fits.model_fit import ModelFit
-from vehgen.diagnose.fits.screening import MOST_BEHIND, hides_behind
+from vehgen.diagnose.fits.screening import MOST_BEHIND, hides_behind, shaking_in_earnest
 from vehgen.diagnose.localise.localisation import localise_at
 from vehgen.diagnose.select.criteria import fall, falls_as_far, is_told
 from vehgen.diagnose.select.fitter import Fitter
@@ -31,9 +31,8 @@ from vehgen.fit.parallel import HERE, Runner
 FIRST_ORDER, MOST_LAWS, MOST_OTHERS = 60.0, 4, 3
 """Laws of the vehicle are fitted that gain so much to the first order, and so many of them at most, the largest gains first; then so many
 of other kinds, each at its best place, as the first ones may all be one law at several places ..."""
-FIRST_ORDER_OF_ERRORS, BY_CHANCE, MOST_ERRORS = 25.0, 2.0, 4
-"""... and errors of all runs or of a sensor, of which the base's own errors take in the most; they gain so much beyond what chance takes
-off for each of their numbers: a wheel's lines have six in every run, which noise alone suits by 30 in three runs."""
+FIRST_ORDER_OF_ERRORS, MOST_ERRORS = 25.0, 4
+"""... and errors of all runs or of a sensor, of which the base's own errors take in the most."""
 
 Begun = tuple[Candidate, tuple[float, ...]]
 """A candidate, and the numbers at which its fit begins."""
@@ -49,17 +48,12 @@ def faint_round(detection: Detection, candidates: Sequence[Candidate], runner: R
     base = detection.base
     fitter = Fitter(detection, base, ())
     gains = fitter.first_order_gains()
-    ranked = [(*gains.of(item), item) for item in candidates if has_room(item, fitter.locator)]
+    ranked = [(*gains.of(item), item) for item in shaking_in_earnest(candidates, gains) if has_room(item, fitter.locator)]
     ranked.sort(key=lambda known: -known[0])
     laws = [(item, begin) for gain, begin, item in ranked if item.effect.changes_vehicle and gain > FIRST_ORDER]
     held = set(base.least_squares.on_bound)
     behind = [(item, begin) for gain, begin, item in ranked if gain <= FIRST_ORDER and hides_behind(item, held, fitter.locator.vehicle)]
-    n_runs = len(fitter.current.problem.trials)
-    errors = [
-        (item, begin)
-        for gain, begin, item in ranked
-        if not item.effect.changes_vehicle and gain > FIRST_ORDER_OF_ERRORS + BY_CHANCE * item.effect.n_numbers(n_runs)
-    ]
+    errors = [(item, begin) for gain, begin, item in ranked if not item.effect.changes_vehicle and gain > FIRST_ORDER_OF_ERRORS]
     fits = list(fitter.fit_all_begun([*_of_many_kinds(laws), *behind[:MOST_BEHIND], *errors[:MOST_ERRORS]], runner))
     found = SearchRound(base, (), (), (), faint=True)
     clear = [fit for fit in fits if fall(found, fit) >= limit.FAINT_FALL]

@@ -10,7 +10,7 @@ from vehgen.diagnose import thresholds as limit
 from vehgen.diagnose.detect.detection import Detection, look_again
 from vehgen.diagnose.fits.candidate import Candidate, has_room
 from vehgen.diagnose.fits.model_fit import ModelFit
-from vehgen.diagnose.fits.screening import screen
+from vehgen.diagnose.fits.screening import screen, shaking_in_earnest
 from vehgen.diagnose.localise.localisation import localise, none_explains, owner, shortlist
 from vehgen.diagnose.localise.unknown_force import PlaceResult
 from vehgen.diagnose.select.criteria import passes
@@ -126,6 +126,7 @@ def fit_candidates(
         if not everything:
             progress("screen", 0, 1, "")
             gains = fitter.first_order_gains()
+            candidates = shaking_in_earnest(candidates, gains)
             if not base.effects:
                 candidates = settle(fitter, gains, candidates, add, runner, kept_at)
             candidates = screen(candidates, gains, kept_at, fitter.nowhere)
