@@ -33,9 +33,9 @@ MAX_CANDIDATES, MAX_BESIDE = 14, 8
 """So many candidates that are forces are kept; so many beside effects that were found before."""
 MOST_BEHIND = 8
 """So many laws of tyres at most are fitted that an axle's parameters at their bounds may stand in for."""
-LEAST_BY_CHANCE, LEAST_SHARE = 2.0, 0.25
-"""What shakes the vehicle is fitted where it gains so much for each of its numbers, twice what chance takes off, and such a share of
-what it gains at the best place."""
+LEAST_OF_LINES, LEAST_EACH, LEAST_OF_BEST = 25.0, 2.0, 0.25
+"""What shakes the vehicle is fitted where it gains so much, as its lines are sought where noise is highest, and so much more for each of
+its numbers, twice what chance takes off, and such a share of what it gains at the best place."""
 INSIDE = 0.01
 """A number begins so far within its range, of 1."""
 
@@ -78,7 +78,7 @@ def shaking_in_earnest(candidates: Sequence[Candidate], gains: FirstOrderGains) 
     best = {item.effect.name: max(gains.of(own)[0] for own in shaking if own.effect.name == item.effect.name) for item in shaking}
 
     def gains_enough(item: Candidate) -> bool:
-        least = max(LEAST_BY_CHANCE * item.effect.n_numbers(n_runs), LEAST_SHARE * best[item.effect.name])
+        least = max(LEAST_OF_LINES + LEAST_EACH * item.effect.n_numbers(n_runs), LEAST_OF_BEST * best[item.effect.name])
         return gains.of(item)[0] >= least
 
     return [item for item in candidates if not isinstance(item.effect, ShakingEffect) or gains_enough(item)]
