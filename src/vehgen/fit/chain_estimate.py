@@ -140,7 +140,7 @@ class ChainSearch:
     def is_far_better(self, loss: float, than: float, way: float = 1.0) -> bool:
         """Return whether chains that leave a loss explain so much more than others that these cannot be the right ones.
 
-        Or whether they have come so far of the `way` there.
+        With a `way` below 1, whether they do this share of what is asked.
         """
         left, before = (max(item / self.runs.size - 1, 0.0) for item in (loss, than))
         return than - loss >= way * FAR_BETTER * self._scale(loss) and left <= (1 - way * (1 - FAR_BETTER_LEFT)) * before

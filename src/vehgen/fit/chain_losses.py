@@ -128,7 +128,7 @@ class ChainTrials:
         return ChainFit(chain, self.loss(chain))
 
     def loss(self, chain: AcquisitionChain | None = None) -> float:
-        """Return the sum of squares that a chain leaves."""
+        """Return the sum of squares that a chain leaves; without one, that of the chains that stay, where no channel shares one."""
         runs, priors = self._runs, self._runs.priors
         square, normal, pull = float(self._supposed @ self._supposed), np.diag(priors**2), priors * self._supposed
         for t, (fixed, turning) in enumerate(self._parts):
