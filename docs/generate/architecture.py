@@ -17,6 +17,7 @@ MARKS = "<!-- {}: start -->", "<!-- {}: end -->"
 ROOMS = [
     "errors",
     "late_imports",
+    "process_start",
     "files",
     "vehicle",
     "mechanics",

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from vehgen import process_start
 from vehgen.errors import InputError
 from vehgen.fit import processes
 from vehgen.fit.parallel import RETRIES, Lost, Runner
@@ -70,7 +71,9 @@ def begun_and(work):
     return {"lock": threading.Lock(), "unreadable": Unreadable()}.get(asked, asked)
 
 
-def test_every_input_has_its_value_from_another_process():
+@pytest.mark.parametrize("forked", [True, False])
+def test_every_input_has_its_value_from_another_process(monkeypatch, forked):
+    monkeypatch.setattr(process_start, "FORKED", forked and process_start.FORKED)
     with ProcessRunner(2) as runner:
         found = dict(runner.as_completed(squared, iter(range(6))))
         assert {item: value for item, (value, _) in found.items()} == {number: number**2 for number in range(6)}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
@@ -13,13 +12,14 @@ from vehgen.codegen.cache import import_kernel
 from vehgen.codegen.kernel import Kernel
 from vehgen.codegen.kernel_store import writable_folder
 from vehgen.errors import InputError
+from vehgen.process_start import process_context
 
 
 def compile_all(kernels: Iterable[Kernel], workers: int | None = None) -> None:
     """Fill the cache with the compiled code of all kernels, then load it.
 
-    Compilation holds Python's interpreter lock, so threads would not help. The processes start afresh (spawn): a script that calls this
-    needs the usual `if __name__ == "__main__":` around its work.
+    Compilation holds Python's interpreter lock, so threads would not help. A script that calls this needs the usual
+    `if __name__ == "__main__":` around its work (:mod:`vehgen.process_start`).
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def compile_all(kernels: Iterable[Kernel], workers: int | None = None) -> None:
         jobs = [
             (kernel.source.text, writable_folder(kernel.folder)) for kernel in sorted(missing, key=lambda kernel: -len(kernel.source.text))
         ]
-        with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
+        with ProcessPoolExecutor(workers, mp_context=process_context()) as pool:
             try:
                 list(pool.map(compile_source, *zip(*jobs, strict=True)))
             except BrokenProcessPool as error:

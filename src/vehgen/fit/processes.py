@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import signal
 import time
 import warnings
 from collections.abc import Callable, Generator, Iterable, Iterator
-from contextlib import closing, contextmanager, suppress
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from itertools import islice
-from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
-from multiprocessing.context import SpawnProcess
+from multiprocessing.process import BaseProcess
 from multiprocessing.reduction import ForkingPickler
 from typing import Any, Self
 
 from vehgen.errors import InputError
 from vehgen.fit.parallel import RETRIES, Input, Lost, R, Runner, on_one_thread
+from vehgen.process_start import process_context, uninterrupted
 
 WORTH_PROCESSES_S = 3.0
 """Work that has taken longer is spread over processes [s]; these need a second or two to start."""
@@ -32,7 +31,7 @@ class _Worker:
     """A process, the end of its pipe, and the number of the function that it holds."""
 
     end: Connection
-    process: SpawnProcess
+    process: BaseProcess
     holds: int = 0
 
     def stop(self) -> None:
@@ -55,7 +54,7 @@ class _Job:
 class ProcessRunner(Runner):
     """A runner on so many processes at once (default: one per core), which last until it is closed.
 
-    They start afresh (spawn): a script that uses it needs the usual `if __name__ == "__main__":` around its work.
+    A script that uses it needs the usual `if __name__ == "__main__":` around its work (:mod:`vehgen.process_start`).
     """
 
     def __init__(self, processes: int | None = None) -> None:
@@ -136,7 +135,7 @@ class ProcessRunner(Runner):
     def _begin(self, jobs: dict[Connection, _Job], sent: tuple[int, memoryview], number: int, item: Input, begun: int = 1) -> None:
         """Begin a piece of work: a process is sent a numbered function once, and inputs from then on."""
         function, packed = sent
-        with _unstopped():
+        with uninterrupted():
             worker = self._idle.pop() if self._idle else _started()
             jobs[worker.end] = _Job(number, item, worker, begun)
         data = ForkingPickler.dumps(item)
@@ -150,16 +149,18 @@ class ProcessRunner(Runner):
 
 def _started() -> _Worker:
     """Return a new process."""
-    context = multiprocessing.get_context("spawn")
+    context = process_context()
     ours, theirs = context.Pipe()
-    process = context.Process(target=_work, args=(theirs,), daemon=True)
+    process = context.Process(target=_work, args=(theirs, dict(os.environ)), daemon=True)
     process.start()
     theirs.close()  # the process holds the only end, so that its death ends the pipe
     return _Worker(ours, process)
 
 
-def _work(end: Connection) -> None:
+def _work(end: Connection, environment: dict[str, str]) -> None:
     """Do pieces of work until the pipe ends; a function serves until another one comes."""
+    os.environ.clear()
+    os.environ.update(environment)  # a fork has that of the time when its server began
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that waits: it ends this one
     warnings.simplefilter("ignore")
     packed: bytes | None = None
@@ -210,17 +211,3 @@ def _value(answer: tuple[Any, Exception | None]) -> Any:
     if error is not None:
         raise error
     return value
-
-
-@contextmanager
-def _unstopped() -> Iterator[None]:
-    """Begin processes that Ctrl-C passes by from their first moment on; here it comes when the block ends."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    resource_tracker.ensure_running()  # when it begins, it lets Ctrl-C through
-    former = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, former)
