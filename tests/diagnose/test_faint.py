@@ -190,6 +190,19 @@ def test_all_that_fell_is_fitted_again_to_runs_that_changed_places(detection_of,
 
 
 @pytest.mark.thorough
+def test_no_fit_within_another_band_is_left_beside_those_that_were_fitted_again(detection_of, found_of):
+    """A fit within 20 Hz was held for a tie of one within 40 Hz, as another recorder was found: its lines are half as many."""
+    detection, best = detection_of(UNLIKE, runs=HUMPS), found_of.fits[0]
+    low, high = detection.band
+    wider = replace(detection, band=(low, 0.75 * high))
+    fits = (best,) * LOOKED_AT_AGAIN + (replace(best, effects=(replace(best.last, effect=EFFECTS["quadratic_damping"]),)),)
+    for now, same in ((detection, True), (wider, False)):
+        again = fit_leading_again(Fitter(now, now.base, ()), fits, weigh=False)
+        assert {fit.least_squares.misfit.band for fit in again} == {now.band}
+        assert any(fit is fits[-1] for fit in again) == same
+
+
+@pytest.mark.thorough
 def test_runs_do_not_change_places_for_what_falls_too_little_or_for_what_the_kept_run_speaks_against(detection_of, found_of, monkeypatch):
     detection = detection_of(UNLIKE, runs=HUMPS)
     monkeypatch.setattr(faint, "validation_fall", lambda *_: -1.0)

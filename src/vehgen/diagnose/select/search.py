@@ -195,8 +195,10 @@ def _best_of_each(fits: Sequence[ModelFit]) -> list[ModelFit]:
 def fit_leading_again(fitter: Fitter, fits: Sequence[ModelFit], weigh: bool, runner: Runner = HERE) -> tuple[ModelFit, ...]:
     """Return fits of first effects, the leading ones fitted again from where they are.
 
-    Where noise is much less than they were ranked by (`weigh`), all are weighed by it, and contenders fitted again, too.
+    Where noise is much less than they were ranked by (`weigh`), or another recorder lets through another band, all are weighed by what is
+    known now, and contenders fitted again, too.
     """
+    weigh = weigh or any(fit.least_squares.misfit.band != fitter.detection.band for fit in fits)
     leading = [fit for fit in fits[:LOOKED_AT_AGAIN] if np.isfinite(fit.validation) and fit.training <= MAY_STILL_WIN * fits[0].training]
     rest = [fit for fit in fits if all(fit is not other for other in leading)]
     found = fitter.fit_all_again(leading, runner)
