@@ -151,6 +151,8 @@ def _test(misfit: Misfit, begin: _Point, derive: Lineariser, place: Place) -> Pl
         chi = float(np.sqrt((residual @ residual) / (count - effective)))
         if chi < best_chi:
             best, best_chi = x, chi
+        if not (np.isfinite(chi) and np.all(np.isfinite(jacobian))):  # the last step led to where the model diverges
+            break
         squares, prior = jacobian.T @ jacobian, rows.T @ rows
         shown = _shown(squares, point.squares + prior)
         slope = shown.T @ (jacobian.T @ residual) + rows.T @ offset
