@@ -10,6 +10,7 @@ from vehgen.calibrate.calibration import Settings, calibrate_problem
 from vehgen.calibrate.genetic import GeneticSearch
 from vehgen.calibrate.result import CombinationSummary, FactAdvice, HeldMasses
 from vehgen.calibrate.summary import summarise
+from vehgen.commands import sensors
 from vehgen.commands.calibration_tables import show_calibration
 from vehgen.fit.problem import make_problem
 from vehgen.fit.trial import load_trials
@@ -132,3 +133,7 @@ def test_intervals_that_go_on_beyond_the_axis_end_in_an_arrow(summary):
         figure = plot_intervals(replace(summary, parameters=parameters, modes=(), combinations={}))
         lines = [line for axes in figure.axes for line in axes.get_lines()]
         assert [(line.get_marker(), line.get_xdata()[0]) for line in lines if line.get_marker() in "<>"] == arrows
+
+
+def test_errors_of_sensors_have_two_digits_that_count():
+    assert [sensors._percent(error) for error in (0.00048, 0.00079, 0.1234, 1.0, 2.5, 0.0)] == ["0.048", "0.079", "12", "100", "250", "0"]

@@ -50,8 +50,12 @@ def run(options: argparse.Namespace) -> None:
     for size, layout in enumerate(found.best, start=1):
         poorest = sorted(zip(found.names, layout.error, strict=True), key=lambda pair: -pair[1])[:4]
         words = "; ".join(place.words for place in layout.places)
-        rows.append(
-            (str(size), words, f"{100 * layout.score**0.5:.1f}", ", ".join(f"{name} {100 * error:.0f} %" for name, error in poorest))
-        )
+        errors = ", ".join(f"{name} {_percent(error)} %" for name, error in poorest)
+        rows.append((str(size), words, _percent(layout.score**0.5), errors))
     title = "best places; errors are standard deviations of ln(parameter), of which 100 % were assumed known beforehand"
     print_table(title, ("sensors", "where", "error [%]", "poorest"), rows, right=(2,))
+
+
+def _percent(error: float) -> str:
+    """Return an error in percent, with two digits that count: of three sensors all may be below a tenth of one."""
+    return f"{float(f'{100 * error:.2g}'):g}"

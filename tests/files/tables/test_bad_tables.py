@@ -217,3 +217,11 @@ def test_a_heading_that_names_no_unit_leaves_the_word_to_who_states_one(tmp_path
     (tmp_path / "run.csv").write_text("t,az [banana]\n0,1\n1,2\n")
     table = read_columns(tmp_path / "run.csv", ("t", "az"))
     assert table.in_si(1, "m/s^2", "acceleration", "g", None).values[1] == pytest.approx([9.80665, 2 * 9.80665])
+
+
+@pytest.mark.parametrize("text", ["s,h\n0,0\n5,0.01\n20,0\n\n", "s,h\n\n0,0\n , \n5,0.01\n20,0\n,\n"])
+def test_a_line_without_any_number_says_nothing(tmp_path, text):
+    (tmp_path / "profile.csv").write_text(text)
+    table = read_columns(tmp_path / "profile.csv", ("s", "h"))
+    assert [item.tolist() for item in table.values] == [[0.0, 5.0, 20.0], [0.0, 0.01, 0.0]]
+    assert table.lines.tolist() == [number for number, line in enumerate(text.split("\n"), 1) if line[:1].isdigit()]

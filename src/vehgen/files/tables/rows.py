@@ -50,6 +50,8 @@ def read_rows(path: Path, header: Sequence[str], rows: Rows, names: tuple[str, .
     units_line, doubtful = 1, frozenset[int]()
     signs: set[str] = set()
     for line, row in rows:
+        if not any(map(_text, row)):
+            continue  # a blank line, as editors and loggers leave one at the end
         if not places:
             places = [find_heading(path, header, name, first) for name in names]
             units = [name_and_unit(header[place])[1] for place in places]
