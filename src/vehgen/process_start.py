@@ -1,6 +1,6 @@
 """How does a process for pieces of work begin? With what this one has imported, where it can be forked safely; else afresh.
 
-To import what a diagnosis needs takes longer than many a piece of work. Python's fork server, a process without threads of its own, imports
+To import what a diagnosis needs takes longer than many a piece of work. Python's fork server, a process that does nothing else, imports
 it once, and every process of work is a fork of it. Elsewhere than on Linux system libraries may not survive a fork, and Python before
 3.11.1 let other users of the machine speak to its server (CVE-2022-42919): there each process starts afresh (spawn).
 """
