@@ -74,7 +74,6 @@ def test_where_a_fork_is_not_safe_each_process_starts_afresh(monkeypatch):
     assert multiprocessing.get_start_method(allow_none=True) != "forkserver"  # the program's own choice stays
 
 
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")
 def test_modules_that_no_work_needs_are_not_imported_before_it():
     names = ["vehgen.fit.misfit", "vehgen.commands.diagnose", "vehgen.report.pages", "vehgen.__main__", "scipy.signal", "scipy.stats._qmc",
              "scipy.signal.windows", "rich.console", "matplotlib"]  # fmt: skip
